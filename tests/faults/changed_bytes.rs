@@ -1,4 +1,4 @@
-//! One byte changed anywhere in any file: an error, or the very same result.
+//! One changed byte at any place of a file causes an error, or does not change the result.
 
 use ddl::{Ddl, DdlError, DeviceChoice, Forecaster as _};
 use ddl_tests::chance::Chance;
@@ -32,7 +32,7 @@ fn a_forecast_from_a_changed_file_is_refused_or_the_same() {
             match forecast(&place.at(model)) {
                 Err(error) => {
                     refused += 1;
-                    // named: the file, or the part of config.json that does not fit the others
+                    // The message names the file, or the part of config.json that does not match the others.
                     let message = error.to_string();
                     assert!(message.len() > 20, "{name}, byte {byte}: {message}");
                 }

@@ -1,4 +1,4 @@
-//! A disk that is full: the file is named, what was there before stays, and nothing half written does.
+//! A full disk: the error names the file, earlier files stay, and no unfinished file remains.
 
 use super::EVALUATE;
 use ddl_tests::folder_contents::half_written;
@@ -25,9 +25,9 @@ fn an_earlier_output_stays() {
     place.write("out/packed", "an earlier model");
     let files = ["forecasts.csv", "goals.csv", "packed"].map(|name| format!("out/{name}"));
     let before = files.clone().map(|name| place.read(&name));
-    // whatever room there is
+    // Fills the disk completely.
     assert!(std::fs::write(out.join("filler"), vec![0; 8 << 20]).is_err());
-    // many files: each of them is the earlier one or the new one
+    // Several files: each is either the earlier or the new one.
     let evaluate = format!("{EVALUATE} --protocol single --out out/report");
     let commands = [
         (
@@ -55,12 +55,12 @@ fn an_earlier_output_stays() {
     figures::tell(
         "disk full, other commands",
         format!("{} outputs over earlier ones", commands.len()),
-        "each named, the earlier file kept; a report's files are each the earlier or the new one",
+        "each error names the file, the earlier file stays; each file of a report is the earlier or the new one",
     );
 }
 
 #[test]
-fn standard_output_that_takes_nothing_is_an_error() {
+fn a_full_standard_output_is_an_error() {
     let place = Place::with_model();
     let commands = [
         "forecast --model run tracks.csv",
@@ -89,6 +89,6 @@ fn standard_output_that_takes_nothing_is_an_error() {
     figures::tell(
         "`/dev/full` as the output",
         format!("{} commands", commands.len()),
-        "exit code 1, the output named",
+        "exit code 1, the error names the output",
     );
 }

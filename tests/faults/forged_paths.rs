@@ -1,4 +1,4 @@
-//! No file is named by what stands in a model file.
+//! Texts in a model file are never opened as paths.
 
 use super::EVALUATE;
 use ddl_tests::place::{Place, json};
@@ -7,7 +7,8 @@ use serde_json::Value;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
-/// Whether the program ends within this time. Who opens a pipe that nobody writes to waits for ever, and is ended here.
+/// Whether the program ends within this time. A program that opens a pipe without a writer would wait forever; it is
+/// ended here.
 fn ends(place: &Place, line: &str, within: Duration) -> bool {
     let mut child = place.start(line);
     drop((child.stdout.take(), child.stderr.take()));
@@ -44,12 +45,12 @@ fn texts(value: &Value, pointer: &str, found: &mut Vec<String>) {
     }
 }
 
-/// Every text of `config.json`, one after the other, is the path of a pipe: opening it would never end.
+/// Every text of `config.json` is replaced, one after the other, by the path of a pipe that blocks when it is opened.
 #[test]
 fn no_text_of_a_configuration_is_opened() {
     let place = Place::with_model();
     let forged = pipe(&place);
-    // that such a pipe is noticed
+    // Checks that the test notices such a pipe.
     let opened = format!("forecast --model run {forged}");
     assert!(!ends(&place, &opened, Duration::from_secs(2)));
     let config: Value = json(&place.text("run/config.json"));
@@ -70,7 +71,7 @@ fn no_text_of_a_configuration_is_opened() {
     figures::tell(
         "paths in a configuration",
         format!(
-            "{} texts, each the path of a pipe that blocks who opens it; {} commands",
+            "{} texts, each the path of a pipe that blocks when it is opened; {} commands",
             pointers.len(),
             pointers.len() * commands.len()
         ),
@@ -78,7 +79,7 @@ fn no_text_of_a_configuration_is_opened() {
     );
 }
 
-/// A run with this path for its names of fold, recordings, commit and device, so that it loads.
+/// Writes a run with this path as the names of fold, recordings, commit and device; it still loads.
 fn forge(place: &Place, original: &Value, path: &str) {
     let mut config = original.clone();
     for pointer in [
@@ -108,7 +109,7 @@ fn forge(place: &Place, original: &Value, path: &str) {
 }
 
 #[test]
-fn a_model_with_paths_for_names_forecasts_as_before() {
+fn a_model_with_paths_as_names_forecasts_as_before() {
     let place = Place::with_model();
     let forecast = "forecast --model run tracks.csv --threads 1";
     let pack = "pack --model run --out packed";
@@ -130,11 +131,11 @@ fn a_model_with_paths_for_names_forecasts_as_before() {
         assert_eq!(place.ok(forecast), expected);
         let _ = place.ok(pack);
         let _ = place.ok("forecast --model packed tracks.csv");
-        // data is looked for by the names of the convention alone: there is no such fold
+        // Recordings are found only by the names of the convention, which has no such fold.
         place.fails("evaluate --model run --threads 1", &["corridor"]);
     }
     figures::tell(
-        "a model forged to load, with paths for names",
+        "a forged model with paths as names",
         format!(
             "{} kinds of paths in 6 fields and 3 headers, run and packed",
             paths.len()
@@ -162,12 +163,12 @@ fn nothing_is_written_through_a_link() {
         assert_eq!(place.text("canary"), "untouched", "{line}");
         assert!(!place.at(name).is_symlink(), "{line}");
     }
-    // a link to nowhere is no model, and makes none
+    // A link to a missing file is not a model, and does not create one.
     place.remove("elsewhere");
     place.fails(forecast, &["not finished"]);
     figures::tell(
         "links among the files of a run",
         "3 outputs and a model",
-        "read through, never written through",
+        "read, never written",
     );
 }

@@ -1,4 +1,4 @@
-//! Readers that go, and signals: commands end without a word.
+//! Closed outputs and signals end a command without a message.
 
 use super::EVALUATE;
 use ddl_tests::chance::Chance;
@@ -20,9 +20,10 @@ const COMMANDS: [&str; 9] = [
     "--help",
 ];
 
-/// As in `ddl .. | head -1`, where the reader goes at once; or in `ddl .. 2>&1 | head -1`, where nobody hears what is told to people either.
+/// As in `ddl .. | head -1`, where the reader closes standard output, or in `ddl .. 2>&1 | head -1`, where it closes
+/// standard error as well.
 #[test]
-fn a_reader_that_goes_ends_every_command_quietly() {
+fn a_closed_output_ends_every_command_quietly() {
     let place = Place::with_model();
     for line in COMMANDS {
         let mut child = place.start(line);
@@ -36,18 +37,19 @@ fn a_reader_that_goes_ends_every_command_quietly() {
         drop((child.stdout.take(), child.stderr.take()));
         assert_eq!(child.wait().unwrap().code(), Some(0), "{line}");
     }
-    // an error has its exit code whether it is read or not
+    // An error has its exit code even if its message is not read.
     let mut child = place.start("forecast --model nowhere tracks.csv");
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(1));
     figures::tell(
-        "the reader of the output goes",
+        "the output is closed",
         format!("{} commands", COMMANDS.len()),
         "exit code 0, no message",
     );
 }
 
-/// Stopped at any moment: an output is there whole or not at all, and nothing is said but by training, which saves.
+/// Stopped at any moment: an output is complete or absent, and only training prints a message, because it saves its
+/// state.
 #[test]
 fn a_signal_ends_a_command_quietly() {
     let place = Place::with_model();
@@ -69,12 +71,12 @@ fn a_signal_ends_a_command_quietly() {
         ended_by_it += usize::from(by_signal);
         assert!(place.read("out.csv") == expected);
     }
-    // only who is stopped in the millisecond of writing leaves something behind
+    // Only a signal during the millisecond of writing leaves a file behind.
     let left = half_written(place.path());
     assert!(left.len() <= 1, "{left:?}");
     figures::tell(
         "SIGTERM and SIGINT during `ddl forecast`",
         format!("{rounds} at random moments, {ended_by_it} before its end"),
-        "no message, the earlier output whole",
+        "no message, the earlier output is complete",
     );
 }

@@ -1,5 +1,5 @@
-//! A day of live tracks: memory and time of a frame at its end are those of its beginning, measured in a process of its
-//! own, because the other tests of this program use memory as they like.
+//! A day of live tracks: memory and time per frame stay constant. Measured in a separate process, because the other
+//! tests of this program use memory as well.
 
 use ddl::data::{PedestrianId, Position};
 use ddl::eval::baseline::ConstantVelocity;
@@ -8,43 +8,43 @@ use ddl_tests::one_forecast::One;
 use ddl_tests::{figures, processes};
 use std::time::Instant;
 
-/// Frames of an hour, 0.4 s apart.
+/// Frames per hour, 0.4 s apart.
 const HOUR: usize = 9_000;
 const MIB: u64 = 1 << 20;
 
-/// Who is there at a frame: somebody new every 12 frames, for 20 to 50 frames each, walking past at 1.25 m/s.
-fn people(frame: i64) -> Vec<(PedestrianId, Position)> {
-    let mut people = Vec::new();
+/// The pedestrians at a frame: a new one every 12 frames, each present for 20 to 50 frames and walking at 1.25 m/s.
+fn pedestrians(frame: i64) -> Vec<(PedestrianId, Position)> {
+    let mut pedestrians = Vec::new();
     for id in (frame / 12 - 4).max(0)..=frame / 12 {
         let age = frame - 12 * id;
         let stays = 20 + id * 7 % 31;
         if age < stays {
             let lane = (id % 5) as f64;
-            people.push((
+            pedestrians.push((
                 PedestrianId(id),
                 [0.5 * age as f64, lane + 0.1 * (0.3 * age as f64).sin()],
             ));
         }
     }
-    people
+    pedestrians
 }
 
-/// Seconds of some frames: the median and the 99th percentile, milliseconds.
+/// The median and the 99th percentile of durations in seconds, as milliseconds.
 fn quantiles(seconds: &mut [f64]) -> [f64; 2] {
     seconds.sort_by(f64::total_cmp);
     [0.5, 0.99].map(|q| 1e3 * seconds[(q * (seconds.len() - 1) as f64) as usize])
 }
 
-/// What the child does: streams `frames`, of which the first `part` and the last are measured.
+/// The child process: streams `frames` frames and measures the first and last `part`.
 fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<f64>> {
     let mut live = LiveForecaster::new(model);
     let mut seconds = vec![0.0; frames];
     let (mut early, mut most) = (0, 0);
     for (frame, seconds) in seconds.iter_mut().enumerate() {
         let begun = Instant::now();
-        let now = live.push(frame as i64, people(frame as i64)).unwrap();
+        let now = live.push(frame as i64, pedestrians(frame as i64)).unwrap();
         *seconds = begun.elapsed().as_secs_f64();
-        assert_eq!(now.is_some(), frame >= 7, "somebody is always there");
+        assert_eq!(now.is_some(), frame >= 7, "a pedestrian is always present");
         most = most.max(live.tracks().len());
         if frame + 1 == part {
             early = processes::resident_bytes()?;
@@ -68,11 +68,11 @@ fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<
 }
 
 #[test]
-fn a_day_of_forecasts_does_not_add_up() {
+fn a_day_of_forecasts_needs_constant_memory() {
     let size = figures::rounds((3_000, 600), (24 * HOUR, HOUR));
     watched(
-        "a live stream, one forecast each",
-        "a_day_of_forecasts_does_not_add_up",
+        "a live stream, one forecast per pedestrian",
+        "a_day_of_forecasts_needs_constant_memory",
         size,
         || {
             ddl::prepare(DeviceChoice::Cpu, Some(1)).unwrap();
@@ -83,11 +83,11 @@ fn a_day_of_forecasts_does_not_add_up() {
 }
 
 #[test]
-fn a_day_of_tracks_does_not_add_up() {
+fn a_day_of_tracks_needs_constant_memory() {
     let size = (24 * HOUR, HOUR);
     watched(
         "a live stream, constant velocity",
-        "a_day_of_tracks_does_not_add_up",
+        "a_day_of_tracks_needs_constant_memory",
         size,
         || stream(ConstantVelocity::last_step(), size),
     );
@@ -105,11 +105,11 @@ fn watched(
     let [early, late, peak, most, median, p99, last_median, last_p99] = numbers[..] else {
         panic!("{numbers:?}");
     };
-    assert!(most <= 6.0, "{most} people remembered");
-    // what allocators keep for themselves; a number of 8 bytes kept a frame would be 1.7 MB a day
+    assert!(most <= 6.0, "{most} pedestrians remembered");
+    // The reserves of allocators; 8 bytes lost per frame would add 1.7 MB a day.
     let growth = late - early;
     assert!(growth <= 8.0 * MIB as f64, "{growth} bytes more");
-    // The machine may be busy with something else at one of the times: twice is not a trend.
+    // The machine may be busy in one of the measurements, so a factor of two is not a trend.
     assert!(
         last_median < 3.0 * median,
         "{median} ms, then {last_median} ms"
@@ -118,12 +118,12 @@ fn watched(
     figures::tell(
         what,
         format!(
-            "{frames} frames of 0.4 s ({:.1} h), 2 to 5 people at a time coming and going",
+            "{frames} frames of 0.4 s ({:.1} h), 2 to 5 pedestrians at a time",
             frames as f64 / HOUR as f64
         ),
         format!(
-            "memory {:.1} MiB after {:.1} h, {:.1} MiB at the end (peak {:.1}); a frame takes {median:.3} ms at first (p99 {p99:.3}), {last_median:.3} ms \
-             at last (p99 {last_p99:.3})",
+            "memory {:.1} MiB after {:.1} h, {:.1} MiB at the end (peak {:.1}); a frame takes {median:.3} ms at first \
+             (p99 {p99:.3}), {last_median:.3} ms at last (p99 {last_p99:.3})",
             mib(early),
             part as f64 / HOUR as f64,
             mib(late),

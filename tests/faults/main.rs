@@ -1,7 +1,7 @@
-//! What goes wrong outside: disks that are full, files that are damaged, readers that go, crowds, days. Each fault is
-//! tried a few times here, and often by `cargo xtask faults`, which also writes down what was found.
+//! External faults: full disks, damaged files, closed outputs, crowds, days of input. Each fault is tried a few times
+//! here. `cargo xtask faults` tries it many times and records the results.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![cfg(unix)]
 
 mod changed_bytes;
@@ -13,5 +13,5 @@ mod long_stream;
 mod no_network;
 mod unwritable;
 
-/// What is measured of the model in `run`.
+/// Evaluates the model in `run`.
 const EVALUATE: &str = "evaluate --model run --protocol fair --test-pedestrians 20 --threads 1";

@@ -1,4 +1,4 @@
-//! Without a network every command works, to the same bytes: nothing is fetched, nothing is told to anybody.
+//! Every command works without a network, with the same bytes: it fetches nothing and sends nothing.
 
 use super::EVALUATE;
 use ddl_tests::figures;
@@ -29,6 +29,6 @@ fn every_command_works_without_a_network() {
             "{} commands in a network namespace without interfaces, evaluation among them",
             commands.len() + 2
         ),
-        "all work; outputs are those with a network, byte for byte",
+        "all work; the outputs have the same bytes as with a network",
     );
 }

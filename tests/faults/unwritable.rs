@@ -1,11 +1,11 @@
-//! Outputs where nothing may be written, or where there is no folder.
+//! Outputs in folders that are read-only or do not exist.
 
 use super::EVALUATE;
 use ddl_tests::mount::Mount;
 use ddl_tests::place::Place;
 use ddl_tests::{figures, folder_contents};
 
-/// Folders are made for the outputs of the first two, not for those of the others.
+/// The first two commands create the folder of their outputs, the others do not.
 fn outputs(folder: &str) -> [String; 7] {
     [
         format!("{EVALUATE} --out {folder}/report"),
@@ -25,7 +25,7 @@ fn with_results() -> Place {
 }
 
 #[test]
-fn a_read_only_directory_is_named() {
+fn a_read_only_directory_is_reported() {
     let place = with_results();
     let fixed = place.at("fixed");
     std::fs::rename(place.at("run"), &fixed).unwrap();
@@ -37,19 +37,19 @@ fn a_read_only_directory_is_named() {
     for command in outputs("fixed") {
         place.fails(&command, &["fixed", "choose a place"]);
     }
-    // a model there is read as anywhere, and measured again without writing
+    // A model in such a folder can be read, and evaluated with an output elsewhere.
     let _ = place.ok("forecast --model run tracks.csv");
     let _ = place.ok(&format!("{EVALUATE} --out again"));
     folder_contents::assert_same(&before, &folder_contents::read(&fixed));
     figures::tell(
         "output on a read-only file system",
         format!("{} commands", outputs("").len()),
-        "each named, nothing written; models there are read",
+        "each error names the folder, nothing is written; models there are read",
     );
 }
 
 #[test]
-fn a_folder_that_is_not_there_is_named() {
+fn a_missing_folder_is_reported() {
     let place = with_results();
     for command in outputs("tracks.csv") {
         place.fails(&command, &["tracks.csv"]);
@@ -59,8 +59,8 @@ fn a_folder_that_is_not_there_is_named() {
         place.fails(command, &["nowhere"]);
     }
     figures::tell(
-        "output below a file, or in a folder that is not there",
+        "output below a file, or in a missing folder",
         format!("{} commands", outputs("").len() + single.len()),
-        "each named, nothing written",
+        "each error names the path, nothing is written",
     );
 }

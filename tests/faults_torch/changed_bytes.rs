@@ -1,4 +1,4 @@
-//! One byte changed in a file of a training under way: an error, or the very same weights in the end.
+//! One changed byte in a file of an unfinished training causes an error, or does not change the final weights.
 
 use ddl::{DdlError, RunDirectory, TrainingStep};
 use ddl_tests::chance::Chance;
@@ -7,7 +7,7 @@ use ddl_tests::{figures, trained_model};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// A run stopped in each of its stages, with its state.
+/// A run stopped in one of its stages, with its state.
 fn stopped(at: fn(&TrainingStep) -> bool) -> Contents {
     let folder = tempfile::tempdir().unwrap();
     let run = RunDirectory::new(folder.path());
@@ -23,12 +23,12 @@ fn stopped(at: fn(&TrainingStep) -> bool) -> Contents {
 }
 
 #[test]
-fn training_goes_on_from_a_changed_file_to_the_same_weights_or_not_at_all() {
+fn training_resumes_from_a_changed_file_with_the_same_weights_or_fails() {
     let model = Path::new("model.safetensors");
     let expected = trained_model::contents()[model].as_ref().unwrap();
     let goals = stopped(|step| matches!(step, TrainingStep::Goals(_)));
     let network = stopped(|step| matches!(step, TrainingStep::Network(_)));
-    let mut chance = Chance::new("changed bytes of a run under way");
+    let mut chance = Chance::new("changed bytes of an unfinished run");
     let (mut tried, mut refused) = (0, 0);
     for (contents, name) in [
         (&goals, "proposal-state.safetensors"),
@@ -54,7 +54,7 @@ fn training_goes_on_from_a_changed_file_to_the_same_weights_or_not_at_all() {
     assert!(refused > tried / 2, "{refused} of {tried}");
     let same = tried - refused;
     figures::tell(
-        "one byte changed, then training goes on",
+        "one byte changed, then training resumes",
         format!(
             "{tried} changes of 5 files (states of both stages, configuration, proposals, experts)"
         ),

@@ -1,4 +1,4 @@
-//! `kill -9` at any moment of a benchmark: the same command goes on to the same results.
+//! `kill -9` at any moment of a benchmark: the same command resumes it with the same results.
 
 use ddl_tests::chance::Chance;
 use ddl_tests::folder_contents::{self, Contents, assert_same, half_written};
@@ -9,8 +9,8 @@ use std::os::unix::process::ExitStatusExt as _;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 --train-pedestrians 64 --test-pedestrians 20 \
-                         --protocol fair --jobs 2 --out out";
+const BENCHMARK: &str = "benchmark --convention simulated --profile smoke --folds corridor --seeds 1,2 \
+                         --train-pedestrians 64 --test-pedestrians 20 --protocol fair --jobs 2 --out out";
 
 fn benchmark(place: &Place) -> Command {
     let mut command = program::command(place.path(), BENCHMARK);
@@ -28,7 +28,7 @@ fn begun(place: &Place) -> Child {
 }
 
 fn kill_all(child: &mut Child) {
-    // the benchmark first, so that it begins nothing new
+    // The benchmark first, so that it starts no new process.
     for id in processes::with_descendants(child.id()) {
         processes::signal(id, "KILL");
     }
@@ -46,7 +46,7 @@ fn forget_seconds(value: &mut Value) {
     }
 }
 
-/// Weights and results of a finished benchmark, without what differs from time to time: seconds.
+/// Weights and results of a finished benchmark, without durations, which vary.
 fn finish(place: &Place) -> Contents {
     let status = benchmark(place).status().unwrap();
     let mut contents = folder_contents::read(&place.at("out"));
@@ -72,7 +72,7 @@ fn finish(place: &Place) -> Contents {
     contents
 }
 
-/// Half of the times everything is killed, half of the times the benchmark alone, whose processes go on by themselves.
+/// In half of the rounds all processes are killed, in the others only the benchmark, whose child processes continue.
 #[test]
 fn a_killed_benchmark_ends_in_the_same_results() {
     let clock = Instant::now();
@@ -84,7 +84,7 @@ fn a_killed_benchmark_ends_in_the_same_results() {
     for round in 0..rounds {
         let place = Place::empty();
         let mut moment = chance.moment((round, rounds), takes);
-        // one that is done before it is killed is begun anew, and killed earlier
+        // A benchmark that finishes before it is killed is started again, and killed earlier.
         loop {
             let mut child = benchmark(&place).spawn().unwrap();
             std::thread::sleep(moment);
@@ -106,12 +106,12 @@ fn a_killed_benchmark_ends_in_the_same_results() {
     figures::tell(
         "`kill -9` of a benchmark",
         format!(
-            "{rounds} benchmarks of 2 models, {:.1} s each, each killed once at a random moment; {} times the benchmark alone, whose \
-             processes went on",
+            "{rounds} benchmarks of 2 models, {:.1} s each, each killed once at a random moment; {} times the \
+             benchmark alone, whose processes continued",
             takes.as_secs_f64(),
             rounds / 2
         ),
-        format!("{rounds} of {rounds} go on to the same results but for times"),
+        format!("{rounds} of {rounds} resume to the same results except durations"),
     );
 }
 
@@ -128,12 +128,12 @@ fn a_second_benchmark_in_the_same_folder_is_refused() {
     figures::tell(
         "two benchmarks in one folder",
         "the second, then again after a `kill -9` of the first",
-        "refused, naming the folder; free after the kill",
+        "refused with the name of the folder; accepted after the kill",
     );
 }
 
 #[test]
-fn an_interrupted_benchmark_stops_cleanly_and_goes_on() {
+fn an_interrupted_benchmark_stops_cleanly_and_resumes() {
     let place = Place::empty();
     let log = place.at("out/corridor-full-1/log.txt");
     let trainings = || {

@@ -1,4 +1,4 @@
-//! `kill -9` at any moment of a training: the same command goes on to the same bytes.
+//! `kill -9` at any moment of a training: the same command resumes it with the same bytes.
 
 use ddl_tests::chance::Chance;
 use ddl_tests::folder_contents::{self, assert_same, half_written};
@@ -26,7 +26,7 @@ fn is_writing(place: &Place) -> bool {
     })
 }
 
-/// Every file that has its name is whole.
+/// Checks that every file with its final name is complete.
 fn assert_whole(place: &Place) {
     for (name, bytes) in folder_contents::read(place.path()) {
         let (Some(bytes), text) = (bytes, name.display().to_string()) else {
@@ -44,7 +44,8 @@ fn assert_whole(place: &Place) {
     }
 }
 
-/// Each of the runs is killed once: half of them at moments spread over the whole of it, half of them while a file is being written.
+/// Each of the runs is killed once: half of them at moments spread over the whole run, half of them while a file is
+/// being written.
 #[test]
 fn a_killed_training_ends_in_the_same_bytes() {
     let begun = Instant::now();
@@ -56,7 +57,7 @@ fn a_killed_training_ends_in_the_same_bytes() {
     for round in 0..rounds {
         let place = Place::empty();
         let mut moment = chance.moment((round, rounds), takes);
-        // one that is done before it is killed is begun anew, and killed earlier
+        // A run that finishes before it is killed is started again, and killed earlier.
         loop {
             let mut child = start(&place);
             std::thread::sleep(moment);
@@ -83,14 +84,15 @@ fn a_killed_training_ends_in_the_same_bytes() {
             takes.as_secs_f64()
         ),
         format!(
-            "{rounds} of {rounds} go on to the same bytes; {while_writing} had a file half written, which was never read and is gone"
+            "{rounds} of {rounds} resume to the same bytes; {while_writing} had an unfinished file, which was never \
+             read and was removed"
         ),
     );
 }
 
-/// The same run again and again: what little each attempt gets done is kept from 30 s or an epoch on, and nothing is ever lost.
+/// The same run is killed repeatedly. Progress is kept from 30 s or an epoch on, and nothing is lost.
 #[test]
-fn a_training_that_is_killed_again_and_again_ends_in_the_same_bytes() {
+fn a_repeatedly_killed_training_ends_in_the_same_bytes() {
     let begun = Instant::now();
     let expected = finish(&Place::empty());
     let takes = begun.elapsed();
@@ -100,7 +102,7 @@ fn a_training_that_is_killed_again_and_again_ends_in_the_same_bytes() {
     let mut killed = 0;
     while killed < most && !place.at("run/model.safetensors").exists() {
         let mut child = start(&place);
-        // the first parts of a run are gone through at every attempt
+        // Every attempt repeats the first parts of a run.
         let moment = chance.moment((0, 1), takes / 2) + Duration::from_millis(1);
         std::thread::sleep(moment);
         child.kill().unwrap();

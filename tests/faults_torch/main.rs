@@ -1,7 +1,7 @@
-//! What goes wrong outside while a model is trained: processes that are killed, disks that are full, files that are damaged. Each fault
-//! is tried a few times here, and often by `cargo xtask faults`, which also writes down what was found.
+//! External faults during training: killed processes, full disks, damaged files. Each fault is tried a few times here.
+//! `cargo xtask faults` tries it many times and records the results.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![cfg(unix)]
 
 mod changed_bytes;

@@ -1,4 +1,4 @@
-//! The folder of a training: on a full disk, where nothing may be written, in use by another process; and without a network.
+//! The folder of a training: on a full disk, read-only, in use by another process; and training without a network.
 
 use ddl_tests::folder_contents::{assert_same, half_written};
 use ddl_tests::mount::Mount;
@@ -7,11 +7,11 @@ use ddl_tests::trained_model::{TRAIN, finish, result};
 use ddl_tests::{figures, offline, processes};
 use std::io::{BufRead as _, BufReader};
 
-/// A run takes some 8 MiB.
+/// A run takes about 8 MiB.
 const MOST_KIBIBYTES: u64 = 10 << 10;
 
 #[test]
-fn training_goes_on_when_there_is_room() {
+fn training_resumes_when_there_is_room() {
     let (whole, place) = (Place::empty(), Place::empty());
     let expected = finish(&whole);
     let Some(disk) = Mount::small(place.path(), 4) else {
@@ -50,14 +50,14 @@ fn training_goes_on_when_there_is_room() {
         "disk full while training",
         format!("{tried} times in one run, with a little more room each time"),
         format!(
-            "stopped at {} different files, each named; then the same bytes",
+            "stopped at {} different files, each named in the error; then the same bytes",
             failed.len()
         ),
     );
 }
 
 #[test]
-fn where_nothing_may_be_written_is_named() {
+fn a_read_only_folder_is_reported() {
     let place = Place::empty();
     place.write("file", "");
     let train = "train --convention simulated --fold plaza --threads 1 --out";
@@ -75,12 +75,12 @@ fn a_second_training_in_the_same_directory_is_refused() {
     let mut first = place.start(&format!("{TRAIN} --progress json"));
     let mut lines = BufReader::new(first.stdout.take().unwrap()).lines();
     lines.next().unwrap().unwrap();
-    // it may not get on meanwhile
+    // It must not continue meanwhile.
     processes::signal(first.id(), "STOP");
     for _ in 0..3 {
         place.fails(TRAIN, &["run run:", "another process", "choose another"]);
     }
-    // another directory is free
+    // Another directory can be used.
     let _ = place.ok(&TRAIN.replace("--out run", "--out other"));
     first.kill().unwrap();
     first.wait().unwrap();
@@ -88,7 +88,7 @@ fn a_second_training_in_the_same_directory_is_refused() {
     figures::tell(
         "two trainings in one directory",
         "the second 3 times, then after a `kill -9` of the first",
-        "refused each time, naming the directory; free after the kill",
+        "refused each time with the name of the directory; accepted after the kill",
     );
 }
 

@@ -1,5 +1,6 @@
-//! Forecasts of anybody who can be observed: standing, strolling, running, turning, trembling, lost now and then. None is faster than the
-//! pedestrian can be, each arrives, every certificate holds with its bounds, and none is worse than straight lines to the same goals.
+//! Forecasts of arbitrary observations: standing, strolling, running, turning, noisy, with gaps. No forecast is faster
+//! than a pedestrian can be, each arrives, every certificate holds with its bounds, and none is worse than straight
+//! lines to the same goals.
 
 use ddl::data::{Completion, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
@@ -12,7 +13,7 @@ use proptest::prelude::*;
 use std::sync::LazyLock;
 
 const CASES: u32 = 1000;
-/// Pedestrians forecast together: a case is one of them.
+/// Pedestrians forecast together; each of them is a case.
 const TOGETHER: usize = 25;
 const TIME_STEP: f64 = 0.4;
 
@@ -27,7 +28,7 @@ fn builtin() -> &'static [Ddl] {
     &MODELS[..BuiltinModel::ALL.len()]
 }
 
-/// The fastest a forecast may be: the larger of 2.2 m/s and 1.3 times the fastest observed step and 0.5 m/s more.
+/// The largest allowed speed of a forecast: the larger of 2.2 m/s and 1.3 times the fastest observed step plus 0.5 m/s.
 fn limit(observed: &[Position]) -> f64 {
     let fastest = steps(observed).fold(0.0, f64::max);
     (1.3 * fastest + 0.5).max(2.2)
@@ -42,7 +43,7 @@ fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// An observation: speed, change of speed, turn a step, tremble and steps at which the position was held.
+/// An observation: speed, change of speed, turn per step, noise, and steps at which the position was held.
 fn observation() -> impl Strategy<Value = Vec<Position>> {
     let speed = prop_oneof![1 => Just(0.0), 3 => 0.0..2.0_f64, 4 => 0.0..12.0_f64];
     let tremble = prop_oneof![2 => Just(0.0), 2 => 0.0..0.1_f64, 1 => 0.0..0.6_f64];
@@ -65,7 +66,7 @@ fn observation() -> impl Strategy<Value = Vec<Position>> {
                 let mut track: Vec<Position> = Vec::new();
                 for (off, held) in noise.into_iter().zip(held) {
                     let seen = [0, 1].map(|axis| here[axis] + tremble * off[axis]);
-                    // A tracker that lost somebody repeats the last position.
+                    // A tracker that lost the pedestrian repeats the last position.
                     track.push(if held {
                         *track.last().unwrap_or(&seen)
                     } else {
@@ -85,7 +86,7 @@ fn observation() -> impl Strategy<Value = Vec<Position>> {
 
 fn window(tracks: Vec<Vec<Position>>) -> Window {
     let ids = (0..tracks.len() as i64).map(PedestrianId).collect();
-    Window::new("anybody", 0, 1, ids, tracks).unwrap()
+    Window::new("yard", 0, 1, ids, tracks).unwrap()
 }
 
 fn within_bounds(
@@ -156,7 +157,7 @@ fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
 }
 
 #[test]
-fn strange_observations_are_forecast_as_stably() {
+fn unusual_observations_are_forecast_stably() {
     let standing = vec![[3.0, -2.0]; OBSERVED];
     let mut leaping = standing.clone();
     leaping[OBSERVED - 1] = [103.0, -2.0];
@@ -201,7 +202,7 @@ fn the_certified_forecast_is_the_forecast() {
 }
 
 #[test]
-fn reports_name_the_precision() {
+fn reports_state_the_precision() {
     let place = Place::with_model();
     let evaluate = "evaluate --model run --precision bf16 --protocol single --test-pedestrians 20";
     let report = place.json(&format!("{evaluate} --threads 1 --json"));
@@ -219,7 +220,7 @@ fn reports_name_the_precision() {
     }
 }
 
-/// minADE of the model and of straight lines to its goals, of somebody who walks straight on at this speed, metres.
+/// minADE (m) of the model and of straight lines to its goals, for a pedestrian that walks straight at this speed.
 fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
     let at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
     let forecast = model
@@ -245,7 +246,7 @@ fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
     [error(&|k, t| forecast.hypothesis(0, k)[t]), error(&line)]
 }
 
-/// And without a sharp edge: a tenth of a metre a second more changes the error by less than a quarter of a metre.
+/// The error is continuous in the speed: 0.1 m/s more changes it by less than 0.25 m.
 #[test]
 fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines() {
     let speeds = (1..=80).map(|tenth| 0.1 * f64::from(tenth));
@@ -258,10 +259,10 @@ fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines
     }
 }
 
-/// Who was seen twice gives no sign of walking evenly: positions before the first one seen are not evidence. The one forecast goes to the
-/// median of the goals.
+/// A pedestrian seen twice gives no evidence of uniform motion, because filled-in positions are not evidence. The
+/// single forecast leads to the median of the goals.
 #[test]
-fn made_up_positions_are_no_evidence() {
+fn filled_in_positions_are_not_evidence() {
     let mut tracks = LiveTracks::new().completing(Completion::USUAL);
     let pedestrian = PedestrianId(7);
     assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);

@@ -1,4 +1,4 @@
-//! Errors are part of the interface: exit code 1, one clear line, and nothing written.
+//! Errors: exit code 1, one clear line, and no file written.
 
 use ddl::Variant;
 use ddl::data::Convention;
@@ -8,7 +8,7 @@ use ddl_tests::{crowd, drawn_model, own_tracks};
 const FORECAST: &str = "forecast --model run tracks.csv --output out.csv";
 
 #[test]
-fn a_missing_model_is_named() {
+fn a_missing_model_is_reported() {
     let place = Place::with_model();
     for command in [
         "forecast tracks.csv",
@@ -25,7 +25,7 @@ fn a_missing_model_is_named() {
 }
 
 #[test]
-fn the_file_that_is_read_is_not_written_over() {
+fn the_input_file_is_not_overwritten() {
     let place = Place::with_model();
     for command in ["forecast", "view", "goals"] {
         let line = format!("{command} tracks.csv --output ./tracks.csv");
@@ -59,10 +59,10 @@ fn files_of_another_run_are_refused() {
     }
 }
 
-/// A run without validation cannot be measured on it, and one without results not be reported. A choice among epochs needs several:
-/// one that was kept alone is no choice, and is not passed off as one.
+/// A run without validation cannot be evaluated on it, and one without results cannot be reported. The protocol
+/// `published` chooses among epochs and needs several of them; a run with only the last epoch is refused.
 #[test]
-fn what_a_run_does_not_hold_is_said() {
+fn missing_parts_of_a_run_are_reported() {
     let place = Place::with_model();
     place.fails("evaluate --model run --validation", &["--validation 0.2"]);
     place.fails("report run --out pages", &["ddl evaluate"]);
@@ -80,13 +80,13 @@ fn what_a_run_does_not_hold_is_said() {
         published,
         &["`published`", "train it anew without --last-epoch-only"],
     );
-    // what needs no choice is measured
+    // Protocols without this choice can be evaluated.
     let _ = place.ok("evaluate --model last --protocol fair --test-pedestrians 20 --threads 1");
 }
 
 #[cfg(not(feature = "torch"))]
 #[test]
-fn what_needs_libtorch_says_how_to_get_it() {
+fn commands_that_need_libtorch_explain_how_to_get_it() {
     let place = Place::with_model();
     for (line, what) in [
         (
@@ -105,7 +105,7 @@ fn what_needs_libtorch_says_how_to_get_it() {
         let build = "cargo build --release -p ddl-cli --features torch";
         place.fails(line, &[&needs, "`cargo xtask setup`", build]);
     }
-    // What it can do instead is its choice where it may choose.
+    // Without an explicit device, the program uses the CPU.
     let _ = place.ok("forecast --model run tracks.csv --device auto");
     let cuda = &place.json("info --json")["cuda"];
     assert!(cuda.as_str().unwrap().contains("libtorch"), "{cuda}");
@@ -117,7 +117,7 @@ fn recordings_that_cannot_be_trained_on_are_refused() {
     let train = "train --fold hotel --data data --out new";
     std::fs::create_dir(place.at("data")).unwrap();
     place.fails(train, &["star", "eth.csv", "--convention simulated"]);
-    // the right names, the wrong content
+    // Files with the right names and the wrong content.
     for name in Convention::Star.file_names() {
         place.write(
             &format!("data/{name}"),
@@ -131,13 +131,13 @@ fn recordings_that_cannot_be_trained_on_are_refused() {
 fn tracks_that_cannot_be_forecast_are_refused() {
     let place = Place::with_model();
     let nowhere = "view tracks.csv --output nowhere/page.html";
-    place.fails(nowhere, &["there is no folder nowhere"]);
+    place.fails(nowhere, &["the folder nowhere does not exist"]);
     let missing = "cannot read nowhere.csv: No such file or directory (os error 2)";
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
-    place.write_tracks("tracks.csv", &own_tracks::three_people(7));
+    place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(7));
     let whole = format!("{FORECAST} --whole");
     place.fails(&whole, &["tracks.csv", "8 steps", "10 frames"]);
-    place.write_tracks("tracks.csv", &own_tracks::three_people(1));
+    place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(1));
     place.fails(FORECAST, &["tracks.csv", "two steps", "--fps"]);
     place.all_fail(&[
         "forecast --model run . => . is a folder",
@@ -151,7 +151,7 @@ fn tracks_that_cannot_be_forecast_are_refused() {
 }
 
 #[test]
-fn a_homography_or_a_rate_that_is_none_is_named() {
+fn an_invalid_homography_or_rate_is_reported() {
     let place = Place::with_model();
     let options = format!("{FORECAST} --homography H.txt");
     place.fails(&options, &["H.txt", "No such file"]);
@@ -162,7 +162,7 @@ fn a_homography_or_a_rate_that_is_none_is_named() {
         &options,
         &["tracks.csv", "pedestrian 1, frame 0", "horizon"],
     );
-    // rows are 10 frames apart
+    // The rows are 10 frames apart.
     place.fails(
         &format!("{FORECAST} --fps 5"),
         &["tracks.csv", "2.00 s apart"],

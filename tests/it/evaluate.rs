@@ -1,4 +1,4 @@
-//! `ddl evaluate`, `ddl goals --measure`, `ddl baselines`, `ddl report`: the way of a number from a model to the page.
+//! `ddl evaluate`, `ddl goals --measure`, `ddl baselines`, `ddl report`: numbers from a model to the report page.
 
 use ddl::data::{Convention, Dataset, Window, WindowRule};
 use ddl::eval::ResultRow;
@@ -9,10 +9,10 @@ use ddl_tests::place::{Place, json};
 use ddl_tests::progress::{returns_at_once, told};
 use ddl_tests::{crowd, drawn_model, recordings};
 
-const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online --protocol online-single \
-                        --test-pedestrians 60 --threads 1 --commit 0123abc";
+const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online \
+                        --protocol online-single --test-pedestrians 60 --threads 1 --commit 0123abc";
 
-/// A run of the published recipe, whose networks learn single steps: plain Euler steps are measured too.
+/// A run of the published recipe, whose networks learn single steps; for these, plain Euler steps are evaluated too.
 fn config() -> RunConfig {
     RunConfig {
         star: StarConfig::published(Variant::Full),
@@ -69,12 +69,12 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
         assert!(plain.certified.unwrap() < 1.0, "{plain:?}");
         assert_eq!(plain.rollouts, model.rollouts);
     }
-    // The one forecast is a straight line itself; beside it stands what the network would make of the way.
+    // The single forecast is a straight line; the path shaped by the network is reported as a further row.
     let line = named("straight line to");
     assert_eq!(line.is_none(), protocol.hypotheses() == 1);
     if let Some(line) = line {
         assert_eq!(stability(line).certified, None);
-        // The goals depend on the run: another seed has other lines.
+        // The goals depend on the run, so another seed has other lines.
         assert_eq!(line.conditions.seed, Some(5));
         let recipe = line.conditions.recipe.as_deref().unwrap();
         assert!(recipe.starts_with("goals "), "{recipe}");
@@ -84,7 +84,8 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     assert!(shaped.is_none_or(|shaped| shaped.certified == Some(1.0)));
 }
 
-/// All rows of one table are of the same pedestrians, about as many as asked for, among them the model and a baseline.
+/// Checks that all rows of a table are about the same pedestrians, about as many as requested, and include the model
+/// and a baseline.
 fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
     let mut models = rows.iter().filter(|row| row.conditions.forecaster == "DDL");
     let (Some(model), None) = (models.next(), models.next()) else {
@@ -103,7 +104,7 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
             (of_model.pedestrians, of_model.windows)
         );
         assert!(scores.pedestrians > 0 && scores.pedestrians < pedestrians + 40);
-        // people walk below 3 m/s: no forecast of 4.8 s is off by more than this
+        // Pedestrians walk below 3 m/s, so no forecast of 4.8 s can be off by more than this.
         assert!((0.01..15.0).contains(&scores.min_ade), "{scores:?}");
         assert!(scores.min_fde <= scores.fde_at_min_ade);
     }
@@ -134,7 +135,7 @@ fn a_number_goes_from_the_model_to_the_page() {
     }
     returns_at_once(&place, EVALUATE);
 
-    // Moments to look at: what the model forecast under `fair`, certified, some of them picked to show something.
+    // Selected moments: the certified forecasts under `fair`, some of them chosen as examples.
     let moments: Vec<Moment> = json(&place.text("run/moments.json"));
     assert!(moments.iter().any(|moment| !moment.picks.is_empty()));
     for moment in &moments {
@@ -146,7 +147,8 @@ fn a_number_goes_from_the_model_to_the_page() {
         assert!(hypotheses.all(|h| (h.certified, h.decreasing) == (Some(true), Some(true))));
     }
 
-    let baselines = "baselines --convention simulated --fold doorway --test-pedestrians 60 --commit 0123abc --out baselines";
+    let baselines = "baselines --convention simulated --fold doorway --test-pedestrians 60 --commit 0123abc \
+                     --out baselines";
     let printed = place.ok(baselines);
     assert!(printed.contains("doorway") && printed.contains("constant velocity (last step)"));
     let elsewhere = Report::load(&place.at("baselines/report.json")).unwrap();
@@ -241,7 +243,7 @@ fn goals_are_measured_and_drawn() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_said() {
+fn invalid_evaluations_are_refused() {
     let place = Place::with_model();
     place.all_refused(&[
         "goals --model run tracks.csv --measure test => cannot be used with",

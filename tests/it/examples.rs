@@ -1,11 +1,12 @@
-//! Every example of the crates that need no libtorch runs and prints what it is for.
+//! Every example of the crates that needs no libtorch runs and prints its result.
 
 use ddl_tests::place::Place;
 use ddl_tests::{example, own_tracks};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
+/// Crate, example and arguments, and texts that its output must contain. An example with the name of a picture draws
+/// it.
 const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl forecast_csv",
@@ -30,10 +31,10 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl-data tracks_to_windows",
         &[
-            "street.csv: format table, 50 positions of 3 people, 10 frames a step of 0.4 s",
-            "street.ndjson: format trajnet, 50 positions of 3 people",
-            "pedestrian 2 at (1.88, 0.80) m; of 8 positions 6 seen, 2 filled in, 0 before it came",
-            "pedestrian 3 at (4.00, -1.92) m; of 8 positions 4 seen, 0 filled in, 4 before it came",
+            "street.csv: format table, 50 positions of 3 pedestrians, 10 frames per step of 0.4 s",
+            "street.ndjson: format trajnet, 50 positions of 3 pedestrians",
+            "pedestrian 2 at (1.88, 0.80) m; of 8 positions 6 observed, 2 filled in, 0 padded at the start",
+            "pedestrian 3 at (4.00, -1.92) m; of 8 positions 4 observed, 0 filled in, 4 padded at the start",
         ],
     ),
     (
@@ -59,8 +60,8 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     ),
 ];
 
-/// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
-/// minutes, some of other places, or draw a run's own test scene.
+/// Examples that are not run here: `cargo xtask page` runs `report_page`; the others evaluate recordings for minutes,
+/// some of other places, or draw a run's own test scene.
 const ELSEWHERE: [&str; 6] = [
     "ddl calibrate",
     "ddl elsewhere",
@@ -78,9 +79,9 @@ fn parts(line: &str) -> (&str, &str, &str) {
 }
 
 #[test]
-fn every_example_runs_and_keeps_its_promise() {
+fn every_example_runs_and_prints_the_expected_texts() {
     let place = Place::empty();
-    place.write_tracks("mine.csv", &own_tracks::three_people(9));
+    place.write_tracks("mine.csv", &own_tracks::three_pedestrians(9));
     let model = include_bytes!("../../crates/ddl/models/hotel.safetensors");
     place.write("hotel.safetensors", model);
     for (line, promises) in EXAMPLES {

@@ -1,4 +1,4 @@
-//! `ddl forecast` and `ddl goals`: a user's own tracks in, hypotheses out, with the evidence that each goes to its goal.
+//! `ddl forecast` and `ddl goals`: a user's own tracks in, hypotheses and certificates out.
 
 use ddl::data::Position;
 use ddl::dynamics::LyapunovCertificate;
@@ -42,7 +42,7 @@ struct JsonLine {
     frames: Vec<i64>,
     /// In (0, 1].
     familiarity: f64,
-    /// Metres, one a step; none for one forecast.
+    /// Metres, one entry per step; empty for a single forecast.
     #[serde(default)]
     spread: Vec<f64>,
     hypotheses: Vec<Hypothesis>,
@@ -67,7 +67,8 @@ fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// The certificate of a hypothesis, held against the positions printed beside it; the distances to the goal after each step.
+/// Compares the certificate of a hypothesis with the positions printed beside it, and returns the distances to the goal
+/// after each step.
 fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
     let value = &hypothesis.certificate;
     let certificate: LyapunovCertificate<f64> = serde_json::from_value(value.clone()).unwrap();
@@ -101,14 +102,14 @@ fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
 }
 
 #[test]
-fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
+fn every_format_has_the_same_hypotheses_and_certificates() {
     let place = Place::with_model();
-    let people = own_tracks::three_people(10);
-    let at = |moment, who| {
-        let row = people.iter().find(|row| (row.0, row.1) == (moment, who));
+    let tracks = own_tracks::three_pedestrians(10);
+    let at = |moment, id| {
+        let row = tracks.iter().find(|row| (row.0, row.1) == (moment, id));
         row.map(|&(.., x, y)| [x, y]).unwrap()
     };
-    let forecast = |options: &str| place.forecast(&people, options).succeeds();
+    let forecast = |options: &str| place.forecast(&tracks, options).succeeds();
     let lines: Vec<JsonLine> = json_lines(&forecast("--format jsonl --certificate"));
     let certified = forecast("--certificate");
     let mut rows = table::<CsvRow>(&certified).into_iter();
@@ -116,7 +117,7 @@ fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
         .iter()
         .map(|line| (line.observed_until, line.pedestrian))
         .collect();
-    let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|who| (moment, who)));
+    let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|id| (moment, id)));
     assert_eq!(pedestrians, expected.concat());
     for line in &lines {
         let frames: Vec<i64> = (1..=12)
@@ -147,7 +148,7 @@ fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
                 let goal = [row.goal_x, row.goal_y];
                 assert!(own_tracks::alike_in_a_table(goal, hypothesis.goal));
                 assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
-                // to three digits
+                // Rounded to three digits.
                 assert!((row.familiarity / line.familiarity - 1.0).abs() < 6e-3);
                 assert_eq!([row.padded, row.filled, line.padded, line.filled], [0; 4]);
                 assert_eq!(
@@ -174,9 +175,9 @@ fn every_format_holds_the_same_futures_and_certificates_speak_of_them() {
 }
 
 #[test]
-fn a_forecast_has_the_same_bits_in_any_company() {
+fn a_forecast_does_not_depend_on_other_windows() {
     let place = Place::empty();
-    let rows = own_tracks::three_people(12);
+    let rows = own_tracks::three_pedestrians(12);
     let mut from_west_to_east = rows.clone();
     from_west_to_east.sort_by(|one, other| one.2.total_cmp(&other.2));
     assert_ne!(rows, from_west_to_east);
@@ -209,11 +210,11 @@ fn a_forecast_has_the_same_bits_in_any_company() {
     }
 }
 
-/// Map coordinates are millions of metres: a forecast there is that at the origin, moved, and numbers lie 1e-9 m apart; certificates
-/// hold all the same.
+/// Map coordinates are millions of metres, where numbers are 1e-9 m apart. A forecast there is the shifted forecast at
+/// the origin, and its certificates hold.
 #[test]
 fn forecasts_move_with_the_origin_of_the_map() {
-    let rows = own_tracks::three_people(8);
+    let rows = own_tracks::three_pedestrians(8);
     let [east, north] = [500_000.0, 4_600_000.0];
     let moved = |&(frame, id, x, y): &Row| (frame, id, x + east, y + north);
     let moved: Vec<Row> = rows.iter().map(moved).collect();
@@ -291,7 +292,7 @@ struct Goal {
 }
 
 #[test]
-fn goals_of_own_tracks_are_those_of_the_forecasts() {
+fn goals_of_own_tracks_agree_with_the_forecasts() {
     let place = Place::with_model();
     let ask = |command: &str| place.ok(&format!("{command} --model run tracks.csv --whole"));
     let printed = ask("goals");

@@ -1,10 +1,10 @@
-//! Forecasts of the built-in models as libtorch computes them (`it_torch/golden_forecasts.rs` renews them).
+//! Forecasts of the built-in models agree with those of libtorch (`it_torch/golden_forecasts.rs` updates them).
 
 use ddl::{BuiltinModel, Ddl, DeviceChoice};
 use ddl_tests::golden::{self, Golden};
 
 #[test]
-fn built_in_models_forecast_as_libtorch_did() {
+fn built_in_models_agree_with_libtorch() {
     let file = golden::file();
     for model in BuiltinModel::ALL {
         let found = Golden::of(&Ddl::builtin(model, DeviceChoice::Cpu).unwrap());

@@ -1,5 +1,5 @@
-//! What the guarantee costs: how far real pedestrians would have to be moved for their distance to the place where they end
-//! to fall at every step (`docs/stability.md`).
+//! Cost of the guarantee: how far real pedestrians would have to be moved, so that their distance to their endpoint
+//! falls at every step (`docs/stability.md`).
 
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, TIME_STEP, WindowRule};
 use ddl_dynamics::{Attractor, CholeskyMetric, LyapunovCertificate, PUBLISHED_SIGMA};
@@ -7,14 +7,14 @@ use ddl_eval::metric::stability::RolloutStability;
 use ddl_tests::recordings;
 use nalgebra::Vector2;
 
-/// Whoever gets no further than this in 4.8 s stands (m).
+/// A pedestrian that gets no further than this in 4.8 s stands (m).
 const STANDING: f64 = 1.0;
 
 fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// The path with every point moved straight towards the last one, onto the smallest distance to it so far.
+/// The path with every point moved straight towards the last one, to the smallest distance so far.
 fn never_further_from_its_end(path: &[Position]) -> Vec<Position> {
     let end = path[path.len() - 1];
     let mut nearest = f64::INFINITY;
@@ -30,8 +30,8 @@ fn never_further_from_its_end(path: &[Position]) -> Vec<Position> {
     path.iter().map(moved).collect()
 }
 
-/// Whether the distance to the end falls at every step until it is reached, and stays 0 from then on:
-/// what the certificate says of a path, whatever metric it is given.
+/// Whether the distance to the endpoint falls at every step until it is reached, and then stays 0. This is the verdict
+/// of the certificate for any metric.
 fn certified(path: &[Position]) -> bool {
     let positions: Vec<_> = path.iter().map(|&p| Vector2::from(p)).collect();
     let metrics = vec![CholeskyMetric::planar(1.0, 0.0, 1.0, PUBLISHED_SIGMA).unwrap(); HORIZON];
@@ -41,11 +41,11 @@ fn certified(path: &[Position]) -> bool {
 }
 
 struct Pedestrian {
-    /// Mean distance between where it was and where the guarantee would have had it, 12 frames (m).
+    /// Mean distance between the real and the moved positions, over 12 frames (m).
     displacement: f64,
     walks: bool,
     certified: bool,
-    /// Largest angle between a step and the direction to its end (degrees).
+    /// Largest angle between a step and the direction to the endpoint (degrees).
     largest_turn: f64,
 }
 
@@ -63,8 +63,8 @@ impl Pedestrian {
     }
 }
 
-/// Of each fold: pedestrians; mean displacement of all of them (mm); of those who walk, the share whose distance falls at every step (%), and
-/// the share with a step of more than 90 degrees away from their end (%).
+/// For each fold: the number of pedestrians, their mean displacement (mm), and of those that walk, the share whose
+/// distance falls at every step (%) and the share with a step of more than 90 degrees away from the endpoint (%).
 const EXPECTED: [(&str, usize, [f64; 3]); 5] = [
     ("eth", 2_511, [2.0, 93.0, 1.7]),
     ("hotel", 1_026, [9.0, 97.0, 1.7]),
@@ -90,7 +90,7 @@ fn displacement<'a>(pedestrians: impl ExactSizeIterator<Item = &'a Pedestrian>) 
         / count
 }
 
-/// The `percent`-th of the largest turns, of 100 (degrees).
+/// The `percent`-th percentile of the largest turns (degrees).
 fn turn_of(pedestrians: &[&Pedestrian], percent: usize) -> f64 {
     let mut turns: Vec<_> = pedestrians
         .iter()
@@ -103,7 +103,7 @@ fn turn_of(pedestrians: &[&Pedestrian], percent: usize) -> f64 {
 #[test]
 #[expect(
     clippy::float_cmp,
-    reason = "both sides are rounded to the digits that are compared"
+    reason = "both sides are rounded to the compared digits"
 )]
 fn the_guarantee_moves_real_pedestrians_by_millimetres() {
     let Some(folder) = recordings::star_folder() else {
@@ -123,8 +123,9 @@ fn the_guarantee_moves_real_pedestrians_by_millimetres() {
         let certified = percent(&walking, |pedestrian| pedestrian.certified);
         let turning_back = percent(&walking, |pedestrian| pedestrian.largest_turn > 90.0);
         eprintln!(
-            "{name}: {count} pedestrians moved by {moved:.2} mm, the {} who walk by {:.2} mm; of these {certified:.1} % certified, \
-             largest turn from the end {:.0} degrees (median), {:.0} (95 of 100), above 90 {turning_back:.1} %",
+            "{name}: {count} pedestrians moved by {moved:.2} mm, the {} that walk by {:.2} mm; of these \
+             {certified:.1} % certified, largest turn from the end {:.0} degrees (median), {:.0} (95 of 100), above 90 \
+             {turning_back:.1} %",
             walking.len(),
             displacement(walking.iter().copied()),
             turn_of(&walking, 50),

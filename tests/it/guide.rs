@@ -1,18 +1,19 @@
-//! Every command that the documentation shows is run, as far as a test can run it.
+//! Runs every command shown in the documentation, as far as a test can run it.
 
 use ddl_tests::console::Command;
 use ddl_tests::guide::class::{ELSEWHERE, LONG, begins, begun};
 use ddl_tests::guide::{self, checkout};
 use std::path::{Path, PathBuf};
 
-/// The pages whose commands run to their end; each is a test. Of `docs/` beside them, commands are begun.
+/// The pages whose commands run to their end, one test each. The commands of the other pages of `docs/` are only
+/// started.
 macro_rules! pages {
     ($($test:ident: $path:literal,)*) => {
         $(#[test]
         fn $test() {
             guide::check($path);
         })*
-        /// And the page whose commands train (`tests/it_torch/main.rs`).
+        /// The same pages, and the page whose commands train (`tests/it_torch/main.rs`).
         const PAGES: &[&str] = &[$($path,)* "docs/training.md"];
     };
 }
@@ -32,7 +33,7 @@ pages! {
     recordings_page: "docs/recordings.md",
 }
 
-/// Pages of `docs/` that the guide brings in, and the READMEs of crates that show no program.
+/// The other pages of `docs/` in the guide, and the READMEs of crates without commands of the program.
 fn pages_of_measurements() -> Vec<String> {
     let root = checkout();
     let files = |folder: &Path| {
@@ -69,7 +70,7 @@ fn commands_of_measurements_can_be_begun() {
 }
 
 #[test]
-fn exceptions_are_of_commands_that_are_shown() {
+fn exceptions_name_commands_that_exist() {
     let of_measurements = pages_of_measurements();
     let mut all: Vec<&str> = of_measurements.iter().map(String::as_str).collect();
     all.extend(PAGES);
@@ -82,7 +83,7 @@ fn exceptions_are_of_commands_that_are_shown() {
     for &entry in ELSEWHERE.iter().chain(LONG) {
         let mut shown = shown.iter();
         let found = shown.any(|(page, command)| begins(page, command, entry));
-        assert!(found, "nobody shows {entry:?}");
+        assert!(found, "no page shows {entry:?}");
     }
     assert!(
         shown.len() > 100,

@@ -1,4 +1,4 @@
-//! `--keep-clear`: pedestrians mind each other, and every certificate still holds.
+//! `--keep-clear`: pedestrians avoid each other, and every certificate still holds.
 
 use ddl::data::{PedestrianId, Window};
 use ddl::eval::ForecastError;
@@ -10,7 +10,7 @@ use ddl::{
 use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model};
 
-/// Pairs of pedestrians in one window whose most likely forecasts come nearer than `distance`.
+/// Pairs of pedestrians in one window whose most likely forecasts come closer than `distance`.
 fn near_pairs(windows: &[Window], forecasts: &[Forecast], distance: f64) -> usize {
     let likeliest =
         |forecast: &Forecast, i| forecast.hypothesis(i, forecast.most_likely(i)).to_vec();
@@ -36,7 +36,7 @@ fn free_and_careful() -> [Ddl; 2] {
 }
 
 #[test]
-fn fewer_come_near_and_all_still_arrive() {
+fn fewer_pairs_come_close_and_all_arrive() {
     let windows = crowd::windows(12, 12);
     let [free, careful] = free_and_careful();
     let certified = careful.forecast_certified(&windows).unwrap();
@@ -51,7 +51,7 @@ fn fewer_come_near_and_all_still_arrive() {
     ] {
         let [before, after] = [&free, &clear].map(|all| near_pairs(&windows, all, 0.5));
         assert!(after < before, "{before} pairs came near, now {after}");
-        // Goals and weights are those of pedestrians alone.
+        // Goals and weights are the same as without avoidance.
         for (free, clear) in free.iter().zip(&clear) {
             for i in 0..free.pedestrians() {
                 for k in 0..free.hypotheses() {
@@ -65,7 +65,7 @@ fn fewer_come_near_and_all_still_arrive() {
 }
 
 #[test]
-fn the_program_keeps_clear_and_says_so() {
+fn the_program_keeps_clear_and_reports_it() {
     let place = Place::with_model();
     let forecast = |options: &str| {
         place.ok(&format!(
@@ -87,7 +87,7 @@ fn the_program_keeps_clear_and_says_so() {
     let mut rows = careful.rows().iter();
     let row = rows.find(|row| row.conditions.forecaster == name).unwrap();
     assert_eq!(row.scores.stability.unwrap().certified, Some(1.0));
-    // Without the option it is another evaluation, not the one that is there.
+    // Without the option it is another evaluation, so the existing one is not reused.
     let free = report("");
     let mut names = free.rows().iter().map(|row| &row.conditions.forecaster);
     assert!(!names.any(|name| name.contains("minding")));
@@ -100,7 +100,7 @@ fn the_program_keeps_clear_and_says_so() {
 }
 
 #[test]
-fn what_has_no_flow_is_refused() {
+fn models_without_a_flow_are_refused() {
     for variant in [Variant::Star, Variant::NoDynamics] {
         let place = Place::with_variant(variant);
         let name = format!("`{variant}`");

@@ -1,4 +1,4 @@
-//! The memory of a place that `ddl forecast - --memory` keeps in a file, and what `ddl data` tells of it.
+//! The memory of a place that `ddl forecast - --memory` keeps in a file, and its summary by `ddl data`.
 
 use ddl::data::{PedestrianId, Position};
 use ddl::memory::SceneMemory;
@@ -15,7 +15,7 @@ use std::process::{Child, Stdio};
 const LINE: &str = "forecast - --model run --threads 1 --whole --format jsonl --frame-step 10";
 const KEPT: &str = "--memory hall.memory";
 
-/// People of a simulated scene for so many frames of 0.4 s.
+/// Pedestrians of a simulated scene, in a range of frames of 0.4 s.
 fn rows(steps: Range<i64>) -> Vec<Row> {
     own_tracks::of_scene("corridor", FRAME_STEP * steps.start..FRAME_STEP * steps.end)
 }
@@ -34,19 +34,19 @@ fn frames(rows: &[Row]) -> BTreeMap<i64, Vec<(PedestrianId, Position)>> {
     frames
 }
 
-/// A memory of these people, written to a file.
+/// Writes a memory of these pedestrians to a file.
 fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
     let mut memory = SceneMemory::new(frame_step, SceneMemory::DEFAULT_CAPACITY).unwrap();
-    for (frame, people) in frames(rows) {
-        memory.observe(frame, people).unwrap();
+    for (frame, positions) in frames(rows) {
+        memory.observe(frame, positions).unwrap();
     }
     memory.write(&place.at(name)).unwrap();
 }
 
 fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
     let mut all = Vec::new();
-    for (frame, people) in frames(rows) {
-        let Some(now) = live.push(frame, people).unwrap() else {
+    for (frame, positions) in frames(rows) {
+        let Some(now) = live.push(frame, positions).unwrap() else {
             continue;
         };
         let forecast = &now.forecast;
@@ -69,14 +69,14 @@ fn hypotheses_in(lines: &str) -> Vec<Value> {
 }
 
 #[test]
-fn a_stream_cut_in_two_goes_on_with_what_was_seen() {
+fn a_stream_cut_in_two_continues_with_its_memory() {
     let place = Place::with_model();
     let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
     let empty = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
     let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
     let mut live = live.remembering(empty).unwrap();
     let [first, second] = [rows(0..50), rows(50..90)];
-    // A wrong line ends the first part; what was seen until then is kept all the same.
+    // An invalid line ends the first part; the memory until then is kept.
     let input = own_tracks::csv(&first) + "500,1,left,2\n";
     let before = place.run_on(&input, &format!("{LINE} {KEPT}"));
     assert_eq!(before.code, Some(1), "{before:?}");
@@ -100,7 +100,7 @@ fn a_stream_cut_in_two_goes_on_with_what_was_seen() {
         &SceneMemory::read(&place.at("hall.memory")).unwrap(),
         live.memory().unwrap()
     );
-    // a rate that is learned from the first two frames is as good as one that is given
+    // A frame rate inferred from the first two frames is as good as a given one.
     let learned =
         "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";
     place.run_on(&own_tracks::csv(&first), learned).succeeds();
@@ -132,7 +132,7 @@ fn a_memory_of_another_place_stays_as_it_is() {
 }
 
 #[test]
-fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
+fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     let place = Place::with_model();
     remember(&place, "slow.memory", &rows(0..30), 1);
     place.write("damaged.memory", &place.read("slow.memory")[..900]);
@@ -159,7 +159,7 @@ fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
         let message = finished.fails();
         assert!(message.contains(words), "{options}: {message}");
     }
-    // The forecasts would be lost under the memory.
+    // The memory would overwrite the forecasts.
     let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
     assert!(same.fails().contains("name one file"));
     let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
@@ -168,7 +168,7 @@ fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
         "forecast tracks.csv --model run --memory hall.memory => ddl forecast - --memory FILE",
         "data damaged.memory --svg hall.svg => damaged.memory is not a scene memory",
     ]);
-    // and of other files it is told all the same
+    // The other files are summarised nevertheless.
     let finished = place.run("data damaged.memory tracks.csv");
     assert_eq!(finished.code, Some(1));
     assert!(finished.stdout.starts_with("tracks.csv\n"), "{finished:?}");
@@ -178,7 +178,7 @@ fn what_cannot_be_kept_is_refused_at_once_and_nothing_is_overwritten() {
     );
 }
 
-/// A link leads to the file, also before it is there, and the lock is that of the file.
+/// A link is followed, even if its target does not exist yet, and the lock is that of the target.
 #[cfg(unix)]
 #[test]
 fn a_link_is_followed() {
@@ -210,7 +210,7 @@ fn a_model_without_a_memory_branch_is_refused_before_anything_is_read() {
     place.all_fail(&["forecast - --model run --memory hall.memory => has no memory branch"]);
 }
 
-/// A program that has read the first frames of a stream that goes on.
+/// A program that has read the first frames of a stream that continues.
 fn at_work(place: &Place) -> Child {
     let mut command = program::command(place.path(), &format!("{LINE} {KEPT}"));
     let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -227,7 +227,7 @@ fn at_work(place: &Place) -> Child {
 }
 
 #[test]
-fn a_second_program_is_refused_and_one_that_is_stopped_writes_what_it_saw() {
+fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     let place = Place::with_model();
     let first = at_work(&place);
     let second = place.run_on("", &format!("{LINE} {KEPT}")).fails();
@@ -249,7 +249,7 @@ fn a_second_program_is_refused_and_one_that_is_stopped_writes_what_it_saw() {
 }
 
 #[test]
-fn data_tells_what_a_memory_holds_and_draws_it() {
+fn data_summarises_and_draws_a_memory() {
     let place = Place::with_model();
     let walked = rows(0..200);
     remember(&place, "hall.memory", &walked, FRAME_STEP);

@@ -1,5 +1,5 @@
-//! Forecasts and the future: whatever it is, they have the same bits under `fair`, `single` and `online`; and whoever
-//! needs it is refused.
+//! Forecasts and the future: forecasts have the same bits for any future under `fair`, `single` and `online`, and
+//! forecasters that need the future are refused.
 
 use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEnd, WeightedGoals};
@@ -9,7 +9,8 @@ use ddl::{Ddl, Forecaster, Protocol, Remembering, Variant};
 use ddl_tests::one_forecast::One;
 use ddl_tests::{bits, crowd, drawn_model};
 
-/// The window with each position after the observation replaced by `f(pedestrian, frame, position)`, frames counted from 0.
+/// The window with each position after the observation replaced by `f(pedestrian, frame, position)`, with frames
+/// counted from 0.
 pub(crate) fn with_future(
     window: &Window,
     f: impl Fn(usize, usize, Position) -> Position,
@@ -17,8 +18,8 @@ pub(crate) fn with_future(
     window.map_positions(|i, t, p| if t < OBSERVED { p } else { f(i, t, p) })
 }
 
-/// The window with futures that nobody could have, and what each is called. NaN is among them: whatever touches it, even to multiply
-/// it by nothing, is NaN as well.
+/// The window with extreme futures and their names. NaN is among them, because every computation with NaN gives NaN,
+/// even a multiplication by 0.
 fn wild(window: &Window) -> Vec<(&'static str, Window)> {
     let n = window.len();
     vec![
@@ -41,13 +42,14 @@ fn wild(window: &Window) -> Vec<(&'static str, Window)> {
             with_future(window, |i, t, _| window.track(i)[WINDOW - 1 + OBSERVED - t]),
         ),
         (
-            "a hair off",
+            "slightly changed",
             with_future(window, |_, _, p| [p[0].next_up(), p[1].next_down()]),
         ),
     ]
 }
 
-/// Every single future position moved, one at a time, then futures replaced as a whole: called directly and through both protocols.
+/// Changes every single future position, one at a time, then whole futures; with direct calls and through both
+/// protocols.
 fn never_sees_the_future(forecaster: &dyn Forecaster) {
     let name = forecaster.name();
     let windows = crowd::windows(2, 4);
@@ -68,7 +70,7 @@ fn never_sees_the_future(forecaster: &dyn Forecaster) {
     }
 }
 
-/// The goals of an estimator, shown whole tracks: what it reads of them is its own affair.
+/// The goals of an estimator that is given whole tracks and selects the positions to read itself.
 struct EstimatedGoals(GoalEstimator);
 
 impl EstimatedGoals {
@@ -117,7 +119,7 @@ fn no_variant_of_the_model_sees_the_future() {
     }
 }
 
-/// The published goals where there is a future to read, others where there is none: only what it forecasts tells.
+/// Uses the published goals if there is a future to read, and others if there is none; only its forecasts show this.
 struct PublishedWhenItCan([EstimatedGoals; 2]);
 
 impl Forecaster for PublishedWhenItCan {
@@ -133,7 +135,7 @@ impl Forecaster for PublishedWhenItCan {
 }
 
 #[test]
-fn who_reads_the_future_is_found() {
+fn forecasters_that_read_the_future_are_detected() {
     let params = [
         GoalEstimatorParams::published(),
         GoalEstimatorParams::default(),
@@ -144,7 +146,7 @@ fn who_reads_the_future_is_found() {
 }
 
 #[test]
-fn who_needs_the_future_is_refused() {
+fn forecasters_that_need_the_future_are_refused() {
     let windows = crowd::windows(1, 6);
     let goals = EstimatedGoals::with(GoalEstimatorParams::published());
     let error = goals.0.estimate(windows[0].observed(0)).unwrap_err();
@@ -159,13 +161,13 @@ fn who_needs_the_future_is_refused() {
     }
 }
 
-/// The recording with everybody somewhere else after a frame.
+/// The recording with other positions of all pedestrians after a frame.
 fn scrambled_after(recording: &Recording, last: i64) -> Recording {
     let everything = recording.frames().iter().flat_map(|&f| recording.at(f));
     let seen = everything.map(|seen| {
         let mut position = seen.position;
         if seen.frame > last {
-            // Each frame otherwise: nobody keeps a motion.
+            // Different in each frame, so that no motion persists.
             let angle = seen.frame as f64;
             position = [
                 position[0] + 5.0 * angle.sin(),
@@ -177,7 +179,7 @@ fn scrambled_after(recording: &Recording, last: i64) -> Recording {
     Recording::new(recording.name(), recording.frame_step(), seen.collect()).unwrap()
 }
 
-/// Forecasts under `online` of what is observed in a window whose recording is scrambled after a frame.
+/// Forecasts under `online` of the observed part of a window whose recording is scrambled after a frame.
 fn online(model: &Ddl, window: &Window, last: i64) -> Vec<Vec<u64>> {
     let dataset = crowd::dataset();
     let recording = scrambled_after(dataset.recording(window.recording()).unwrap(), last);
@@ -192,28 +194,28 @@ fn online(model: &Ddl, window: &Window, last: i64) -> Vec<Vec<u64>> {
 }
 
 #[test]
-fn what_is_remembered_is_never_the_future() {
+fn remembered_tracks_never_contain_the_future() {
     let model = drawn_model::of(Variant::Full);
     for window in crowd::windows(4, 9).iter().skip(1) {
         let now = window.frames()[OBSERVED - 1];
         let never = i64::MAX;
         let forecast = online(&model, window, never);
-        // Of the last observed frame the 8 observed positions are all that is known.
+        // At the last observed frame, only the 8 observed positions are known.
         let step = window.frame_step();
         assert_eq!(online(&model, window, now - step), forecast);
-        // The past does count.
+        // The past has an effect.
         assert_ne!(online(&model, window, now - 20 * step), forecast);
     }
 }
 
-/// A memory that is 0.4 s ahead is found by the same comparison.
+/// The same comparison detects a memory that is 0.4 s ahead.
 #[test]
-fn a_memory_that_looks_ahead_is_found() {
+fn a_memory_that_looks_ahead_is_detected() {
     let model = drawn_model::of(Variant::Full);
     let mut found = 0;
     for window in crowd::windows(4, 9).iter().skip(1) {
         let now = window.frames()[OBSERVED - 1];
-        // The same observations, said to be made 0.8 s later: what is recalled ends up to 0.4 s after now.
+        // The same observations with times 0.8 s later: recalled tracks end up to 0.4 s after the present.
         let tracks = (0..window.len()).map(|i| window.observed(i).to_vec());
         let (step, ids) = (window.frame_step(), window.pedestrians().to_vec());
         let start = window.start_frame() + 2 * step;

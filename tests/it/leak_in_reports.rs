@@ -1,6 +1,5 @@
-//! The leak test on the numbers that are reported: scores that measure a forecast against itself
-//! (its goals, its collisions) must not change with the true futures under `fair` and `single`, and
-//! do under `published`.
+//! The leak test on reported numbers. Scores of a forecast that do not use the truth (its goals, its collisions) must
+//! not depend on the true futures under `fair` and `single`; under `published` they do.
 
 use super::leak::with_future;
 use ddl::Variant;
@@ -10,12 +9,12 @@ use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model};
 use serde_json::Value;
 
-/// The convention whose windows of 20 frames stand alone: one window is the whole test scene.
+/// The convention whose windows of 20 frames are independent: one window is the whole test scene.
 const CONVENTION: Convention = Convention::SocialGan;
 const TEST_SCENE: &str = "hotel";
 
-/// Simulated people in the files of the convention; the test scene is one window, in which `future`
-/// places everybody after the observation.
+/// Writes simulated pedestrians to the files of the convention. The test scene is one window, in which `future` places
+/// all pedestrians after the observation.
 fn write_recordings(place: &Place, folder: &str, future: fn(usize, usize, Position) -> Position) {
     let dataset = crowd::dataset();
     let mut scenes = dataset.recordings().iter().cycle();
@@ -24,8 +23,8 @@ fn write_recordings(place: &Place, folder: &str, future: fn(usize, usize, Positi
         let rows: Vec<Row> = if name == TEST_SCENE {
             let track = |i: usize| window.track(i).iter().enumerate();
             let row = |i, (t, &[x, y]): (usize, &Position)| (10 * t as i64, i as i64, x, y);
-            let people = 0..window.len();
-            people
+            let pedestrians = 0..window.len();
+            pedestrians
                 .flat_map(|i| track(i).map(move |seen| row(i, seen)))
                 .collect()
         } else {
@@ -73,7 +72,7 @@ fn reported_numbers_of_a_forecast_do_not_depend_on_the_future() {
             changed("min_ade"),
             "the futures were not changed: {conditions}"
         );
-        // what a forecast says of itself, without the truth
+        // Scores of a forecast that do not use the truth.
         let depends = changed("collision_rate") || changed("stability");
         if conditions["protocol"] == "published" {
             published_changes += usize::from(depends);

@@ -1,5 +1,5 @@
-//! Forecasts frame by frame, of `ddl forecast -`, which a tracker writes to, are those of the windows cut from the
-//! whole recording.
+//! Forecasts frame by frame, and those of `ddl forecast -`, which reads from a tracker, agree with forecasts of the
+//! windows of the whole recording.
 
 use ddl::data::{Observation, PedestrianId, Position, Recording};
 use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
@@ -12,11 +12,11 @@ use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
 #[test]
-fn every_frame_is_forecast_as_its_window_is() {
+fn live_forecasts_agree_with_forecasts_of_windows() {
     let model = drawn_model::of(Variant::Full);
     let there =
         |&(frame, id, ..): &Row| frame != 180 && !(id == 2 && (frame == 60 || frame >= 160));
-    let rows = own_tracks::three_people(24).into_iter().filter(there);
+    let rows = own_tracks::three_pedestrians(24).into_iter().filter(there);
     let seen = rows.map(|(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
     let recording = Recording::new("live", own_tracks::FRAME_STEP, seen.collect()).unwrap();
     let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
@@ -24,10 +24,10 @@ fn every_frame_is_forecast_as_its_window_is() {
     let mut windows = recording.observed_windows().into_iter().peekable();
     let mut forecasts = 0;
     for &frame in recording.frames() {
-        let people = recording.at(frame).iter();
-        let people: Vec<_> = people.map(|o| (o.pedestrian, o.position)).collect();
-        let now = live.push(frame, people.iter().copied()).unwrap();
-        let evidence = certified.push_certified(frame, people).unwrap();
+        let pedestrians = recording.at(frame).iter();
+        let pedestrians: Vec<_> = pedestrians.map(|o| (o.pedestrian, o.position)).collect();
+        let now = live.push(frame, pedestrians.iter().copied()).unwrap();
+        let evidence = certified.push_certified(frame, pedestrians).unwrap();
         let window = windows.next_if(|window| window.frames()[7] == frame);
         assert_eq!(now.is_some(), window.is_some(), "frame {frame}");
         let (Some(now), Some(evidence), Some(window)) = (now, evidence, window) else {
@@ -41,28 +41,28 @@ fn every_frame_is_forecast_as_its_window_is() {
         assert_eq!(bits::of(&evidence.forecast.forecast), forecast);
         assert_eq!(evidence.forecast.certificates, expected.certificates);
     }
-    // Windows from frame 70 on; not at 180, and after it not before 260.
+    // Windows from frame 70 on; none at 180, and after it none before 260.
     assert_eq!(forecasts, 11);
 }
 
 #[test]
 fn an_error_changes_nothing() {
-    let rows = own_tracks::three_people(9);
-    let people = |frame: i64| -> Vec<(PedestrianId, Position)> {
+    let rows = own_tracks::three_pedestrians(9);
+    let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
         let here = rows.iter().filter(|row| row.0 == frame);
         here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
             .collect()
     };
     let model = drawn_model::of(Variant::Full);
     let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
-    live.push(0, people(0)).unwrap();
+    live.push(0, pedestrians(0)).unwrap();
     for frame in (10..90).step_by(10) {
         let before = live.tracks().clone();
-        let error = live.push(frame - 10, people(frame)).unwrap_err();
+        let error = live.push(frame - 10, pedestrians(frame)).unwrap_err();
         assert!(matches!(error, DdlError::Live(_)), "{error}");
         if frame >= 70 {
-            // Finite, and a position like any other until somebody forecasts from it.
-            let mut far = people(frame);
+            // Finite, and valid like any other position until it is used in a forecast.
+            let mut far = pedestrians(frame);
             far[0].1 = [f64::MAX, 0.0];
             let plain = live.push(frame, far.clone()).unwrap_err();
             let certified = live.push_certified(frame, far).unwrap_err();
@@ -71,7 +71,7 @@ fn an_error_changes_nothing() {
             }
         }
         assert_eq!(live.tracks(), &before);
-        let now = live.push(frame, people(frame)).unwrap();
+        let now = live.push(frame, pedestrians(frame)).unwrap();
         assert_eq!(now.is_some(), frame >= 70);
     }
 }
@@ -123,15 +123,15 @@ fn rows_of(rows: &[Row], frames: std::ops::Range<i64>) -> String {
 }
 
 #[test]
-fn every_frame_is_answered_before_the_next_one_comes() {
+fn every_frame_is_answered_before_the_next_one() {
     let place = Place::with_model();
-    let rows = own_tracks::three_people(10);
+    let rows = own_tracks::three_pedestrians(10);
     let expected = place.forecast(&rows, "--format jsonl").succeeds();
     let mut expected = json_lines::<Value>(&expected).into_iter();
     let mut live = Live::start(&place, "--whole --fps 25");
     live.write("frame,pedestrian,x,y\n");
     for frame in (0..100).step_by(10) {
-        // an empty line ends the frame
+        // An empty line ends the frame.
         live.write(&(rows_of(&rows, frame..frame + 1) + "\n"));
         if frame >= 70 {
             for _ in 0..3 {
@@ -144,9 +144,9 @@ fn every_frame_is_answered_before_the_next_one_comes() {
 }
 
 #[test]
-fn two_frames_are_enough_and_a_reader_that_leaves_ends_it_quietly() {
+fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     let place = Place::with_model();
-    let rows = own_tracks::three_people(10);
+    let rows = own_tracks::three_pedestrians(10);
     let mut live = Live::start(&place, "--one --certificate");
     live.write(&format!(
         "frame,pedestrian,x,y\n{}\n",
@@ -166,7 +166,7 @@ fn two_frames_are_enough_and_a_reader_that_leaves_ends_it_quietly() {
     } = live;
     drop(output);
     for frame in (20..100).step_by(10) {
-        // it may have gone already
+        // It may have ended already.
         let _ = input.write_all((rows_of(&rows, frame..frame + 1) + "\n").as_bytes());
     }
     drop(input);
@@ -180,9 +180,9 @@ fn two_frames_are_enough_and_a_reader_that_leaves_ends_it_quietly() {
 }
 
 #[test]
-fn a_bad_line_is_named_and_nothing_before_it_is_lost() {
+fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
     let place = Place::with_model();
-    let good = own_tracks::csv(&own_tracks::three_people(9));
+    let good = own_tracks::csv(&own_tracks::three_pedestrians(9));
     for (bad, message) in [
         ("90,1,left,2\n", "line 29, field 3"),
         ("0,1,1,2\n", "line 29: frame 0 comes after frame 80"),
@@ -190,7 +190,7 @@ fn a_bad_line_is_named_and_nothing_before_it_is_lost() {
     ] {
         let line = "forecast - --model run --whole --frame-step 10 --format jsonl";
         let finished = place.run_on(&format!("{good}{bad}"), line);
-        // frame 80, which the bad line ends, is answered too
+        // Frame 80, which the invalid line ends, is answered too.
         assert_eq!(
             (finished.stdout.lines().count(), finished.code),
             (6, Some(1))
@@ -204,23 +204,23 @@ fn a_bad_line_is_named_and_nothing_before_it_is_lost() {
 }
 
 #[test]
-fn what_cannot_be_live_is_refused() {
+fn options_that_need_the_whole_recording_are_refused() {
     let place = Place::with_model();
     place.all_fail(&[
         "forecast - --model run --last => --last",
         "forecast - --model run --fps 24 => 9.6 frames",
         "goals - --model run => ddl forecast -",
-        // standard input is empty
+        // Standard input is empty.
         "forecast - --model run => holds no tracks",
-        // and a file from before stays as it was
+        // An existing file stays unchanged.
         "forecast - --model run --output tracks.csv => holds no tracks",
     ]);
 }
 
 #[test]
-fn what_looks_wrong_is_told_once() {
+fn implausible_input_is_reported_once() {
     let place = Place::empty();
-    let mut pixels = own_tracks::three_people(12);
+    let mut pixels = own_tracks::three_pedestrians(12);
     for row in &mut pixels {
         row.2 *= 100.0;
     }
@@ -228,8 +228,8 @@ fn what_looks_wrong_is_told_once() {
     let finished = place.run_on(&own_tracks::csv(&pixels), &format!("{line} --one"));
     let told = "warning: half of the steps";
     assert_eq!(finished.stderr.matches(told).count(), 1, "{finished:?}");
-    let mut rows = own_tracks::three_people(20);
-    // From side to side, 8 m a step.
+    let mut rows = own_tracks::three_pedestrians(20);
+    // From side to side, 8 m per step.
     rows.extend((8..20).map(|t| (10 * t, 4, t as f64, 8.0 * (t % 2) as f64)));
     rows.sort_by_key(|row| (row.0, row.1));
     for options in ["", "--certificate --one"] {

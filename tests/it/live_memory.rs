@@ -1,4 +1,4 @@
-//! A forecaster that remembers the place it watches.
+//! A live forecaster with a memory of its place.
 
 use ddl::data::{LiveTracks, Observation, PedestrianId, Position, Recording, Window};
 use ddl::memory::{Playback, SceneMemory};
@@ -9,12 +9,12 @@ fn empty(recording: &Recording) -> SceneMemory {
     SceneMemory::new(recording.frame_step(), SceneMemory::DEFAULT_CAPACITY).unwrap()
 }
 
-fn people(recording: &Recording, frame: i64) -> Vec<(PedestrianId, Position)> {
+fn pedestrians(recording: &Recording, frame: i64) -> Vec<(PedestrianId, Position)> {
     let seen = recording.at(frame).iter();
     seen.map(|seen| (seen.pedestrian, seen.position)).collect()
 }
 
-/// A recording of a simulated scene until a step, everybody moved by so much.
+/// A recording of a simulated scene up to a step, shifted by a distance.
 fn scene(name: &str, steps: usize, by: f64) -> Recording {
     let dataset = crowd::dataset();
     let whole = dataset.recording(name).unwrap();
@@ -28,7 +28,7 @@ fn scene(name: &str, steps: usize, by: f64) -> Recording {
 }
 
 #[test]
-fn forecasts_are_those_of_the_recording_watched_again() {
+fn live_forecasts_agree_with_a_replay_of_the_recording() {
     let model = drawn_model::of(Variant::Full);
     let recording = scene("corridor", 60, 0.0);
     let windows = recording.observed_windows();
@@ -39,7 +39,7 @@ fn forecasts_are_those_of_the_recording_watched_again() {
     let remembers = |window: &Window| (0..window.len()).any(|i| !window.remembered(i).is_empty());
     let (mut remembering, mut changed) = (0, 0);
     for &frame in recording.frames() {
-        let Some(now) = live.push(frame, people(&recording, frame)).unwrap() else {
+        let Some(now) = live.push(frame, pedestrians(&recording, frame)).unwrap() else {
             continue;
         };
         let window = replayed.next().unwrap();
@@ -71,12 +71,12 @@ fn a_memory_of_another_place_is_refused() {
         let live = LiveForecaster::with_frame_step(&model, watched.frame_step()).unwrap();
         let mut live = live.remembering(memory.clone()).unwrap();
         for &frame in watched.frames() {
-            live.push(frame, people(&watched, frame)).unwrap();
+            live.push(frame, pedestrians(&watched, frame)).unwrap();
         }
         let kept = live.memory().unwrap();
         let refused = live.refused_memory();
         assert_eq!(refused.is_some(), is_refused, "{name}: {refused:?}");
-        // The place that is watched is remembered all the same, the other one not.
+        // The observed place is remembered, the other one is not.
         let least = if is_refused { 1 } else { memory.stretches() };
         assert!(kept.stretches() > least, "{name}");
         if let Some(other) = refused {
@@ -88,7 +88,7 @@ fn a_memory_of_another_place_is_refused() {
     }
 }
 
-/// A few pedestrians without a similar trajectory do not show that the memory is of another place.
+/// A few pedestrians without similar trajectories do not show that the memory belongs to another place.
 #[test]
 fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
     let model = drawn_model::of(Variant::Full);
@@ -100,7 +100,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
         let mut place = WatchedPlace::new(&model, memory.clone()).unwrap();
         let mut tracks = LiveTracks::with_frame_step(watched.frame_step()).unwrap();
         for &frame in &watched.frames()[..steps as usize] {
-            let seen = people(&watched, frame);
+            let seen = pedestrians(&watched, frame);
             tracks = tracks.after(frame, seen.iter().copied()).unwrap();
             place
                 .observe(frame, seen, tracks.window().as_ref())
@@ -114,7 +114,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
     elsewhere.end_trial();
     assert_eq!(elsewhere.on_trial(), Some(few));
     assert_eq!(elsewhere.refused(), None);
-    // In its own place it is accepted before 30 were seen.
+    // In its own place it is accepted before 30 pedestrians were seen.
     let accepted = (9..120).find(|&steps| tried(0.0, steps).on_trial().is_none());
     let seen = tried(500.0, accepted.unwrap()).on_trial();
     assert!(seen.is_some_and(|seen| (5..30).contains(&seen)), "{seen:?}");

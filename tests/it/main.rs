@@ -1,6 +1,6 @@
 //! Tests across crates and of the program `ddl` that need no libtorch.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod bounded_motion;
 mod errors;
@@ -26,7 +26,7 @@ mod regions;
 mod tracks_as_they_come;
 
 #[test]
-fn readers_keep_their_laws_on_their_corpora_and_what_is_made_of_them() {
+fn readers_handle_their_corpora_and_edits_of_them() {
     for reader in ddl_tests::outside_bytes::READERS {
         ddl_tests::outside_bytes::corpus::run(reader);
     }

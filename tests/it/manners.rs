@@ -1,4 +1,4 @@
-//! What every command of the program keeps to: help, completions, manual pages, JSON for programs, a quick start.
+//! Common behaviour of all commands: help, completions, manual pages, JSON output, quick start.
 
 use ddl::Variant;
 use ddl_tests::own_tracks;
@@ -12,16 +12,17 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::Duration;
 
-/// A terminal of old.
+/// The size of a classic terminal.
 const LINES: usize = 24;
 const COLUMNS: usize = 80;
-/// The promise, of a release build, with an expert library of 12,000 simulated pedestrians; and room for a debug build's assertions.
+/// The documented time for a release build with an expert library of 12,000 simulated pedestrians; a debug build gets
+/// more.
 const SOON: Duration = Duration::from_secs(if cfg!(debug_assertions) { 2 } else { 1 });
-/// The best of so many counts: the others were held up by something else.
+/// The best of several runs counts; the others were delayed by other processes.
 const RUNS: usize = 3;
 
 #[test]
-fn help_fits_a_screen_and_names_the_exit_codes() {
+fn help_fits_a_screen_and_lists_the_exit_codes() {
     let place = Place::empty();
     let help = place.ok("--help");
     assert!(help.lines().count() <= LINES, "{help}");
@@ -37,7 +38,7 @@ fn help_fits_a_screen_and_names_the_exit_codes() {
     ] {
         assert!(help.contains(words), "{words}: {help}");
     }
-    // Without a command the same is said, as a mistake.
+    // Without a command the help is printed as an error.
     let bare = place.run("");
     assert_eq!((bare.code, bare.stdout.as_str()), (Some(2), ""));
     assert_eq!(bare.stderr.trim_end(), help.trim_end());
@@ -99,7 +100,7 @@ fn info_describes_the_program() {
     assert_eq!(info["version"], env!("CARGO_PKG_VERSION"));
     assert!(info["cuda"].is_string());
     assert_eq!(info["models"].as_array().unwrap().len(), 5);
-    // Results name the commit that the program was built from, also of a checkout that was changed since.
+    // Results name the commit that the program was built from, even if the checkout has changed since.
     let commit = info["commit"].as_str().unwrap();
     if Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("../.git")
@@ -122,13 +123,14 @@ fn info_describes_models() {
     assert_eq!(info["epochs"].as_array().unwrap().len(), 1);
     assert_eq!(info["experts"], config["data"]["pedestrians"]);
     let parameters = info["parameters"].as_u64().unwrap();
-    // four bytes each, and a header
+    // Four bytes per parameter, and a header.
     let bytes = place.read("run/model.safetensors").len() as u64;
     assert!(parameters > 10_000 && (4 * parameters..4 * parameters + 65_536).contains(&bytes));
     let for_people = place.ok("info run");
     let pedestrians = &config["data"]["pedestrians"];
     let sentence = format!(
-        "run: variant no-goal-shift, trained on {pedestrians} walks of 20 steps (convention simulated, without corridor); goals "
+        "run: variant no-goal-shift, trained on {pedestrians} walks of 20 steps (convention simulated, without \
+         corridor); goals "
     );
     assert!(for_people.starts_with(&sentence), "{for_people}");
     assert!(
@@ -145,8 +147,8 @@ fn info_describes_models() {
     );
 }
 
-/// Processor time until the first byte is there, or a little later, as the process goes on meanwhile. Not the clock's, so that other work
-/// on the machine does not decide.
+/// Processor time until the first byte of output, or slightly later, because the process continues. Processor time is
+/// independent of other load on the machine.
 fn until_first_output(place: &Place, line: &str) -> Option<Duration> {
     let mut command = program::command(place.path(), line);
     let mut child = command.stdout(Stdio::piped()).spawn().unwrap();
@@ -162,9 +164,9 @@ fn until_first_output(place: &Place, line: &str) -> Option<Duration> {
 }
 
 #[test]
-fn the_first_output_comes_soon() {
+fn the_first_output_comes_quickly() {
     let place = Place::empty();
-    place.write_tracks("tracks.csv", &own_tracks::three_people(8));
+    place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(8));
     let config = drawn_model::config(Variant::Full);
     drawn_model::write(config, &crowd::training_windows(), &place.at("run"));
     let line = "forecast --model run tracks.csv --threads 1";
@@ -172,7 +174,7 @@ fn the_first_output_comes_soon() {
         .map(|_| until_first_output(&place, line))
         .collect();
     let Some(best) = runs.iter().min().copied().flatten() else {
-        eprintln!("skipped: this system does not tell the processor time of a process");
+        eprintln!("skipped: this system does not report the processor time of a process");
         return;
     };
     assert!(best <= SOON, "{runs:?} of processor time, at most {SOON:?}");
@@ -180,9 +182,9 @@ fn the_first_output_comes_soon() {
 
 #[cfg(all(target_os = "linux", not(feature = "torch")))]
 #[test]
-fn no_library_is_loaded_but_the_systems() {
+fn only_system_libraries_are_loaded() {
     let place = Place::empty();
-    place.write_tracks("tracks.csv", &own_tracks::three_people(8));
+    place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(8));
     for line in ["--help", "forecast tracks.csv", "info --json"] {
         let mut command = program::command(place.path(), line);
         command
@@ -190,7 +192,7 @@ fn no_library_is_loaded_but_the_systems() {
             .env("LD_DEBUG_OUTPUT", place.at("loaded"));
         let mut child = command.stdout(Stdio::null()).spawn().unwrap();
         assert!(child.wait().unwrap().success());
-        // The system's loader tells of every library, by its path.
+        // The system's loader reports every library by its path.
         let told = place.text(&format!("loaded.{}", child.id()));
         let paths = told
             .lines()

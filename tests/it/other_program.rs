@@ -1,4 +1,4 @@
-//! `ddl windows` and `ddl evaluate --forecasts`: another program's forecasts, end to end.
+//! `ddl windows` and `ddl evaluate --forecasts`: external forecasts, end to end.
 
 use ddl::data::{Format, WindowRule, parse_recording};
 use ddl::eval::ResultRow;
@@ -13,8 +13,8 @@ use std::process::Command;
 const BASELINE: &str = "constant velocity (last step)";
 const EVALUATE: &str = "evaluate --convention simulated --fold plaza --forecasts";
 
-/// Lets the program of `docs/your-model.md`, constant velocity in Python, forecast `windows.jsonl` into `forecasts.jsonl`; false, with the
-/// reason printed, where there is no Python, which CI must have.
+/// Runs the example of `docs/your-model.md`, constant velocity in Python, on `windows.jsonl`. Returns false, with the
+/// reason printed, if there is no Python, which CI must have.
 fn python_forecasts(place: &Place) -> bool {
     let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/ddl-cli/examples");
     let output = Command::new("python3")
@@ -57,9 +57,9 @@ fn report(place: &Place, folder: &str, name: &str) -> Report {
     report
 }
 
-/// The numbers of constant velocity under the published rule were printed by an independent program.
+/// An independent program computed the numbers of constant velocity under the published rule.
 #[test]
-fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
+fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
     let Some(data) = recordings::star_folder() else {
         return;
     };
@@ -98,7 +98,7 @@ fn the_python_example_is_scored_as_the_baseline_on_real_recordings() {
     }
 }
 
-/// A folder with the windows of a simulated crowd and the example's forecasts of them.
+/// A folder with the windows of a simulated crowd and the example's forecasts.
 fn simulated() -> Option<Place> {
     let place = Place::empty();
     let windows = "windows --convention simulated --fold plaza --output windows.jsonl";
@@ -107,7 +107,7 @@ fn simulated() -> Option<Place> {
 }
 
 #[test]
-fn a_part_of_the_pedestrians_is_scored_only_when_asked_for() {
+fn a_part_of_the_pedestrians_is_scored_only_on_request() {
     let Some(place) = simulated() else { return };
     let summary = place.ok(&format!("{EVALUATE} forecasts.jsonl --out whole"));
     assert!(summary.contains("  forecasts\n"), "{summary}");
@@ -123,7 +123,7 @@ fn a_part_of_the_pedestrians_is_scored_only_when_asked_for() {
     let summary = place.ok(&format!("{part} --intersection"));
     assert!(summary.contains("  some\n"), "{summary}");
     let report = report(&place, "part", "some");
-    // Then a digest of who they are, the same in every row.
+    // Followed by a digest of the pedestrians, the same in every row.
     let subset = format!("pedestrians forecast by some.jsonl: {count} of {all}, digest ");
     let first = &report.rows()[0].conditions.test_subset;
     assert!(first.as_deref().unwrap().starts_with(&subset), "{first:?}");
@@ -134,7 +134,7 @@ fn a_part_of_the_pedestrians_is_scored_only_when_asked_for() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_refused_with_the_reason() {
+fn invalid_evaluations_are_refused_with_the_reason() {
     let Some(place) = simulated() else { return };
     for (arguments, needle) in [
         (
@@ -155,7 +155,8 @@ fn what_cannot_be_measured_is_refused_with_the_reason() {
         place.fails(&format!("{EVALUATE} {arguments}"), &[needle]);
     }
     place.all_fail(&[
-        "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl => the windows are of doorway, the file also of plaza",
+        "evaluate --convention simulated --fold doorway --forecasts forecasts.jsonl => \
+         the windows are of doorway, the file also of plaza",
         "windows --convention simulated => corridor, crossing, plaza",
         "evaluate => --data",
     ]);
@@ -167,16 +168,16 @@ fn what_cannot_be_measured_is_refused_with_the_reason() {
 }
 
 #[test]
-fn what_ddl_forecast_writes_is_read_back() {
+fn the_output_of_ddl_forecast_is_read_back() {
     let place = Place::with_model();
-    let rows = own_tracks::three_people(20);
+    let rows = own_tracks::three_pedestrians(20);
     let tracks = own_tracks::csv(&rows);
     let recording = parse_recording(tracks.as_bytes(), "tracks", Format::Table).unwrap();
     let windows = recording.windows(WindowRule::Complete);
     assert_eq!(windows.len(), 1);
     let read = |options: &str, format: ExternalFormat| {
         let text = place.forecast(&rows, options).succeeds();
-        let coverage = Coverage::Intersection; // other moments than the one with a future are forecast too
+        let coverage = Coverage::Intersection; // moments without a known future are forecast as well
         external::read_from(text.as_bytes(), "f", format, &windows, coverage).unwrap()
     };
     let plain = read("--format jsonl", ExternalFormat::JsonLines);

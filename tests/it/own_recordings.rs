@@ -1,4 +1,4 @@
-//! A user's own recordings, told of and measured on: `ddl data`, `ddl evaluate --data`, `ddl windows --data`.
+//! A user's own recordings: summary and evaluation with `ddl data`, `ddl evaluate --data`, `ddl windows --data`.
 
 use ddl_tests::own_tracks;
 use ddl_tests::place::{Place, json};
@@ -11,7 +11,7 @@ fn with_recordings() -> Place {
 }
 
 #[test]
-fn own_recordings_are_told_of() {
+fn own_recordings_are_summarised() {
     let place = with_recordings();
     let told = place.json("data mine --json");
     let each = told["recordings"].as_array().unwrap();
@@ -51,7 +51,7 @@ fn models_are_measured_on_own_recordings() {
 }
 
 #[test]
-fn files_that_cannot_be_read_are_named_together() {
+fn unreadable_files_are_reported_together() {
     let place = with_recordings();
     place.write("mine/roof.csv", "frame,pedestrian,x,y\n1,1,a,0\n");
     let told = place.run("data mine");
@@ -83,12 +83,12 @@ fn files_that_cannot_be_read_are_named_together() {
 }
 
 #[test]
-fn mistakes_with_own_recordings_say_what_to_do() {
+fn errors_with_own_recordings_give_advice() {
     let place = with_recordings();
     std::fs::create_dir(place.at("empty")).unwrap();
-    // A folder that holds a recording of ETH/UCY.
+    // A folder with a recording of ETH/UCY.
     place.write("star/zara01.csv", "");
-    place.write_tracks("short.csv", &own_tracks::three_people(12));
+    place.write_tracks("short.csv", &own_tracks::three_pedestrians(12));
     place.all_fail(&[
         "train --out run => your own recordings (--data FOLDER)",
         "train --data mine --out run --last-epoch-only => --patience 0",
@@ -98,7 +98,8 @@ fn mistakes_with_own_recordings_say_what_to_do() {
         "train --data mine --fold lobby --out run => add --convention own",
         "train --data mine --out run --validation 0 --patience 3 => patience of 3 epochs",
         "train --convention simulated --fold plaza --fps 25 --out run => your own recordings",
-        "train --data mine --validation-recordings nope --out run => \"nope\" is not one of these recordings: lobby, yard",
+        "train --data mine --validation-recordings nope --out run => \
+         \"nope\" is not one of these recordings: lobby, yard",
         "baselines --convention own --data mine --fold none => it has lobby, yard",
         "evaluate --model hotel --convention own => --data FOLDER",
         "evaluate --data mine --fold attic => it has lobby, yard",
@@ -112,7 +113,7 @@ fn mistakes_with_own_recordings_say_what_to_do() {
 }
 
 #[test]
-fn recordings_of_a_folder_have_a_row_each() {
+fn each_recording_of_a_folder_has_a_row() {
     let place = Place::empty();
     own_tracks::write_clips(&place, 300, 3);
     let words = place.ok("evaluate --data clips --protocol fair --threads 1 --out report");

@@ -1,4 +1,4 @@
-//! `ddl pack`: a packed model forecasts as its run does without the expert library; and the packed models that come with the program.
+//! `ddl pack`: a packed model forecasts like its run without the expert library; and the built-in packed models.
 
 use ddl::data::Convention;
 use ddl::eval::ResultRow;
@@ -10,7 +10,7 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 
 const PACKED: &str = "DDL without an expert library";
-/// Metres by which results may differ through weights in half precision, or on another machine.
+/// Allowed difference (m) of results due to weights in half precision, or another machine.
 const ROUNDING: f64 = 0.002;
 
 fn row<'a>(report: &'a Report, forecaster: &str) -> &'a ResultRow {
@@ -28,7 +28,7 @@ fn recipe(row: &ResultRow) -> &str {
 }
 
 #[test]
-fn a_packed_run_is_measured_as_the_run_without_its_library() {
+fn a_packed_run_has_the_results_of_the_run_without_its_library() {
     let place = Place::with_model();
     let said = place.ok("pack --model run --out packed.safetensors");
     assert!(said.contains("packed.safetensors"), "{said}");
@@ -38,7 +38,7 @@ fn a_packed_run_is_measured_as_the_run_without_its_library() {
     let line = format!("evaluate --model packed.safetensors {measure}");
     let printed = place.ok(&line);
     assert!(printed.contains(PACKED), "{printed}");
-    // A packed model has no place for results of its own.
+    // A packed model cannot store results itself.
     place.assert_unchanged_since(&before);
     let _ = place.ok(&format!("{line} --out packed"));
 
@@ -49,7 +49,7 @@ fn a_packed_run_is_measured_as_the_run_without_its_library() {
     assert_eq!(found.scores.pedestrians, expected.scores.pedestrians);
     assert!((found.scores.min_ade - expected.scores.min_ade).abs() < ROUNDING);
     assert!((found.scores.min_fde - expected.scores.min_fde).abs() < ROUNDING);
-    // The library is what the rows of the run differ in: without that there would be nothing to compare.
+    // The rows of the run differ only in the library; if they were equal, the comparison would be void.
     let whole = row(&of_run, "DDL");
     assert!((whole.scores.min_fde - expected.scores.min_fde).abs() > 1e-6);
     let lines = row(&of_packed, "straight line to the estimated goals");
@@ -65,14 +65,14 @@ fn a_packed_run_is_measured_as_the_run_without_its_library() {
     for row in [found, expected] {
         assert_eq!(row.scores.stability.unwrap().certified, Some(1.0));
     }
-    // Networks of this recipe learn stable walks, and plain steps lead where they have never been.
+    // Networks of this recipe learn stable rollouts, and plain Euler steps leave the learned region.
     let rows = of_run.rows().iter().chain(of_packed.rows());
     let mut names = rows.map(|row| &row.conditions.forecaster);
     assert!(names.all(|name| !name.contains("plain Euler")));
 }
 
 #[test]
-fn every_command_takes_a_packed_model() {
+fn every_command_accepts_a_packed_model() {
     let place = Place::with_model();
     let _ = place.ok("pack --model run --out packed");
     let forecasts = place.ok("forecast --model packed tracks.csv --whole --last");
@@ -93,7 +93,7 @@ fn every_command_takes_a_packed_model() {
 }
 
 #[test]
-fn what_a_packed_model_cannot_do_is_said() {
+fn unsupported_uses_of_a_packed_model_are_reported() {
     let place = Place::with_model();
     let _ = place.ok("pack --model run --out packed");
     let mut config = drawn_model::config(Variant::Full);
@@ -105,10 +105,10 @@ fn what_a_packed_model_cannot_do_is_said() {
         "evaluate --fold plaza --convention simulated => star",
         "evaluate --fold corridor => zara1",
         "pack --model retrieved --out new => --goals proposed",
-        // Weights alone are no model, and say so.
+        // Weights alone are not a model, and the message says so.
         "forecast tracks.csv --model run/model.safetensors => ddl pack",
     ]);
-    // A model is measured on no scene but the one left out.
+    // A model is evaluated only on the scene left out in training.
     place.all_refused(&[
         "evaluate --model packed --fold plaza => ",
         "evaluate --model zara1 --fold eth => ",
@@ -135,7 +135,7 @@ fn reported() -> BTreeMap<String, Reported> {
 }
 
 #[test]
-fn every_built_in_model_is_reported_and_of_the_seed_it_is_reported_with() {
+fn every_built_in_model_has_a_reported_result_of_its_seed() {
     let reported = reported();
     let names: Vec<&str> = reported.keys().map(String::as_str).collect();
     assert_eq!(names, BuiltinModel::ALL.map(BuiltinModel::name));
@@ -148,7 +148,7 @@ fn every_built_in_model_is_reported_and_of_the_seed_it_is_reported_with() {
 }
 
 #[test]
-fn the_reported_number_comes_out_again() {
+fn the_reported_number_is_reproduced() {
     let Some(data) = recordings::star_folder() else {
         return;
     };

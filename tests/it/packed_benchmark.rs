@@ -1,4 +1,4 @@
-//! `ddl pack --benchmark`: a finished benchmark becomes the models that come with the program.
+//! `ddl pack --benchmark`: packs the models of a finished benchmark as built-in models.
 
 use ddl::data::{Convention, WindowRule};
 use ddl::eval::Conditions;
@@ -12,7 +12,7 @@ const PACKED: &str = "DDL without an expert library";
 const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 const PACK: &str = "pack --benchmark . --out models";
 
-/// A finished benchmark of these folds: a drawn model as the run of each, and what it is said to have reached.
+/// A finished benchmark of these folds, with a drawn model as each run, and made-up results.
 fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
     let place = Place::empty();
     let (all, fair) = (crowd::dataset(), [Protocol::Fair]);
@@ -44,8 +44,9 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
     let plan = json!({
         "format": 3,
         "settings": {
-            "profile": profile, "convention": convention, "data": null, "device": "cpu", "cargo_profile": "release", "epochs": 4,
-            "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500, "protocols": ["fair", "single"],
+            "profile": profile, "convention": convention, "data": null, "device": "cpu", "cargo_profile": "release",
+            "epochs": 4, "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500,
+            "protocols": ["fair", "single"],
             "recipe": {"name": "recommended", "optimiser": null},
         },
         "tasks": tasks,
@@ -55,7 +56,7 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
 }
 
 #[test]
-fn a_benchmark_becomes_the_models_that_come_with_the_program() {
+fn a_benchmark_is_packed_as_built_in_models() {
     let place = benchmark("paper", "star", &FOLDS);
     for (option, seed) in [("", 1), (" --seed 2", 2)] {
         let said = place.ok(&format!("{PACK}{option}"));
@@ -82,7 +83,7 @@ fn a_benchmark_becomes_the_models_that_come_with_the_program() {
 }
 
 #[test]
-fn half_a_benchmark_is_refused_and_nothing_replaced() {
+fn an_unfinished_benchmark_is_refused_and_nothing_replaced() {
     for (profile, convention, folds, words) in [
         ("paper", "star", &FOLDS[..4], ["zara2", "all folds"]),
         ("paper", "social-gan", &FOLDS[..1], ["social-gan", "star"]),
@@ -91,7 +92,7 @@ fn half_a_benchmark_is_refused_and_nothing_replaced() {
         benchmark(profile, convention, folds).fails(PACK, &words);
     }
     let place = benchmark("paper", "star", &FOLDS);
-    // Every other fold can be packed.
+    // The other folds could be packed.
     place.write("univ-full-1/run/model.safetensors", "damaged");
     place.fails(PACK, &["univ-full-1"]);
     let older = Report::new("older", []).unwrap().to_json().unwrap();

@@ -1,4 +1,4 @@
-//! Regions that follow what is seen: in the program on a real recording, and frame by frame.
+//! Adaptive regions: of the program on a real recording, and frame by frame.
 
 use ddl::data::{Convention, Dataset, PedestrianId, Position, Recording};
 use ddl::eval::AdaptiveRegions;
@@ -8,7 +8,7 @@ use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{bits, drawn_model, recordings};
 use serde::Deserialize;
 
-/// Frames of the recording that are forecast from.
+/// Number of frames of the recording that are forecast.
 const FRAMES: usize = 600;
 
 #[derive(Debug, Deserialize)]
@@ -36,7 +36,7 @@ fn rows(recording: &Recording, frames: usize) -> Vec<Row> {
         .collect()
 }
 
-/// Share of the positions seen later that the regions of a line hold, of lines from that frame on.
+/// Share of the later positions inside the regions of a line, for lines from that frame on.
 fn held(lines: &[Line], recording: &Recording, from: i64) -> f64 {
     let (mut inside, mut seen) = (0, 0);
     for line in lines.iter().filter(|line| line.observed_until >= from) {
@@ -61,7 +61,7 @@ fn held(lines: &[Line], recording: &Recording, from: i64) -> f64 {
 }
 
 #[test]
-fn the_regions_of_the_program_come_to_hold_what_they_say_and_know_nothing_of_later() {
+fn the_regions_reach_their_probability_without_future_data() {
     let Some(folder) = recordings::star_folder() else {
         return;
     };
@@ -80,7 +80,7 @@ fn the_regions_of_the_program_come_to_hold_what_they_say_and_know_nothing_of_lat
     let lines: Vec<Line> = json_lines(&whole);
     let share = held(&lines, recording, recording.frames()[FRAMES / 2]);
     assert!((0.87..0.95).contains(&share), "{share}");
-    // with --last nothing is forecast before, and so nothing learned
+    // With --last no earlier frame is forecast, so the regions do not adapt.
     let last: Vec<Line> = json_lines(&place.ok(&format!("forecast all.csv --last {options}")));
     let from_all = &lines[lines.len() - last.len()..];
     let radius = |line: &Line| line.regions[0].discs[11][0][2];
@@ -92,11 +92,11 @@ fn the_regions_of_the_program_come_to_hold_what_they_say_and_know_nothing_of_lat
 }
 
 #[test]
-fn a_live_forecaster_adapts_and_an_error_teaches_nothing() {
+fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let model = drawn_model::of(Variant::Full);
-    let rows = own_tracks::three_people(30);
+    let rows = own_tracks::three_pedestrians(30);
     let step = own_tracks::FRAME_STEP;
-    let people = |frame: i64| -> Vec<(PedestrianId, Position)> {
+    let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
         let here = rows.iter().filter(|row| row.0 == frame);
         here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
             .collect()
@@ -108,16 +108,16 @@ fn a_live_forecaster_adapts_and_an_error_teaches_nothing() {
     let mut expected = AdaptiveRegions::default();
     for frame in (0..30).map(|frame| frame * step) {
         if frame >= 8 * step {
-            let mut far = people(frame);
+            let mut far = pedestrians(frame);
             far[0].1 = [f64::MAX, 0.0];
             let before = adapting.regions().unwrap().learned().cloned();
             let error = adapting.push(frame, far).unwrap_err();
             assert!(matches!(error, DdlError::Forecast(_)), "{error}");
             assert_eq!(adapting.regions().unwrap().learned().cloned(), before);
         }
-        let now = adapting.push(frame, people(frame)).unwrap();
-        let evidence = certified.push_certified(frame, people(frame)).unwrap();
-        let fixed = plain.push(frame, people(frame)).unwrap();
+        let now = adapting.push(frame, pedestrians(frame)).unwrap();
+        let evidence = certified.push_certified(frame, pedestrians(frame)).unwrap();
+        let fixed = plain.push(frame, pedestrians(frame)).unwrap();
         let (Some(now), Some(evidence), Some(fixed)) = (now, evidence, fixed) else {
             assert!(frame < 7 * step);
             continue;
@@ -129,12 +129,12 @@ fn a_live_forecaster_adapts_and_an_error_teaches_nothing() {
         assert_eq!(
             now.forecast == fixed.forecast,
             frame == 7 * step,
-            "the first forecast alone has the regions as they come"
+            "only the first forecast has unadapted regions"
         );
     }
-    // a tracker that starts anew keeps what was learned
+    // The adaptation is kept when the tracker restarts.
     let learned = adapting.regions().unwrap().learned().cloned();
     adapting.clear();
     assert_eq!(adapting.regions().unwrap().learned().cloned(), learned);
-    assert!(adapting.push(0, people(0)).unwrap().is_none());
+    assert!(adapting.push(0, pedestrians(0)).unwrap().is_none());
 }

@@ -1,5 +1,5 @@
-//! Tracks that are not as a data set has them: begun late, with holes, of another rate, in pixels, with words for pedestrians; and what
-//! is told of them.
+//! Imperfect tracks: begun late, with holes, at other rates, in pixels, with words as pedestrians; and the messages
+//! about them.
 
 use ddl::TrackUnits;
 use ddl_tests::own_tracks::{self, Row, ndjson};
@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-/// What a scene of TrajNet++ says of the rate.
+/// A TrajNet++ scene that states the rate.
 const SCENE: &str = "{\"scene\": {\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 200, \"fps\": 2}}\n";
 const WORDS: [&str; 3] = ["7f3e-aa41", "007", "b, \"the guard\""];
 
@@ -37,11 +37,11 @@ fn forecast(rows: &[Row], options: &str) -> (Vec<Value>, String) {
 }
 
 #[test]
-fn late_comers_and_holes_are_forecast_and_flagged() {
-    let mut rows = own_tracks::three_people(10);
-    // the second comes at frame 60, the third is not seen at 40 and 50
-    rows.retain(|&(frame, who, ..)| {
-        !(who == 2 && frame < 60 || who == 3 && [40, 50].contains(&frame))
+fn late_arrivals_and_holes_are_forecast_and_flagged() {
+    let mut rows = own_tracks::three_pedestrians(10);
+    // The second pedestrian arrives at frame 60; the third is not seen at 40 and 50.
+    rows.retain(|&(frame, id, ..)| {
+        !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame))
     });
     let (lines, told) = forecast(&rows, "--certificate --last");
     let note = "of 3 forecasts 1 are of people seen for less than 8 steps, and 1 over holes";
@@ -57,7 +57,7 @@ fn late_comers_and_holes_are_forecast_and_flagged() {
         (lines.iter().map(made_up).collect(), told),
         (vec![[90, 1, 0, 0]], String::new())
     );
-    // who has just appeared is counted
+    // Pedestrians that have just appeared are counted.
     rows.push((90, 4, 3.0, 1.0));
     let missing = "1 of the 4 people at frame 90 were seen at too few of the last 8 steps";
     let told = forecast(&rows, "--last").1;
@@ -65,7 +65,7 @@ fn late_comers_and_holes_are_forecast_and_flagged() {
 }
 
 #[test]
-fn a_rate_that_meets_no_step_is_resampled_and_said() {
+fn a_rate_without_whole_steps_is_resampled_and_reported() {
     let rows: Vec<Row> = (0..=72)
         .map(|frame| (frame, 1, 0.05 * frame as f64, 1.0))
         .collect();
@@ -77,10 +77,10 @@ fn a_rate_that_meets_no_step_is_resampled_and_said() {
     assert_eq!(lines[0]["frames"][4], 120);
 }
 
-/// Pixels of a camera that looks straight down, 64 a metre, y downwards; and tracks in the words of TrajNet++.
+/// Pixels of a camera that looks straight down, 64 per metre, y downwards; and tracks in the TrajNet++ format.
 #[test]
-fn pixels_become_metres_and_formats_make_no_difference() {
-    let metres = own_tracks::three_people(8);
+fn pixels_are_converted_and_formats_make_no_difference() {
+    let metres = own_tracks::three_pedestrians(8);
     let pixel = |&(f, i, x, y): &Row| (f, i, 64.0 * x + 320.0, 240.0 - 64.0 * y);
     let pixels: Vec<Row> = metres.iter().map(pixel).collect();
     let expected = forecast(&metres, "--whole").0;
@@ -94,9 +94,9 @@ fn pixels_become_metres_and_formats_make_no_difference() {
 }
 
 #[test]
-fn words_come_back_as_they_were_written() {
+fn words_are_returned_as_written() {
     let place = Place::empty();
-    let rows = own_tracks::three_people(10);
+    let rows = own_tracks::three_pedestrians(10);
     let numbered = forecast(&rows, "--whole --certificate").0;
     place.write("words.csv", in_words(&rows));
     let ask = |line: &str| place.ok(&format!("{line} --threads 1"));
@@ -143,7 +143,7 @@ fn words_come_back_as_they_were_written() {
 #[test]
 fn the_rate_of_scenes_is_used() {
     let place = Place::empty();
-    let plain = ndjson(&own_tracks::three_people(40));
+    let plain = ndjson(&own_tracks::three_pedestrians(40));
     place.write("plain.ndjson", &plain);
     place.write("two.ndjson", format!("{SCENE}{plain}"));
     place.write(
@@ -159,7 +159,8 @@ fn the_rate_of_scenes_is_used() {
         ),
         (
             "two.ndjson --fps 25",
-            "note: read as --fps 25, although the file's scenes give 2 frames a second, and its frame numbers rise by 10 (--fps 20)\n",
+            "note: read as --fps 25, although the file's scenes give 2 frames a second, and its frame numbers rise by \
+             10 (--fps 20)\n",
             "plain.ndjson --fps 25",
         ),
         ("usual.ndjson", "", "plain.ndjson"),
@@ -174,15 +175,16 @@ fn the_rate_of_scenes_is_used() {
 }
 
 #[test]
-fn the_rate_of_a_run_yields_to_files_and_options() {
+fn files_and_options_override_the_rate_of_a_run() {
     let place = Place::with_model();
     let mut config: Value = serde_json::from_str(&place.text("run/config.json")).unwrap();
     config["units"] = json!({"fps": 50.0});
     place.write("run/config.json", config.to_string());
-    let rows = own_tracks::three_people(40);
+    let rows = own_tracks::three_pedestrians(40);
     place.write("two.ndjson", SCENE.to_owned() + &ndjson(&rows));
     place.write_tracks("plain.csv", &rows);
-    let note = "note: the numbers are read as in the run's training (--fps 50); give --fps, --dt, --frame-step or --homography to read them differently\n";
+    let note = "note: the numbers are read as in the run's training (--fps 50); give --fps, --dt, --frame-step or \
+                --homography to read them differently\n";
     let run = |line: &str| place.run(&format!("{line} --model run --threads 1"));
     for command in ["forecast", "goals", "view --no-open -o page.html"] {
         let told = run(&format!("{command} plain.csv --last"));
@@ -244,8 +246,8 @@ fn rate_and_homography_of_a_run_are_used() {
         ..TrackUnits::default()
     });
     drawn_model::write(config, &crowd::windows(60, 10), &place.at("film-run"));
-    let remembered = "note: the numbers are read as in the run's training (--fps 23.98 and its homography); give --fps, --dt, --frame-step \
-                      or --homography to read them differently\n";
+    let remembered = "note: the numbers are read as in the run's training (--fps 23.98 and its homography); give \
+                      --fps, --dt, --frame-step or --homography to read them differently\n";
     let forecast = "forecast film/hall.csv --model film-run --last --threads 1";
     let finished = place.run(forecast);
     assert!(finished.stderr.contains(remembered), "{finished:?}");
@@ -259,20 +261,21 @@ fn rate_and_homography_of_a_run_are_used() {
 }
 
 #[test]
-fn numbers_that_nobody_walks_at_are_doubted() {
+fn implausible_speeds_are_reported() {
     let place = Place::empty();
     for (factor, words) in [
         (60.0, "half of the steps are faster"),
         (0.1, "nine in ten steps"),
     ] {
         let scaled = |(f, p, x, y)| (f, p, factor * x, factor * y);
-        let rows: Vec<Row> = own_tracks::three_people(60)
+        let rows: Vec<Row> = own_tracks::three_pedestrians(60)
             .into_iter()
             .map(scaled)
             .collect();
         place.write_tracks("hall.csv", &rows);
         for line in [
-            "evaluate --model hotel --convention own --data hall.csv --test-pedestrians 1 --protocol single --threads 1",
+            "evaluate --model hotel --convention own --data hall.csv --test-pedestrians 1 --protocol single --threads \
+             1",
             "forecast hall.csv --last --one --threads 1",
         ] {
             let finished = place.run(line);
@@ -289,12 +292,12 @@ fn numbers_that_nobody_walks_at_are_doubted() {
 }
 
 #[test]
-fn frames_are_numbered_as_the_tracks_number_them() {
+fn frames_are_numbered_as_in_the_tracks() {
     let place = Place::empty();
-    // 24 frames a second: a step of 0.4 s is 9.6 frames.
+    // 24 frames per second: a step of 0.4 s is 9.6 frames.
     let far = |t| if t < 96 { 0.0 } else { 90.0 };
-    let walk = |who: i64, off: fn(i64) -> f64| {
-        (0..200).map(move |t| (t, who, 0.05 * t as f64 + off(t), 3.0 * who as f64))
+    let walk = |id: i64, off: fn(i64) -> f64| {
+        (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64))
     };
     place.write_tracks(
         "tracks.csv",
@@ -317,14 +320,14 @@ fn frames_are_numbered_as_the_tracks_number_them() {
 #[test]
 fn a_page_shows_the_moments_of_own_tracks() {
     let place = Place::empty();
-    place.write_tracks("lobby.csv", &own_tracks::three_people(15));
+    place.write_tracks("lobby.csv", &own_tracks::three_pedestrians(15));
     let told = place.ok("view lobby.csv --moments 5");
     assert_eq!(told, "lobby-forecasts.html\n");
     let page = place.text("lobby-forecasts.html");
-    // From the second frame on somebody can be forecast.
+    // From the second frame on some pedestrian can be forecast.
     assert!(page.contains("5 of 14 moments of lobby.csv"));
     assert!(page.contains("Certificates: 300 of 300 hypotheses"));
-    // The one address is the name of SVG.
+    // The only address is the namespace of SVG.
     let mut addresses = page.split("http").skip(1);
     assert!(addresses.all(|address| address.starts_with("://www.w3.org/2000/svg")));
     let data = page.split("id=\"moments-json\">").nth(1).unwrap();
@@ -338,7 +341,7 @@ fn a_page_shows_the_moments_of_own_tracks() {
     assert_eq!(moments.len(), 5);
     assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
     assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));
-    // The first of five is the third of fourteen: seen for 3 frames, and what then happened is there.
+    // The first of five is the third of fourteen: seen for 3 frames, with a known future.
     assert_eq!(moments[0]["pedestrians"][0]["made_up"]["padded"], 5);
     assert_eq!(count(0, "truth"), 24);
 }

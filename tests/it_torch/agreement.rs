@@ -1,4 +1,4 @@
-//! The kernels against libtorch: forecasts of the built-in models on the scenes that they were trained without.
+//! The kernels against libtorch: forecasts of the built-in models on their test scenes.
 
 use ddl::data::{Convention, Dataset, Position, Window, WindowRule};
 use ddl::eval::Forecast;
@@ -6,11 +6,11 @@ use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource, Remembe
 use ddl_tests::recordings;
 use std::io::Write as _;
 
-/// One window of so many is forecast by both, where `DDL_AGREEMENT_STRIDE` does not say otherwise.
+/// One window in this many is forecast by both, unless `DDL_AGREEMENT_STRIDE` is set.
 const STRIDE: usize = 50;
 
-/// Goals farther apart than this (m) are others: two ways to divide the proposed endpoints were equally good, and rounding
-/// decided.
+/// Goals farther apart than this (m) count as different: two partitions of the proposed endpoints were equally good,
+/// and rounding decided.
 const OTHER: f64 = 1e-3;
 
 /// The largest differences between two forecasts: positions and goals (m), weights.
@@ -20,7 +20,7 @@ struct Difference {
     goal: f64,
     weight: f64,
     pedestrians: usize,
-    /// Pedestrians with other goals, which count in none of the above.
+    /// Pedestrians with different goals, which do not count above.
     others: usize,
 }
 
@@ -58,7 +58,7 @@ impl Difference {
 }
 
 #[test]
-fn built_in_models_forecast_their_test_scenes_as_libtorch_does() {
+fn built_in_models_agree_with_libtorch_on_their_test_scenes() {
     let Some(folder) = recordings::star_folder() else {
         return;
     };
@@ -73,7 +73,7 @@ fn built_in_models_forecast_their_test_scenes_as_libtorch_does() {
             .unwrap()
             .test_windows(WindowRule::Published);
         let some: Vec<Window> = windows.into_iter().step_by(stride).collect();
-        // As they are, and with what a camera would remember.
+        // Without and with remembered tracks.
         let goals = kernels.goal_model();
         let remembering = goals.remembering(&some, &dataset, Remembering::Online);
         let mut difference = Difference::default();

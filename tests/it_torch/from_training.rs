@@ -1,4 +1,4 @@
-//! `ddl train`: what it tells, what it leaves, and that its goals can be measured before the network is trained.
+//! `ddl train`: its progress and its files, and the evaluation of its goals before the network is trained.
 
 use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::{EpochReport, NetworkFrame, Objective, StarConfig, TrainingConfig};
@@ -8,11 +8,12 @@ use ddl_tests::progress::{returns_at_once, told};
 use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
 
 #[test]
-fn a_training_tells_its_steps_and_leaves_a_run() {
+fn a_training_reports_its_steps_and_writes_a_run() {
     let place = Place::empty();
-    // 200 pedestrians in batches of 64: 4 steps an epoch
-    let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 --train-pedestrians 200 --batch-pedestrians 64 \
-                 --proposal-steps 10 --commit 0123abc --threads 1 --out run";
+    // 200 pedestrians in batches of 64: 4 steps per epoch.
+    let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 \
+                 --train-pedestrians 200 --batch-pedestrians 64 --proposal-steps 10 --commit 0123abc \
+                 --threads 1 --out run";
     let mut steps = told(&place, train, &["goals", "train"]);
     steps.retain(|step| step.stage == "train");
     assert_eq!(steps.len(), 8);
@@ -59,8 +60,9 @@ fn a_training_tells_its_steps_and_leaves_a_run() {
 #[test]
 fn goals_are_measured_before_the_network_is_trained() {
     let place = Place::empty();
-    let train = "train --convention simulated --fold plaza --epochs 1 --train-pedestrians 40 --batch-pedestrians 20 --proposal-steps 8 \
-                 --validation 0.25 --validation-recordings crossing --threads 1 --out run";
+    let train = "train --convention simulated --fold plaza --epochs 1 --train-pedestrians 40 \
+                 --batch-pedestrians 20 --proposal-steps 8 --validation 0.25 --validation-recordings crossing \
+                 --threads 1 --out run";
     let _ = place.ok(&format!("{train} --only-goals"));
     assert!(!place.at("run/model.safetensors").exists());
     let measured = |on: &str| -> GoalEvaluation {
@@ -68,7 +70,7 @@ fn goals_are_measured_before_the_network_is_trained() {
         json(&place.ok(&line))
     };
     let test = measured("test");
-    // all of the recording set apart, the ends of the others, nothing of the test scene
+    // The whole recording set apart, the last parts of the others, nothing of the test scene.
     let validation = measured("validation");
     let names: Vec<&str> = validation.recordings.keys().map(String::as_str).collect();
     assert_eq!(names, ["bottleneck", "corridor", "crossing", "doorway"]);
@@ -84,7 +86,7 @@ fn goals_are_measured_before_the_network_is_trained() {
         "{}",
         validation.windows
     );
-    // the same command without --only-goals goes on, and the goals stay
+    // The same command without --only-goals continues, and the goals stay.
     let before = place.read("run/proposal.safetensors");
     let _ = place.ok(train);
     assert!(place.at("run/model.safetensors").is_file());
@@ -93,10 +95,11 @@ fn goals_are_measured_before_the_network_is_trained() {
     assert_eq!((again.all, again.recordings), (test.all, test.recordings));
 }
 
-/// The configuration that a run is begun with; its network is not trained.
-fn begun_with(options: &str) -> RunConfig {
+/// The configuration of a new run; its network is not trained.
+fn started_with(options: &str) -> RunConfig {
     let place = Place::empty();
-    let train = "train --convention simulated --fold corridor --only-goals --proposal-steps 1 --threads 1 --out run";
+    let train = "train --convention simulated --fold corridor --only-goals --proposal-steps 1 --threads 1 \
+                 --out run";
     let _ = place.ok(&format!("{train} {options}"));
     RunDirectory::new(place.at("run")).config().unwrap()
 }
@@ -104,12 +107,12 @@ fn begun_with(options: &str) -> RunConfig {
 #[test]
 fn the_recommended_recipe_is_the_default() {
     for variant in Variant::ALL {
-        let config = begun_with(&format!("--variant {variant}"));
+        let config = started_with(&format!("--variant {variant}"));
         assert_eq!(config.star, StarConfig::recommended(variant));
         assert_eq!(config.training, TrainingConfig::recommended(variant));
     }
-    let full = begun_with("--recipe recommended");
-    assert_eq!(full, begun_with(""));
+    let full = started_with("--recipe recommended");
+    assert_eq!(full, started_with(""));
     let star = (full.star.frame, full.star.feed_forward_width);
     assert_eq!(star, (NetworkFrame::Goal, 32));
     assert_eq!(full.training.objective, Objective::Walk);
@@ -117,13 +120,13 @@ fn the_recommended_recipe_is_the_default() {
 
 #[test]
 fn the_published_recipe_is_the_papers() {
-    let config = begun_with("--recipe published");
+    let config = started_with("--recipe published");
     let published = StarConfig::published(Variant::Full);
     assert_eq!(
         (&config.star, &config.training),
         (&published, &TrainingConfig::published())
     );
-    // the numbers of the paper, whatever the constructors say
+    // The numbers of the paper, independent of the constructors.
     let star = (config.star.frame, config.star.feed_forward_width);
     assert_eq!(star, (NetworkFrame::World, 2048));
     let training = (config.training.epochs, config.training.batch_pedestrians);
@@ -134,7 +137,7 @@ fn the_published_recipe_is_the_papers() {
 }
 
 #[test]
-fn a_folder_that_holds_something_else_is_not_trained_over() {
+fn a_folder_with_another_run_is_not_overwritten() {
     let place = Place::empty();
     folder_contents::write(trained_model::contents(), &place.at("run"));
     let recipe = serde_json::to_string(&drawn_model::goal_recipe(1)).unwrap();
@@ -142,7 +145,8 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
     let pedestrians = trained_model::PEDESTRIANS;
     let batch = trained_model::BATCH;
     let train = format!(
-        "train --convention simulated --epochs 1 --train-pedestrians {pedestrians} --batch-pedestrians {batch} --out run"
+        "train --convention simulated --epochs 1 --train-pedestrians {pedestrians} --batch-pedestrians {batch} \
+         --out run"
     );
     for (different, part) in [
         ("--fold corridor --seed 77", "training.seed is 1, not 77"),
@@ -150,7 +154,7 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
             "--fold corridor --variant no-dynamics",
             "star.variant is full, not no-dynamics",
         ),
-        // plain STAR has no goals to make a frame of, which is told first
+        // Plain STAR has no goal frame, which is reported first.
         (
             "--fold corridor --variant star",
             "star.frame is goal, not world",
@@ -167,7 +171,7 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
     let other_goals = format!("{train} --fold corridor --proposal-steps 21");
     place.fails(&other_goals, &["another run", "its goals."]);
 
-    // Everything as it was trained: the state of a training under way, then the model, is cut off.
+    // The same options as in the training, with truncated files: the training state, then the model.
     let train = format!("{train} --goal-recipe recipe.json --fold corridor");
     let whole = place.read("run/optimizer.safetensors");
     let model = place.read("run/model.safetensors");
@@ -182,13 +186,13 @@ fn a_folder_that_holds_something_else_is_not_trained_over() {
     }
 }
 
-/// A number out of range must not leave a folder behind that the corrected command then refuses.
+/// A number out of range must not leave a folder that the corrected command would refuse.
 #[test]
 fn numbers_out_of_range_are_refused_before_anything_is_written() {
     let place = Place::empty();
     let eth = "train --convention simulated --fold eth --out new";
     place.fails(eth, &["eth", "corridor", "plaza"]);
-    // should one be taken after all, it must not train for long
+    // If a number were accepted by mistake, the training must be short.
     let short = [
         ("--epochs", "1"),
         ("--train-pedestrians", "1"),
@@ -214,7 +218,7 @@ fn numbers_out_of_range_are_refused_before_anything_is_written() {
 }
 
 #[test]
-fn cuda_that_is_not_there_is_refused() {
+fn missing_cuda_is_reported() {
     let place = Place::with_model();
     if place.json("info --json")["cuda"] == "yes" {
         eprintln!("skipped: this machine has CUDA");
@@ -230,7 +234,7 @@ fn cuda_that_is_not_there_is_refused() {
 }
 
 #[test]
-fn device_and_threads_may_be_chosen_again() {
+fn device_and_threads_may_change() {
     trained_model::use_one_thread();
     for _ in 0..2 {
         ddl::prepare(ddl::DeviceChoice::Cpu, Some(1)).unwrap();

@@ -1,11 +1,11 @@
-//! The file of golden forecasts, against libtorch. With `DDL_WRITE_GOLDEN=1` the test writes the file anew, as is needed when the
-//! built-in models were trained anew.
+//! The file of golden forecasts, against libtorch. With `DDL_WRITE_GOLDEN=1` the test writes the file, which is needed
+//! after the built-in models were trained again.
 
 use ddl::{BuiltinModel, Ddl, ModelSource};
 use ddl_tests::golden::{self, Golden};
 
 #[test]
-fn golden_forecasts_are_those_of_libtorch() {
+fn golden_forecasts_agree_with_libtorch() {
     let of =
         |model: BuiltinModel| Golden::of(&Ddl::reference(&ModelSource::Builtin(model)).unwrap());
     if std::env::var_os("DDL_WRITE_GOLDEN").is_some() {

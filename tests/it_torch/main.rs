@@ -1,6 +1,6 @@
 //! Tests of training, across crates and of the program `ddl`, which need libtorch.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod agreement;
 mod from_training;
@@ -16,17 +16,17 @@ fn the_page_about_training() {
 }
 
 #[test]
-fn readers_of_trainings_keep_their_laws_on_their_corpora_and_what_is_made_of_them() {
+fn readers_of_trainings_handle_their_corpora_and_edits_of_them() {
     for reader in ddl_tests::outside_bytes::TORCH_READERS {
         ddl_tests::outside_bytes::corpus::run(reader);
     }
 }
 
 #[test]
-fn the_example_of_training_makes_its_steps() {
+fn the_example_of_training_runs() {
     let here = std::path::Path::new(".");
     let output = ddl_tests::example::run("ddl-star", "training_steps", here, "1 0.1");
     assert_eq!(output.succeeds(), "1 steps, dropout 0.1\n");
-    // An example that is added is run from then on.
+    // A new example must be run here as well.
     assert_eq!(ddl_tests::example::all_of("ddl-star").len(), 1);
 }

@@ -1,11 +1,12 @@
-//! Training on own recordings, alone and beside the built-in models: what is measured on the validation part, and weights to begin with.
+//! Training on own recordings, alone and with the built-in models: evaluation on the validation part, and starting
+//! weights.
 
 use ddl::{RunConfig, RunDirectory};
 use ddl_tests::own_tracks;
 use ddl_tests::place::Place;
 use serde_json::Value;
 
-/// Options that make a training one of seconds.
+/// Options for a training of a few seconds.
 const SMALL: &str = "--train-pedestrians 64 --batch-pedestrians 16 --proposal-steps 5 --threads 1";
 const ALONE: &str = "--from none --epochs 3";
 
@@ -27,7 +28,8 @@ fn first_row(report: &Value) -> (f64, u64) {
     (min_ade.as_f64().unwrap(), pedestrians.as_u64().unwrap())
 }
 
-/// The errors on the validation part, by which the best epoch is chosen; the first one's number, and the best one's.
+/// The errors on the validation part, by which the best epoch is chosen; the number of the first epoch, and of the best
+/// one.
 fn errors(run: &RunDirectory) -> (Vec<f64>, usize) {
     let epochs = run.metrics().unwrap();
     let errors: Vec<f64> = epochs.iter().map(|e| e.validation.unwrap()).collect();
@@ -36,7 +38,7 @@ fn errors(run: &RunDirectory) -> (Vec<f64>, usize) {
 }
 
 #[test]
-fn own_recordings_are_trained_on_and_measured_with() {
+fn own_recordings_are_used_for_training_and_evaluation() {
     let place = with_recordings();
     let train = format!("train --data mine --out run {ALONE} {SMALL}");
     let trained = place.json(&format!("{train} --json"));
@@ -47,12 +49,12 @@ fn own_recordings_are_trained_on_and_measured_with() {
     let (errors, best) = errors(&run);
     assert_eq!(errors.len(), 3);
     assert_eq!(trained["kept_epoch"], best);
-    // The best epoch is the model, and the others are not kept.
+    // The best epoch is the model, and the other epochs are removed.
     assert_eq!(run.kept_epochs().unwrap(), [best]);
     let epoch = format!("run/epochs/{best:03}.safetensors");
     assert_eq!(place.read("run/model.safetensors"), place.read(&epoch));
 
-    // The number that the epoch was chosen by is the one that the evaluation reports.
+    // The evaluation reports the number by which the epoch was chosen.
     let report = place
         .json("evaluate --model run --data mine --validation --protocol fair --threads 1 --json");
     let conditions = &report["rows"][0]["conditions"];
@@ -61,7 +63,7 @@ fn own_recordings_are_trained_on_and_measured_with() {
         conditions["selection"],
         "epoch of the least validation error"
     );
-    // Few enough for all of them to have been measured after each epoch.
+    // Few enough that all of them were evaluated after each epoch.
     let (min_ade, pedestrians) = first_row(&report);
     assert!((50..=1000).contains(&pedestrians), "{pedestrians}");
     assert!(
@@ -69,11 +71,11 @@ fn own_recordings_are_trained_on_and_measured_with() {
         "{min_ade} {errors:?}"
     );
 
-    what_it_learned_from_is_no_test(&place);
-    // Its results are kept with it, and make a report.
+    training_recordings_are_refused_as_test_data(&place);
+    // Its results are stored with it, and can be reported.
     let _ = place.ok("report run --out report");
     assert!(place.at("report/report.html").is_file());
-    // The best epoch is read before it becomes the model: nothing else is removed.
+    // The best epoch is read before it becomes the model; otherwise nothing is removed.
     place.remove("run/model.safetensors");
     let whole = place.read(&epoch);
     let mut damaged = whole.clone();
@@ -83,20 +85,20 @@ fn own_recordings_are_trained_on_and_measured_with() {
     place.write(&epoch, &whole);
     let _ = place.ok(&train);
     assert_eq!(place.read("run/model.safetensors"), whole);
-    // A hole in the record would choose among some of the epochs.
+    // A gap in the record would restrict the choice to some of the epochs.
     place.remove("run/model.safetensors");
     place.remove("run/metrics.jsonl");
     place.fails(&train, &["no record of epoch 1"]);
 }
 
-/// Whatever it is called, and alone too.
-fn what_it_learned_from_is_no_test(place: &Place) {
+/// Training recordings are refused as test data, also renamed and alone.
+fn training_recordings_are_refused_as_test_data(place: &Place) {
     place.write("renamed.csv", place.read("mine/yard.csv"));
     let evaluate = |data: &str| format!("evaluate --model run --data {data} --threads 1");
     for data in ["mine", "mine/lobby.csv", "renamed.csv"] {
         place.fails(&evaluate(data), &["was trained on"]);
     }
-    // A file of that name that is only cut, resampled or rounded would be no test.
+    // A file of that name that is only cut, resampled or rounded would not be a test.
     let text = place.text("mine/yard.csv");
     let (cut, _) = text.trim_end().rsplit_once('\n').unwrap();
     place.write("other/yard.csv", cut);
@@ -107,7 +109,7 @@ fn what_it_learned_from_is_no_test(place: &Place) {
 }
 
 #[test]
-fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
+fn a_recording_can_be_left_out_and_the_run_resumes() {
     let place = with_recordings();
     let train = format!(
         "train --data mine --convention own --fold yard --patience 1 {ALONE} {SMALL} --out"
@@ -126,7 +128,7 @@ fn a_recording_can_be_left_out_and_the_run_goes_on_where_it_stopped() {
 }
 
 #[test]
-fn training_and_evaluation_measure_alike() {
+fn training_and_evaluation_report_the_same_errors() {
     let place = with_clips(2000, 2);
     let kept = "--data clips --validation-recordings clip1";
     let train = format!("train {kept} --out run --epochs 1 {SMALL} --progress none");
@@ -142,7 +144,7 @@ fn training_and_evaluation_measure_alike() {
         assert!((said - min_ade).abs() < 1e-9, "{model}: {said} {min_ade}");
     }
     assert_eq!(trained["validation_min_ade"], told["run"]["min_ade"]);
-    // And in words, by the same command again.
+    // The same command prints them as text when it is run again.
     let words = place.ok(&train);
     for part in ["run", "builtin"] {
         let errors = ["min_ade", "min_fde"].map(|error| told[part][error].as_f64().unwrap());
@@ -150,15 +152,15 @@ fn training_and_evaluation_measure_alike() {
         assert!(words.contains(&errors), "{errors}: {words}");
     }
     assert!(words.contains("training "), "{words}");
-    // Another part than its own would hold what it has learned from.
+    // Another validation part would contain training data.
     let other = "evaluate --model run --data clips --validation --validation-recordings clip0";
     place.fails(other, &["leave --validation-recordings out"]);
 }
 
 #[test]
-fn a_training_begins_with_another_models_weights() {
+fn a_training_starts_with_the_weights_of_another_model() {
     let place = with_clips(1500, 2);
-    // Steps that destroy more than they mend.
+    // Training steps that increase the error.
     let train = format!(
         "train --data clips --from hotel --epochs 2 --learning-rate 0.05 {SMALL} --json --out"
     );
@@ -179,7 +181,7 @@ fn a_training_begins_with_another_models_weights() {
     }
     let weights = |run: &str| place.read(&format!("{run}/model.safetensors"));
     assert_eq!(weights("run"), weights("halves"));
-    // A run and a packed one can be begun with as well; other weights are another run.
+    // A training can also start from a run and from a packed model; other starting weights are another run.
     let _ = place.ok("pack --model run --out packed.safetensors");
     for model in ["run", "packed.safetensors"] {
         let train = train.replace("hotel", model);
@@ -209,9 +211,9 @@ fn a_training_begins_with_another_models_weights() {
     place.fails("train --data clips --from nowhere --out new", &["nowhere"]);
 }
 
-/// Clips of 12 s: their last fifths hold no window of 8 s, and too few windows to learn all from.
+/// Clips of 12 s: their last fifths have no window of 8 s, and too few windows are left for training from scratch.
 #[test]
-fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
+fn short_clips_are_validated_whole_and_start_with_the_built_in_model() {
     let place = with_clips(300, 6);
     let finished = place.run(&format!("train --data clips --out run --epochs 1 {SMALL}"));
     for told in [
@@ -224,7 +226,7 @@ fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
     let config: RunConfig = RunDirectory::new(place.at("run")).config().unwrap();
     assert_eq!(config.data.validation_recordings, ["clip1", "clip4"]);
     assert_eq!((config.data.validation, config.patience), (0.0, Some(10)));
-    // The built-in model is measured on the same clips, named by nobody.
+    // The built-in model is evaluated on the same clips without an option.
     for data in ["--model run --data clips", "--data clips"] {
         let evaluate = format!("evaluate {data} --validation --protocol fair --threads 1");
         let words = place.ok(&evaluate);
@@ -241,7 +243,7 @@ fn short_clips_are_validated_on_whole_and_begin_with_the_builtin_model() {
 }
 
 #[test]
-fn an_empty_validation_part_is_no_result() {
+fn an_empty_validation_part_is_an_error() {
     let place = with_clips(900, 1);
     let train = format!("train --data clips --out run --epochs 1 --from none {SMALL}");
     let message = place.run(&train).fails();
@@ -252,7 +254,7 @@ fn an_empty_validation_part_is_no_result() {
         let line = format!("{command} --model run --data clips --threads 1");
         place.fails(&line, &["--validation 0.4", "20 steps in a row"]);
     }
-    place.write_tracks("short.csv", &own_tracks::three_people(12));
+    place.write_tracks("short.csv", &own_tracks::three_pedestrians(12));
     place.fails("train --data short.csv --out new", &["no training windows"]);
 }
 
@@ -276,10 +278,11 @@ fn a_run_remembers_rate_and_homography() {
     place.remove("film/H.txt");
     let measure = "evaluate --model run --data film --validation --threads 1";
     let measured = place.run(&format!("{measure} --protocol single"));
-    let note = "note: 3 recordings: the numbers are read as in the run's training (--fps 23.98 and its homography); give --fps";
+    let note = "note: 3 recordings: the numbers are read as in the run's training (--fps 23.98 and its homography); \
+                give --fps";
     assert!(measured.stderr.contains(note), "{measured:?}");
     let _ = measured.succeeds();
-    // with another rate these are other recordings than those it was trained on
+    // At another rate these are not the recordings of the training.
     let refused = place.run(&format!("{measure} --protocol fair --fps 25"));
     assert_eq!(refused.code, Some(1), "{refused:?}");
     assert!(

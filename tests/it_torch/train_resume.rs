@@ -1,4 +1,5 @@
-//! Stopped training goes on as if it had never stopped, byte for byte. That killed training does is tried in `tests/faults_torch`.
+//! Stopped training resumes with the same bytes as uninterrupted training. Killed training is tested in
+//! `tests/faults_torch`.
 
 #![cfg(unix)]
 
@@ -9,10 +10,10 @@ use ddl_tests::program::Finished;
 use ddl_tests::trained_model::{TRAIN, finish};
 use std::io::{BufRead as _, BufReader};
 
-/// Steps of the proposal network, 12 and then 24 of its memory branch, before those of the forecasting network.
+/// Steps before those of the forecasting network: 12 of the proposal network, and 24 of its memory branch.
 const GOAL_STEPS: usize = 36;
 
-/// Trains so many steps, then asks the program to end, and waits.
+/// Trains for some steps, then sends the signal and waits for the end.
 fn interrupted(place: &Place, steps: usize, signal: &str) -> Finished {
     let mut child = place.start(&format!("{TRAIN} --progress json"));
     let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
@@ -20,15 +21,15 @@ fn interrupted(place: &Place, steps: usize, signal: &str) -> Finished {
         lines.next().unwrap().unwrap();
     }
     processes::signal(child.id(), signal);
-    // read on, or it would wait for room in the pipe
+    // Read on, so that the program is not blocked by a full pipe.
     lines.for_each(|line| drop(line.unwrap()));
     let output = child.wait_with_output().unwrap();
     Finished::new(format!("train, {signal}"), &output)
 }
 
-/// Ctrl-C, and a supervisor's polite request to end: the step under way is finished, everything saved, exit code 130.
+/// SIGINT (Ctrl-C) and SIGTERM: the current step is finished, everything saved, exit code 130.
 #[test]
-fn an_interrupted_run_goes_on_to_the_same_bytes() {
+fn an_interrupted_run_resumes_to_the_same_bytes() {
     let place = Place::empty();
     let in_the_first_stage = GOAL_STEPS / 2;
     for (steps, signal, state) in [
@@ -47,6 +48,6 @@ fn an_interrupted_run_goes_on_to_the_same_bytes() {
             "it had ended before"
         );
     }
-    // nothing is left of what was being written
+    // No unfinished file remains.
     assert_same(&finish(&Place::empty()), &finish(&place));
 }

@@ -1,16 +1,16 @@
-//! The memory of a training run does not grow with its steps: measured in a process of its own, because the other tests
-//! of this program use memory as they like.
+//! The memory of a training run does not grow with its steps. Measured in a separate process, because the other tests
+//! of this program use memory as well.
 
 use ddl::network::{StarConfig, TrainingConfig};
 use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
 use ddl::{DeviceChoice, Variant};
 use ddl_tests::{crowd, processes, trained_model};
 
-/// MiB of growth that count as none: what allocators keep for themselves, two huge pages among it. Over 900 steps, 7 KiB a step.
+/// Allowed growth (MiB): reserves of allocators, including two huge pages. Over 900 steps this is 7 KiB per step.
 const TOLERANCE: f64 = 6.0;
 
-/// Trains the steps of the batches that are visited round and round, losing `lost` bytes at each; how many MiB more are
-/// resident after the last step than after the `first`.
+/// Trains on the same batches repeatedly and loses `lost` bytes in each step. Returns how many MiB more are resident
+/// after the last step than after the `first`.
 fn growth([first, last, lost]: [usize; 3]) -> Option<Vec<f64>> {
     trained_model::use_one_thread();
     let config = StarConfig {
@@ -20,7 +20,7 @@ fn growth([first, last, lost]: [usize; 3]) -> Option<Vec<f64>> {
         ..StarConfig::published(Variant::Full)
     };
     let training = TrainingConfig {
-        epochs: 1_000_000, // never done
+        epochs: 1_000_000, // never reached
         batch_pedestrians: 8,
         ..TrainingConfig::published()
     };
@@ -45,18 +45,18 @@ fn growth([first, last, lost]: [usize; 3]) -> Option<Vec<f64>> {
     ])
 }
 
-/// 20 MiB are lost on purpose: seen, or the test shows nothing.
+/// A loss of 20 MiB is detected, so the test can fail.
 #[test]
-fn what_is_lost_is_seen() {
-    let test = "training_memory::what_is_lost_is_seen";
+fn a_leak_is_detected() {
+    let test = "training_memory::a_leak_is_detected";
     if let Some(lost) = processes::alone(test, || growth([60, 100, 512 << 10])) {
         assert!((15.0..30.0).contains(&lost[0]), "{lost:?} MiB");
     }
 }
 
 #[test]
-fn steps_do_not_add_up_in_memory() {
-    let test = "training_memory::steps_do_not_add_up_in_memory";
+fn steps_need_constant_memory() {
+    let test = "training_memory::steps_need_constant_memory";
     if let Some(growth) = processes::alone(test, || growth([100, 1000, 0])) {
         let steps = "more after 1,000 steps than after 100";
         assert!(growth[0] <= TOLERANCE, "{growth:?} MiB {steps}");

@@ -1,9 +1,9 @@
-"""Opens the example's report page in a browser and checks that it shows what report.json and moments.json hold.
+"""Opens the example's report page in a browser and compares it with report.json and moments.json.
 
     check_page.py FOLDER --browser /path/to/chromium [--screenshots FOLDER]
 
-FOLDER is what the example `report_page` of ddl-report wrote. The page is opened from the file system, in light and dark,
-wide and narrow, and nothing may be asked of a network.
+FOLDER is the output of the example `report_page` of ddl-report. The page is opened from the file system, in light and
+dark, wide and narrow, and must send no network request.
 """
 
 import argparse
@@ -23,7 +23,7 @@ NARROW = {"width": 390, "height": 844}
 
 
 class Opened:
-    """A page in a browser, with everything it complained of or asked for."""
+    """A page in a browser, with its errors, warnings and requests."""
 
     def __init__(self, browser, path, viewport=WIDE, scheme="light", motion="no-preference"):
         self.context = browser.new_context(viewport=viewport, color_scheme=scheme, reduced_motion=motion, has_touch=viewport is NARROW)
@@ -36,7 +36,7 @@ class Opened:
         self.page.set_default_timeout(20_000)
         self.page.goto(address)
         self.page.evaluate("document.documentElement.style.scrollBehavior = 'auto'")
-        # What is folded away must be as it should be too.
+        # Collapsed parts are checked as well.
         self.page.evaluate("document.querySelectorAll('details').forEach((details) => (details.open = true))")
 
     def __enter__(self):
@@ -98,7 +98,7 @@ def check_headline(opened, report):
     folds = list(dict.fromkeys(row["conditions"]["fold"] for row in report["rows"]))
     means = [(group.over(line, folds, lambda s: s["min_ade"]), line) for line in group.lines]
     best = min(means, key=lambda pair: sum(pair[0]) / len(pair[0]))[1]
-    # Nothing is trained in the example, so that the page is about the best of all.
+    # Nothing is trained in the example, so the page is about the best forecaster.
     for name, of in (("minADE", "min_ade"), ("minFDE", "min_fde")):
         values = group.over(best, folds, lambda s: s[of])
         shown = opened.text(f"[data-number={name}]")
@@ -112,7 +112,7 @@ def check_headline(opened, report):
 
 
 def decoded(data):
-    """The compact moments as moments.json has them."""
+    """The compact moments in the form of moments.json."""
     for moment in data:
         pedestrians = []
         for w in moment["pedestrians"]:
@@ -148,7 +148,7 @@ def errors(pedestrian):
 
 
 def same(shown, value):
-    """Printed to a millimetre, and not off by more than its last digit: sums may differ in their last bit."""
+    """Whether a value is printed to a millimetre, within its last digit: sums may differ in their last bit."""
     return abs(float(shown) - value) <= 0.000_501
 
 
@@ -182,7 +182,7 @@ def check_player(opened, moments):
     start = first["picks"][0]["pedestrians"][0] if first.get("picks") else 0
     check_pedestrian(opened, first, start)
 
-    # It plays, by button and by key.
+    # The player plays, by button and by key.
     before, picture, words = opened.time(), opened.picture(), opened.text("#now-words")
     page.click("#play")
     page.wait_for_function("(t) => Number(document.getElementById('scene').dataset.time) > t + 0.5", arg=before)
@@ -246,7 +246,7 @@ def check_player(opened, moments):
         page.keyboard.press(key)
         assert opened.picture() != before, f"key {key} changes nothing"
         page.keyboard.press(key)
-        assert opened.picture() == before, f"key {key} pressed twice is not as before"
+        assert opened.picture() == before, f"key {key} pressed twice does not restore the picture"
     page.click("#hypotheses button[data-sort=ade]")
     ades = page.evaluate("[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => Number(row.cells[2].textContent))")
     assert ades == sorted(ades)
@@ -260,7 +260,7 @@ def check_player(opened, moments):
     page.keyboard.press("Escape")
     assert not page.locator("#keys").is_visible()
 
-    # A case starts its moment.
+    # A button of a case starts its moment.
     button = page.locator("button[data-moment]").last
     at = int(button.get_attribute("data-moment"))
     button.click()
@@ -269,7 +269,7 @@ def check_player(opened, moments):
 
 
 def check_viewer(opened):
-    """The player alone begins where most is known of what then happened, and leaves no empty places for what is not."""
+    """The player alone starts at the moment with the most known futures, and hides errors where none are known."""
     moments = list(decoded(json.loads(embedded(opened, "moments-json"))))
     known = [sum(len(pedestrian["truth"]) == 12 for pedestrian in moment["pedestrians"]) for moment in moments]
     assert 0 in known and max(known) > 0, known
@@ -293,7 +293,7 @@ def check_viewer(opened):
 
 
 def check_theme(opened):
-    """The button goes from the system's colours to light and to dark, and the picture with it."""
+    """The button switches from the system's colours to light and to dark, and the picture changes with it."""
     paper = "getComputedStyle(document.body).backgroundColor"
     light, picture = opened.page.evaluate(paper), opened.picture()
     opened.page.click("#theme")
@@ -305,7 +305,7 @@ def check_theme(opened):
 
 
 def check_touch(opened, moments):
-    """A finger plays, stops, and chooses a pedestrian."""
+    """Touch plays, stops, and chooses a pedestrian."""
     before = opened.time()
     opened.page.tap("#play")
     opened.page.wait_for_function("(t) => Number(document.getElementById('scene').dataset.time) > t + 0.5", arg=before)
@@ -322,7 +322,7 @@ def check_touch(opened, moments):
 
 
 def check_focus(opened):
-    """Every stop of the tab key shows that it has the focus."""
+    """Every element reached by the tab key shows its focus."""
     seen = []
     for _ in range(40):
         opened.page.keyboard.press("Tab")
@@ -353,11 +353,11 @@ def check_reduced_motion(opened):
 
 def check_looks(opened, width):
     overflow = opened.page.evaluate("Math.max(document.documentElement.scrollWidth, document.body.scrollWidth)")
-    assert overflow <= width, f"the body is {overflow} px wide in a window of {width}"
+    assert overflow <= width, f"the body is {overflow} px wide in a window of {width} px"
     found = opened.page.evaluate((HERE / "contrast.js").read_text())
     assert found["seen"] > 50 and not found["faults"], found
     ids = opened.page.evaluate("[...document.querySelectorAll('[id]')].map((element) => element.id)")
-    assert len(ids) == len(set(ids)), "an id is used twice"
+    assert len(ids) == len(set(ids)), "an id is not unique"
     unnamed = opened.page.evaluate(
         """[...document.querySelectorAll("button, select, input")].filter((e) =>
             !e.textContent.trim() && !e.getAttribute("aria-label") && !e.labels?.length).map((e) => e.outerHTML)"""
@@ -366,7 +366,7 @@ def check_looks(opened, width):
 
 
 def variant(html, folder, name, moments):
-    """The page with other moments in it."""
+    """The page with other moments."""
     start = html.index('id="moments-json">') + len('id="moments-json">')
     end = html.index("</script>", start)
     page = folder / f"{name}.html"
@@ -407,15 +407,15 @@ def main():
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as temporary:
         browser = playwright.chromium.launch(executable_path=arguments.browser, args=["--no-sandbox"])
         with Opened(browser, path_of_page) as opened:
-            assert embedded(opened, "report-json") == report_text, "the embedded report.json is another"
+            assert embedded(opened, "report-json") == report_text, "the embedded report.json differs from the file"
             data = json.loads(embedded(opened, "moments-json"))
-            assert list(decoded(data)) == moments, "the compact moments are not moments.json"
+            assert list(decoded(data)) == moments, "the compact moments differ from moments.json"
             compared = check_tables(opened, report)
             check_headline(opened, report)
-            print(f"tables: {compared} cells are those of report.json")
+            print(f"tables: {compared} cells agree with report.json")
         with Opened(browser, path_of_page) as opened:
             check_player(opened, moments)
-            print(f"player: {len(moments)} moments, numbers as computed from moments.json")
+            print(f"player: {len(moments)} moments, numbers agree with moments.json")
         with Opened(browser, folder / "viewer.html") as opened:
             check_viewer(opened)
         with Opened(browser, path_of_page) as opened:

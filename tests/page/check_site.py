@@ -1,9 +1,9 @@
-"""Opens every page of the guide in a browser: nothing may be asked of a network, complained of, or stick out to the side.
+"""Opens every page of the guide in a browser: no network request, no error or warning, no horizontal overflow.
 
     check_site.py FOLDER --browser /path/to/chromium --screenshots FOLDER
 
-FOLDER is what `cargo xtask docs` wrote. Pages are opened from the file system, light and dark, wide and narrow; some are
-kept as pictures.
+FOLDER is the output of `cargo xtask docs`. Pages are opened from the file system, light and dark, wide and narrow;
+screenshots of some are kept.
 """
 
 import argparse
@@ -12,7 +12,9 @@ import pathlib
 from playwright.sync_api import sync_playwright
 
 SIZES = {"wide": {"width": 1280, "height": 900}, "narrow": {"width": 390, "height": 844}}
-KEPT = ["index.html", "guide/index.html", "guide/start.html", "guide/python.html", "guide/benchmark.html", "guide/extending.html", "guide/troubleshooting.html"]
+KEPT = ["index.html"] + [
+    f"guide/{page}.html" for page in ("index", "start", "python", "benchmark", "extending", "troubleshooting")
+]
 
 
 def visit(browser, path, size, scheme):
@@ -23,17 +25,17 @@ def visit(browser, path, size, scheme):
     page.on("pageerror", lambda error: faults.append(f"page error: {error}"))
     page.on("request", lambda request: request.url.startswith(("file:", "data:")) or faults.append(f"request: {request.url}"))
     page.goto(path.as_uri())
-    # Wide tables and code scroll by themselves; the page does not.
+    # Wide tables and code scroll; the page itself must not.
     spare = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     if spare > 0:
-        faults.append(f"{spare} px stick out to the side")
+        faults.append(f"{spare} px of horizontal overflow")
     broken = page.evaluate("[...document.images].filter((image) => image.complete && !image.naturalWidth).map((image) => image.src)")
-    faults.extend(f"no picture: {source}" for source in broken)
+    faults.extend(f"missing picture: {source}" for source in broken)
     return context, page, [f"{path.name}, {size}, {scheme}: {fault}" for fault in faults]
 
 
 def ratio(page, selector):
-    """Contrast of the first such element's letters with what is behind them (WCAG 2)."""
+    """Contrast of the first matching element's text with its background (WCAG 2)."""
     return page.evaluate(
         """(selector) => {
             const element = document.querySelector(selector);
@@ -77,9 +79,9 @@ def main():
                     page.screenshot(path=arguments.screenshots / f"{picture}-{size}-{scheme}.png")
                     for selector in ("main p", "main a", "main pre code", "main td"):
                         if page.query_selector(selector) and ratio(page, selector) < 4.5:
-                            faults.append(f"{name}, {scheme}: letters of `{selector}` have a contrast of {ratio(page, selector):.1f}")
+                            faults.append(f"{name}, {scheme}: the text of `{selector}` has a contrast of {ratio(page, selector):.1f}")
                 context.close()
-        # The search works from the file system, too.
+        # The search must work from the file system, too.
         context, page, _ = visit(browser, site / "guide" / "index.html", "wide", "light")
         page.keyboard.press("s")
         page.keyboard.type("homography")
@@ -87,7 +89,7 @@ def main():
         context.close()
         browser.close()
     assert not faults, "\n".join(faults)
-    print(f"{len(pages)} pages looked at, {visits} times, light and dark, wide and narrow; pictures in {arguments.screenshots}")
+    print(f"{len(pages)} pages checked in {visits} visits, light and dark, wide and narrow; screenshots in {arguments.screenshots}")
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-// Every visible text of the page whose contrast with what is behind it is below 4.5 (WCAG 2.1, level AA).
+// Every visible text of the page with a contrast below 4.5 to its background (WCAG 2.1, level AA).
 () => {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 1;
@@ -33,8 +33,8 @@
   };
   const faults = [];
   let seen = 0;
-  const pedestrian = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  for (let node = pedestrian.nextNode(); node; node = pedestrian.nextNode()) {
+  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
     const element = node.parentElement;
     if (!node.textContent.trim() || element.closest("script, style, title, option")) continue;
     if (!element.checkVisibility({ checkOpacity: true, checkVisibilityCSS: true })) continue;

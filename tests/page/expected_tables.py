@@ -3,7 +3,7 @@
 import json
 import math
 
-# What heads the first column of tables of the literature.
+# Headings of the first column of tables of the literature.
 UNCAPTIONED = {"method", "variant", "baseline"}
 
 CATEGORIES = {
@@ -31,7 +31,7 @@ CATEGORIES = {
 
 
 def add(values):
-    """The plain sum in order, as Rust adds; Python's own `sum` compensates."""
+    """The plain sum in order, as in Rust; Python's own `sum` compensates rounding errors."""
     total = 0.0
     for value in values:
         total += value
@@ -39,7 +39,7 @@ def add(values):
 
 
 def spread(values, decimals):
-    """Mean, and the sample deviation of several."""
+    """The mean, with the sample deviation if there are several values."""
     mean = add(values) / len(values)
     text = f"{mean:.{decimals}f}"
     if len(values) > 1:
@@ -152,7 +152,7 @@ WHOLE_FORECAST = {
     "FPD m": (3, lambda s: s["end_diversity"]),
 }
 
-# Fewest stretches of 20 s a fold from which an interval is told.
+# Smallest number of 20 s stretches per fold for which an interval is reported.
 FEWEST_BLOCKS = 10
 
 
@@ -168,7 +168,7 @@ def headline(group, header):
 
 def further(group, header, folds, columns):
     unknown = [name for name in header[2:] if name not in columns]
-    assert not unknown, f"columns {unknown} are unknown here: add them"
+    assert not unknown, f"columns {unknown} are unknown to this check: add them"
     rows = []
     for line in group.lines:
         present = [fold for fold in folds if group.on(line, fold, lambda s: 0)]
@@ -200,7 +200,7 @@ def block_mean(line, folds, error):
 
 
 def intervals(group, table):
-    """The rows as they are found, once their means are seen to be right and their intervals to hold them."""
+    """The found rows, after checks that their means are right and lie inside their intervals."""
     reference = table["header"][4].removeprefix("minADE - ").removesuffix(" m")
     lines = {line["label"]: line for line in group.lines}
     for row in table["rows"]:
@@ -227,7 +227,7 @@ def check_interval(cell, mean):
 
 
 def categories(group, header, caption):
-    """Pooled over the pedestrians of the folds that all forecasters have."""
+    """Errors by category, pooled over the pedestrians of the folds that all forecasters have."""
     folds = caption.split("pooled over ")[1].split(". ")[0].split(", ")
     lines = [line for line in group.lines if all(row["scores"]["categories"] for row in line["rows"])]
     assert header[2:] == [line["label"] for line in lines], header
@@ -284,10 +284,10 @@ def by_protocol(groups, header):
 
 
 def expected(table, report):
-    """The rows that a table must have; None for tables of the literature, which no report holds."""
+    """The expected rows of a table; None for tables of the literature, which are not in report.json."""
     caption, header, codes = table["caption"], table["header"], table["codes"]
     if not caption:
-        assert header[0] in UNCAPTIONED, f"the table headed {header} is unknown here"
+        assert header[0] in UNCAPTIONED, f"the table headed {header} is unknown to this check"
         return None
     rows = report["rows"]
     scored = caption.split("scored: ")[1].rstrip(".") if "scored: " in caption else None
@@ -306,4 +306,4 @@ def expected(table, report):
     if caption.startswith("minADE/minFDE in metres by protocol."):
         groups = [Group(rows, codes[0], codes[1], protocol, subset) for protocol in ("published", "fair", "single")]
         return by_protocol(groups, header)
-    raise AssertionError(f"the table `{caption}` is unknown here")
+    raise AssertionError(f"the table `{caption}` is unknown to this check")

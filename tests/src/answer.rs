@@ -1,6 +1,6 @@
-//! What a page says a command answers, held against what it answered.
+//! Comparison of the output shown on a page with the real output.
 
-/// Whether a shown line is this line: `...` in it stands for anything.
+/// Whether a shown line matches a line; `...` in it matches any text.
 pub fn line_matches(shown: &str, line: &str) -> bool {
     let mut parts = shown.split("...");
     let first = parts.next().unwrap_or_default();
@@ -20,7 +20,7 @@ pub fn line_matches(shown: &str, line: &str) -> bool {
     rest.ends_with(last)
 }
 
-/// The first shown line that is not in the answer after those before it; a line `...` stands for any lines.
+/// The first shown line that is not in the answer after those before it; a line `...` matches any lines.
 pub fn first_missing<'a>(shown: &'a [String], answer: &str) -> Option<&'a str> {
     let mut lines = answer.lines().map(str::trim);
     let lines_to_show = shown.iter().map(|line| line.trim());

@@ -1,8 +1,8 @@
-//! Forecasts compared bit by bit: `==` on floats calls 0.0 and -0.0 the same.
+//! Bitwise comparison of forecasts, because `==` on floats does not distinguish 0.0 and -0.0.
 
 use ddl_eval::Forecast;
 
-/// Every number of a forecast as its bits: shape, then weights, certificates' verdicts, positions and goals.
+/// Every number of a forecast as bits: shape, then weights, verdicts of certificates, positions and goals.
 pub fn of(forecast: &Forecast) -> Vec<u64> {
     let (pedestrians, hypotheses) = (forecast.pedestrians(), forecast.hypotheses());
     let mut bits = vec![pedestrians as u64, hypotheses as u64];
@@ -16,7 +16,7 @@ pub fn of(forecast: &Forecast) -> Vec<u64> {
     bits
 }
 
-/// The bits of many forecasts, one entry a window.
+/// The bits of many forecasts, one entry per window.
 pub fn of_all(forecasts: &[Forecast]) -> Vec<Vec<u64>> {
     forecasts.iter().map(of).collect()
 }

@@ -1,20 +1,20 @@
-//! Numbers that differ from run to run and are told, so that a failure can be had again.
+//! Random numbers with a printed seed, so that a failure can be reproduced.
 
 use std::time::Duration;
 
-/// A source of such numbers, begun with a seed.
+/// A random number generator with its seed.
 #[derive(Debug)]
 pub struct Chance(pub u64);
 
 impl Chance {
-    /// Another seed at every call, which is printed.
+    /// A new seed at every call, which is printed.
     pub fn new(what: &str) -> Self {
         let seed = std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), what);
         eprintln!("{what}: seed {seed}");
         Self(seed)
     }
 
-    /// Any number (splitmix64).
+    /// A random number (splitmix64).
     pub fn number(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -28,13 +28,14 @@ impl Chance {
         self.number() % limit.max(1)
     }
 
-    /// A moment of the `index`-th of `count` equal parts of a time.
+    /// A random moment in the `index`-th of `count` equal parts of a time.
     pub fn moment(&mut self, (index, count): (u32, u32), of: Duration) -> Duration {
         let part = of / count;
         let within = Duration::from_micros(self.below(part.as_micros() as u64));
         part * index + within
     }
-    /// Places in a file: some of the first sixteen bytes, and others anywhere; half of those in the first kilobytes, where headers are.
+    /// Places in a file: some of the first sixteen bytes, and others anywhere. Half of those are in the first
+    /// kilobytes, where headers are.
     pub fn places(&mut self, length: usize, count: usize) -> Vec<usize> {
         let heads = (0..16.min(length)).step_by(if count < 16 { 5 } else { 1 });
         let limits = [length, length.min(4096)].into_iter().cycle().take(count);
@@ -42,7 +43,7 @@ impl Chance {
         heads.chain(anywhere).collect()
     }
 
-    /// The bytes with a bit of one of them turned.
+    /// The bytes with one bit flipped at `place`.
     pub fn turned(&mut self, bytes: &[u8], place: usize) -> Vec<u8> {
         let mut bytes = bytes.to_vec();
         bytes[place] ^= 1 << self.below(8);

@@ -1,18 +1,18 @@
-//! Commands on the pages of the documentation. `xtask`, which depends on no crate of the workspace, includes this file.
+//! Commands on the pages of the documentation. `xtask`, which does not depend on this crate, includes this file.
 
 #![allow(
     unreachable_pub,
     reason = "public in one of the two crates that it belongs to"
 )]
 
-/// A command as a page shows it.
+/// A command as shown on a page.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Command {
     /// Number of its line on the page, from 1.
     pub line: usize,
-    /// What is typed, without the prompt; of several lines where it goes on after `> `.
+    /// The typed text, without the prompt; several lines if it continues after `> `.
     pub typed: String,
-    /// The lines below it: some of what is answered, `...` for what is left out.
+    /// The lines below it: a part of the answer, with `...` for omitted text.
     pub answered: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ pub fn commands(page: &str) -> Vec<Command> {
 }
 
 impl Command {
-    /// The words of a plain command, without comment and redirections; `None` where a shell has more to do than to start one program.
+    /// The words of a plain command, without comment and redirections; `None` if it uses other features of a shell.
     pub fn words(&self) -> Option<Vec<&str>> {
         let typed = self.typed.split(" #").next().unwrap_or_default();
         let is_plain = !typed.contains(['|', ';', '&', '$', '`', '(', '\n', '"', '\'', '<', '>']);
@@ -65,7 +65,8 @@ mod tests {
 
     #[test]
     fn commands_are_taken_with_their_answers() {
-        let page = "text\n```console\n$ ddl info   # what is there\nversion: 1\n...\n$ for i in 1 2; do\n>   echo $i\n> done\n```\n\
+        let page = "text\n```console\n$ ddl info   # what is there\nversion: 1\n...\n$ for i in 1 2; do\n>   echo $i\n\
+                    > done\n```\n\
             ```text\n$ not this\n```\n  ```console\n  $ ls -l\n  ```\n";
         let found = commands(page);
         let typed: Vec<(usize, &str)> = found

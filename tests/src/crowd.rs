@@ -1,13 +1,13 @@
-//! The simulated crowds as the tests use them: test windows of one scene, experts from the others.
+//! The simulated crowds for the tests: test windows of one scene, experts from the others.
 
 use ddl_data::{Dataset, TIME_STEP, Window, WindowRule};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 
-/// Seed of the crowds: that of the program, so that both see the same people.
+/// Seed of the crowds, equal to that of the program, so that both use the same pedestrians.
 const SEED: u64 = 1;
 /// The scene left out of training.
 pub const FOLD: &str = "corridor";
-/// Tracks of the expert library: enough for 100 experts to differ, few enough to be searched at once.
+/// Tracks of the expert library: enough for 100 different experts, few enough for a fast search.
 const EXPERTS: usize = 600;
 
 /// The five simulated scenes.
@@ -23,7 +23,7 @@ pub fn windows(count: usize, most: usize) -> Vec<Window> {
     fitting.retain(|window| (2..=most).contains(&window.len()));
     assert!(
         fitting.len() >= count,
-        "{count} wanted of {}",
+        "{count} windows requested, {} available",
         fitting.len()
     );
     let stride = fitting.len() / count;
@@ -46,7 +46,9 @@ pub fn goal_estimator(params: GoalEstimatorParams) -> GoalEstimator {
         .collect();
     let stride = (tracks.len() / EXPERTS).max(1);
     let some = tracks.into_iter().step_by(stride).collect();
-    let library = ExpertLibrary::new(some, TIME_STEP).expect("simulated tracks are whole");
-    let params = params.check().expect("the tests give sound parameters");
+    let library = ExpertLibrary::new(some, TIME_STEP).expect("simulated tracks are complete");
+    let params = params
+        .check()
+        .expect("the parameters of the tests are valid");
     GoalEstimator::new(params, library).expect("there are more tracks than experts")
 }

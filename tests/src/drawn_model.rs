@@ -1,4 +1,4 @@
-//! A run whose networks have drawn weights: a model of every variant, made without training.
+//! A run with random weights: a model of every variant without training.
 
 use crate::crowd;
 use crate::folder_contents::{self, Contents};
@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
 
-/// One training window in so many is learned from: a small library is searched at once.
+/// One in this many training windows is used, which gives a small and fast library.
 const STRIDE: usize = 10;
 
 /// A model of a variant, loaded from its run.
@@ -24,7 +24,7 @@ pub fn of(variant: Variant) -> Ddl {
     Ddl::load(folder.path(), DeviceChoice::Cpu).expect("the drawn model loads")
 }
 
-/// The files of a model's run, which are the same at every call.
+/// The files of a model's run, the same at every call.
 pub fn contents(variant: Variant) -> &'static Contents {
     static DRAWN: [OnceLock<Contents>; 4] = [const { OnceLock::new() }; 4];
     let index = Variant::ALL.iter().position(|&known| known == variant);
@@ -36,7 +36,7 @@ pub fn contents(variant: Variant) -> &'static Contents {
     })
 }
 
-/// What such a run is configured with: the recommended recipe, the simulated crowds, small networks for goals.
+/// The configuration of the run: the recommended recipe, simulated crowds, small networks for goals.
 pub fn config(variant: Variant) -> RunConfig {
     let training = TrainingConfig {
         epochs: 1,
@@ -68,7 +68,7 @@ pub fn config(variant: Variant) -> RunConfig {
     }
 }
 
-/// Goals proposed by two small networks, to be trained for a few steps.
+/// Goals proposed by two small networks, for a training of a few steps.
 pub fn goal_recipe(seed: u64) -> GoalRecipe {
     let mut recipe = GoalRecipe::proposed(seed);
     if let Some(proposal) = &mut recipe.proposal {
@@ -89,21 +89,21 @@ pub fn goal_recipe(seed: u64) -> GoalRecipe {
     recipe
 }
 
-/// Writes what training leaves in a run, with drawn weights; the pedestrians of the windows are its experts.
+/// Writes the files of a trained run, with random weights; the pedestrians of the windows are its experts.
 pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     config.data.windows = windows.len();
     config.data.pedestrians = windows.iter().map(Window::len).sum();
     let run = RunDirectory::new(folder);
     std::fs::create_dir_all(folder.join("epochs")).expect("a folder can be made");
     let network = MotionNetwork::new(config.star.clone(), config.training.seed);
-    let network = network.expect("the configuration is sound");
+    let network = network.expect("the configuration is valid");
     let origin = config.network_origin();
     for file in [run.epoch(1), run.model()] {
         save_weights(network.weights(), &origin, &file).expect("weights can be written");
     }
     if let Some(recipe) = config.goals.proposal.clone() {
         let proposal = ProposalNetwork::new(recipe.network, recipe.training.seed);
-        let proposal = proposal.expect("the configuration is sound");
+        let proposal = proposal.expect("the configuration is valid");
         save_weights(proposal.weights(), &config.goals_origin(), &run.proposal())
             .expect("weights can be written");
     }
@@ -135,7 +135,7 @@ fn json(data: &impl serde::Serialize) -> Vec<u8> {
 pub fn experts(config: &RunConfig, positions: &[f64]) -> Vec<u8> {
     let bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
     let shape = vec![positions.len() / 40, 20, 2];
-    let tracks = TensorView::new(Dtype::F64, shape, &bytes).expect("the tracks are whole");
+    let tracks = TensorView::new(Dtype::F64, shape, &bytes).expect("the tracks are complete");
     let digest = numbers_digest([("tracks", tracks.clone())]);
     let header = config.goals_origin().to_header(&digest);
     safetensors::serialize([("tracks", tracks)], Some(header)).expect("the parts make a file")

@@ -1,10 +1,10 @@
-//! The examples of the crates, run as their head comments say.
+//! The examples of the crates, run as their head comments describe.
 
 use crate::program::{self, Finished};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Runs an example of a crate in `folder`, with the arguments of a command line, which are parted by blanks.
+/// Runs an example of a crate in `folder`, with the arguments of a command line, separated by blanks.
 pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> Finished {
     let place = Path::new("examples").join(example);
     let path = program::built(&place, &["-p", package, "--example", example]);
@@ -13,7 +13,7 @@ pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> F
     Finished::new(format!("{example} {command_line}"), &output)
 }
 
-/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`; none without a folder of them.
+/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`; empty without the folder.
 pub fn all_of(package: &str) -> BTreeSet<String> {
     let folder =
         Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../crates/{package}/examples"));

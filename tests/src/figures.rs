@@ -1,23 +1,24 @@
-//! What the tests of faults found, as numbers: written to a file where somebody asked for it, and then in full.
+//! Figures of the tests of faults, written to a file on request.
 
 use std::fmt::Display;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 
-/// Names the file of the figures. Set by `cargo xtask faults`; with it, every fault is tried the full number of times.
+/// Environment variable with the file of the figures, set by `cargo xtask faults`. If set, every fault is tried the
+/// full number of times.
 const VARIABLE: &str = "DDL_FAULTS_FIGURES";
 
-/// Whether the full number of rounds is asked for.
+/// Whether the full number of rounds is requested.
 pub fn are_asked_for() -> bool {
     file().is_some()
 }
 
-/// How often something is tried: `few` times among all tests, `many` times for the figures.
+/// The number of repetitions: `few` in a normal test run, `many` for the figures.
 pub fn rounds<T>(few: T, many: T) -> T {
     if are_asked_for() { many } else { few }
 }
 
-/// Tells a figure: a row of a table, which is printed, and added to the file where one is named.
+/// Reports a figure: a row of a table, which is printed, and appended to the file of the figures if there is one.
 pub fn tell(fault: &str, tried: impl Display, found: impl Display) {
     let row = format!("| {fault} | {tried} | {found} |\n");
     eprint!("{row}");

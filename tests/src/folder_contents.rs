@@ -1,9 +1,9 @@
-//! What lies in a folder, to show that a command wrote nothing, or the same bytes again.
+//! The contents of a folder, to check that a command wrote nothing, or the same bytes again.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Every file below a folder with its bytes (a link with its target), and every folder with `None`, by path relative to it.
+/// Every file below a folder with its bytes (a link with its target), and every folder with `None`, by relative path.
 pub type Contents = BTreeMap<PathBuf, Option<Vec<u8>>>;
 
 /// Reads everything below `folder`.
@@ -26,7 +26,7 @@ pub fn read(folder: &Path) -> Contents {
                 let bytes = std::fs::read(&path).expect("the file can be read");
                 contents.insert(relative, Some(bytes));
             } else {
-                // A pipe: to open it would wait for who writes to it.
+                // A pipe is not opened: that would wait for a writer.
                 contents.insert(relative, Some(Vec::new()));
             }
         }
@@ -34,7 +34,7 @@ pub fn read(folder: &Path) -> Contents {
     contents
 }
 
-/// Writes contents that were read before into `folder`, which is made if need be.
+/// Writes contents to `folder`, which is created if necessary.
 pub fn write(contents: &Contents, folder: &Path) {
     std::fs::create_dir_all(folder).expect("the folder can be made");
     for (relative, bytes) in contents {
@@ -68,7 +68,7 @@ pub fn assert_same(before: &Contents, after: &Contents) {
     assert_eq!(differences(before, after), Vec::<String>::new());
 }
 
-/// Files under temporary names anywhere below a folder: what was being written.
+/// Files with temporary names anywhere below a folder: unfinished files.
 pub fn half_written(folder: &Path) -> Vec<String> {
     let marks = [".writing-", ".report-", ".tmp"];
     let names = read(folder)

@@ -1,22 +1,22 @@
-//! Forecasts of a scene made up for this purpose, as a file in the repository keeps them (`tests/golden`).
+//! Golden forecasts of a synthetic scene, stored in the repository (`tests/golden`).
 
 use ddl::data::{PedestrianId, Position, Window};
 use ddl::{Ddl, Forecaster as _};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Positions differ by rounding in single precision; metres.
+/// Allowed difference of positions (m), due to rounding in single precision ...
 const OFF: f64 = 1e-4;
-/// So do weights, and places of goals.
+/// ... and of weights and goals.
 const LITTLE: f64 = 1e-5;
 
-/// What is forecast of one pedestrian; positions in metres, the likeliest hypothesis first.
+/// The forecast of one pedestrian; positions in metres, the most likely hypothesis first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Golden {
     pedestrian: i64,
     familiarity: f64,
-    /// The last position of the one forecast.
+    /// The last position of the single forecast.
     one: Position,
     weights: Vec<f64>,
     goals: Vec<Position>,
@@ -24,12 +24,12 @@ pub struct Golden {
     step_6: Vec<Position>,
 }
 
-/// What the file says, by model.
+/// The stored forecasts, by model.
 pub fn file() -> BTreeMap<String, Vec<Golden>> {
-    serde_json::from_str(include_str!("../golden/forecasts.json")).expect("the file is sound")
+    serde_json::from_str(include_str!("../golden/forecasts.json")).expect("the file is valid")
 }
 
-/// Ten pedestrians: side by side, head on, turning, standing, running, slowing down, trembling, far from all.
+/// Ten pedestrians: side by side, head on, turning, standing, running, slowing down, noisy, far from all others.
 fn window() -> Window {
     let mut tracks: BTreeMap<i64, Vec<Position>> = BTreeMap::new();
     for row in include_str!("../golden/tracks.csv").lines().skip(1) {
@@ -44,7 +44,7 @@ fn window() -> Window {
 }
 
 impl Golden {
-    /// The forecasts of a model, rounded as the file holds them.
+    /// The forecasts of a model, rounded as in the file.
     pub fn of(model: &Ddl) -> Vec<Self> {
         let window = window();
         let forecast = model.forecast(&window).expect("a forecast");
@@ -74,7 +74,7 @@ impl Golden {
         (0..window.len()).map(of_pedestrian).collect()
     }
 
-    /// Panics, naming what differs, unless both are the same up to rounding.
+    /// Panics, naming the difference, unless both agree up to rounding.
     pub fn assert_near(&self, known: &Self, model: &str) {
         let name = format!("{model}, pedestrian {}", known.pedestrian);
         assert_eq!(self.pedestrian, known.pedestrian, "{name}");

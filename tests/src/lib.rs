@@ -1,10 +1,7 @@
-//! What the cross-crate and command-line tests share. The test targets `it` and `faults` need no libtorch; `it_torch`
-//! and `faults_torch` train (feature `torch`, on by default).
+//! Shared code of the cross-crate and command-line tests. The test targets `it` and `faults` need no libtorch;
+//! `it_torch` and `faults_torch` train (feature `torch`, on by default).
 
-#![allow(
-    clippy::missing_panics_doc,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::missing_panics_doc, reason = "a test may panic")]
 
 pub mod answer;
 pub mod bits;

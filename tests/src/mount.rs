@@ -1,22 +1,23 @@
-//! File systems that are full or may not be written to. Linux mounts them for root alone; elsewhere the tests say so.
+//! File systems that are full or read-only. Only root can mount them, on Linux; otherwise the tests are skipped with a
+//! message.
 
 use crate::skip::skip;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Something mounted on a folder, taken off again when dropped.
+/// A mounted file system, unmounted when dropped.
 #[derive(Debug)]
 pub struct Mount(PathBuf);
 
 impl Mount {
-    /// A file system in memory that holds so many kibibytes; `None`, with the reason printed, where this user may mount nothing.
+    /// A file system in memory with this capacity (KiB); `None`, with the reason printed, if this user may not mount.
     pub fn small(folder: &Path, kibibytes: u64) -> Option<Self> {
         let size = format!("size={kibibytes}k");
         mount(&["-t", "tmpfs", "-o", &size, "none"], folder)?;
         Some(Self(folder.to_owned()))
     }
 
-    /// The folder as it is, but not to be written to; otherwise as [`small`](Self::small).
+    /// A read-only view of the folder; `None` as for [`small`](Self::small).
     pub fn read_only(folder: &Path) -> Option<Self> {
         let name = folder.to_str().expect("temporary folders have plain names");
         mount(&["--bind", name], folder)?;
@@ -25,16 +26,16 @@ impl Mount {
         Some(mounted)
     }
 
-    /// Gives a small file system another size.
+    /// Changes the size of a small file system.
     pub fn resize(&self, kibibytes: u64) {
         let size = format!("remount,size={kibibytes}k");
-        mount(&["-o", &size], &self.0).expect("what was mounted can be resized");
+        mount(&["-o", &size], &self.0).expect("the file system can be resized");
     }
 }
 
 impl Drop for Mount {
     fn drop(&mut self) {
-        // What is left mounted is left to whoever looks after temporary folders.
+        // A file system that stays mounted is left to the cleanup of temporary folders.
         let _ = Command::new("umount").arg(&self.0).status();
     }
 }

@@ -1,13 +1,14 @@
-//! The program where there is no network, which Linux arranges.
+//! The program without a network, with the means of Linux.
 
 use crate::place::Place;
 use crate::program::{self, Finished};
 use std::process::Command;
 
-/// What leads out of the network.
+/// The command that runs a program without the network.
 pub type Way = &'static [&'static str];
 
-/// `unshare` with what this user needs to leave the network; `None`, with the reason printed, where that is not allowed.
+/// The `unshare` command with the options that this user needs; `None`, with the reason printed, if it is not
+/// permitted.
 pub fn way() -> Option<Way> {
     let ways: [Way; 2] = [&["unshare", "-n"], &["unshare", "-r", "-n"]];
     let interfaces = |way: &Way| {

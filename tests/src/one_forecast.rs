@@ -1,10 +1,10 @@
-//! The one forecast of a model, as a robot takes it, and as `single` measures it.
+//! The single forecast of a model, as used by robots and by the protocol `single`.
 
 use ddl::data::Window;
 use ddl::eval::ForecastError;
 use ddl::{Ddl, Forecast, Forecaster};
 
-/// A model asked for one forecast alone.
+/// A model restricted to its single forecast.
 #[derive(Debug)]
 pub struct One<'a>(pub &'a Ddl);
 
@@ -14,7 +14,7 @@ impl Forecaster for One<'_> {
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        // one window in, one forecast out
+        // One window in, one forecast out.
         let mut forecasts = self.0.forecast_one(std::slice::from_ref(window))?;
         Ok(forecasts.remove(0))
     }

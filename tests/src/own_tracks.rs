@@ -1,4 +1,4 @@
-//! Tracks such as a user of the program brings along, as csv.
+//! Tracks like those of a user of the program, as CSV.
 
 use crate::crowd;
 use crate::place::Place;
@@ -10,12 +10,12 @@ pub type Row = (i64, i64, f64, f64);
 /// Raw frames between two rows of a pedestrian.
 pub const FRAME_STEP: i64 = 10;
 
-/// Coordinates are whole multiples of this, as those of a tracker are: about a millimetre, and a power of
-/// two, so that moving the origin of the map by whole metres rounds nothing.
+/// Coordinates are multiples of this, about a millimetre, as from a tracker. It is a power of two, so that moving the
+/// origin of the map by whole metres rounds nothing.
 const RESOLUTION: f64 = 1.0 / 1024.0;
 
-/// Three people for `frames` frames of 0.4 s: one walks east, one comes to meet them, one hardly moves.
-pub fn three_people(frames: i64) -> Vec<Row> {
+/// Three pedestrians for `frames` frames of 0.4 s: one walks east, one walks towards it, one hardly moves.
+pub fn three_pedestrians(frames: i64) -> Vec<Row> {
     let place = |t: f64, pedestrian: i64| match pedestrian {
         1 => (0.5 * t, 0.05 * (1.3 * t).sin()),
         2 => (9.0 - 0.45 * t, 0.8 + 0.04 * t),
@@ -31,7 +31,7 @@ pub fn three_people(frames: i64) -> Vec<Row> {
         .collect()
 }
 
-/// Whether a position of a table, which has 0.1 mm, is this one.
+/// Whether a printed position of a table, rounded to 0.1 mm, is this one.
 pub fn alike_in_a_table(printed: [f64; 2], position: [f64; 2]) -> bool {
     (0..2).all(|axis| (printed[axis] - position[axis]).abs() <= 0.5001e-4)
 }
@@ -45,7 +45,7 @@ pub fn csv(rows: &[Row]) -> String {
     text
 }
 
-/// A part of a simulated crowd, as somebody may have recorded it.
+/// A part of a simulated crowd, as a recording of a user.
 pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
     let crowds = crowd::dataset();
     let recording = crowds.recording(scene).expect("the simulated scene exists");
@@ -58,25 +58,25 @@ pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
         .collect()
 }
 
-/// The folder `film`: three recordings in pixels, 23.98 frames a second, and their homography.
+/// The folder `film`: three recordings in pixels at 23.98 frames per second, and their homography.
 pub fn write_film(place: &Place) {
     for (name, scene) in [
         ("hall", "corridor"),
         ("lobby", "plaza"),
         ("yard", "crossing"),
     ] {
-        // a frame of the crowd is 0.04 s, one of the film 1 / 23.98 s: nearly
+        // A frame of the crowd is 0.04 s, one of the film 1 / 23.98 s: nearly the same.
         let mut rows = of_scene(scene, 0..900);
         for (.., x, y) in &mut rows {
             (*x, *y) = (50.0 * *x, 50.0 * *y);
         }
         place.write_tracks(&format!("film/{name}.csv"), &rows);
     }
-    // beside the recordings, and none of them
+    // A file beside the recordings that is not a recording.
     place.write("film/H.txt", "0.02 0 0\n0 0.02 0\n0 0 1\n");
 }
 
-/// The folder `mine`: two recordings of a minute, as csv, and a file that is none.
+/// The folder `mine`: two recordings of a minute, as CSV, and a file that is not a recording.
 pub fn write_recordings(place: &Place) {
     for (name, scene) in [("lobby", "corridor"), ("yard", "plaza")] {
         place.write_tracks(&format!("mine/{name}.csv"), &of_scene(scene, 0..1500));
@@ -84,7 +84,7 @@ pub fn write_recordings(place: &Place) {
     place.write("mine/README.md", "not a recording");
 }
 
-/// The folder `clips`: a simulated crowd cut into so many clips of so many frames (10 a step).
+/// The folder `clips`: a simulated crowd cut into `count` clips of `frames` frames (10 per step).
 pub fn write_clips(place: &Place, frames: i64, count: i64) {
     for clip in 0..count {
         let rows = of_scene("plaza", clip * frames..(clip + 1) * frames);
@@ -92,7 +92,7 @@ pub fn write_clips(place: &Place, frames: i64, count: i64) {
     }
 }
 
-/// The rows in the words of TrajNet++.
+/// The rows in the TrajNet++ format.
 pub fn ndjson(rows: &[Row]) -> String {
     let line = |(f, p, x, y): &Row| {
         format!("{{\"track\": {{\"f\": {f}, \"p\": {p}, \"x\": {x}, \"y\": {y}}}}}\n")

@@ -1,10 +1,10 @@
-//! The files that the pages of the documentation speak of, made of simulated pedestrians.
+//! The files used on the pages of the documentation, made from simulated pedestrians.
 
 use crate::own_tracks::{self, FRAME_STEP, Row, csv};
 use std::path::Path;
 
-/// Writes every file that a page may use: `tracks.csv` and the same as `tracks.ndjson`, at 25 frames a second
-/// (`camera.csv`), in pixels with `H.txt`, with holes, under other names; `walk.csv`; the folder `recordings`.
+/// Writes every file that a page may use: `tracks.csv` and the same as `tracks.ndjson`, at 25 frames per second
+/// (`camera.csv`), in pixels with `H.txt`, with holes, with other column names; `walk.csv`; the folder `recordings`.
 pub fn write(folder: &Path) {
     let tracks = rows("plaza", 40, 70);
     let file = |name: &str, text: &str| {
@@ -17,7 +17,7 @@ pub fn write(folder: &Path) {
     let pixels: Vec<Row> = tracks.iter().map(to_pixels).collect();
     file("pixels.csv", &csv(&pixels));
     file("H.txt", "0.02 0 -5\n0 -0.02 12\n0 0 1\n");
-    // Every fifth frame sees every other person.
+    // Every fifth frame lacks every other pedestrian.
     let seen = |&&(f, p, _, _): &&Row| f % 5 != 2 || p % 2 == 0;
     let holes: Vec<Row> = tracks.iter().filter(seen).copied().collect();
     file("holes.csv", &csv(&holes));
@@ -27,7 +27,8 @@ pub fn write(folder: &Path) {
     );
     file(
         "walk.csv",
-        "frame,pedestrian,x,y\n0,1,0.00,2.00\n0,2,8.00,2.50\n1,1,0.52,2.01\n1,2,7.41,2.49\n2,1,1.03,2.03\n2,2,6.83,2.51\n\
+        "frame,pedestrian,x,y\n0,1,0.00,2.00\n0,2,8.00,2.50\n1,1,0.52,2.01\n1,2,7.41,2.49\n2,1,1.03,2.03\n\
+         2,2,6.83,2.51\n\
          3,1,1.55,2.02\n3,2,6.25,2.52\n",
     );
     std::fs::create_dir(folder.join("recordings")).expect("a folder of a page can be made");
@@ -41,7 +42,7 @@ pub fn write(folder: &Path) {
     }
 }
 
-/// Steps `from` to `until` of a simulated scene, numbered from 0, to the centimetre.
+/// Steps `from` to `until` of a simulated scene, numbered from 0, rounded to centimetres.
 fn rows(scene: &str, from: i64, until: i64) -> Vec<Row> {
     let cut = own_tracks::of_scene(scene, from * FRAME_STEP..until * FRAME_STEP);
     let centimetres = |metres: f64| (metres * 100.0).round() / 100.0;
@@ -49,23 +50,23 @@ fn rows(scene: &str, from: i64, until: i64) -> Vec<Row> {
     cut.into_iter().map(row).collect()
 }
 
-/// What the program `tracker` of the pages writes: 10 frames a second, 4 a step.
+/// The output of the program `tracker` of the pages: 10 frames per second, 4 per step.
 pub fn tracker() -> String {
     csv(&filmed(&rows("plaza", 40, 50), 4))
 }
 
-/// The same as a camera sees it that is faster: so many frames a step.
+/// The same tracks from a faster camera with `frames` frames per step.
 fn filmed(tracks: &[Row], frames: i64) -> Vec<Row> {
     let mut all = Vec::new();
-    for &(frame, who, x, y) in tracks {
-        let next = tracks.iter().find(|row| (row.0, row.1) == (frame + 1, who));
-        let &(_, _, to_x, to_y) = next.unwrap_or(&(frame, who, x, y));
+    for &(frame, id, x, y) in tracks {
+        let next = tracks.iter().find(|row| (row.0, row.1) == (frame + 1, id));
+        let &(_, _, to_x, to_y) = next.unwrap_or(&(frame, id, x, y));
         let shares = if next.is_some() { 0..frames } else { 0..1 };
         all.extend(shares.map(|i| {
             let share = i as f64 / frames as f64;
             (
                 frames * frame + i,
-                who,
+                id,
                 x + share * (to_x - x),
                 y + share * (to_y - y),
             )

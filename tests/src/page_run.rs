@@ -8,19 +8,19 @@ use std::path::{Path, PathBuf};
 use std::process::Stdio;
 use tempfile::TempDir;
 
-/// A shell is given this long to begin what takes longer.
+/// Interrupts a command after a few seconds.
 const GLANCE: &str = "timeout --preserve-status --signal INT 3";
 
 /// How far a command is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
-    /// To its end; its exit code and its answer must be as the page says.
+    /// To its end; its exit code and its answer must agree with the page.
     Whole,
-    /// Begun, without recordings, and interrupted after a moment: its arguments must be right.
+    /// Started without recordings and interrupted after a moment: its arguments must be valid.
     Begun,
 }
 
-/// What a reader of the page has before the first command.
+/// The files and programs that a reader of the page has before the first command.
 #[derive(Debug)]
 pub struct PageFolder {
     folder: TempDir,
@@ -29,7 +29,8 @@ pub struct PageFolder {
 }
 
 impl PageFolder {
-    /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's `crates`.
+    /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's
+    /// `crates`.
     pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let bin = tempfile::tempdir().expect("a temporary folder can be made");
@@ -55,7 +56,7 @@ impl PageFolder {
         self.folder.path()
     }
 
-    /// Runs commands in one shell; what is wrong is returned, a text for each command.
+    /// Runs commands in one shell, and returns the faults, one text per faulty command.
     pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<String> {
         let notes = tempfile::tempdir().expect("a temporary folder can be made");
         let empty = tempfile::tempdir().expect("a temporary folder can be made");
@@ -64,7 +65,7 @@ impl PageFolder {
             let typed = match depth {
                 Depth::Whole => command.typed.clone(),
                 Depth::Begun => {
-                    // What times a program may not be there.
+                    // The program `time` may not be installed.
                     let typed = command.typed.trim_start_matches("/usr/bin/time ");
                     let folder = empty.path().display();
                     format!("(cd {folder}; unset DDL_DATASETS; {GLANCE} {typed}\n)")
@@ -72,7 +73,7 @@ impl PageFolder {
             };
             let at = notes.path().join(i.to_string());
             let at = at.display();
-            // a `String` takes everything
+            // Formatting into a `String` cannot fail.
             let _ = writeln!(
                 script,
                 "{{ {typed}\n}} > {at}.out 2> {at}.err < /dev/null\necho $? > {at}.code"
@@ -122,7 +123,7 @@ fn write_tracker(bin: &Path) {
     std::fs::set_permissions(&program, mode).expect("a program can be made executable");
 }
 
-/// What one command did.
+/// The result of one command.
 fn read(command: &Command, at: &Path) -> Option<Finished> {
     let bytes = |kind: &str| std::fs::read(at.with_extension(kind)).ok();
     let text = |kind: &str| Some(String::from_utf8_lossy(&bytes(kind)?).into_owned());
@@ -137,9 +138,9 @@ fn read(command: &Command, at: &Path) -> Option<Finished> {
 fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<String> {
     let code = finished.code?;
     if depth == Depth::Begun {
-        // No recordings, no such run: 1. Interrupted: 130. Wrong arguments: 2.
+        // No recordings, no such run: 1. Interrupted: 130. Invalid arguments: 2.
         let begun = [0, 1, 130].contains(&code);
-        return (!begun).then(|| format!("it cannot be begun: exit code {code}"));
+        return (!begun).then(|| format!("it cannot be started: exit code {code}"));
     }
     let expected = expected_code(&command.answered);
     if code != expected {
@@ -153,10 +154,10 @@ fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<Strin
     let [Some(missing), Some(_)] = missing else {
         return None;
     };
-    Some(format!("its answer has no line `{missing}`, or not there"))
+    Some(format!("its answer has no line `{missing}` at this place"))
 }
 
-/// A shown error stands for the exit code 1; one of the arguments, which ends with the advice to ask for help, for 2.
+/// A shown error implies exit code 1; an error about arguments, which ends with a hint to `--help`, implies 2.
 fn expected_code(answered: &[String]) -> i32 {
     let says = |start: &str| answered.iter().any(|line| line.starts_with(start));
     match (says("error: "), says("For more information, try '--help'.")) {
@@ -186,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_page_that_says_something_else_is_caught() {
+    fn a_page_that_differs_is_detected() {
         let refused = ["error: e", "For more information, try '--help'."];
         for (shown, code, stdout, stderr, wrong) in [
             (&["a", "note: ..."][..], 0, "a\nb\n", "note: c\n", ""),
@@ -204,7 +205,7 @@ mod tests {
             assert_eq!(problem.is_empty(), wrong.is_empty(), "{shown:?}");
             assert!(problem.contains(wrong), "{shown:?}: {problem}");
         }
-        // What is only begun must have right arguments.
+        // A command that is only started must have valid arguments.
         for (code, right) in [(0, true), (1, true), (130, true), (2, false), (101, false)] {
             let problem = judged(&["y"], (code, "", ""), Depth::Begun);
             assert_eq!(problem.is_empty(), right, "{problem}");

@@ -1,4 +1,4 @@
-//! A folder of its own, in which a test writes files and runs the program.
+//! A temporary folder in which a test writes files and runs the program.
 
 use crate::own_tracks::{self, Row};
 use crate::program::{self, Finished};
@@ -10,17 +10,18 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
 use tempfile::TempDir;
 
-/// The folder, which is removed at the end of the test.
+/// The folder, removed at the end of the test.
 #[derive(Debug)]
 pub struct Place(TempDir);
 
 impl Place {
-    /// Empty.
+    /// An empty folder.
     pub fn empty() -> Self {
         Self(tempfile::tempdir().expect("a temporary folder can be made"))
     }
 
-    /// With a [drawn model](drawn_model) in `run`, and tracks of three people for 9 frames in `tracks.csv`.
+    /// A folder with a [drawn model](drawn_model) in `run`, and tracks of three pedestrians for 9 frames in
+    /// `tracks.csv`.
     pub fn with_model() -> Self {
         Self::with_variant(Variant::Full)
     }
@@ -29,21 +30,21 @@ impl Place {
     pub fn with_variant(variant: Variant) -> Self {
         let place = Self::empty();
         folder_contents::write(drawn_model::contents(variant), &place.at("run"));
-        place.write_tracks("tracks.csv", &own_tracks::three_people(9));
+        place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(9));
         place
     }
 
-    /// The folder.
+    /// The path of the folder.
     pub fn path(&self) -> &Path {
         self.0.path()
     }
 
-    /// A file in it.
+    /// The path of a file in it.
     pub fn at(&self, name: &str) -> PathBuf {
         self.path().join(name)
     }
 
-    /// Writes a file, and the folder that it is in.
+    /// Writes a file, and creates its folder.
     pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
         let file = self.at(name);
         let folder = file.parent().expect("a file is in a folder");
@@ -51,7 +52,7 @@ impl Place {
         std::fs::write(file, content).expect("a file can be written");
     }
 
-    /// Writes tracks as csv.
+    /// Writes tracks as CSV.
     pub fn write_tracks(&self, name: &str, rows: &[Row]) {
         self.write(name, own_tracks::csv(rows));
     }
@@ -76,17 +77,17 @@ impl Place {
         program::run(self.path(), line)
     }
 
-    /// What the program prints, which must go well.
+    /// Runs the program, which must succeed, and returns its standard output.
     pub fn ok(&self, line: &str) -> String {
         self.run(line).succeeds()
     }
 
-    /// What the program prints, as JSON.
+    /// Runs the program and parses its standard output as JSON.
     pub fn json(&self, line: &str) -> Value {
         json(&self.ok(line))
     }
 
-    /// The program fails, writes nothing, and says all of `needles`.
+    /// Runs the program, which must fail, write nothing, and print all of `needles`.
     pub fn fails(&self, line: &str, needles: &[&str]) {
         let before = folder_contents::read(self.path());
         let message = self.run(line).fails();
@@ -99,7 +100,7 @@ impl Place {
         }
     }
 
-    /// Commands that fail, each with words that it says: `COMMAND => WORDS`.
+    /// Commands that must fail, each with words of the message: `COMMAND => WORDS`.
     pub fn all_fail(&self, lines: &[&str]) {
         for line in lines {
             let (line, words) = line.split_once(" => ").expect("a command and words");
@@ -107,12 +108,12 @@ impl Place {
         }
     }
 
-    /// Nothing was written since.
+    /// Asserts that nothing was written since.
     pub fn assert_unchanged_since(&self, before: &folder_contents::Contents) {
         folder_contents::assert_same(before, &folder_contents::read(self.path()));
     }
 
-    /// Commands whose arguments are refused, with exit code 2 and these words: `COMMAND => WORDS`.
+    /// Commands whose arguments must be refused, with exit code 2 and these words: `COMMAND => WORDS`.
     pub fn all_refused(&self, lines: &[&str]) {
         for line in lines {
             let (line, words) = line.split_once(" => ").expect("a command and words");
@@ -122,7 +123,7 @@ impl Place {
         }
     }
 
-    /// The program with this text as its standard input.
+    /// Runs the program with this text as its standard input.
     pub fn run_on(&self, input: &str, line: &str) -> Finished {
         self.write("standard input", input);
         let input = std::fs::File::open(self.at("standard input")).expect("it was just written");
@@ -134,14 +135,14 @@ impl Place {
         )
     }
 
-    /// The program at work, with readers of what it prints and tells.
+    /// Starts the program with pipes for its outputs.
     pub fn start(&self, line: &str) -> Child {
         let mut command = program::command(self.path(), line);
         let command = command.stdout(Stdio::piped()).stderr(Stdio::piped());
         command.spawn().expect("the program can be started")
     }
 
-    /// Forecasts tracks, whole observations alone, with the model in `run`.
+    /// Forecasts tracks with complete observations, with the model in `run`.
     pub fn forecast(&self, rows: &[Row], options: &str) -> Finished {
         self.write_tracks("tracks.csv", rows);
         let line = "forecast --model run tracks.csv --whole --threads 1";
@@ -149,12 +150,12 @@ impl Place {
     }
 }
 
-/// JSON.
+/// Parses JSON.
 pub fn json<T: DeserializeOwned>(text: &str) -> T {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
 }
 
-/// JSON, one value a line.
+/// Parses JSON lines, one value per line.
 pub fn json_lines<T: DeserializeOwned>(text: &str) -> Vec<T> {
     text.lines().map(json).collect()
 }

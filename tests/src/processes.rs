@@ -1,17 +1,17 @@
-//! What the system says of a process: its processor time and its memory. Linux tells in `/proc`; elsewhere nothing is
-//! known, and the tests say so.
+//! Processor time and memory of a process, read from `/proc` on Linux. On other systems they are unknown, and the tests
+//! are skipped with a message.
 
 use std::process::{Child, Command, ExitStatus};
 use std::time::Duration;
 
-/// The kernel counts in hundredths of a second for programs, whatever it does itself.
+/// Clock ticks per second in `/proc`.
 const TICKS_A_SECOND: f64 = 100.0;
 
-/// Processor time of the process so far, its own and the system's for it, of all its threads. Still known when it has ended
-/// and nobody has asked how.
+/// Processor time of the process so far, user and system time of all threads. Also available after its end, until its
+/// exit status has been read.
 pub fn processor_time(id: u32) -> Option<Duration> {
     let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
-    // The second field is the program's name in parentheses, and may hold anything.
+    // The second field is the program's name in parentheses, which may contain any characters.
     let (_, fields) = stat.rsplit_once(')')?;
     let ticks: Vec<f64> = fields
         .split_whitespace()
@@ -24,7 +24,7 @@ pub fn processor_time(id: u32) -> Option<Duration> {
     ))
 }
 
-/// Bytes of this process that are in memory now, or were and are swapped out.
+/// Bytes of this process that are resident or swapped out.
 pub fn resident_bytes() -> Option<u64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let kibibytes = |name: &str| -> Option<u64> {
@@ -34,7 +34,7 @@ pub fn resident_bytes() -> Option<u64> {
     Some(1024 * (kibibytes("VmRSS:")? + kibibytes("VmSwap:").unwrap_or(0)))
 }
 
-/// The most bytes of a process that were in memory at once so far.
+/// Peak resident bytes of a process.
 pub fn peak_bytes(id: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{id}/status")).ok()?;
     let line = status
@@ -44,7 +44,8 @@ pub fn peak_bytes(id: u32) -> Option<u64> {
     Some(1024 * kibibytes)
 }
 
-/// Lets a process run to its end, watched; its processor time and the most bytes it had in memory, as far as both are told.
+/// Waits for the end of a process; returns its status, and its processor time and peak memory if the system reports
+/// them.
 pub fn watch(child: &mut Child) -> (ExitStatus, Option<(Duration, u64)>) {
     let mut seen = None;
     loop {
@@ -61,11 +62,11 @@ pub fn watch(child: &mut Child) -> (ExitStatus, Option<(Duration, u64)>) {
 pub fn signal(id: u32, name: &str) {
     let id = id.to_string();
     let sent = Command::new("kill").args(["-s", name, &id]).output();
-    // it may have ended by itself
+    // It may have ended by itself.
     drop(sent.expect("`kill` can be started"));
 }
 
-/// A process and all that it started, and they started, as far as their parents are still there.
+/// A process and all its descendants whose parents still exist.
 pub fn with_descendants(id: u32) -> Vec<u32> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
@@ -90,8 +91,9 @@ fn parent(id: u32) -> Option<u32> {
     fields.split_whitespace().nth(1)?.parse().ok() // after the state
 }
 
-/// What `measure` finds in a process of its own, started anew from the test that calls this, which is named, because the other tests of
-/// the program use memory as they like; `None` where the system does not tell, and in that process.
+/// Runs `measure` in a separate process, a new start of the calling test, because the other tests of the program use
+/// memory as well. The caller passes the name of its test. Returns `None` if the system does not report memory, and in
+/// the new process itself.
 pub fn alone(test: &str, measure: impl FnOnce() -> Option<Vec<f64>>) -> Option<Vec<f64>> {
     const FILE: &str = "DDL_TESTS_NUMBERS_FILE";
     if let Some(file) = std::env::var_os(FILE) {
@@ -104,12 +106,12 @@ pub fn alone(test: &str, measure: impl FnOnce() -> Option<Vec<f64>>) -> Option<V
     let program = std::env::current_exe().expect("a running test has a path");
     let mut command = Command::new(program);
     let output = command.args(["--exact", test]).env(FILE, &file).output();
-    let output = output.expect("the test can be started anew");
+    let output = output.expect("the test can be started again");
     assert!(output.status.success(), "{output:?}");
     let numbers = std::fs::read(file).expect("the test of that name measures");
     let numbers: Option<Vec<f64>> = serde_json::from_slice(&numbers).expect("numbers are JSON");
     if numbers.is_none() {
-        eprintln!("skipped: this system does not tell the memory of a process");
+        eprintln!("skipped: this system does not report the memory of a process");
     }
     numbers
 }

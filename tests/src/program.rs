@@ -1,4 +1,4 @@
-//! The program `ddl`, run as a user runs it, and built for that where need be.
+//! The program `ddl`, run as by a user, and built first if necessary.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -6,17 +6,16 @@ use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 use std::time::SystemTime;
 
-/// Variables that would change what the program does.
+/// Environment variables that would change the behaviour of the program.
 const VARIABLES: [&str; 3] = ["DDL_DATASETS", "DDL_COMMIT", "RUST_LOG"];
 
-/// The program with the arguments of a command line, which are parted by blanks, to be run in
-/// `folder`: nothing inherited that would change a result, and backtraces on, so that an error which
-/// prints one is seen.
+/// The program with the arguments of a command line, separated by blanks, to be run in `folder`. Inherited variables
+/// that could change a result are removed, and backtraces are enabled, so that an error that prints one is noticed.
 pub fn command(folder: &Path, command_line: &str) -> Command {
     undisturbed(path(), folder, command_line)
 }
 
-/// Any program, as [`command`].
+/// Any program, with the environment of [`command`].
 pub(crate) fn undisturbed(program: &Path, folder: &Path, command_line: &str) -> Command {
     let mut command = Command::new(program);
     command
@@ -38,21 +37,21 @@ pub fn run(folder: &Path, command_line: &str) -> Finished {
     Finished::new(format!("ddl {command_line}"), &output)
 }
 
-/// How a run of the program ended.
+/// The result of a run of the program.
 #[derive(Debug)]
 pub struct Finished {
-    /// What was run.
+    /// The command line.
     pub command: String,
-    /// The exit code; `None` when a signal ended it.
+    /// The exit code; `None` if a signal ended it.
     pub code: Option<i32>,
-    /// Its results.
+    /// Its standard output.
     pub stdout: String,
-    /// What it told people.
+    /// Its standard error.
     pub stderr: String,
 }
 
 impl Finished {
-    /// What the output of a finished process says.
+    /// The result of a finished process.
     pub fn new(command: String, output: &Output) -> Self {
         let text = |bytes| String::from_utf8_lossy(bytes).into_owned();
         Self {
@@ -63,14 +62,14 @@ impl Finished {
         }
     }
 
-    /// Its standard output, after it went well.
+    /// Asserts success, and returns the standard output.
     pub fn succeeds(self) -> String {
         assert_eq!(self.code, Some(0), "{self:#?}");
         self.stdout
     }
 
-    /// Its error message, after it failed as a good program does: exit code 1, nothing on standard
-    /// output, one line on standard error that begins with `error: ` and says nothing twice.
+    /// Asserts failure, and returns the error message. A failure must have exit code 1, no standard output, and one
+    /// line on standard error that begins with `error: ` and repeats nothing.
     pub fn fails(self) -> String {
         assert_eq!(self.code, Some(1), "{self:#?}");
         assert_eq!(self.stdout, "", "{self:#?}");
@@ -87,13 +86,13 @@ impl Finished {
         parts.sort_unstable();
         assert!(
             parts.windows(2).all(|pair| pair[0] != pair[1]),
-            "said twice: {self:#?}"
+            "repeated text: {self:#?}"
         );
         message.to_owned()
     }
 }
 
-/// Where the program lies, built with libtorch where these tests are (feature `torch`), without it where they are not.
+/// The path of the program. It is built with libtorch if these tests are (feature `torch`), otherwise without.
 pub fn path() -> &'static Path {
     static PATH: OnceLock<PathBuf> = OnceLock::new();
     let target: &[&str] = if cfg!(feature = "torch") {
@@ -110,8 +109,8 @@ pub fn path() -> &'static Path {
     })
 }
 
-/// A program of the profile of this test, by its place among what cargo builds, such as `examples/live`. What is missing, or older than
-/// its sources, is built first; `target` is what cargo is told to make it.
+/// A program of the profile of this test, by its path below the build folder, such as `examples/live`. It is built
+/// first if it is missing or older than its sources; `target` are the arguments of cargo for it.
 pub(crate) fn built(place: &Path, target: &[&str]) -> PathBuf {
     let mut path = profile_folder().join(place).into_os_string();
     path.push(std::env::consts::EXE_SUFFIX);
@@ -125,7 +124,7 @@ pub(crate) fn built(place: &Path, target: &[&str]) -> PathBuf {
     path
 }
 
-/// Cargo puts tests into `deps`, one below the programs of the same profile.
+/// Cargo puts tests into `deps`, below the programs of the same profile.
 fn profile_folder() -> PathBuf {
     let test = std::env::current_exe().expect("a running test has a path");
     let deps = test.ancestors().find(|folder| folder.ends_with("deps"));
@@ -156,7 +155,7 @@ fn is_with_torch(program: &Path) -> bool {
     !String::from_utf8_lossy(&info).contains("libtorch, which this program is built without")
 }
 
-/// When a source was last changed, but for folders of these names. Pages included as documentation change nothing that a program does.
+/// When a source was last changed, except folders of these names. Markdown pages do not affect a program.
 fn newest(folder: &Path, others: &[&str]) -> Option<SystemTime> {
     let entries = std::fs::read_dir(folder).ok()?.flatten();
     let times = entries.filter_map(|entry| {

@@ -1,23 +1,23 @@
-//! What the program tells with `--progress json`.
+//! The output of `--progress json`.
 
 use crate::place::{Place, json_lines};
 use serde::Deserialize;
 
-/// A line of it.
+/// A line of the progress.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Progress {
     /// The stage of the work.
     pub stage: String,
-    /// Of [`total`](Self::total).
+    /// Work done, out of [`total`](Self::total).
     pub done: f64,
-    /// The same all through a stage.
+    /// Total work, constant within a stage.
     pub total: f64,
-    /// For people.
+    /// A message for the user.
     pub message: String,
 }
 
-/// Runs a command with `--progress json`, and checks what it tells: of these stages, if of any, and each to its end.
+/// Runs a command with `--progress json`, and checks its stages: none, or these ones, each to its end.
 pub fn told(place: &Place, line: &str, expected: &[&str]) -> Vec<Progress> {
     let lines: Vec<Progress> = json_lines(&place.ok(&format!("{line} --progress json")));
     let stages: Vec<&[Progress]> = lines.chunk_by(|a, b| a.stage == b.stage).collect();
@@ -35,7 +35,7 @@ pub fn told(place: &Place, line: &str, expected: &[&str]) -> Vec<Progress> {
     lines
 }
 
-/// Runs a command a second time: it has nothing to do, says nothing, and changes nothing.
+/// Runs a command a second time, which must do nothing, print nothing, and change nothing.
 pub fn returns_at_once(place: &Place, line: &str) {
     let before = crate::folder_contents::read(place.path());
     assert!(told(place, line, &[]).is_empty(), "worked a second time");

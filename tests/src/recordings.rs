@@ -1,4 +1,4 @@
-//! The real recordings, where they can be had.
+//! The real recordings, where they are available.
 
 use crate::skip::skip;
 use ddl_data::{Convention, locate};

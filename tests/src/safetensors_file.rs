@@ -1,11 +1,11 @@
-//! A safetensors file taken apart by hand: its length, its header, its numbers.
+//! Parsing of a safetensors file by hand: its length, its header, its numbers.
 
 use serde_json::Value;
 
 /// Header and numbers of a file.
 ///
 /// # Errors
-/// In words, what is not whole.
+/// The defect, in words.
 pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
     let (length, rest) = bytes
         .split_first_chunk::<8>()
@@ -15,7 +15,7 @@ pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
         .split_at_checked(length)
         .ok_or("ends within its header")?;
     let header: Value = serde_json::from_slice(header).map_err(|error| error.to_string())?;
-    let tensors = header.as_object().ok_or("the header is no object")?;
+    let tensors = header.as_object().ok_or("the header is not an object")?;
     let ends = tensors
         .values()
         .filter_map(|tensor| tensor["data_offsets"][1].as_u64());
@@ -32,7 +32,7 @@ pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
 /// The bytes of a file of these parts.
 pub fn join(header: &Value, numbers: &[u8]) -> Vec<u8> {
     let mut header = header.to_string();
-    // Numbers begin at a multiple of eight bytes.
+    // The numbers begin at a multiple of eight bytes.
     header.extend(std::iter::repeat_n(
         ' ',
         header.len().next_multiple_of(8) - header.len(),

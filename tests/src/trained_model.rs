@@ -1,4 +1,4 @@
-//! Training of the [drawn model](crate::drawn_model)'s networks in this process, for seconds.
+//! Training of the networks of the [drawn model](crate::drawn_model) in this process, for a few seconds.
 
 use crate::folder_contents::{self, Contents};
 use crate::place::Place;
@@ -12,26 +12,26 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, Once, OnceLock};
 
-/// libtorch has one generator of random numbers: runs side by side would draw from each other's.
+/// libtorch has one random number generator, which parallel trainings would share.
 static TRAINING: Mutex<()> = Mutex::new(());
 
-/// Pedestrians it is trained on: enough for every weight to have moved.
+/// Training pedestrians: enough to change every weight.
 pub const PEDESTRIANS: usize = 96;
-/// Pedestrians a batch: four batches.
+/// Pedestrians per batch: four batches.
 pub const BATCH: usize = PEDESTRIANS / 4;
 
-/// Training of some seconds by the program: 12 steps of the proposal network, then 3 epochs of 8 steps.
-pub const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 --train-pedestrians 128 --batch-pedestrians 16 \
-                         --proposal-steps 12 --threads 1 --out run";
+/// A training of a few seconds by the program: 12 steps of the proposal network, then 3 epochs of 8 steps.
+pub const TRAIN: &str = "train --convention simulated --fold doorway --epochs 3 --train-pedestrians 128 \
+                         --batch-pedestrians 16 --proposal-steps 12 --threads 1 --out run";
 
-/// Runs [`TRAIN`] to its end; what it leaves, as far as it is the same every time.
+/// Runs [`TRAIN`] to its end, and returns its reproducible files.
 pub fn finish(place: &Place) -> Contents {
     let _ = place.ok(TRAIN);
     result(&place.at("run"))
 }
 
-/// The files of a run, byte for byte, but for what holds seconds: of `metrics.jsonl` the losses are compared, and
-/// `optimizer.safetensors` holds the weights of the model.
+/// The files of a run, byte for byte, except durations: of `metrics.jsonl` the losses are compared, and
+/// `optimizer.safetensors`, which contains the model's weights, is left out.
 pub fn result(run: &Path) -> Contents {
     let mut files = folder_contents::read(run);
     let metrics = files.remove(&PathBuf::from("metrics.jsonl")).flatten();
@@ -49,8 +49,8 @@ fn losses(line: &str) -> String {
     epoch.to_string()
 }
 
-/// One thread for tensors in this process, where tests run side by side already: sums are then in one
-/// order. To be called before the first tensor is made; may be called again.
+/// Uses one thread for tensors in this process, because tests run in parallel already and the order of sums must be
+/// fixed. Call it before the first tensor is created; it may be called again.
 pub fn use_one_thread() {
     static PREPARED: Once = Once::new();
     PREPARED.call_once(|| {
@@ -58,7 +58,7 @@ pub fn use_one_thread() {
     });
 }
 
-/// The files of a run that was trained to its end.
+/// The files of a finished training run.
 pub fn contents() -> &'static Contents {
     static TRAINED: OnceLock<Contents> = OnceLock::new();
     TRAINED.get_or_init(|| {
@@ -68,18 +68,18 @@ pub fn contents() -> &'static Contents {
     })
 }
 
-/// Trains, or goes on, wherever the run lies.
+/// Trains, or resumes the training in the run's folder.
 ///
 /// # Errors
-/// What stops the training.
+/// The error that stops the training.
 pub fn train(run: &RunDirectory) -> Result<(), DdlError> {
     train_until(run, |_| ControlFlow::Continue(()))
 }
 
-/// Begins a training, which goes on as long as its observer lets it.
+/// Starts a training that continues as long as its observer allows.
 ///
 /// # Errors
-/// What stops the training.
+/// The error that stops the training.
 pub fn train_until(
     run: &RunDirectory,
     mut goes_on: impl FnMut(&TrainingStep) -> ControlFlow<()>,

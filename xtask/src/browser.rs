@@ -1,4 +1,4 @@
-//! A browser, and what drives it: for the checks of pages.
+//! A browser and its driver, for the checks of pages.
 
 mod chromium;
 mod playwright;
@@ -11,7 +11,7 @@ use anyhow::{Context, Result};
 use crate::process::run_within;
 use crate::python::Python;
 
-/// Installations and checks take minutes; beyond this something hangs.
+/// Installations and checks take minutes; after this time they are assumed to hang.
 const LIMIT: Duration = Duration::from_mins(15);
 
 #[derive(Debug)]
@@ -22,7 +22,8 @@ pub(crate) struct Browser {
 }
 
 impl Browser {
-    /// Finds both; what is missing is installed where that is possible, or the error says what to install.
+    /// Finds the browser and the driver. A missing one is installed if possible; otherwise the error names what to
+    /// install.
     pub(crate) fn ready() -> Result<Self> {
         let program = chromium::find_or_install()?;
         let python = Python::find()?;

@@ -1,4 +1,4 @@
-//! What is kept for the user from one call to the next: libtorch, tools, packages, a folder each.
+//! The user's cache, which is kept between calls: libtorch, tools and packages, one folder each.
 
 use std::env;
 use std::fs;
@@ -12,12 +12,14 @@ pub(crate) fn folder() -> Result<PathBuf> {
         .map(PathBuf::from)
         .filter(|path| path.is_absolute())
         .or_else(|| env::home_dir().map(|home| home.join(".cache")))
-        .context("no home folder: set XDG_CACHE_HOME, or give a folder for libtorch with `cargo xtask setup --cache`")?;
+        .context(
+            "no home folder: set XDG_CACHE_HOME, or give a folder for libtorch with `cargo xtask setup --cache`",
+        )?;
     Ok(base.join("ddl"))
 }
 
-/// Puts a folder into the cache, complete or not at all: `make` is given a temporary folder beside it and returns the
-/// finished one in there. A damaged one in its place goes away.
+/// Puts a folder into the cache, complete or not at all. `make` is given a temporary folder beside it and returns the
+/// finished folder inside. A damaged folder in its place is removed.
 pub(crate) fn fill(
     folder: &Path,
     is_whole: impl Fn(&Path) -> bool,
@@ -37,7 +39,7 @@ pub(crate) fn fill(
             .with_context(|| format!("the damaged {} cannot be replaced", folder.display()))?;
     }
     match fs::rename(finished, folder) {
-        Err(_) if is_whole(folder) => Ok(()), // somebody else was faster
+        Err(_) if is_whole(folder) => Ok(()), // another process was faster
         outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
     }
 }

@@ -1,4 +1,4 @@
-//! Programs of other people that checks run: one pinned version each, built by cargo once for a machine.
+//! External programs that the checks run: pinned versions, built by cargo once per machine.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail};
 use crate::cache;
 use crate::workspace::{Workspace, find_on_path};
 
-/// The tools run for a second each: their build is what takes time, and is made short.
+/// The tools run for about a second, so the settings minimise the build time.
 const BUILD: [(&str, &str); 5] = [
     ("CARGO_PROFILE_RELEASE_OPT_LEVEL", "0"),
     ("CARGO_PROFILE_RELEASE_DEBUG", "false"),
@@ -19,7 +19,7 @@ const BUILD: [(&str, &str); 5] = [
 ];
 
 pub(crate) struct CargoTool {
-    /// Its package, which is also what it is called.
+    /// The name of its package and of its program.
     pub(crate) name: &'static str,
     pub(crate) version: &'static str,
     pub(crate) options: &'static [&'static str],
@@ -27,7 +27,7 @@ pub(crate) struct CargoTool {
 }
 
 impl CargoTool {
-    /// The tool of the pinned version: from the search path, from the user's cache, or built from its sources now.
+    /// The tool in its pinned version: from the search path, from the user's cache, or built from source.
     pub(crate) fn ensure(&self, workspace: &Workspace) -> Result<PathBuf> {
         let installed = find_on_path(OsStr::new(self.name));
         if let Some(program) = installed.filter(|program| self.is_pinned(program)) {
@@ -71,7 +71,7 @@ impl CargoTool {
     fn build(&self, workspace: &Workspace, work: &Path) -> Result<PathBuf> {
         let Self { name, version, .. } = self;
         let tool = work.join("tool");
-        eprintln!("{name} {version}: building it, once, for two to three minutes");
+        eprintln!("building {name} {version}, once; this takes two to three minutes");
         let mut cargo = workspace.cargo_process();
         cargo
             .args(["install", name, "--locked", "--quiet", "--version"])
@@ -83,12 +83,13 @@ impl CargoTool {
             .arg(work.join("build"))
             .envs(BUILD)
             .stdin(Stdio::null())
-            // The workspace's own configuration, with the path to libtorch, is not for tools.
+            // Tools must not use the configuration of the workspace, which has the path to libtorch.
             .current_dir(work);
         let status = cargo.status().context("cargo cannot be started")?;
         if !status.success() {
             bail!(
-                "{name} {version} cannot be built (above): connect to the package index, or put a {name} {version} on the search path"
+                "{name} {version} cannot be built (above): connect to the package index, or put a {name} {version} on \
+             the search path"
             );
         }
         Ok(tool)
@@ -108,7 +109,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_program_is_known_by_what_it_says() {
+    fn a_program_is_recognised_by_its_version() {
         use std::fs;
         use std::os::unix::fs::PermissionsExt as _;
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The commands, one a file.
+//! The commands, one per file.
 
 mod benchmark;
 mod ci;
@@ -22,40 +22,40 @@ use crate::libtorch::{self, Origin, Request};
 use crate::tidy;
 use crate::workspace::Workspace;
 
-/// What `cargo xtask` can do.
+/// The commands of `cargo xtask`.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Bring in libtorch, so that plain `cargo build`, `test`, `run` and `doc` work
+    /// Install libtorch, so that plain `cargo build`, `test`, `run` and `doc` work
     Setup(setup::Arguments),
-    /// Print shell lines that set libtorch's variables, for tools that do not ask cargo
+    /// Print shell lines that set libtorch's variables, for tools that do not use cargo's configuration
     Env,
     /// Find, fetch and verify the ETH/UCY recordings
     Data(data::Arguments),
-    /// Train and score every fold, and write the report: set-up and recordings, then `ddl benchmark`
+    /// Train and evaluate every fold and write the report: set-up and recordings, then `ddl benchmark`
     Benchmark(benchmark::Arguments),
-    /// Make the report page of the simulated crowds and check it in a browser
+    /// Create the report page of the simulated crowds and check it in a browser
     Page(page::Arguments),
-    /// Kill, fill, damage and flood the program many times, and print what was found
+    /// Test the program with killed processes, full disks, damaged files and large crowds, and print a table
     Faults(faults::Arguments),
     /// Check the benchmark on a real Slurm of two nodes on this machine
     Cluster,
-    /// Make the documentation site: the guide and every crate's interface, every link checked
+    /// Build the documentation site: the guide and every crate's interface, with every link checked
     Docs(docs::Arguments),
     /// Run every test
     Test(test::Arguments),
-    /// Fuzz the readers of outside bytes
+    /// Fuzz the readers of untrusted input
     Fuzz(fuzz::Arguments),
-    /// Put faults into the numeric code, one at a time, and count how many the tests find
+    /// Insert faults into the numeric code, one at a time, and count how many the tests find
     Mutants(mutants::Arguments),
-    /// Check house rules that no other tool checks
+    /// Check the rules of this repository that no other tool checks
     Tidy,
-    /// Check what comes in from outside, by deny.toml
+    /// Check the dependencies against deny.toml
     Deny,
-    /// Build the wheel of the Python package and test it in a virtual environment of its own
+    /// Build the wheel of the Python package and test it in a virtual environment
     Python(python::Arguments),
-    /// Pack the crates as for a registry, and check what is in the packages
+    /// Pack the crates as for a registry and check the contents of the packages
     Package(package::Arguments),
-    /// Everything that must hold before a change goes in: format, tidy, lints, docs, tests
+    /// Run all checks that must pass before a change is merged: format, tidy, lints, docs, tests
     Ci,
 }
 
@@ -82,7 +82,7 @@ impl Command {
     }
 }
 
-/// Set-up before a command that builds: silent when nothing was to do.
+/// Set-up before a command that builds; silent if nothing had to be done.
 fn set_up(workspace: &Workspace) -> Result<()> {
     let ready = libtorch::ensure(workspace, &Request::default())?;
     if ready.reconfigured || ready.origin == Origin::Fetched {

@@ -1,4 +1,4 @@
-//! Recordings: what is pinned, where it lies, how to get it.
+//! Recordings: pinned files, their folders and sources.
 
 mod choice;
 mod fetch;
@@ -11,8 +11,8 @@ pub(crate) use manifest::Manifest;
 
 use ddl_data::Convention;
 
-/// Where fetched recordings are put, relative to the workspace root.
+/// Folder of fetched recordings, relative to the workspace root.
 pub(crate) const FETCHED: &str = "datasets/eth_ucy";
 
-/// The conventions that are made of files, in order of preference.
+/// The conventions with files, in order of preference.
 pub(crate) const RECORDED: [Convention; 2] = [Convention::Star, Convention::SocialGan];

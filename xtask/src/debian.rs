@@ -1,4 +1,4 @@
-//! Packages of Debian, for what a test needs and a machine lacks.
+//! Installation of Debian packages that a test needs.
 
 use std::ffi::OsStr;
 use std::process::{Command, Stdio};
@@ -9,15 +9,15 @@ use anyhow::{Context, Result};
 use crate::process::run_within;
 use crate::workspace::find_on_path;
 
-/// An installation that takes longer hangs.
+/// An installation that takes longer is assumed to hang.
 const LIMIT: Duration = Duration::from_mins(10);
 
-/// Whether this is Debian, or one of its kind, and this process may install packages.
+/// Whether this is Debian or a derivative, and this process may install packages.
 pub(crate) fn can_install() -> bool {
     find_on_path(OsStr::new("apt-get")).is_some() && is_root()
 }
 
-/// Installs packages, with a line about it on standard error.
+/// Installs packages, and reports it on standard error.
 pub(crate) fn install(packages: &[&str]) -> Result<()> {
     eprintln!("installing {} with apt-get, once", packages.join(" and "));
     let apt = |arguments: &[&str]| {

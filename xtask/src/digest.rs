@@ -1,4 +1,4 @@
-//! Pinned contents: a length and a SHA-256, checked while the bytes pass by.
+//! Pinned contents: a length and a SHA-256, checked while the bytes are copied.
 
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -17,8 +17,8 @@ pub(crate) struct Pin<'a> {
 }
 
 impl Pin<'_> {
-    /// Copies `from` to `to` and checks the pin on the way, up to the first byte too many; what was written before an
-    /// error is the caller's to throw away.
+    /// Copies `from` to `to` and checks the pin, up to the first byte too many. After an error the caller must discard
+    /// the written bytes.
     pub(crate) fn copy(&self, from: &mut impl Read, to: &mut impl Write) -> Result<()> {
         let mut bytes = 0_u64;
         let mut hasher = Sha256::new();
@@ -51,10 +51,12 @@ impl Pin<'_> {
             .with_context(|| path.display().to_string())
     }
 
-    /// Puts `from` at `path`, complete and right, or not at all: a temporary file takes the name when length and hash
+    /// Writes `from` to `path`, complete and right, or not at all: a temporary file is renamed once length and hash
     /// agree.
     pub(crate) fn place(&self, from: &mut impl Read, path: &Path) -> Result<()> {
-        let folder = path.parent().context("a file needs a folder to lie in")?;
+        let folder = path
+            .parent()
+            .context("the path of the file has no folder")?;
         fs::create_dir_all(folder)
             .with_context(|| format!("{} cannot be created", folder.display()))?;
         let mut builder = tempfile::Builder::new();

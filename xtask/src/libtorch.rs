@@ -1,5 +1,5 @@
-//! libtorch: which one is pinned, where it lies, how to get it, how cargo is told. [`ensure`] comes first in every
-//! command that builds.
+//! libtorch: pinned version, location, fetching and cargo configuration. Every command that builds calls [`ensure`]
+//! first.
 
 mod config;
 mod fetch;
@@ -21,7 +21,7 @@ use crate::workspace::{Workspace, absolute, program_on_path};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Request {
     pub(crate) cache: Option<PathBuf>,
-    /// Folder that holds the pinned wheels, for machines without a package index.
+    /// Folder with the pinned wheels, for machines without a package index.
     pub(crate) wheel_dir: Option<PathBuf>,
     pub(crate) verify: bool,
 }
@@ -29,11 +29,11 @@ pub(crate) struct Request {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Origin {
     Variable,
-    /// An earlier set-up, as the generated configuration remembers it.
+    /// An earlier set-up, read from the generated configuration.
     Configured,
-    /// The folder for kept libraries, filled earlier.
+    /// The folder of unpacked libraries, filled earlier.
     Cache,
-    /// The pinned wheels, just now.
+    /// The pinned wheels, fetched now.
     Fetched,
 }
 
@@ -56,7 +56,7 @@ pub(crate) struct Ready {
     pub(crate) reconfigured: bool,
 }
 
-/// Makes sure that plain `cargo build`, `test`, `run`, `bench` and `doc` work from here on.
+/// Makes plain `cargo build`, `test`, `run`, `bench` and `doc` work.
 pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> {
     require_compiler()?;
     let generated = workspace.path(config::GENERATED);
@@ -77,8 +77,8 @@ fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
     let variable = env::var_os("LIBTORCH")
         .filter(|value| !value.is_empty())
         .map(PathBuf::from);
-    // Cargo hands the configured folder to every program it runs, this one too: only a value that
-    // differs from it was set by a person.
+    // Cargo passes the configured folder to every program it runs, including this one: only a different value was set
+    // by the user.
     if let Some(folder) = variable.filter(|folder| configured.as_ref() != Some(folder)) {
         let folder = absolute(&folder)?;
         if let Err(reason) = locate::validate(&folder) {
@@ -107,10 +107,10 @@ fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
     Ok((folder, Origin::Fetched))
 }
 
-/// The binding of libtorch is a C++ file: without a compiler the build fails minutes later.
+/// The binding of libtorch is a C++ file: without a compiler the build would fail after minutes.
 fn require_compiler() -> Result<()> {
     let compiler = env::var_os("CXX").filter(|value| !value.is_empty());
-    // CXX may carry a launcher and flags, as in `ccache g++`.
+    // CXX may contain a launcher and flags, as in `ccache g++`.
     let program = compiler
         .as_deref()
         .and_then(OsStr::to_str)

@@ -1,11 +1,11 @@
-//! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace; one command, one file under
+//! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace; one file per command under
 //! `command/`.
 //!
-//! Of the `ddl` crates the program depends on `ddl-data` alone, and not on libtorch: it builds on a bare machine and
-//! brings in the rest.
+//! Of the `ddl` crates the program depends only on `ddl-data`, and it does not depend on libtorch. So it builds on a
+//! bare machine and installs the rest.
 #![allow(
     clippy::print_stdout,
-    reason = "a command-line program answers on standard output"
+    reason = "a command-line program prints to standard output"
 )]
 
 mod browser;

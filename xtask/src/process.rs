@@ -1,4 +1,4 @@
-//! Programs that must not run for ever.
+//! Processes with a time limit.
 
 use std::process::Command;
 use std::thread::sleep;
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail};
 
-/// Runs a program to its end; one that fails, or is not done in time and is then stopped, is an error.
+/// Runs a program to its end. It is an error if the program fails, or exceeds the time limit and is stopped.
 pub(crate) fn run_within(command: &mut Command, limit: Duration) -> Result<()> {
     let name = command.get_program().display().to_string();
     let mut child = command
@@ -14,15 +14,20 @@ pub(crate) fn run_within(command: &mut Command, limit: Duration) -> Result<()> {
         .with_context(|| format!("{name} cannot be started"))?;
     let start = Instant::now();
     loop {
-        match child.try_wait().context("a program is lost")? {
+        match child
+            .try_wait()
+            .context("the state of a program cannot be read")?
+        {
             Some(status) if status.success() => return Ok(()),
             Some(status) => bail!("{name} failed: {status}"),
             None if start.elapsed() < limit => sleep(Duration::from_millis(50)),
             None => {
                 child.kill().context("a program cannot be stopped")?;
-                child.wait().context("a program is lost")?;
+                child
+                    .wait()
+                    .context("the state of a program cannot be read")?;
                 bail!(
-                    "{name} was not done after {} s and was stopped",
+                    "{name} did not finish within {} s and was stopped",
                     limit.as_secs()
                 );
             }
@@ -35,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_ends_well_fails_or_hangs_is_told_apart() {
+    fn success_failure_and_timeout_are_distinguished() {
         let run = |script: &str, limit| {
             let mut shell = Command::new("sh");
             let outcome = run_within(shell.args(["-c", script]), Duration::from_millis(limit));

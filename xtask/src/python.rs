@@ -1,5 +1,5 @@
-//! Python 3, whose package client fetches libtorch anyway, for what needs a network or an archive format. The scripts
-//! in `python/` decide nothing: hashes and names are checked here.
+//! Python 3, used for network access and archive formats, because its package client fetches libtorch anyway. The
+//! scripts in `python/` make no decisions: hashes and names are checked here.
 
 use std::env;
 use std::ffi::OsString;
@@ -11,7 +11,7 @@ use anyhow::{Context, Result, bail};
 use crate::workspace::program_on_path;
 
 pub(crate) const DOWNLOAD: &str = include_str!("python/download.py");
-/// Prints the address of a file on the package index, found the way pip finds it.
+/// Prints the address of a file on the package index, found like pip does.
 pub(crate) const INDEX_LINK: &str = include_str!("python/index_link.py");
 pub(crate) const EXTRACT_ZIP: &str = include_str!("python/extract_zip.py");
 pub(crate) const EXTRACT_TAR: &str = include_str!("python/extract_tar.py");
@@ -91,7 +91,7 @@ impl Python {
     }
 }
 
-/// Runs a script and returns what it printed; the last line of its error output is the error.
+/// Runs a script and returns its output; the last line of its standard error is the error message.
 pub(crate) fn read(command: &mut Command) -> Result<String> {
     let output = command.output().context("Python cannot be started")?;
     if !output.status.success() {
@@ -105,7 +105,7 @@ pub(crate) fn complaint(stderr: &[u8]) -> String {
     text.lines()
         .map(str::trim)
         .rfind(|line| !line.is_empty())
-        .unwrap_or("Python stopped without a word")
+        .unwrap_or("Python stopped without an error message")
         .to_owned()
 }
 
@@ -114,7 +114,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_script_gives_its_output_or_its_last_words() {
+    fn a_script_returns_its_output_or_its_error() {
         let python = Python::find().unwrap();
         let mut script = python.script("import sys; print(sys.argv[1] + '!')", ["hello"]);
         assert_eq!(read(&mut script).unwrap().trim(), "hello!");

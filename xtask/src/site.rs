@@ -1,5 +1,5 @@
-//! The documentation site: the guide (`docs/`, by mdBook) and the interface of every crate (by rustdoc), in one folder
-//! that can be opened from the file system or served as it is; nothing in it is loaded from a network.
+//! The documentation site: the guide (`docs/`, by mdBook) and the interface of every crate (by rustdoc), in one folder.
+//! It can be opened from the file system or served as it is; it loads nothing from a network.
 
 mod api;
 mod check;
@@ -24,14 +24,15 @@ const MDBOOK: CargoTool = CargoTool {
     options: &["--no-default-features", "--features", "search"],
     version_call: &["--version"],
 };
-/// The book; its `src` is this folder.
+/// The book, whose `src` is this folder.
 const BOOK: &str = "docs";
 const LANDING: &str = include_str!("site/landing.html");
-/// Where the list of crates goes on the first page.
+/// Place of the list of crates on the first page.
 const CRATES: &str = "<!-- crates -->";
-/// rustdoc's pages lead to a list of crates, which is on the first page of the site.
+/// rustdoc's pages link to a list of crates, which is on the first page of the site.
 const ONWARD: &str = "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>Crates</title>\n\
-    <meta http-equiv=\"refresh\" content=\"0;URL=../index.html\">\n<a href=\"../index.html#crates\">Crates</a>\n</html>\n";
+    <meta http-equiv=\"refresh\" content=\"0;URL=../index.html\">\n\
+    <a href=\"../index.html#crates\">Crates</a>\n</html>\n";
 
 pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
     let mdbook = MDBOOK.ensure(workspace)?;
@@ -57,13 +58,13 @@ pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
     if !checked.faults.is_empty() {
         let shown: Vec<&str> = checked.faults.iter().take(40).map(String::as_str).collect();
         bail!(
-            "{} faults of the site:\n{}",
+            "{} faults on the site:\n{}",
             checked.faults.len(),
             shown.join("\n")
         );
     }
     println!(
-        "{} pages, {} links inside the site, all of which lead somewhere",
+        "{} pages, {} links inside the site, all valid",
         checked.pages, checked.links
     );
     Ok(site.join("index.html"))
@@ -77,7 +78,7 @@ fn remove(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Renders the book; whatever mdBook complains of is an error.
+/// Renders the book; every warning of mdBook is an error.
 fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
     let output = Command::new(mdbook)
         .arg("build")
@@ -88,14 +89,14 @@ fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
         .output()
         .with_context(|| format!("{} cannot be started", mdbook.display()))?;
     let said = String::from_utf8_lossy(&output.stderr);
-    // mdBook goes on after most faults, and says so in its log.
+    // mdBook continues after most faults and only logs them.
     if !output.status.success() || said.contains("WARN") || said.contains("ERROR") {
         bail!("mdbook does not accept {BOOK}:\n{}", said.trim());
     }
     Ok(())
 }
 
-/// Pages of the book that `SUMMARY.md` does not list, which mdBook leaves out without a word.
+/// Pages of the book that `SUMMARY.md` does not list; mdBook leaves them out silently.
 fn unlisted(book: &Path, rendered: &Path) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for file in check::files_below(book)? {
@@ -135,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_page_that_nobody_would_find_is_named() {
+    fn a_page_missing_in_the_summary_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let (book, out) = (folder.path().join("docs"), folder.path().join("out"));
         for file in [

@@ -1,4 +1,4 @@
-//! A Slurm of two nodes on this machine, in a folder of its own and without systemd.
+//! A Slurm of two nodes on this machine, in a temporary folder and without systemd.
 
 use std::ffi::OsStr;
 use std::fs;
@@ -17,12 +17,12 @@ use crate::workspace::program_on_path;
 
 pub(crate) const NODES: [&str; 2] = ["n1", "n2"];
 
-/// Tasks in an array: fewer than the benchmark has.
+/// Largest number of tasks in an array; the benchmark has more.
 pub(crate) const LONGEST_ARRAY: usize = 4;
 
 const PACKAGES: [&str; 3] = ["slurmctld", "slurmd", "munge"];
 
-/// The daemons end with it.
+/// A running Slurm; dropping it ends the daemons.
 #[derive(Debug)]
 pub(crate) struct Slurm {
     folder: TempDir,
@@ -31,7 +31,7 @@ pub(crate) struct Slurm {
 }
 
 impl Slurm {
-    /// Installs what is missing, and waits until both nodes are idle.
+    /// Installs missing programs, starts the daemons, and waits until both nodes are idle.
     pub(crate) fn start() -> Result<Self> {
         if !["slurmctld", "slurmd", "munged", "sbatch"]
             .map(OsStr::new)
@@ -45,7 +45,7 @@ impl Slurm {
             );
             debian::install(&PACKAGES)?;
         }
-        // munge refuses folders that others could write to, and a socket that others cannot reach.
+        // munge refuses folders that others can write to, and a socket that others cannot reach.
         let open = fs::Permissions::from_mode(0o755);
         let folder = tempfile::Builder::new()
             .prefix("slurm-")
@@ -92,7 +92,10 @@ impl Slurm {
         let host = host.trim().split('.').next().unwrap_or_default();
         let nodes = NODES.iter().enumerate().map(|(index, node)| {
             let port = 16_821 + index;
-            format!("NodeName={node} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 RealMemory=4000\n")
+            format!(
+                "NodeName={node} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs=1 \
+                 RealMemory=4000\n"
+            )
         });
         let text = include_str!("slurm/slurm.conf")
             .replace("HOST", host)
@@ -118,7 +121,7 @@ impl Slurm {
 
     fn wait_for_nodes(&self) -> Result<()> {
         let begun = Instant::now();
-        // Until the controller listens, asking fails.
+        // Queries fail until the controller listens.
         while self
             .ask("sinfo", &["--noheader", "--states=idle", "--format=%D"])
             .ok()
@@ -127,8 +130,8 @@ impl Slurm {
         {
             ensure!(
                 begun.elapsed() < Duration::from_secs(30),
-                "the nodes of Slurm do not become idle; is another one at the ports 16817, 16821, 16822, and is this root? \
-                 The end of its logs:\n{}",
+                "the nodes of Slurm do not become idle; is another Slurm using the ports 16817, 16821 or 16822, or is \
+                     this user not root? The end of its logs:\n{}",
                 self.logs()
             );
             sleep(Duration::from_millis(100));
@@ -147,7 +150,7 @@ impl Slurm {
             .join("\n")
     }
 
-    /// A program that finds this Slurm.
+    /// A command for a program that uses this Slurm.
     pub(crate) fn command(&self, program: &str) -> Command {
         let mut command = Command::new(program);
         self.show_to(&mut command);
@@ -158,7 +161,7 @@ impl Slurm {
         command.env("SLURM_CONF", self.config());
     }
 
-    /// What a program of Slurm prints.
+    /// The output of a program of Slurm.
     pub(crate) fn ask(&self, program: &str, arguments: &[&str]) -> Result<String> {
         let output = self.command(program).args(arguments).output();
         let output = output.with_context(|| format!("{program} cannot be started"))?;
@@ -173,7 +176,7 @@ impl Slurm {
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     }
 
-    /// Ends a node as a loss of power does: its daemon and everything that runs on it, by SIGKILL.
+    /// Ends a node as a power failure would: its daemon and all processes on it, by SIGKILL.
     pub(crate) fn kill_node(&mut self, node: usize) -> Result<()> {
         self.nodes[node].kill()?;
         self.nodes[node].wait()?;
@@ -201,7 +204,7 @@ impl Slurm {
         }
         ensure!(!found.is_empty(), "no process runs on {}", NODES[node]);
         for id in found.into_iter().filter_map(Pid::from_raw) {
-            // It may have ended with another one.
+            // It may have ended together with another one.
             let _ = kill_process(id, Signal::KILL);
         }
         Ok(())
@@ -215,7 +218,7 @@ impl Slurm {
 
 impl Drop for Slurm {
     fn drop(&mut self) {
-        // What jobs are left would outlive the daemons.
+        // The remaining jobs would outlive the daemons.
         let _ = self.ask("scancel", &["--me", "--signal=KILL", "--full"]);
         let _ = self.ask("scancel", &["--me"]);
         let begun = Instant::now();
@@ -236,7 +239,7 @@ impl Drop for Slurm {
 
 fn parent(process: i32) -> Option<i32> {
     let stat = fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The second field is the program's name in parentheses, and may hold anything.
+    // The second field is the program's name in parentheses, which may contain any characters.
     let (_, fields) = stat.rsplit_once(')')?;
     fields.split_whitespace().nth(1)?.parse().ok()
 }

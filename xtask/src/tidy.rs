@@ -1,5 +1,5 @@
-//! House rules that no other tool checks: names and lengths of files, links between files, inherited lints, and that no
-//! recording and nobody's home folder is tracked.
+//! Rules of this repository that no other tool checks: names and lengths of files, links between files, inherited
+//! lints, and that no recording and no path of a home folder is committed.
 
 mod links;
 
@@ -11,15 +11,15 @@ use crate::data::{Manifest, RECORDED};
 use crate::digest::measure;
 use crate::workspace::Workspace;
 
-/// A file beyond this has probably outgrown its name.
+/// Length (lines) above which a file should probably be split.
 const SOFT_LIMIT: usize = 300;
 const HARD_LIMIT: usize = 500;
-/// Names that say nothing about what is inside.
+/// Names that do not describe the content.
 const EMPTY_NAMES: [&str; 9] = [
     "utils", "util", "common", "helpers", "helper", "misc", "stuff", "tools", "shared",
 ];
 const DESCRIPTIONS: [&str; 3] = ["README.md", "manifest.toml", "folds.json"];
-// Spelled in pieces, so that this file does not find itself.
+// Split into pieces, so that the check does not find this file.
 const HOME_FOLDERS: [&str; 3] = [
     concat!("/ho", "me/"),
     concat!("/ro", "ot/"),
@@ -70,7 +70,7 @@ fn check(workspace: &Workspace) -> Result<Findings> {
             .into_iter()
             .map(|what| format!("{}: {what}", file.display()));
         findings.faults.extend(said);
-        // What is not text has no lines to check.
+        // Binary files have no lines to check.
         if let Ok(text) = std::str::from_utf8(&bytes) {
             check_text(file, text, &mut findings);
             findings.faults.extend(links::faults(file, text, &files));
@@ -86,20 +86,22 @@ fn name_fault(file: &Path) -> Option<String> {
         .filter_map(|name| name.to_str());
     let name = names.find(|name| EMPTY_NAMES.contains(name))?;
     Some(format!(
-        "{name:?} says nothing: name it after its one concept"
+        "{name:?} is not descriptive: name the file after its concept"
     ))
 }
 
-/// The terms of the recordings do not clearly allow passing them on: none is tracked, whatever its name.
+/// The terms of the recordings do not clearly allow redistribution, so none may be tracked under any name.
 fn recording_fault(file: &Path, sha256: &str, recordings: &[(&str, &str)]) -> Option<String> {
     let name = file.file_name()?.to_str()?;
     let is_recording =
         |&&(recording, pinned): &&(&str, &str)| recording == name || pinned == sha256;
     if let Some((recording, _)) = recordings.iter().find(is_recording) {
-        return Some(format!("the recording {recording}; none may be committed"));
+        return Some(format!(
+            "this is the recording {recording}; remove it, no recording may be committed"
+        ));
     }
     let is_data = file.starts_with("datasets") && !DESCRIPTIONS.contains(&name);
-    is_data.then(|| "datasets/ holds descriptions only, no data".to_owned())
+    is_data.then(|| "datasets/ may hold only descriptions, no data".to_owned())
 }
 
 fn check_text(file: &Path, text: &str, findings: &mut Findings) {
@@ -108,11 +110,11 @@ fn check_text(file: &Path, text: &str, findings: &mut Findings) {
     if file.extension().is_some_and(|extension| extension == "rs") && lines > SOFT_LIMIT {
         if lines > HARD_LIMIT {
             findings.faults.push(format!(
-                "{name}: {lines} lines; no file may exceed {HARD_LIMIT}"
+                "{name}: {lines} lines, more than {HARD_LIMIT}: split it"
             ));
         } else {
             findings.notes.push(format!(
-                "{name}: {lines} lines; beyond {SOFT_LIMIT}, think of splitting"
+                "{name}: {lines} lines, more than {SOFT_LIMIT}: consider splitting it"
             ));
         }
     }
@@ -122,19 +124,19 @@ fn check_text(file: &Path, text: &str, findings: &mut Findings) {
     {
         findings
             .faults
-            .push(format!("{name} must say `[lints] workspace = true`"));
+            .push(format!("{name}: add `[lints] workspace = true`"));
     }
     for (number, line) in (1..).zip(text.lines()) {
         if HOME_FOLDERS.iter().any(|folder| names_home(line, folder)) {
-            findings
-                .faults
-                .push(format!("{name}:{number}: a folder of somebody's machine"));
+            findings.faults.push(format!(
+                "{name}:{number}: a path in a home folder; remove it"
+            ));
         }
     }
 }
 
-/// Whether a line names a folder below a home folder, as opposed to a longer path that merely
-/// contains the same word, or an address.
+/// Whether a line names a folder below a home folder, as opposed to an address or a longer path that contains the same
+/// word.
 fn names_home(line: &str, folder: &str) -> bool {
     line.match_indices(folder).any(|(at, _)| {
         let before = line[..at].chars().next_back();
@@ -155,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn names_that_say_nothing_are_found_in_files_and_folders() {
+    fn names_that_are_not_descriptive_are_found_in_files_and_folders() {
         for file in ["crates/a/src/utils.rs", "helpers.py", "docs/misc/page.md"] {
             assert!(name_fault(Path::new(file)).is_some(), "{file}");
         }
@@ -176,7 +178,7 @@ mod tests {
         assert!(
             fault("datasets/new.csv", "x")
                 .unwrap()
-                .contains("descriptions only")
+                .contains("only descriptions")
         );
         for (file, sha256) in [("eth.csv", "x"), ("renamed.txt", "abc")] {
             assert!(

@@ -1,4 +1,4 @@
-//! Files that are there whole or not at all, in folders that are made if need be.
+//! Atomic writing of files, in folders that are created if necessary.
 
 use std::fs;
 use std::path::Path;

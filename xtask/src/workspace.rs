@@ -1,4 +1,4 @@
-//! Where the workspace lies, and how its own cargo and git are called.
+//! The workspace: its location, and calls of its own cargo and git.
 
 use std::collections::BTreeSet;
 use std::env;
@@ -11,8 +11,8 @@ use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use xshell::{Cmd, Shell};
 
-/// Variables that would replace the configured flags, and with them the path to libtorch, or make the build of the
-/// binding ignore `LIBTORCH`.
+/// Variables that would replace the configured flags, and so the path to libtorch, or make the build of the binding
+/// ignore `LIBTORCH`.
 const HARMFUL: [&str; 5] = [
     "RUSTFLAGS",
     "CARGO_ENCODED_RUSTFLAGS",
@@ -21,7 +21,7 @@ const HARMFUL: [&str; 5] = [
     "LIBTORCH_USE_PYTORCH",
 ];
 
-/// Prefixes of variables that `cargo run` sets: a second cargo would take them for a changed environment and rebuild.
+/// Prefixes of variables that `cargo run` sets. A second cargo would see a changed environment and rebuild.
 const LEAKING_PREFIXES: [&str; 4] = [
     "CARGO_PKG_",
     "CARGO_MANIFEST_",
@@ -68,7 +68,7 @@ impl Workspace {
         self.root.join(relative)
     }
 
-    /// A cargo command at the workspace root that sees exactly what a plain `cargo` there would.
+    /// A cargo command at the workspace root with the environment of a plain `cargo` call.
     pub(crate) fn cargo<I>(&self, arguments: I) -> Cmd<'_>
     where
         I: IntoIterator,
@@ -81,7 +81,7 @@ impl Workspace {
         command
     }
 
-    /// Another program at the workspace root, which calls cargo itself.
+    /// Another program at the workspace root that calls cargo itself.
     pub(crate) fn program(&self, path: &Path) -> Cmd<'_> {
         let mut command = self.shell.cmd(path);
         for name in variables_to_remove() {
@@ -110,7 +110,7 @@ impl Workspace {
         serde_json::from_str(&text).context("`cargo metadata` did not print JSON")
     }
 
-    /// Files that git tracks or would track: no ignored file, no deleted one.
+    /// Files that git tracks or would track: no ignored and no deleted files.
     pub(crate) fn files(&self) -> Result<Vec<PathBuf>> {
         let list = self
             .shell
@@ -136,7 +136,7 @@ impl Workspace {
             .collect())
     }
 
-    /// The commit that is checked out, with `-dirty` where files differ; `unknown` without git.
+    /// The checked-out commit, with `-dirty` if files differ; `unknown` without git.
     pub(crate) fn commit(&self) -> String {
         self.shell
             .cmd("git")
@@ -156,7 +156,7 @@ impl Workspace {
             .unwrap_or_else(|| "unknown".to_owned())
     }
 
-    /// The time now, UTC, as in `2024-05-13 09:30 UTC`.
+    /// The current time in UTC, such as `2024-05-13 09:30 UTC`.
     pub(crate) fn now(&self) -> String {
         self.shell
             .cmd("date")
@@ -171,13 +171,13 @@ fn cargo_program() -> OsString {
     env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// Names to take out of a child cargo's environment; warns once about those a person has set.
+/// Variables to remove from a child cargo's environment; warns once about those that the user has set.
 fn variables_to_remove() -> Vec<OsString> {
     static WARN: Once = Once::new();
     WARN.call_once(|| {
         for name in HARMFUL.iter().filter(|name| env::var_os(name).is_some()) {
             eprintln!(
-                "warning: {name} is set and is ignored here: it would replace the configured \
+                "warning: {name} is set, but ignored: it would replace the configured \
                  flags and lose the path to libtorch (docs/libtorch.md)"
             );
         }
@@ -191,8 +191,8 @@ fn variables_to_remove() -> Vec<OsString> {
     });
     HARMFUL
         .iter()
-        // The generated configuration holds the same value: without the variable, a plain
-        // `cargo build` and one started here see the same environment, and nothing is rebuilt.
+        // The generated configuration has the same value. Without the variable, a plain `cargo build` and one started
+        // here see the same environment, and nothing is rebuilt.
         .chain(&["LIBTORCH"])
         .map(OsString::from)
         .chain(leaking)
@@ -216,7 +216,7 @@ pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
         .find(|program| program.is_file())
 }
 
-/// Runs a command of the workspace; on failure, says which step it was and what to do.
+/// Runs a command of the workspace. A failure names the step.
 pub(crate) fn step(name: &str, command: &Cmd<'_>) -> Result<()> {
     if let Err(error) = command.run() {
         bail!("{name} failed: {error}");
@@ -224,7 +224,7 @@ pub(crate) fn step(name: &str, command: &Cmd<'_>) -> Result<()> {
     Ok(())
 }
 
-/// A path as it is, if absolute; otherwise below the folder the command was started in.
+/// An absolute path is returned unchanged; a relative one is resolved in the folder where the command was started.
 pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
     std::path::absolute(path)
         .with_context(|| format!("{} cannot be made an absolute path", path.display()))

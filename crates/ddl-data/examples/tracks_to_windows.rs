@@ -1,13 +1,13 @@
-//! Tracks of any format become the windows that forecasts are made from.
+//! Reads tracks of any format and cuts the windows that forecasts are made from.
 //!
 //! ```text
 //! cargo run -p ddl-data --example tracks_to_windows
 //! cargo run -p ddl-data --example tracks_to_windows -- tracks.csv 25
 //! ```
-//! The arguments are a file, whose format is told by its name and first lines, and the frames a second that its frame
-//! numbers count. Without them, three people are made up and written in two formats: one comes late, one is lost for a
-//! moment.
-#![expect(clippy::print_stdout, reason = "what it is for")]
+//! The arguments are a file, whose format is recognised by its name and first lines, and the number of frames per
+//! second that its frame numbers count. Without arguments, three simulated pedestrians are written in two formats. One
+//! of them arrives late, one is lost for a moment.
+#![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -15,17 +15,17 @@ use std::path::Path;
 
 use ddl_data::{Completion, Format, OBSERVED, WindowRule, parse_recording};
 
-/// Frame, pedestrian, x and y in metres, every 10th frame of a camera at 25 a second: 0.4 s apart.
-fn three_people() -> Vec<(i64, i64, f64, f64)> {
+/// Rows of frame, pedestrian, x and y (m), every 10th frame of a camera at 25 frames per second: 0.4 s apart.
+fn three_pedestrians() -> Vec<(i64, i64, f64, f64)> {
     let mut rows = Vec::new();
     for step in 0..24 {
         let (frame, t) = (10 * step, 0.4 * step as f64);
         rows.push((frame, 1, 1.3 * t, 0.0));
-        // The tracker loses her for two steps.
+        // The tracker loses this pedestrian for two steps.
         if !(18..20).contains(&step) {
             rows.push((frame, 2, 12.0 - 1.1 * t, 0.8));
         }
-        // He comes around the corner at the end.
+        // This pedestrian comes around the corner at the end.
         if step >= 20 {
             rows.push((frame, 3, 4.0, -3.0 + 0.9 * (t - 8.0)));
         }
@@ -51,7 +51,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.as_slice() {
         [] => {
-            for (file, text) in written(&three_people()) {
+            for (file, text) in written(&three_pedestrians()) {
                 show(Path::new(file), text.as_bytes(), 25.0)?;
             }
             Ok(())
@@ -69,19 +69,19 @@ fn show(file: &Path, bytes: &[u8], frames_a_second: f64) -> Result<(), Box<dyn E
     let recording = parse_recording(bytes, &file.display().to_string(), format)?;
     let recording = recording.in_steps(1.0 / frames_a_second)?.recording;
     println!(
-        "{}: format {format}, {} positions of {} people, {} frames a step of 0.4 s",
+        "{}: format {format}, {} positions of {} pedestrians, {} frames per step of 0.4 s",
         recording.name(),
         recording.observations().len(),
         recording.pedestrians().len(),
         recording.frame_step()
     );
     println!(
-        "  {} windows with a known future, to train and measure on",
+        "  {} windows with a known future, for training and evaluation",
         recording.windows(WindowRule::Complete).len()
     );
     let windows = recording.completed_windows(Completion::USUAL);
     let Some(last) = windows.last() else {
-        println!("  nobody to forecast");
+        println!("  no pedestrian can be forecast");
         return Ok(());
     };
     println!(
@@ -92,7 +92,8 @@ fn show(file: &Path, bytes: &[u8], frames_a_second: f64) -> Result<(), Box<dyn E
     for (i, pedestrian) in last.pedestrians().iter().enumerate() {
         let ([x, y], made_up) = (last.observed(i)[OBSERVED - 1], last.made_up(i));
         println!(
-            "    pedestrian {pedestrian} at ({x:.2}, {y:.2}) m; of 8 positions {} seen, {} filled in, {} before it came",
+            "    pedestrian {pedestrian} at ({x:.2}, {y:.2}) m; of 8 positions {} observed, {} filled in, {} padded \
+             at the start",
             made_up.seen(),
             made_up.filled,
             made_up.padded

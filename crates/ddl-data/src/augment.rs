@@ -23,13 +23,13 @@ impl Rotation {
         Self { sine, cosine }
     }
 
-    /// By an angle drawn uniformly from [0, pi).
+    /// A rotation by an angle drawn uniformly from [0, pi).
     #[must_use]
     pub fn random(rng: &mut impl Rng) -> Self {
         Self::new(rng.random_range(0.0..PI))
     }
 
-    /// Where a position (m) comes to lie.
+    /// The rotated position (m).
     #[must_use]
     pub fn apply(&self, [x, y]: Position) -> Position {
         [

@@ -1,4 +1,4 @@
-//! Observations that are not whole: begun late, or with holes.
+//! Completion of observations that begin late or have holes.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -7,15 +7,16 @@ use crate::track::{OBSERVED, Position, between, is_finite};
 
 /// Longest hole that may be filled, in frames.
 const LONGEST_GAP: usize = 2;
-/// A single position says nothing of where somebody goes.
+/// A single position does not show where a pedestrian is going.
 const LEAST_SEEN: usize = 2;
 
-/// How much of the 8 observed positions may be made up where a pedestrian was not seen at all of them.
+/// Which of the 8 observed positions may be filled in where a pedestrian was not seen at all of them.
 ///
 /// - A *hole* of a few frames is filled on the straight line between the positions before and after it.
 /// - An observation that *begins late* is padded at its start, with the mean velocity of the rest.
 ///
-/// The last position is always one that was seen; [`Window::made_up`](crate::Window::made_up) says how much was not.
+/// The last position is always an observed one. [`Window::made_up`](crate::Window::made_up) counts the positions filled
+/// in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Completion {
     least_seen: usize,
@@ -23,12 +24,12 @@ pub struct Completion {
 }
 
 impl Completion {
-    /// Nothing is made up: who was not seen in each of the 8 frames is not forecast.
+    /// Fills in nothing: only pedestrians seen in each of the 8 frames are forecast.
     pub const NONE: Self = Self {
         least_seen: OBSERVED,
         longest_gap: 0,
     };
-    /// Who was seen twice is forecast, holes of up to 2 frames are filled.
+    /// Forecasts pedestrians seen at least twice, and fills holes of up to 2 frames.
     pub const USUAL: Self = Self {
         least_seen: LEAST_SEEN,
         longest_gap: LONGEST_GAP,
@@ -51,13 +52,13 @@ impl Completion {
         })
     }
 
-    /// Frames of the longest hole that is filled.
+    /// Length of the longest hole that is filled, in frames.
     pub fn longest_gap(self) -> usize {
         self.longest_gap
     }
 
     /// The 8 positions up to the last of `seen` (raw frames and m, in order of time), one every `step` raw frames, and
-    /// what of them was made up; `None` where that is not allowed.
+    /// which of them were filled in. `None` where the completion does not allow it.
     pub(crate) fn observation(
         self,
         seen: impl DoubleEndedIterator<Item = (i64, Position)>,
@@ -67,7 +68,7 @@ impl Completion {
         let (until, last) = earlier.next()?;
         let mut positions = [last; OBSERVED];
         let (mut found, mut filled) = (1, 0);
-        // What was seen at the place reached, or as the first thing after it.
+        // The observation at this frame, or else the first one after it.
         let mut after = (until, last);
         let mut before = earlier.next();
         let longest = (self.longest_gap as i64 + 1) * step;
@@ -99,13 +100,13 @@ impl Completion {
             let back = (padded - place) as f64 / steps;
             *position = [0, 1].map(|axis| first[axis] - back * (last[axis] - first[axis]));
         }
-        // What lies between positions out of this world may be no number.
+        // Interpolation between extremely large positions may overflow to NaN.
         let finite = positions.iter().all(|&position| is_finite(position));
         finite.then_some((positions, MadeUp { padded, filled }))
     }
 }
 
-/// How many of the 8 observed positions of a pedestrian were not seen but made up.
+/// How many of the 8 observed positions of a pedestrian were filled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct MadeUp {
     /// Positions at the start, before the pedestrian was seen.

@@ -1,4 +1,4 @@
-//! The data conventions, which published tables mix and this crate keeps apart.
+//! Data conventions: published tables mix them, this crate keeps them apart.
 
 use std::fmt;
 use std::str::FromStr;
@@ -10,7 +10,7 @@ use crate::format::Format;
 use crate::rule::{SOCIAL_GAN_FEWEST, WindowRule};
 use crate::unknown_name::UnknownName;
 
-/// Where recordings come from and how they were sampled: numbers of two conventions are never comparable.
+/// Source and sampling of the recordings. Numbers of different conventions are not comparable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Convention {
@@ -21,7 +21,7 @@ pub enum Convention {
     SocialGan,
     /// Simulated crowds ([`simulate`](crate::simulate)), for machines without the recordings.
     Simulated,
-    /// Somebody's own recordings ([`Dataset::own`](crate::Dataset::own)).
+    /// The user's own recordings ([`Dataset::own`](crate::Dataset::own)).
     Own,
 }
 
@@ -29,7 +29,7 @@ impl Convention {
     /// Every convention, in order of preference.
     pub const ALL: [Self; 4] = [Self::Star, Self::SocialGan, Self::Simulated, Self::Own];
 
-    /// The name, which is also that of the folder which holds the files.
+    /// The name of the convention, which is also the name of the folder with its files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Star => "star",
@@ -39,7 +39,7 @@ impl Convention {
         }
     }
 
-    /// How the convention's files are written; `None` for those that have no files of fixed names.
+    /// The file format of the convention; `None` for conventions without files of fixed names.
     pub fn format(self) -> Option<Format> {
         match self {
             Self::Star => Some(Format::StarCsv),
@@ -48,7 +48,7 @@ impl Convention {
         }
     }
 
-    /// The window rule that the convention's published numbers are measured with: the one of headline tables.
+    /// The window rule used for the convention's published numbers and for the headline tables.
     pub fn headline_rule(self) -> WindowRule {
         match self {
             Self::Star => WindowRule::Published,
@@ -59,7 +59,7 @@ impl Convention {
         }
     }
 
-    /// The files that a folder of this convention holds; none where they have no fixed names.
+    /// The files in a folder of this convention; empty where the convention has no files of fixed names.
     pub fn file_names(self) -> impl Iterator<Item = &'static str> {
         self.plan()
             .recordings
@@ -72,7 +72,7 @@ impl Convention {
         self.plan().recordings.iter().map(|r| r.name.as_str())
     }
 
-    /// Names of the leave-one-out folds, in order; none for own recordings.
+    /// Names of the leave-one-out folds, in order; empty for own recordings.
     pub fn fold_names(self) -> impl Iterator<Item = &'static str> {
         self.plan().folds.iter().map(|f| f.name.as_str())
     }
@@ -110,8 +110,8 @@ impl FromStr for Convention {
     }
 }
 
-/// One convention of `folds.json`: which recordings it has, and which ones each leave-one-out fold tests on. A fold
-/// trains on every recording that it does not test on, in the order listed.
+/// One convention of `folds.json`: its recordings, and the recordings that each leave-one-out fold tests on. A fold
+/// trains on all other recordings, in the order listed.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ConventionPlan {
@@ -124,7 +124,7 @@ pub(crate) struct ConventionPlan {
 pub(crate) struct RecordingPlan {
     pub(crate) name: String,
     pub(crate) file: Option<String>,
-    /// Recordings of one place are of one camera.
+    /// Recordings with the same place come from the same camera.
     pub(crate) place: Option<String>,
     pub(crate) frame_step: i64,
 }
@@ -153,7 +153,7 @@ static NOTHING_PLANNED: ConventionPlan = ConventionPlan {
 };
 
 static PLANS: LazyLock<Plans> = LazyLock::new(|| {
-    // Compiled in, so wrong only if this crate itself is; the tests below read it.
+    // The file is compiled in; the tests below read it.
     serde_json::from_str(include_str!("../folds.json"))
         .expect("the compiled-in folds.json is valid")
 });
@@ -180,7 +180,7 @@ mod tests {
         }
     }
 
-    /// A memory of a place is confirmed by two other recordings of it.
+    /// Two other recordings of a place confirm its memory.
     #[test]
     fn memories_are_confirmed_by_training_recordings_of_the_place() {
         for convention in Convention::ALL {

@@ -20,7 +20,7 @@ impl Dataset {
     /// Reads all recordings of a convention from the folder that holds its files (see [`locate`](crate::locate)).
     ///
     /// # Errors
-    /// If a file is missing or its content is wrong (the message names file, line and field), and for
+    /// If a file is missing or its content is wrong (the message names file, line and field). Also for
     /// [`Convention::Simulated`] and [`Convention::Own`], which have no files of fixed names.
     pub fn load(convention: Convention, folder: &Path) -> Result<Self, DataError> {
         let format = convention.format().ok_or(DataError::NoFiles(convention))?;
@@ -45,7 +45,7 @@ impl Dataset {
         })
     }
 
-    /// Simulates the five scenes of [`simulate`]; the same seed gives the same bytes.
+    /// Simulates the five scenes of [`simulate`]. The same seed gives the same bytes.
     #[must_use]
     pub fn simulated(seed: u64) -> Self {
         let recordings = simulate::CrowdScene::ALL
@@ -58,10 +58,11 @@ impl Dataset {
         }
     }
 
-    /// Somebody's own recordings, in steps of 0.4 s ([`Recording::in_steps`]); each can be left out as a fold of its name.
+    /// The user's own recordings, in steps of 0.4 s ([`Recording::in_steps`]). Each recording can be left out as a
+    /// fold, which has the recording's name.
     ///
     /// # Errors
-    /// Without recordings, or when two have one name, or one is called `none` ([`Fold::WHOLE`]).
+    /// If there are no recordings, if two have the same name, or if one is called `none` ([`Fold::WHOLE`]).
     ///
     /// # Examples
     /// ```
@@ -90,7 +91,8 @@ impl Dataset {
             }
             if name == Fold::WHOLE {
                 return problem(format!(
-                    "a recording is called {name:?}, which stands for leaving none out; give the file another name"
+                    "a recording is called {name:?}, which is the name of the fold without a test recording; \
+                     rename the file"
                 ));
             }
         }
@@ -113,7 +115,7 @@ impl Dataset {
     /// The recording of this name.
     ///
     /// # Errors
-    /// If there is none; the message lists those there are.
+    /// If there is no such recording; the message lists the available ones.
     pub fn recording(&self, name: &str) -> Result<&Recording, DataError> {
         self.recordings
             .iter()
@@ -129,7 +131,8 @@ impl Dataset {
             })
     }
 
-    /// Names of the leave-one-out folds: eth, hotel, univ, zara1, zara2, or the simulated scenes, or each own recording.
+    /// Names of the leave-one-out folds: eth, hotel, univ, zara1, zara2, or the simulated scenes, or the own
+    /// recordings.
     pub fn fold_names(&self) -> Vec<&str> {
         match self.convention {
             Convention::Own => self.recordings.iter().map(Recording::name).collect(),
@@ -137,16 +140,16 @@ impl Dataset {
         }
     }
 
-    /// The fold that leaves no recording out: all are trained on, none is tested on. It is called [`Fold::WHOLE`].
+    /// The fold that leaves no recording out: it trains on all and tests on none. Its name is [`Fold::WHOLE`].
     #[must_use]
     pub fn whole(&self) -> Fold<'_> {
         Fold::new(Fold::WHOLE, &[], &self.recordings, None)
     }
 
-    /// The fold of this name: test on its recordings, train on all others.
+    /// The fold of this name: it tests on its recordings and trains on all others.
     ///
     /// # Errors
-    /// If there is none; the message lists those there are.
+    /// If there is no such fold; the message lists the available ones.
     pub fn fold(&self, name: &str) -> Result<Fold<'_>, DataError> {
         let unknown = || DataError::UnknownFold {
             convention: self.convention,

@@ -1,4 +1,4 @@
-//! What looks wrong with a recording.
+//! Checks for implausible recordings.
 
 use std::collections::BTreeMap;
 
@@ -7,36 +7,41 @@ use thiserror::Error;
 
 use crate::{Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP};
 
-/// No pedestrian walks faster, m/s. If half of the steps are, positions are probably in pixels, or steps are not 0.4 s.
+/// Faster than a pedestrian walks (m/s). If half of the steps exceed this, the positions are probably in pixels, or the
+/// steps are not 0.4 s.
 const IMPLAUSIBLE: f64 = 4.0;
-/// If the 90 % quantile of the walking speeds is below this (m/s), frames are closer together than 0.4 s.
+/// If the 90 % quantile of the walking speeds is below this (m/s), the frames are probably closer together than 0.4 s.
 const CREEPING: f64 = 0.6;
 /// Distance between first and last position (m) above which a track counts as walking.
 const FAR: f64 = 2.0;
-/// A step beyond this is a track that jumps from one person to another, m/s: the fastest sprinters reach 12.
+/// Speed (m/s) above which a step is taken for a track that jumps to another pedestrian: the fastest sprinters reach
+/// 12.
 const JUMP: f64 = 12.0;
-/// Largest distance from the start, m, below which positions are probably not metres: even a standing pedestrian moves
-/// more than this over [`MANY_STEPS`] steps, and so does the noise of a tracker.
+/// Largest distance from the start (m) below which the positions are probably not in metres. Over [`MANY_STEPS`] steps
+/// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
-/// Share of frames between a pedestrian's first and last without a position, from which on a doubt is reported.
+/// A doubt is reported from this share of missing positions on, counted between the first and last frame of each
+/// pedestrian.
 const OFTEN: f64 = 0.03;
 
-/// Something that looks wrong; in words it says what may be done about it. Speeds are in m/s, distances in m.
+/// A plausibility warning; its message says how to correct the recording. Speeds are in m/s, distances in m.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum Doubt {
     #[error(
-        "no pedestrian has positions {frame_step} frames apart, which is taken for 0.4 s; give the frame rate"
+        "no pedestrian has positions {frame_step} frames apart, which is taken for a step of 0.4 s; give the frame rate"
     )]
     NoSteps { frame_step: i64 },
     #[error(
-        "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian 0.4 s apart?"
+        "half of the steps are faster than {median:.1} m/s; are the positions in metres, and the rows of a pedestrian \
+         0.4 s apart?"
     )]
     Fast { median: f64 },
     #[error(
-        "nine in ten steps of walking pedestrians are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s apart, or closer?"
+        "nine in ten steps of walking pedestrians are slower than {brisk:.2} m/s; are the rows of a pedestrian 0.4 s \
+         apart, or closer?"
     )]
     Slow { brisk: f64 },
     #[error(
@@ -44,8 +49,8 @@ pub enum Doubt {
     )]
     Still { farthest: f64 },
     #[error(
-        "pedestrians have no position in {:.0} % of the frames between their first and last; a forecast needs a position at \
-         exactly each step, so let the tracker fill short gaps if it can",
+        "pedestrians have no position in {:.0} % of the frames between their first and last; a forecast needs a \
+         position at exactly each step, so let the tracker fill short gaps if it can",
         100.0 * .share
     )]
     Unseen { share: f64 },
@@ -57,7 +62,7 @@ pub enum Doubt {
     )]
     Jump(Fastest),
     #[error(
-        "no pedestrian was seen at 20 steps in a row: these tracks can neither train nor evaluate a model"
+        "no pedestrian was seen at 20 steps in a row: these tracks cannot be used for training or evaluation"
     )]
     NothingToLearnFrom,
 }
@@ -68,7 +73,7 @@ pub enum Doubt {
 pub struct Fastest {
     /// Its speed, m/s.
     pub speed: f64,
-    /// Whose it is.
+    /// The pedestrian that makes it.
     pub pedestrian: PedestrianName,
     /// The raw frame at which it ends.
     pub frame: i64,
@@ -81,7 +86,7 @@ pub(crate) struct Speeds {
     pub(crate) fastest: Option<Fastest>,
     /// The 90 % quantile of the speeds of steps of tracks that walk, m/s.
     pub(crate) brisk: Option<f64>,
-    /// Largest distance between anybody's first and last position, m.
+    /// Largest distance between the first and last position of any pedestrian, m.
     pub(crate) farthest: f64,
 }
 
@@ -106,7 +111,7 @@ impl Speeds {
 }
 
 impl Recording {
-    /// The first of the doubts of [its summary](Self::summary), about the speeds of its people, for less work.
+    /// The first doubt about speeds in [the summary](Self::summary), computed without the rest of the summary.
     #[must_use]
     pub fn speed_doubt(&self) -> Option<Doubt> {
         self.speeds(&self.tracks()).doubt()
@@ -149,7 +154,7 @@ pub(crate) fn unseen(share: f64) -> Option<Doubt> {
     (share >= OFTEN).then_some(Doubt::Unseen { share })
 }
 
-/// How far a track leads, m.
+/// Distance between the first and last position of a track, m.
 fn way(track: &[&Observation]) -> f64 {
     let (first, last) = (track[0].position, track[track.len() - 1].position);
     (last[0] - first[0]).hypot(last[1] - first[1])

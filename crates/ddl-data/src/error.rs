@@ -1,4 +1,4 @@
-//! What can go wrong with recordings, said with the place and the remedy.
+//! Errors of recordings; each message says where the problem is and how to solve it.
 
 use std::path::PathBuf;
 
@@ -6,17 +6,17 @@ use thiserror::Error;
 
 use crate::{Convention, PedestrianId, PedestrianName};
 
-/// Why a file of tracks cannot be read: the file, the line, the field and the problem.
+/// A file of tracks cannot be read: the file, the line, the field and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{origin}, line {line}{}: {problem}", .field.map(|f| format!(", field {f}")).unwrap_or_default())]
 pub struct FormatError {
-    /// The file, or whatever name was given to the bytes.
+    /// The file name, or the name given for the bytes.
     pub origin: String,
     /// Line, counted from 1.
     pub line: usize,
-    /// Field within the line, counted from 1; `None` when the whole line is meant.
+    /// Field within the line, counted from 1; `None` when the problem concerns the whole line.
     pub field: Option<usize>,
-    /// What is wrong there, in words.
+    /// The problem, in words.
     pub problem: String,
 }
 
@@ -35,7 +35,9 @@ pub(crate) enum FormatProblem {
     },
     #[error("unexpected line: the format has exactly {expected} lines")]
     ExtraLine { expected: usize },
-    #[error("{found} fields, but line 1 has {expected}; all lines must be of one length")]
+    #[error(
+        "{found} fields, but line 1 has {expected}; all lines must have the same number of fields"
+    )]
     UnequalLines { expected: usize, found: usize },
     #[error("{found} fields where {expected} are expected ({names})")]
     FieldCount {
@@ -50,7 +52,7 @@ pub(crate) enum FormatProblem {
     #[error("{name} must be a finite number in metres, found {found:?}{}", advice_on_number(.found))]
     NotFinite { name: &'static str, found: String },
     #[error(
-        "{name} must lie within {limit} m of the origin, found {found:?}; count from an origin near by",
+        "{name} must lie within {limit} m of the origin, found {found:?}; use an origin near the scene",
         limit = crate::COORDINATE_LIMIT
     )]
     TooFar { name: &'static str, found: String },
@@ -65,7 +67,7 @@ pub(crate) enum FormatProblem {
     #[error("scene.fps must be a number above 0, the frames in a second, found {found}")]
     Rate { found: String },
     #[error(
-        "scene.fps is {found}, but {first} on line {first_line}; a file is of one recording, whose frames have one rate"
+        "scene.fps is {found}, but {first} on line {first_line}; a file holds one recording with one frame rate"
     )]
     RateChanges {
         first_line: usize,
@@ -74,7 +76,7 @@ pub(crate) enum FormatProblem {
     },
     #[error(
         "pedestrian {pedestrian} is in frame {frame} at {found}, but on line {first_line} at {first}; \
-         scenes that overlap must agree"
+         overlapping scenes must agree"
     )]
     Disagreement {
         pedestrian: Box<PedestrianName>,
@@ -83,17 +85,17 @@ pub(crate) enum FormatProblem {
         first: String,
         found: String,
     },
-    #[error("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one")]
+    #[error(
+        "pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one row"
+    )]
     Duplicate {
         pedestrian: Box<PedestrianName>,
         frame: i64,
         first_line: usize,
     },
-    #[error(
-        "frame {frame} comes after frame {last}; tracks that are read as they arrive must be in order of time"
-    )]
+    #[error("frame {frame} comes after frame {last}; a stream of tracks must be in order of time")]
     OutOfOrder { frame: i64, last: i64 },
-    #[error("more than {limit} people in frame {frame}; does the frame number count on?")]
+    #[error("more than {limit} pedestrians in frame {frame}; does the frame number increase?")]
     Crowd { frame: i64, limit: usize },
     #[error("the line is longer than {limit} bytes; is it a file of tracks?")]
     LongLine { limit: usize },
@@ -108,7 +110,7 @@ fn wanted(name: &str) -> &'static str {
     }
 }
 
-/// What to do about a number of a frame or of a person that is no whole one.
+/// Advice for a frame or pedestrian number that is not a whole number.
 fn advice_on_integer(name: &str, found: &str) -> &'static str {
     let is_number = found.parse::<f64>().is_ok_and(f64::is_finite);
     match name {
@@ -121,15 +123,15 @@ fn advice_on_integer(name: &str, found: &str) -> &'static str {
 
 fn advice_on_number(found: &str) -> &'static str {
     if found.is_empty() || found.eq_ignore_ascii_case("nan") {
-        "; where somebody was not seen, write no row"
+        "; leave out the row where a pedestrian was not seen"
     } else if found.replacen(',', ".", 1).parse::<f64>().is_ok() && found.contains(',') {
-        "; write decimals with a point"
+        "; use a decimal point"
     } else {
         ""
     }
 }
 
-/// Why observations do not make a [`Recording`](crate::Recording).
+/// Observations that cannot form a [`Recording`](crate::Recording).
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -156,7 +158,7 @@ pub enum RecordingError {
     },
 }
 
-/// Why tracks do not make a [`Window`](crate::Window).
+/// Tracks that cannot form a [`Window`](crate::Window).
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -167,7 +169,7 @@ pub enum WindowError {
     Count { pedestrians: usize, tracks: usize },
     #[error(
         "pedestrian {pedestrian}: a track of {found} positions; every track of a window must have \
-         {observed} (observation only) or every one {whole} (with the future)",
+         {observed} positions (observation only), or every track {whole} (with the future)",
         observed = crate::OBSERVED,
         whole = crate::WINDOW
     )]
@@ -189,7 +191,7 @@ pub enum WindowError {
     Frames { start_frame: i64, frame_step: i64 },
 }
 
-/// Why a data set, or one file of it, cannot be had.
+/// A data set, or one of its files, cannot be loaded.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -207,7 +209,7 @@ pub enum DataError {
         source: RecordingError,
     },
     #[error(
-        "the {convention} recordings are not there; looked in {}. Put the files there, or name \
+        "the {convention} recordings were not found in {}. Put the files there, or name \
          their folder in the environment variable {variable}",
         .searched.join(", "),
         variable = crate::DATASETS_VARIABLE

@@ -63,7 +63,7 @@ impl<'a> Fold<'a> {
         }
     }
 
-    /// Keeps training recordings for validation whole: nothing of them is trained on.
+    /// Keeps whole training recordings for validation; nothing of them is used for training.
     ///
     /// # Errors
     /// [`DataError::NotATrainingRecording`] for a name that is not a training recording of this fold.
@@ -90,17 +90,17 @@ impl<'a> Fold<'a> {
         &self.test
     }
 
-    /// The recordings to train on: all others, but for those set apart.
+    /// The recordings to train on: all others, except those set apart.
     pub fn training_recordings(&self) -> &[&'a Recording] {
         &self.training
     }
 
-    /// Training recordings that are kept for validation whole.
+    /// Training recordings kept whole for validation.
     pub fn recordings_set_apart(&self) -> &[&'a Recording] {
         &self.set_apart
     }
 
-    /// The other training recordings of the place where a recording was made; none where places are not known.
+    /// The other training recordings made at the place of this recording; empty where places are not known.
     #[must_use]
     pub fn training_recordings_of_its_place(&self, recording: &str) -> Vec<&'a Recording> {
         let place_of = |name: &str| {
@@ -109,24 +109,24 @@ impl<'a> Fold<'a> {
             recordings.find(|r| r.name == name)?.place.as_deref()
         };
         let place = place_of(recording);
-        // The recording itself would tell its own future, where its end is kept for validation.
+        // Where the recording's end is kept for validation, the recording itself would reveal its own future.
         let same = |r: &&&Recording| {
             r.name() != recording && place.is_some() && place_of(r.name()) == place
         };
         self.training.iter().filter(same).copied().collect()
     }
 
-    /// Two training recordings of the place of the test recordings that have confirmed that a memory of the place helps: goals
-    /// of the second were better with a memory of the first, for a model that was trained without the second. Where nothing is
-    /// confirmed, forecasts of the fold go without such a memory.
+    /// Two training recordings made at the place of the test recordings, which confirm that a memory of the place
+    /// helps. With a memory of the first, the goals in the second were better, for a model trained without the second.
+    /// Empty where this is not confirmed; forecasts of such a fold use no memory of the place.
     pub fn place_memory_confirmed_by(&self) -> &[String] {
         self.planned.map_or(&[], |(_, fold)| &fold.place_memory)
     }
 
     /// The windows to test on, recording by recording, in order of time.
     ///
-    /// Under [`WindowRule::Published`], none starts at the very first frame of the first recording, as in the published
-    /// loader.
+    /// As in the published loader, [`WindowRule::Published`] leaves out the window that starts at the first frame of
+    /// the first recording.
     #[must_use]
     pub fn test_windows(&self, rule: WindowRule) -> Vec<Window> {
         let mut windows: Vec<_> = self.test.iter().flat_map(|r| r.windows(rule)).collect();
@@ -143,11 +143,11 @@ impl<'a> Fold<'a> {
         self.training.iter().flat_map(|r| r.windows(rule)).collect()
     }
 
-    /// Divides the windows of each training recording at a moment in time.
+    /// Splits the windows of each training recording at a point in time.
     ///
-    /// The cut of a recording with n annotated frames comes before the frame with index floor((1 - f) n), f being
+    /// The cut of a recording with n annotated frames lies before the frame with index floor((1 - f) n), where f is
     /// `validation_fraction` (clamped to [0, 1], NaN taken as 0). Windows that span the cut belong to neither side.
-    /// Recordings [set apart](Self::set_apart) are validated on whole.
+    /// Recordings [set apart](Self::set_apart) are used for validation as a whole.
     #[must_use]
     pub fn training_split(&self, rule: WindowRule, validation_fraction: f64) -> TrainingSplit {
         let mut split = TrainingSplit {
@@ -171,10 +171,10 @@ impl<'a> Fold<'a> {
         split
     }
 
-    /// Training, validation and test of the Social-GAN convention, window by window what its published folders `train`,
-    /// `val` and `test` hold: each training recording is cut after its first floor(0.8 n) of n annotated frames
-    /// ([`Recording::parts`]). `min_pedestrians` is 2 in the original code, 1 in much later work. Recordings
-    /// [set apart](Self::set_apart) are validated on whole, which the published folders do not do.
+    /// Training, validation and test windows of the Social-GAN convention: the same windows as in its published folders
+    /// `train`, `val` and `test`. Each training recording is cut after its first floor(0.8 n) of n annotated frames
+    /// ([`Recording::parts`]). `min_pedestrians` is 2 in the original code, 1 in much later work. Recordings [set
+    /// apart](Self::set_apart) are used for validation as a whole, which the published folders do not do.
     #[must_use]
     pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
         let rule = WindowRule::SocialGan { min_pedestrians };

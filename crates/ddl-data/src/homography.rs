@@ -1,4 +1,4 @@
-//! From pixels of a camera to metres on the ground.
+//! Conversion from pixels of a camera to metres on the ground.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -10,11 +10,11 @@ use crate::{
 
 const SIZE: usize = 3;
 
-/// A plane seen by a camera: the matrix that takes pixels to metres on the ground.
+/// The homography of a ground plane seen by a camera: the matrix that maps pixels to metres.
 ///
-/// With H the matrix, a pixel (u, v), column and row, is the place (X / W, Y / W) where (X, Y, W) = H (u, v, 1), as of
-/// `OpenCV`'s `findHomography(pixels, metres)`. The `H.txt` of the ETH recordings counts (row, column): swap its first
-/// two columns.
+/// The matrix H maps a pixel (u, v), column and row, to the place (X / W, Y / W), where (X, Y, W) = H (u, v, 1), as
+/// with `OpenCV`'s `findHomography(pixels, metres)`. The `H.txt` of the ETH recordings uses (row, column): swap its
+/// first two columns.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "[[f64; SIZE]; SIZE]")]
 pub struct Homography([[f64; SIZE]; SIZE]);
@@ -28,20 +28,20 @@ impl TryFrom<[[f64; SIZE]; SIZE]> for Homography {
 }
 
 impl Homography {
-    /// The matrix, row by row: it takes (u, v, 1) in pixels to (X, Y, W), of which X / W and Y / W are metres.
+    /// The matrix, row by row. It maps (u, v, 1) in pixels to (X, Y, W); X / W and Y / W are metres.
     ///
     /// # Errors
-    /// [`HomographyError`] where an entry is not finite, or the matrix squeezes the plane into a line.
+    /// [`HomographyError`] where an entry is not finite, or the matrix is singular.
     pub fn new(rows: [[f64; SIZE]; SIZE]) -> Result<Self, HomographyError> {
         for (row, entries) in rows.iter().enumerate() {
             if let Some(column) = entries.iter().position(|entry| !entry.is_finite()) {
                 return Err(HomographyError::NotFinite { row, column });
             }
         }
-        // Relative to the size of the rows, which may be of any scale.
+        // Relative to the size of the rows, whose scale is arbitrary.
         let length = |row: &[f64; SIZE]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
         let volume = determinant(&rows) / rows.iter().map(length).product::<f64>();
-        // false for what is no number
+        // False for NaN.
         if volume.abs() > f64::EPSILON {
             Ok(Self(rows))
         } else {
@@ -49,21 +49,22 @@ impl Homography {
         }
     }
 
-    /// Where a pixel is on the ground (m); `None` on the horizon, and so near to it that the place would be farther
-    /// away than [`COORDINATE_LIMIT`].
+    /// The place of a pixel on the ground (m). `None` on the horizon, and near it where the place would be farther away
+    /// than [`COORDINATE_LIMIT`].
     #[must_use]
     pub fn apply(&self, [u, v]: [f64; 2]) -> Option<Position> {
         let [x, y, w] = self.0.map(|[a, b, c]| a * u + b * v + c);
         let place = [x / w, y / w];
-        // false for what is no number
+        // False for NaN.
         let near = place.iter().all(|c| c.abs() <= COORDINATE_LIMIT);
         near.then_some(place)
     }
 
-    /// Where somebody who was seen at a pixel, and is named so, is on the ground (m).
+    /// The place on the ground (m) of a pedestrian seen at a pixel. The frame and the pedestrian are named in the
+    /// error.
     ///
     /// # Errors
-    /// [`HomographyError::Horizon`] where that is nowhere.
+    /// [`HomographyError::Horizon`] where the pixel has no place on the ground.
     pub fn place(
         &self,
         seen: &Observation,
@@ -77,10 +78,10 @@ impl Homography {
         self.apply(seen.position).ok_or_else(horizon)
     }
 
-    /// A recording in pixels, in metres.
+    /// Converts a recording from pixels to metres.
     ///
     /// # Errors
-    /// [`HomographyError::Horizon`] where somebody is nowhere on the ground.
+    /// [`HomographyError::Horizon`] where a pixel has no place on the ground.
     pub fn on_the_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
         let mut observations = recording.observations().to_vec();
         for seen in &mut observations {
@@ -97,7 +98,7 @@ fn determinant([[a, b, c], [d, e, f], [g, h, i]]: &[[f64; SIZE]; SIZE]) -> f64 {
 impl std::str::FromStr for Homography {
     type Err = HomographyError;
 
-    /// Nine numbers, three a line, separated by blanks or commas.
+    /// Nine numbers, three per line, separated by blanks or commas.
     fn from_str(text: &str) -> Result<Self, HomographyError> {
         let mut rows = [[0.0; SIZE]; SIZE];
         let mut found = 0;
@@ -129,24 +130,24 @@ impl std::str::FromStr for Homography {
     }
 }
 
-/// Why there is no [`Homography`], or no place on the ground.
+/// A matrix that is not a [`Homography`], or a pixel without a place on the ground.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum HomographyError {
     #[error("row {}, column {} of the homography is not finite", .row + 1, .column + 1)]
     NotFinite { row: usize, column: usize },
-    #[error("the homography is singular: it squeezes the plane into a line; is a row there twice?")]
+    #[error("the homography is singular: it maps the plane to a line; is a row repeated?")]
     Singular,
     #[error(
-        "line {line} of the homography must hold three numbers, and be one of three such lines, found {found:?}"
+        "line {line} of the homography must hold three numbers and be one of three lines, found {found:?}"
     )]
     Line { line: usize, found: String },
     #[error("a homography has three rows of three numbers, found {found}")]
     Rows { found: usize },
     #[error(
-        "pedestrian {pedestrian}, frame {frame}: pixel {pixel:?} lies on the horizon of the homography; is it of this \
-         camera, and from pixels to metres?"
+        "pedestrian {pedestrian}, frame {frame}: pixel {pixel:?} lies on the horizon of the homography; does it \
+         belong to this camera, and map pixels to metres?"
     )]
     Horizon {
         pedestrian: PedestrianName,

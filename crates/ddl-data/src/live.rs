@@ -10,18 +10,18 @@ use crate::{Completion, OBSERVED, PedestrianId, PedestrianNames, Position, Recor
 
 const NAME: &str = "live";
 
-/// Everybody's last positions, fed one frame at a time.
+/// The last positions of all pedestrians, updated one frame at a time.
 ///
-/// After every frame, [`window`](Self::window) is the one that
+/// After every frame, [`window`](Self::window) is the window that
 /// [`Recording::observed_windows`](crate::Recording::observed_windows) would cut from all frames so far and that ends
-/// here.
+/// at this frame.
 ///
-/// - A frame comes after the one before, by a step (0.4 s), by more, or by less where the tracker is faster than that.
-/// - Whoever was not seen at one of the 8 steps is not in the window, unless a [`Completion`] is [asked
-///   for](Self::completing).
-/// - Whoever has been away for a step (0.4 s), or longer than the longest hole that is filled, is forgotten.
-/// - After an error nothing has changed: the same frame can be pushed again, corrected.
-/// - A frame far ahead makes earlier ones come too early: [`clear`](Self::clear) starts anew.
+/// - A frame follows the previous one after one step (0.4 s), after more, or after less where the tracker is faster.
+/// - A pedestrian not seen at one of the 8 steps is not in the window, unless a [`Completion`] is
+///   [requested](Self::completing).
+/// - A pedestrian absent for a step (0.4 s), or for longer than the longest hole that is filled, is forgotten.
+/// - An error changes nothing: the same frame can be pushed again, corrected.
+/// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.
 ///
 /// ```
 /// use ddl_data::{LiveTracks, PedestrianId};
@@ -47,7 +47,7 @@ pub struct LiveTracks {
     pedestrians: Vec<LivePedestrian>,
 }
 
-/// Somebody who is in the last frame, or may be in a window again.
+/// A pedestrian that is in the last frame, or may be in a later window.
 #[derive(Debug, Clone, PartialEq)]
 struct LivePedestrian {
     id: PedestrianId,
@@ -62,7 +62,7 @@ impl Default for LiveTracks {
 }
 
 impl LiveTracks {
-    /// Nobody seen yet; frames are counted, so that one step of 0.4 s is from one number to the next.
+    /// Empty tracks in which one step of 0.4 s is one frame number.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -75,7 +75,8 @@ impl LiveTracks {
         }
     }
 
-    /// Nobody seen yet, with another number of raw frames in a step of 0.4 s, such as 10 of a camera at 25 frames a second.
+    /// Empty tracks with another number of raw frames per step of 0.4 s, such as 10 for a camera at 25 frames per
+    /// second.
     ///
     /// # Errors
     /// [`LiveError::FrameStep`] if the step does not lie in 1..=2^31.
@@ -95,19 +96,19 @@ impl LiveTracks {
         }
     }
 
-    /// The same, with incomplete observations filled in as the completion allows.
+    /// The same tracks, with incomplete observations filled in as the completion allows.
     #[must_use]
     pub fn completing(self, completion: Completion) -> Self {
         Self { completion, ..self }
     }
 
-    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew.
+    /// Forgets all pedestrians and the last frame. Any frame may come next, as after a restart of the tracker.
     pub fn clear(&mut self) {
         self.last_frame = None;
         self.pedestrians.clear();
     }
 
-    /// Raw frames in one step of 0.4 s.
+    /// Raw frames per step of 0.4 s.
     pub fn frame_step(&self) -> i64 {
         self.frame_step
     }
@@ -117,43 +118,43 @@ impl LiveTracks {
         self.last_frame
     }
 
-    /// People who are remembered: those of the last frame, and those who were there shortly before.
+    /// Number of pedestrians remembered: those of the last frame, and those seen shortly before.
     pub fn len(&self) -> usize {
         self.pedestrians.len()
     }
 
-    /// Whether nobody is remembered.
+    /// Whether no pedestrian is remembered.
     pub fn is_empty(&self) -> bool {
         self.pedestrians.is_empty()
     }
 
-    /// Adds one frame, everybody's positions (m) in any order, and gives the window that ends there; `None` while nobody has
-    /// been seen for 8 steps in a row, or as often as the completion asks for.
+    /// Adds one frame, with the positions (m) of all pedestrians in any order, and returns the window that ends there.
+    /// `None` until a pedestrian has been seen at 8 steps in a row, or as often as the completion requires.
     ///
     /// # Errors
-    /// As [`after`](Self::after); nothing has changed then.
+    /// As [`after`](Self::after); the tracks are then unchanged.
     pub fn push(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<Window>, LiveError> {
-        *self = self.after(frame, people)?;
+        *self = self.after(frame, positions)?;
         Ok(self.window())
     }
 
-    /// The tracks with one frame more, leaving these as they are.
+    /// A copy of the tracks with one more frame; `self` stays unchanged.
     ///
     /// # Errors
     /// As [`checked_frame`].
     pub fn after(
         &self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
-        let people = checked_frame(frame, self.last_frame, people)?;
+        let positions = checked_frame(frame, self.last_frame, positions)?;
         let mut earlier = self.pedestrians.iter().peekable();
-        let mut pedestrians = Vec::with_capacity(people.len());
-        for (id, position) in people {
+        let mut pedestrians = Vec::with_capacity(positions.len());
+        for (id, position) in positions {
             while let Some(absent) = earlier.next_if(|pedestrian| pedestrian.id < id) {
                 pedestrians.extend(self.remembered(absent, frame));
             }
@@ -179,14 +180,14 @@ impl LiveTracks {
         self.remembered_before(absent, frame + 1)
     }
 
-    /// What may be in the same window as an observation at the frame; `None` for nothing.
+    /// The observations that may be in the same window as one at `frame`; `None` if there are none.
     fn remembered_before(&self, pedestrian: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
         let (last, _) = *pedestrian.seen.back()?;
         let gap = self.completion.longest_gap() as i64;
         if frame - last > (gap + 1) * self.frame_step {
             return None;
         }
-        // A hole at the start of the window may begin before it.
+        // A hole at the start of the window may begin before the window.
         let oldest = frame - (OBSERVED as i64 + gap) * self.frame_step;
         let forgotten = pedestrian.seen.partition_point(|(seen, _)| *seen <= oldest);
         let seen = pedestrian.seen.range(forgotten..).copied().collect();
@@ -194,8 +195,8 @@ impl LiveTracks {
         Some(LivePedestrian { id, seen })
     }
 
-    /// The window that ends at the last frame: the pedestrians of that frame that have a position, observed or completed,
-    /// at each of the last 8 steps.
+    /// The window that ends at the last frame: the pedestrians of that frame that have a position, observed or
+    /// completed, at each of the last 8 steps.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;
@@ -224,8 +225,8 @@ impl LiveTracks {
 }
 
 impl Recording {
-    /// What can be forecast from: windows of [`OBSERVED`] frames without a future, one for every frame up to which
-    /// somebody was seen that many steps in a row.
+    /// The windows to forecast from: [`OBSERVED`] frames without a future, one window for every frame at which some
+    /// pedestrian has been seen for that many steps in a row.
     #[must_use]
     pub fn observed_windows(&self) -> Vec<Window> {
         self.completed_windows(Completion::NONE)
@@ -238,10 +239,10 @@ impl Recording {
         let mut tracks = LiveTracks::of(self).completing(completion);
         let mut windows = Vec::new();
         for &frame in self.frames() {
-            let people = self.at(frame).iter();
-            let people = people.map(|seen| (seen.pedestrian, seen.position));
-            // A recording holds nothing that live tracks refuse.
-            windows.extend(tracks.push(frame, people).ok().flatten());
+            let positions = self.at(frame).iter();
+            let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+            // The invariants of a recording exclude every error of live tracks.
+            windows.extend(tracks.push(frame, positions).ok().flatten());
         }
         windows
     }
@@ -258,15 +259,15 @@ impl LivePedestrian {
     }
 }
 
-/// The people of one frame in order of their ids, if the frame may come after the last one (`None`: there was none).
+/// Sorts the pedestrians of one frame by id, and checks that the frame may follow the last one (`None`: no frame yet).
 ///
 /// # Errors
 /// [`LiveError`] for a frame that is not below 2^53 in size or not after the last, a position that is not finite, or a
-/// pedestrian who is there twice.
+/// repeated pedestrian.
 pub fn checked_frame(
     frame: i64,
     last: Option<i64>,
-    people: impl IntoIterator<Item = (PedestrianId, Position)>,
+    positions: impl IntoIterator<Item = (PedestrianId, Position)>,
 ) -> Result<Vec<(PedestrianId, Position)>, LiveError> {
     if !is_frame(frame) {
         return Err(LiveError::FrameOutOfRange { frame });
@@ -274,9 +275,9 @@ pub fn checked_frame(
     if let Some(last) = last.filter(|last| frame <= *last) {
         return Err(LiveError::TooEarly { frame, last });
     }
-    let mut people: Vec<(PedestrianId, Position)> = people.into_iter().collect();
-    people.sort_unstable_by_key(|&(id, _)| id);
-    for &(pedestrian, position) in &people {
+    let mut positions: Vec<(PedestrianId, Position)> = positions.into_iter().collect();
+    positions.sort_unstable_by_key(|&(id, _)| id);
+    for &(pedestrian, position) in &positions {
         if !is_finite(position) {
             return Err(LiveError::NotFinite {
                 pedestrian,
@@ -285,16 +286,16 @@ pub fn checked_frame(
             });
         }
     }
-    match people.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+    match positions.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         Some(pair) => Err(LiveError::Duplicate {
             pedestrian: pair[0].0,
             frame,
         }),
-        None => Ok(people),
+        None => Ok(positions),
     }
 }
 
-/// The number of raw frames in a step of 0.4 s, if it can be one.
+/// Checks the number of raw frames per step of 0.4 s.
 ///
 /// # Errors
 /// [`LiveError::FrameStep`] if it does not lie in 1..=2^31.
@@ -306,7 +307,7 @@ pub fn checked_frame_step(frame_step: i64) -> Result<i64, LiveError> {
     }
 }
 
-/// Why a frame cannot be added to [`LiveTracks`] or to a scene memory, which are then as they were.
+/// A frame that cannot be added to [`LiveTracks`] or to a scene memory, which stay unchanged.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -316,8 +317,8 @@ pub enum LiveError {
     #[error("frame {frame} is not below 2^53 in size")]
     FrameOutOfRange { frame: i64 },
     #[error(
-        "frame {frame} comes after frame {last}; push frames in order of time, each once; when the tracker starts anew, clear \
-         the tracks, or interrupt the memory, before its first frame"
+        "frame {frame} comes after frame {last}; push frames in order of time, each once; when the tracker restarts, \
+         clear the tracks, or interrupt the memory, before its first frame"
     )]
     TooEarly { frame: i64, last: i64 },
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]
@@ -326,7 +327,7 @@ pub enum LiveError {
         frame: i64,
         position: Position,
     },
-    #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one")]
+    #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one position")]
     Duplicate {
         pedestrian: PedestrianId,
         frame: i64,

@@ -1,4 +1,4 @@
-//! Where the recordings lie on this machine.
+//! Search for the folder of the recordings.
 
 use std::path::{Path, PathBuf};
 
@@ -8,19 +8,19 @@ use crate::error::DataError;
 /// Environment variable that names the folder of the recordings.
 pub const DATASETS_VARIABLE: &str = "DDL_DATASETS";
 
-/// Where the recordings lie below the root of the workspace when nothing else is said.
+/// Default folder of the recordings, below the root of the workspace.
 const DEFAULT_FOLDER: &str = "datasets/eth_ucy";
 
-/// Finds the folder that holds a convention's files.
+/// Finds the folder with a convention's files.
 ///
-/// Looked at is `explicit` if given, else the folder that `$DDL_DATASETS` names if set, else `datasets/eth_ucy`. The
+/// The search uses `explicit` if given, else the folder named by `$DDL_DATASETS` if set, else `datasets/eth_ucy`. The
 /// last two, where relative, are tried from the current directory and from each one above it, up to the first with a
 /// `Cargo.lock`. The files may lie in the folder itself, in its sub-folder named after the convention, or in such a
 /// folder beside it.
 ///
 /// # Errors
-/// [`DataError::NotFound`] names every folder tried and the first file it lacks;
-/// [`DataError::NoFiles`] for conventions without files of fixed names.
+/// [`DataError::NotFound`] names every folder tried and the first file missing in it; [`DataError::NoFiles`] for
+/// conventions without files of fixed names.
 pub fn locate(convention: Convention, explicit: Option<&Path>) -> Result<PathBuf, DataError> {
     let variable = std::env::var_os(DATASETS_VARIABLE)
         .filter(|v| !v.is_empty())
@@ -64,7 +64,7 @@ fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, 
                 .find(|file| !folder.join(file).is_file())
             {
                 None => return Ok(folder),
-                Some(lacking) => searched.push(format!("{} (no {lacking})", folder.display())),
+                Some(missing) => searched.push(format!("{} (no {missing})", folder.display())),
             }
         }
     }
@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lacking_file_is_named() {
+    fn a_missing_file_is_named() {
         let root = tempfile::tempdir().unwrap();
         fill(root.path(), Convention::Star);
         std::fs::remove_file(root.path().join("zara02.csv")).unwrap();

@@ -9,18 +9,18 @@ use serde::{Deserialize, Serialize};
 use crate::PedestrianId;
 use crate::track::FRAME_LIMIT;
 
-/// A pedestrian as a file or stream has it.
+/// The name of a pedestrian in a file or stream.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum PedestrianName {
     /// A number.
     Number(i64),
-    /// Anything else, as it is written.
+    /// Any other text, as written.
     Word(String),
 }
 
 impl PedestrianName {
-    /// What a text is: a number where its digits are those that the number is written with.
+    /// Interprets a text: a number if it is written as that number is printed, else a word.
     #[must_use]
     pub fn of_text(text: &str) -> Self {
         match text.parse::<i64>() {
@@ -51,7 +51,7 @@ pub(crate) fn is_plain(number: &str) -> bool {
     digits.bytes().all(|byte| byte.is_ascii_digit()) && (number == "0" || !digits.starts_with('0'))
 }
 
-/// The words of a recording or window whose file names pedestrians by words; none where it numbers them.
+/// The words that a recording or window uses for its pedestrians; empty where the file uses numbers.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PedestrianNames(Option<Arc<BTreeMap<PedestrianId, Arc<str>>>>);
 
@@ -64,7 +64,7 @@ impl PedestrianNames {
         self.0.as_ref()?.get(&id).map(AsRef::as_ref)
     }
 
-    /// How the file names a pedestrian.
+    /// The name of a pedestrian in the file.
     #[must_use]
     pub fn of(&self, id: PedestrianId) -> PedestrianName {
         match self.word(id) {
@@ -73,7 +73,7 @@ impl PedestrianNames {
         }
     }
 
-    /// Whether a pedestrian has this name, in whatever digits a number is written.
+    /// Whether a pedestrian has this name, in any spelling of a number.
     pub(crate) fn names(&self, id: PedestrianId, name: &PedestrianName) -> bool {
         match (self.word(id), name) {
             (None, PedestrianName::Number(number)) => id.0 == *number,
@@ -87,7 +87,7 @@ impl PedestrianNames {
     }
 }
 
-/// Numbers words as they come, from 2^53 on, where no number of a file is.
+/// Numbers words in order of arrival, from 2^53 on, beyond all numbers that files may use.
 #[derive(Debug)]
 pub(crate) struct Numbering {
     numbers: HashMap<Arc<str>, i64>,
@@ -97,7 +97,7 @@ pub(crate) struct Numbering {
 }
 
 impl Numbering {
-    /// Remembers so many words: one that was forgotten is numbered anew.
+    /// Remembers at most `most` words; a forgotten word gets a new number.
     pub(crate) fn remembering(most: usize) -> Self {
         Self {
             numbers: HashMap::new(),
@@ -111,7 +111,7 @@ impl Numbering {
         self.words.is_empty()
     }
 
-    /// The number of a word, and the word to be kept.
+    /// The number of a word, and the shared word.
     pub(crate) fn number(&mut self, word: &str) -> (PedestrianId, Arc<str>) {
         if let Some((word, &number)) = self.numbers.get_key_value(word) {
             return (PedestrianId(number), Arc::clone(word));
@@ -137,7 +137,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn so_many_words_keep_their_numbers(words in prop::collection::vec("[a-d]{1,3}", 0..200)) {
+        fn the_last_words_keep_their_numbers(words in prop::collection::vec("[a-d]{1,3}", 0..200)) {
             let mut numbering = Numbering::remembering(5);
             let mut last = FRAME_LIMIT - 1;
             for word in &words {

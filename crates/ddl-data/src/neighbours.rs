@@ -1,4 +1,4 @@
-//! Who is near whom: the neighbourhood that a forecast may look at.
+//! Neighbours of pedestrians: the neighbourhood that a forecast may use.
 
 use crate::Position;
 use rstar::primitives::GeomWithData;
@@ -7,7 +7,7 @@ use rstar::{AABB, RTree};
 /// Half the side of the box in which STAR and DDL look for neighbours (m).
 pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
-/// An index of places (m). The time of a query grows with the number of its answers, not with that of the places.
+/// A spatial index of places (m). The time of a query grows with the number of results, not with the number of places.
 #[derive(Debug, Clone)]
 pub struct Places {
     tree: RTree<Place>,
@@ -16,16 +16,16 @@ pub struct Places {
 /// A position with its index.
 type Place = GeomWithData<Position, u32>;
 
-/// Which of N pedestrians are neighbours of which: a symmetric relation. Indices out of range panic.
+/// The neighbour relation of N pedestrians, which is symmetric. Indices out of range panic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Neighbours {
-    /// The neighbours of pedestrian i, ascending, are those from `ends[i - 1]` to `ends[i]`.
+    /// The neighbours of pedestrian i, ascending, lie from `ends[i - 1]` to `ends[i]`.
     near: Vec<u32>,
     ends: Vec<usize>,
 }
 
 impl Places {
-    /// An index of these positions (m, finite); a place is named by its index in `positions`.
+    /// An index of these positions (m, finite). A place is identified by its index in `positions`.
     #[must_use]
     pub fn new(positions: &[Position]) -> Self {
         let places = positions.iter().zip(0..);
@@ -35,8 +35,8 @@ impl Places {
         }
     }
 
-    /// Indices of the places within the box |dx| <= w and |dy| <= w around `centre`, w being the half width (m), in no
-    /// order.
+    /// Indices of the places within the box |dx| <= w and |dy| <= w around `centre`, in no order; w is the half width
+    /// (m).
     pub fn within_box(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = usize> {
         self.around(centre, half_width_m)
             .filter(move |place| {
@@ -46,13 +46,14 @@ impl Places {
             .map(|place| place.data as usize)
     }
 
-    /// Indices of the `count` places nearest to `centre`, without the place `own`: nearest first, equally near ones by
-    /// index. All other places where there are fewer.
+    /// Indices of the `count` places nearest to `centre`, except the place `own`: nearest first, ties by index. All
+    /// other places if there are fewer.
     #[must_use]
     pub fn nearest_others(&self, own: usize, centre: Position, count: usize) -> Vec<usize> {
         let distance = |at: &Position| (at[0] - centre[0]).hypot(at[1] - centre[1]);
         let nearest = self.tree.nearest_neighbor_iter(centre).take(count + 1);
-        // The tree compares squares of distances, whose rounding may change the order: its answer only says how far to look.
+        // The tree compares squared distances, whose rounding may change the order, so its result only bounds the
+        // search.
         let reach = nearest
             .map(|place| distance(place.geom()))
             .fold(0.0, f64::max);
@@ -64,7 +65,7 @@ impl Places {
         others.into_iter().map(|(_, other)| other).collect()
     }
 
-    /// All places within the box, and perhaps some just outside: its corners are rounded outwards.
+    /// All places within the box, and possibly some just outside: the corners of the box are rounded outwards.
     fn around(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = &Place> {
         let size = half_width_m + centre[0].abs().max(centre[1].abs());
         let reach = half_width_m + 4.0 * f64::EPSILON * size;
@@ -75,7 +76,7 @@ impl Places {
 }
 
 impl Neighbours {
-    /// i and j are neighbours if i != j, |dx| <= w and |dy| <= w, w being the half width (m).
+    /// Pedestrians i and j are neighbours if i != j, |dx| <= w and |dy| <= w, where w is the half width (m).
     ///
     /// The box is aligned with the axes: as in the published code, neighbours are found before a scene is rotated.
     #[must_use]

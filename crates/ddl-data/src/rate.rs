@@ -1,35 +1,36 @@
-//! Recordings of other rates, in steps of 0.4 s.
+//! Resampling of recordings to steps of 0.4 s.
 
 use thiserror::Error;
 
 use crate::track::{FRAME_LIMIT, FRAME_STEP_LIMIT, between};
 use crate::{Observation, Recording, RecordingError, TIME_STEP};
 
-/// A step may be this much longer or shorter than 0.4 s, as a share: less than anybody's speed varies.
+/// Largest relative deviation of a step from 0.4 s, smaller than the variation of walking speeds.
 const TOLERANCE: f64 = 0.005;
-/// Parts of a frame that are tried where a step is no whole number of frames, and how well they must fit.
+/// Largest number of parts of a frame tried where a step is not a whole number of frames ...
 const MOST_PARTS: i64 = 1000;
+/// ... and the relative accuracy required.
 const FIT: f64 = 1e-4;
-/// Observations further apart than this (s) do not show how somebody walks.
+/// Spacing of observations (s) above which they no longer show the course of a track.
 const SLOWEST: f64 = 1.2;
-/// Share of the differences between frames that must be whole numbers of the usual one; a clock that trembles has others.
+/// Share of the frame differences that must be multiples of the most common one; a jittering clock has others.
 const EVEN: f64 = 0.95;
-/// Observations up to this many usual spacings apart are joined; longer holes stay holes.
+/// Observations up to this many usual spacings apart are interpolated; longer holes stay holes.
 const JOINED: f64 = 1.5;
 
 /// A recording in steps of 0.4 s.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct InSteps {
-    /// The recording. Its frames count `parts` of a frame of the one that it was made of.
+    /// The recording. Its frame numbers count `parts` per frame of the original recording.
     pub recording: Recording,
-    /// 1 where a step is a whole number of frames.
+    /// Parts per original frame; 1 where a step is a whole number of frames.
     pub parts: i64,
-    /// Whether positions were taken between frames.
+    /// Whether positions were interpolated between frames.
     pub resampled: bool,
 }
 
-/// Frames in a step of 0.4 s, where a frame takes so many seconds and these are a whole number within 0.5 %.
+/// Frames per step of 0.4 s, given the seconds per frame, where this is a whole number within 0.5 %.
 ///
 /// ```
 /// use ddl_data::whole_frame_step;
@@ -47,14 +48,16 @@ fn whole_multiple(frames: f64, spacing: i64) -> Option<i64> {
 }
 
 impl Recording {
-    /// The recording in steps of 0.4 s, given the seconds from one frame number to the next, such as 0.04 at 25 frames a second.
+    /// Converts the recording to steps of 0.4 s, given the seconds per frame number, such as 0.04 at 25 frames per
+    /// second.
     ///
-    /// Where frames keep time and some whole number of the usual spacing between them makes a step (10 frames of 0.04
-    /// s), nothing changes but the [`frame_step`](Recording::frame_step). Otherwise positions are taken every 0.4 s,
-    /// counted back from the last frame, on straight lines between observations that are no further apart than usual.
+    /// If the frames are evenly spaced and a whole number of the usual spacing makes a step (10 frames of 0.04 s), only
+    /// the [`frame_step`](Recording::frame_step) changes. Otherwise positions are interpolated every 0.4 s, counted
+    /// back from the last frame, on straight lines between observations no further apart than usual.
     ///
     /// # Errors
-    /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frames leave their range.
+    /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frame numbers are too
+    /// large.
     pub fn in_steps(&self, frame_time: f64) -> Result<InSteps, RateError> {
         let frames = TIME_STEP / frame_time;
         if !(frames > 0.0 && frames <= FRAME_STEP_LIMIT as f64) {
@@ -77,13 +80,13 @@ impl Recording {
             let step = frames * *parts as f64;
             fits(step.round(), step, FIT)
         };
-        // A thousandth of a frame is always near enough.
+        // A thousandth of a frame is always accurate enough.
         let parts = (1..MOST_PARTS).find(whole).unwrap_or(MOST_PARTS);
         self.resampled(parts, (frames * parts as f64).round() as i64)
     }
 
-    /// Seconds from one frame number to the next as the file tells them by its [`rate`](Self::rate), as long as the
-    /// [`frame_step`](Self::frame_step) was not set.
+    /// Seconds per frame number according to the [`rate`](Self::rate) of the file; `None` after the
+    /// [`frame_step`](Self::frame_step) was set.
     #[must_use]
     pub fn frame_time_told(&self) -> Option<f64> {
         Some(1.0 / (self.rate()? * self.frame_step() as f64))
@@ -119,7 +122,7 @@ impl Recording {
             }
             for &[from, to] in placed.array_windows() {
                 if to.0 - from.0 <= longest {
-                    // The first place of the grid after `from`.
+                    // The first grid point after `from`.
                     let first = end - (end - from.0 - 1) / step * step;
                     for frame in (first..to.0).step_by(step as usize) {
                         add(frame, between(from, to, frame));
@@ -140,21 +143,21 @@ fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
     (found - wanted).abs() <= tolerance * wanted
 }
 
-/// Why a recording cannot be had in steps of 0.4 s.
+/// A recording that cannot be converted to steps of 0.4 s.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RateError {
     #[error(
-        "a frame must take more than 0 s, and 0.4 s be no more than 2^31 frames; found {found} s a frame"
+        "a frame must take more than 0 s, and 0.4 s must be at most 2^31 frames; found {found} s per frame"
     )]
     FrameTime { found: f64 },
     #[error(
-        "observations are {apart:.2} s apart, more than 1.2 s: too few to see how somebody walks; is the rate right, and are the frame \
-         numbers those of this rate?"
+        "observations are {apart:.2} s apart, more than 1.2 s: too few to follow a track; is the rate right, and do \
+         the frame numbers count at this rate?"
     )]
     TooSlow { apart: f64 },
-    #[error("frame {last} is too large to be counted in {parts} parts; count frames from 0")]
+    #[error("frame {last} is too large to be divided into {parts} parts; count frames from 0")]
     Frames { last: i64, parts: i64 },
     #[error(transparent)]
     Recording(#[from] RecordingError),

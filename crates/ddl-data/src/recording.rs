@@ -1,4 +1,4 @@
-//! A recording: everybody's positions in one place, over time.
+//! A recording: the positions of all pedestrians of one scene over time.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -10,7 +10,8 @@ use crate::{HORIZON, OBSERVED, Observation, PedestrianId, PedestrianNames, Posit
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
-/// Invariants: at least one observation, every position finite, no pedestrian twice in a frame, a positive frame step.
+/// Invariants: at least one observation, every position finite, at most one observation per pedestrian and frame, a
+/// positive frame step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     name: Arc<str>,
@@ -24,13 +25,13 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// A recording of the observations given, in any order.
+    /// Creates a recording from observations in any order.
     ///
-    /// `frame_step` is the number of raw frames in one step of [`TIME_STEP`](crate::TIME_STEP) seconds.
+    /// `frame_step` is the number of raw frames per step of [`TIME_STEP`](crate::TIME_STEP) seconds.
     ///
     /// # Errors
-    /// Without observations, with a frame step outside 1..=2^31, a frame of 2^53 or more in size, a position that is
-    /// not finite, or a pedestrian twice in a frame.
+    /// If there are no observations, the frame step is outside 1..=2^31, a frame is 2^53 or more in size, a position is
+    /// not finite, or a pedestrian is in a frame twice.
     pub fn new(
         name: impl Into<Arc<str>>,
         frame_step: i64,
@@ -89,8 +90,8 @@ impl Recording {
         })
     }
 
-    /// The recording whose frame step is the most common difference of two successive frames (the smaller one of two
-    /// equally common; 1 where there is only one frame).
+    /// Creates a recording whose frame step is the most common difference between successive frames (the smaller of two
+    /// equally common ones; 1 if there is only one frame).
     ///
     /// # Errors
     /// As [`Recording::new`].
@@ -106,7 +107,7 @@ impl Recording {
                 *counts.entry(difference).or_default() += 1;
             }
         }
-        // Ascending by difference, and `max_by_key` keeps the last of equals: hence reversed.
+        // Ascending by difference; `max_by_key` keeps the last of equal counts, hence reversed.
         let usual = counts.into_iter().rev().max_by_key(|&(_, count)| count);
         let frame_step = usual.map_or(1, |(difference, _)| difference);
         Ok(Self {
@@ -135,19 +136,18 @@ impl Recording {
         Self { names, ..self }
     }
 
-    /// The same recording, whose pedestrians are known by these words.
+    /// The same recording, with these words as names of its pedestrians.
     #[must_use]
     pub fn with_words(self, words: BTreeMap<PedestrianId, Arc<str>>) -> Self {
         self.with_names(PedestrianNames::new(words))
     }
 
-    /// How the file names its pedestrians.
+    /// The names of the pedestrians in the file.
     pub fn names(&self) -> &PedestrianNames {
         &self.names
     }
 
-    /// How many of the annotated frames follow each other in a second, where the file says so: the `fps` of TrajNet++
-    /// scenes.
+    /// Annotated frames per second, where the file states it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }
@@ -159,7 +159,7 @@ impl Recording {
         self
     }
 
-    /// The same recording with another number of raw frames a step.
+    /// The same recording with another number of raw frames per step.
     ///
     /// # Errors
     /// If the step does not lie in 1..=2^31.
@@ -180,7 +180,7 @@ impl Recording {
         Arc::clone(&self.name)
     }
 
-    /// Raw frames in one step of 0.4 s.
+    /// Raw frames per step of 0.4 s.
     pub fn frame_step(&self) -> i64 {
         self.frame_step
     }
@@ -195,7 +195,7 @@ impl Recording {
         &self.frames
     }
 
-    /// Who is where at a raw frame, sorted by pedestrian; empty if the frame is not annotated.
+    /// The observations at a raw frame, sorted by pedestrian; empty if the frame is not annotated.
     pub fn at(&self, frame: i64) -> &[Observation] {
         &self.observations[self.range_at(frame)]
     }
@@ -219,12 +219,12 @@ impl Recording {
         self.starts[index]..self.starts[index + 1]
     }
 
-    /// Everybody in the recording, ascending, each once.
+    /// The ids of all pedestrians, ascending, each once.
     pub fn pedestrians(&self) -> Vec<PedestrianId> {
         self.tracks().into_keys().collect()
     }
 
-    /// One pedestrian's observations in order of time; empty if nobody has this id.
+    /// One pedestrian's observations in order of time; empty if no pedestrian has this id.
     pub fn track(&self, pedestrian: PedestrianId) -> Vec<Observation> {
         self.observations
             .iter()
@@ -233,8 +233,8 @@ impl Recording {
             .collect()
     }
 
-    /// The recording in two parts by time: the first floor((1 - f) n) of its n annotated frames, and the rest; a part
-    /// without any frame is `None`.
+    /// Splits the recording by time: the first floor((1 - f) n) of its n annotated frames, and the rest. A part without
+    /// frames is `None`.
     ///
     /// `fraction` is the share f of the second part, clamped to [0, 1], NaN taken as 0. With f = 0.2 the parts are the
     /// files `_train` and `_val` of the Social-GAN convention.
@@ -244,7 +244,7 @@ impl Recording {
         (self.part(0..cut), self.part(cut..self.frames.len()))
     }
 
-    /// Index of the annotated frame before which a share of the recording's time is cut off.
+    /// Index of the annotated frame at which the last share of the recording begins.
     pub(crate) fn cut_index(&self, fraction: f64) -> usize {
         let fraction = if fraction.is_nan() {
             0.0
@@ -275,8 +275,8 @@ impl Recording {
         })
     }
 
-    /// The positions of each pedestrian of an observed window after it, up to [`HORIZON`](crate::HORIZON) of them,
-    /// ending before the first step at which the pedestrian was not seen.
+    /// The positions of each pedestrian after an observed window, up to [`HORIZON`](crate::HORIZON) of them, ending
+    /// before the first step at which the pedestrian was not seen.
     ///
     /// ```
     /// use ddl_data::{Observation, PedestrianId, Recording};

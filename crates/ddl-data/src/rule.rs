@@ -1,4 +1,4 @@
-//! Which stretches of a recording count as windows.
+//! Window rules: which stretches of a recording count as windows.
 
 use std::fmt;
 use std::ops::Range;
@@ -10,16 +10,16 @@ use crate::recording::Recording;
 use crate::unknown_name::UnknownName;
 use crate::{PedestrianId, Position, WINDOW, Window};
 
-/// Steps after which the published loader wants to see somebody again: one beyond the window.
+/// Step at which the published loader requires a pedestrian to be seen again: one beyond the window.
 const STEPS_AHEAD: i64 = 20;
 
-/// Fewest pedestrians of a window in the original code of Social-GAN.
+/// Smallest number of pedestrians per window in the original code of Social-GAN.
 pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 
-/// Which stretches of 20 steps count as windows, and who belongs to them.
+/// Which stretches of 20 steps count as windows, and which pedestrians belong to them.
 ///
-/// Under every rule a pedestrian belongs to a window if present at each of its 20 steps; who
-/// arrives or leaves meanwhile is left out.
+/// Under every rule a pedestrian belongs to a window if it is present at each of the 20 steps. Pedestrians that arrive
+/// or leave meanwhile are left out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -27,15 +27,15 @@ pub enum WindowRule {
     /// The windows of the published STAR and DDL code, quirks included.
     ///
     /// With the frame step s, an annotated frame f starts a window if frame f + 20 s (one step beyond the window) is
-    /// annotated, and somebody is in both. Whoever stands at exactly (0, 0) counts as absent at that step. A fold's
-    /// tests also lack the window of its very first frame ([`Fold::test_windows`](crate::Fold::test_windows)).
+    /// annotated, and at least one pedestrian is in both. A pedestrian at exactly (0, 0) counts as absent at that step.
+    /// A fold's tests also lack the window of its very first frame ([`Fold::test_windows`](crate::Fold::test_windows)).
     Published,
-    /// Every annotated frame starts a window if anybody is present at all of its 20 steps.
+    /// Every annotated frame starts a window if at least one pedestrian is present at all of its 20 steps.
     Complete,
-    /// The windows of the Social-GAN convention: 20 *annotated* frames in a row, whatever the gaps
-    /// between them, with at least `min_pedestrians` present at all of them (0 counts as 1).
+    /// The windows of the Social-GAN convention: 20 *annotated* frames in a row, with gaps of any length between them,
+    /// and at least `min_pedestrians` present at all of them (0 counts as 1).
     SocialGan {
-        /// Fewest pedestrians of a window: 2 in the original code, 1 in much later work.
+        /// Smallest number of pedestrians per window: 2 in the original code, 1 in much later work.
         min_pedestrians: usize,
     },
 }
@@ -84,8 +84,8 @@ impl FromStr for WindowRule {
 }
 
 impl Recording {
-    /// All windows of the recording under a rule, in order of their start frame; that of the first frame of a *fold*
-    /// included ([`Fold::test_windows`](crate::Fold::test_windows)).
+    /// All windows of the recording under a rule, in order of their start frame. This includes the window of the first
+    /// frame, which a *fold* leaves out ([`Fold::test_windows`](crate::Fold::test_windows)).
     #[must_use]
     pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
         let links = Links::new(self, rule);
@@ -94,12 +94,12 @@ impl Recording {
     }
 }
 
-/// For each observation, where the same pedestrian is one step later.
+/// For each observation, the observation of the same pedestrian one step later.
 struct Links<'a> {
     recording: &'a Recording,
     rule: WindowRule,
     next: Vec<Option<usize>>,
-    /// Steps, this one included, for which the pedestrian stays without a gap.
+    /// Number of steps, this one included, for which the pedestrian is present without a gap.
     run: Vec<usize>,
 }
 
@@ -144,23 +144,23 @@ impl<'a> Links<'a> {
             || self.recording.observations()[observation].position != [0.0, 0.0]
     }
 
-    /// The observations of two frames that show the same pedestrian; both are sorted by pedestrian.
+    /// The pairs of observations of two frames that show the same pedestrian; both frames are sorted by pedestrian.
     fn pairs(&self, from: Range<usize>, to: Range<usize>) -> Vec<(usize, usize)> {
-        let who = |i: usize| self.recording.observations()[i].pedestrian;
+        let pedestrian = |i: usize| self.recording.observations()[i].pedestrian;
         let mut pairs = Vec::with_capacity(from.len().min(to.len()));
         let mut later = to.start;
         for earlier in from.filter(|&i| self.counts(i)) {
-            while later < to.end && who(later) < who(earlier) {
+            while later < to.end && pedestrian(later) < pedestrian(earlier) {
                 later += 1;
             }
-            if later < to.end && who(later) == who(earlier) && self.counts(later) {
+            if later < to.end && pedestrian(later) == pedestrian(earlier) && self.counts(later) {
                 pairs.push((earlier, later));
             }
         }
         pairs
     }
 
-    /// Whether the rule lets the `index`-th annotated frame start a window at all.
+    /// Whether the rule allows the `index`-th annotated frame to start a window.
     fn may_start(&self, index: usize) -> bool {
         if self.rule != WindowRule::Published {
             return true;

@@ -1,4 +1,4 @@
-//! What a recording holds, and what about it looks wrong.
+//! Summary of a recording, with plausibility checks.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::{
     WindowRule,
 };
 
-/// What a recording holds, in steps of 0.4 s.
+/// Summary of a recording, in steps of 0.4 s.
 ///
 /// ```
 /// use ddl_data::{Observation, PedestrianId, Recording};
@@ -25,66 +25,67 @@ use crate::{
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Summary {
-    /// Its name.
+    /// Name of the recording.
     pub recording: String,
-    /// Frames with anybody in them.
+    /// Number of annotated frames.
     pub frames: usize,
     /// First raw frame number.
     pub first_frame: i64,
     /// Last raw frame number.
     pub last_frame: i64,
-    /// Raw frames in a step of 0.4 s.
+    /// Raw frames per step of 0.4 s.
     pub frame_step: i64,
     /// Time from the first frame to the last, s.
     pub seconds: f64,
-    /// People.
+    /// Number of pedestrians.
     pub pedestrians: usize,
-    /// Positions.
+    /// Number of observations.
     pub observations: usize,
     /// Least x and y, m.
     pub low: Position,
     /// Largest x and y, m.
     pub high: Position,
-    /// Pairs of positions of one person a step apart.
+    /// Number of pairs of positions of one pedestrian that are one step apart.
     pub steps: usize,
-    /// Median speed over single steps, m/s; `None` where nobody was seen at two frames a step apart.
+    /// Median speed over single steps, m/s; `None` where no pedestrian was seen at two frames one step apart.
     pub median_speed: Option<f64>,
-    /// Largest distance between anybody's first and last position, m.
+    /// Largest distance between the first and last position of any pedestrian, m.
     pub farthest: f64,
-    /// Largest speed over a single step, and whose.
+    /// The fastest single step and its pedestrian.
     pub fastest: Option<Fastest>,
-    /// The 90 % quantile of the speeds of steps of tracks that lead farther than 2 m, m/s.
+    /// The 90 % quantile of the step speeds of tracks that end more than 2 m from their start, m/s.
     pub brisk_speed: Option<f64>,
-    /// Share of the frames between somebody's first and last at which that person was not seen; frames that nobody is in do not count.
+    /// Share of missing positions between the first and last frame of each pedestrian, counted over annotated frames.
     pub unseen: f64,
-    /// Times that somebody was not seen for some steps and then again.
+    /// Number of holes: a pedestrian was not seen for some steps and then again.
     pub holes: usize,
-    /// The longest of them.
+    /// The longest hole.
     pub longest_hole: Option<Hole>,
-    /// Moments of people who can be forecast, seen at 2 or more of 8 steps ([`Completion::USUAL`]).
+    /// Number of observations from which a pedestrian can be forecast, seen at 2 or more of 8 steps
+    /// ([`Completion::USUAL`]).
     pub to_forecast: usize,
-    /// Of these, moments of people seen at all 8 steps.
+    /// Of these, the number seen at all 8 steps.
     pub seen_whole: usize,
     /// Windows of 20 steps in a row ([`WindowRule::Complete`]).
     pub windows: usize,
-    /// Pedestrians in these windows, each counted once a window: what a model can be trained on and measured with.
+    /// Pedestrians in these windows, each counted once per window: the samples for training and evaluation.
     pub to_learn_from: usize,
 }
 
-/// A time in which somebody was not seen, and after which they were again.
+/// A gap in the observations of one pedestrian.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Hole {
-    /// Who was not seen.
+    /// The pedestrian that was not seen.
     pub pedestrian: PedestrianName,
-    /// The raw frame at which they were last seen before it.
+    /// The raw frame of the last observation before the gap.
     pub after: i64,
-    /// From that frame to the one at which they were seen again, s.
+    /// Time from that frame to the next observation, s.
     pub seconds: f64,
 }
 
 impl Summary {
-    /// What looks wrong; nothing where all looks well.
+    /// Plausibility warnings; empty for a plausible recording.
     #[must_use]
     pub fn doubts(&self) -> Vec<Doubt> {
         let speeds = Speeds {
@@ -107,7 +108,7 @@ impl Summary {
 
 impl Recording {
     fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
-        // Every frame of a track is one of the recording.
+        // Every frame of a track is a frame of the recording.
         let index = |frame| {
             self.frames()
                 .binary_search(&frame)
@@ -119,7 +120,7 @@ impl Recording {
         1.0 - self.observations().len() as f64 / spans.sum::<usize>() as f64
     }
 
-    /// What the recording holds.
+    /// A summary of the recording.
     #[must_use]
     pub fn summary(&self) -> Summary {
         let tracks = self.tracks();

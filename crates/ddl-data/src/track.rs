@@ -1,4 +1,4 @@
-//! One observation of one pedestrian: the grain that recordings are made of.
+//! A single observation of a pedestrian, and the constants of its sampling.
 
 use std::fmt;
 
@@ -16,14 +16,14 @@ pub const HORIZON: usize = 12;
 /// Steps of a whole window: observed and to forecast.
 pub const WINDOW: usize = OBSERVED + HORIZON;
 
-/// Frames are below this in size: exact in an `f64`, and far from overflow when counting on.
+/// Limit of frame numbers: exact in an `f64`, and far from overflow in sums.
 pub(crate) const FRAME_LIMIT: i64 = 1 << 53;
 pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
 
-/// Coordinates that are read from files and streams are at most this in size (m); those of UTM reach 10,000 km.
+/// Largest coordinate (m) accepted from files and streams; UTM coordinates reach 10,000 km.
 pub const COORDINATE_LIMIT: f64 = 1e7;
 
-/// The number by which a recording knows a pedestrian; unique within one recording only.
+/// The number of a pedestrian; unique within one recording only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PedestrianId(pub i64);
@@ -34,19 +34,19 @@ impl fmt::Display for PedestrianId {
     }
 }
 
-/// Where one pedestrian was at one frame.
+/// Position of one pedestrian at one frame.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Observation {
     /// Raw frame number of the recording; steps of 0.4 s are a fixed number of raw frames apart.
     pub frame: i64,
-    /// Who.
+    /// The pedestrian.
     pub pedestrian: PedestrianId,
-    /// Where, `[x, y]` (m).
+    /// Its position, `[x, y]` (m).
     pub position: Position,
 }
 
 impl Observation {
-    /// Who is where, when.
+    /// An observation of a pedestrian at a frame and position (m).
     #[must_use]
     pub fn new(frame: i64, pedestrian: PedestrianId, position: Position) -> Self {
         Self {

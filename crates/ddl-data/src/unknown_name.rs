@@ -1,12 +1,12 @@
-//! A word that should be one of a few.
+//! Parsing of a word that must be one of a fixed set.
 
 use thiserror::Error;
 
-/// A word that names no member of a fixed set, with the words that do.
+/// A word outside a fixed set, with the words allowed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{found:?} is no {kind}; choose one of {expected}")]
+#[error("{found:?} is not a known {kind}; choose one of {expected}")]
 pub struct UnknownName {
-    /// What was to be named, such as `data convention`.
+    /// What the word should name, such as `data convention`.
     pub kind: &'static str,
     /// The word found.
     pub found: String,
@@ -15,10 +15,10 @@ pub struct UnknownName {
 }
 
 impl UnknownName {
-    /// The one of `all` that is called `word`.
+    /// The member of `all` whose name is `word`.
     ///
     /// # Errors
-    /// None is.
+    /// If no member has this name.
     pub fn find<T: Copy>(
         word: &str,
         all: &[T],

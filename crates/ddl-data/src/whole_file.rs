@@ -3,25 +3,28 @@
 use std::io::{Error, ErrorKind, Result, Write as _};
 use std::path::Path;
 
-/// How the names of files begin that are being written.
+/// Prefix of the names of unfinished files.
 const WRITING: &str = ".writing-";
 
 /// Writes a file under a temporary name in its folder and renames it when it is whole.
 ///
 /// # Errors
-/// When the file cannot be written; an earlier one is then left as it was.
+/// When the file cannot be written; an existing file then stays unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
     if !folder.is_dir() {
-        let problem = format!("there is no folder {}", folder.display());
+        let problem = format!(
+            "the folder {} does not exist; create it first",
+            folder.display()
+        );
         return Err(Error::new(ErrorKind::NotFound, problem));
     }
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(WRITING);
-    // Temporary files are private by default; results are as readable as the user's other files.
+    // Temporary files are private by default, but results should have the usual permissions.
     #[cfg(unix)]
     let builder = builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let mut file = builder.tempfile_in(folder)?;
@@ -31,11 +34,12 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Removes what killed processes were writing into a folder. Only for who has the folder to himself; what cannot be removed does no harm.
+/// Removes the unfinished files that killed processes left in a folder. Call it only when no other process writes
+/// there. Files that cannot be removed are ignored.
 pub fn remove_half_written(folder: &Path) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(WRITING)) {
-        // of a folder of that name this is an error
+        // Removing a folder of that name fails and is ignored.
         let _ = std::fs::remove_file(entry.path());
     }
 }
@@ -45,7 +49,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_was_half_written_is_removed_and_nothing_else() {
+    fn only_unfinished_files_are_removed() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
         std::fs::create_dir(at("deep")).unwrap();
@@ -56,7 +60,7 @@ mod tests {
         remove_half_written(folder.path());
         assert!(!at(".writing-a1").exists());
         assert_eq!(std::fs::read(at("whole.json")).unwrap(), b"new");
-        // what lies deeper belongs to somebody else
+        // Files in sub-folders may belong to another process.
         assert!(at("deep/.writing-b2").is_file());
     }
 }

@@ -1,4 +1,4 @@
-//! A window: a few pedestrians over 8 observed and 12 following steps.
+//! A window: pedestrians over 8 observed and 12 future steps.
 
 use std::sync::Arc;
 
@@ -29,26 +29,26 @@ use crate::{
 pub struct Window {
     recording: Arc<str>,
     frame_step: i64,
-    /// Raw frame of each step; `steps()` many.
+    /// Raw frame of each step; `steps()` entries.
     frames: Vec<i64>,
     pedestrians: Vec<PedestrianId>,
     names: PedestrianNames,
-    /// Pedestrian-major: pedestrian i holds `positions[i * T..(i + 1) * T]`.
+    /// Pedestrian-major: pedestrian i has `positions[i * T..(i + 1) * T]`.
     positions: Vec<Position>,
-    /// One a pedestrian, or none where nothing is.
+    /// One entry per pedestrian, or empty if nothing was filled in.
     made_up: Vec<MadeUp>,
-    /// One list a pedestrian, or none where nothing is remembered of anybody.
+    /// One list per pedestrian, or empty if nothing is remembered.
     remembered: Vec<Vec<Remembered>>,
 }
 
 impl Window {
-    /// A window of the tracks given, one for each pedestrian.
+    /// Creates a window from tracks, one per pedestrian.
     ///
-    /// `start_frame` is the raw frame of the first position, `frame_step` the raw frames a step.
+    /// `start_frame` is the raw frame of the first position, `frame_step` the number of raw frames per step.
     ///
     /// # Errors
-    /// Without pedestrians, with ids and tracks of different number, an id twice, tracks that are not all of 8 or all
-    /// of 20 positions, a position that is not finite, or frames out of range.
+    /// If there are no pedestrians, the numbers of ids and tracks differ, an id is repeated, the tracks are not all of
+    /// 8 or all of 20 positions, a position is not finite, or frames are out of range.
     pub fn new(
         recording: impl Into<Arc<str>>,
         start_frame: i64,
@@ -106,7 +106,7 @@ impl Window {
         ))
     }
 
-    /// A window cut from a recording, whose invariants make every check of [`new`](Self::new) superfluous.
+    /// A window cut from a recording, whose invariants make the checks of [`new`](Self::new) unnecessary.
     pub(crate) fn cut(
         recording: Arc<str>,
         frame_step: i64,
@@ -128,13 +128,13 @@ impl Window {
         }
     }
 
-    /// The same, naming its pedestrians so.
+    /// The same window with these names of its pedestrians.
     #[must_use]
     pub fn with_names(self, names: PedestrianNames) -> Self {
         Self { names, ..self }
     }
 
-    /// How the file or stream names the i-th pedestrian: by the number, unless it has words.
+    /// The name of the i-th pedestrian in the file or stream: its number, or a word.
     pub fn name(&self, i: usize) -> PedestrianName {
         self.names.of(self.pedestrians[i])
     }
@@ -152,7 +152,8 @@ impl Window {
         self
     }
 
-    /// What of the i-th pedestrian's observation was not seen: nothing, unless a [`Completion`](crate::Completion) was asked for.
+    /// The numbers of positions of the i-th pedestrian that were filled in; zero unless a
+    /// [`Completion`](crate::Completion) was requested.
     ///
     /// # Panics
     /// If `i >= len()`.
@@ -161,9 +162,10 @@ impl Window {
         self.made_up.get(i).copied().unwrap_or_default()
     }
 
-    /// The same, with what the place remembers for each pedestrian, by index: others who had moved like this one.
+    /// The same window with remembered tracks of similar earlier pedestrians of the place, given by pedestrian index.
     ///
-    /// All of it must have been observed by the last observed frame of the window, or in another recording of the place.
+    /// All of them must have been observed by the last observed frame of the window, or in another recording of the
+    /// place.
     #[must_use]
     pub fn with_remembered(self, remembered: impl FnMut(usize) -> Vec<Remembered>) -> Self {
         let mut remembered: Vec<_> = (0..self.len()).map(remembered).collect();
@@ -173,8 +175,7 @@ impl Window {
         Self { remembered, ..self }
     }
 
-    /// What the place remembers for the i-th pedestrian, the most alike first; empty unless it was
-    /// [given](Self::with_remembered).
+    /// Remembered tracks for the i-th pedestrian, most similar first; empty unless [given](Self::with_remembered).
     ///
     /// # Panics
     /// If `i >= len()`.
@@ -183,7 +184,7 @@ impl Window {
         self.remembered.get(i).map_or(&[], Vec::as_slice)
     }
 
-    /// Name of the recording it is from.
+    /// Name of the recording that the window was cut from.
     pub fn recording(&self) -> &str {
         &self.recording
     }
@@ -193,18 +194,18 @@ impl Window {
         self.frames[0]
     }
 
-    /// Raw frame of each position, T of them, ascending: `frame_step` apart, but for windows of
-    /// [`WindowRule::SocialGan`](crate::WindowRule), which may reach over a gap.
+    /// Raw frame of each of the T positions, ascending and `frame_step` apart. Windows of
+    /// [`WindowRule::SocialGan`](crate::WindowRule) may contain larger gaps.
     pub fn frames(&self) -> &[i64] {
         &self.frames
     }
 
-    /// Raw frames a step.
+    /// Raw frames per step.
     pub fn frame_step(&self) -> i64 {
         self.frame_step
     }
 
-    /// Who is in the window; index i everywhere else means the i-th of these.
+    /// The pedestrians of the window; every index i refers to the i-th of these.
     pub fn pedestrians(&self) -> &[PedestrianId] {
         &self.pedestrians
     }
@@ -244,24 +245,24 @@ impl Window {
         self.steps() == WINDOW
     }
 
-    /// Where the i-th pedestrian ends (m), if the future is known.
+    /// Endpoint of the i-th pedestrian (m), if the future is known.
     pub fn end(&self, i: usize) -> Option<Position> {
         self.future(i).last().copied()
     }
 
-    /// Where everybody is at one step, counted from 0 (m).
+    /// Positions of all pedestrians at one step, counted from 0 (m).
     #[must_use]
     pub fn positions_at(&self, step: usize) -> Vec<Position> {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
     }
 
-    /// Who is near whom at one step, counted from 0: see [`Neighbours::within_box`].
+    /// Neighbours at one step, counted from 0: see [`Neighbours::within_box`].
     #[must_use]
     pub fn neighbours(&self, step: usize, half_width_m: f64) -> Neighbours {
         Neighbours::within_box(&self.positions_at(step), half_width_m)
     }
 
-    /// The observation alone, as it is known when a forecast is asked for.
+    /// The observation alone, as known when a forecast is made.
     #[must_use]
     pub fn without_future(&self) -> Window {
         let observed = (0..self.len()).flat_map(|i| self.observed(i));
@@ -289,7 +290,7 @@ impl Window {
         window.with_names(self.names.clone())
     }
 
-    /// The window with some of its pedestrians alone; `None` if there would be nobody.
+    /// The window restricted to some of its pedestrians; `None` if none remain.
     #[must_use]
     pub fn keeping(&self, mut keep: impl FnMut(usize) -> bool) -> Option<Window> {
         let kept: Vec<usize> = (0..self.len()).filter(|&i| keep(i)).collect();
@@ -304,7 +305,7 @@ impl Window {
     }
 
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from 0, position (m).
-    /// What `f` returns is not checked; keep it finite. What is remembered stays where it is.
+    /// The results of `f` are not checked; they must be finite. Remembered tracks are unchanged.
     #[must_use]
     pub fn map_positions(&self, mut f: impl FnMut(usize, usize, Position) -> Position) -> Window {
         let mut mapped = self.clone();
@@ -315,8 +316,8 @@ impl Window {
         mapped
     }
 
-    /// The window as if time ran backwards: everybody walks its track from the end to the start, at the same frames.
-    /// Nothing is remembered: it was the past.
+    /// The window in reversed time: every pedestrian walks its track from the end to the start, at the same frames.
+    /// Remembered tracks are dropped, because they would lie in the future.
     #[must_use]
     pub fn reversed(&self) -> Window {
         let mut reversed = self.clone().with_remembered(|_| Vec::new());

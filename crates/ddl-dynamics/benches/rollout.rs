@@ -1,5 +1,5 @@
-//! Speed of a forecast's rollout, and of its certificate, on one core. An element is a hypothesis: 12 steps of 0.4 s
-//! with a metric each. 512 different ones take turns, because a repeated one would have all branches predicted.
+//! Speed of a forecast's rollout, and of its certificate, on one core. An element is one hypothesis: 12 steps of 0.4 s
+//! with a metric each. The benchmark cycles through 512 different hypotheses, so that branches stay unpredictable.
 
 mod hypotheses;
 

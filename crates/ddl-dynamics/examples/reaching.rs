@@ -1,12 +1,12 @@
-//! A robot's hand reaches past a pillar to a cup, in three dimensions, and the motion is certified.
+//! A robot's hand reaches past a pillar to a cup, in three dimensions, with a certificate of the motion.
 //!
 //! ```text
 //! cargo run -p ddl-dynamics --example reaching
 //! ```
-//! A metric shapes the reach; a ball in the way slows the approach to it and is slid along. Printed are the distance to
-//! the cup, the clearance from the ball's surface, and whether the certificate holds: also of plain Euler steps, which
-//! overshoot.
-#![expect(clippy::print_stdout, reason = "what it is for")]
+//! A metric shapes the reach. A ball in the way slows the approach to it, and the hand slides along it. The program
+//! prints the distance to the cup, the clearance from the ball's surface, and whether the certificate holds. It also
+//! prints the verdict on plain Euler steps, which overshoot.
+#![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate,
@@ -20,7 +20,7 @@ const STEPS: usize = 120;
 
 fn main() -> Result<(), DynamicsError> {
     let cup = Attractor::new(Vector3::new(0.6, 0.1, 0.3))?; // metres
-    // P = L L^T + sigma I, in m/s along each axis: L is lower triangular, anything else about it is free.
+    // P = L L^T + sigma I, in m/s along each axis: L is any lower triangular matrix.
     #[rustfmt::skip]
     let factor = Matrix3::new(
         0.8, 0.0, 0.0,
@@ -28,7 +28,7 @@ fn main() -> Result<(), DynamicsError> {
         0.0, 0.1, 0.5,
     );
     let reach = NaturalGradientFlow::new(cup, CholeskyMetric::new(factor, 0.01)?);
-    // Radius 0.1 m; slowed from 0.1 m before its surface on.
+    // Radius 0.1 m; the approach is slowed within 0.1 m of its surface.
     let pillar = Ball::new(Vector3::new(0.3, 0.1, 0.14), 0.1)?;
     let careful = AvoidingFlow::new(reach, [pillar], 0.1)?;
 
@@ -54,7 +54,7 @@ fn main() -> Result<(), DynamicsError> {
         );
     }
     println!(
-        "at the end: {:.6} m from the cup; least clearance {:.4} m ({:.4} m without minding the pillar)",
+        "at the end: {:.6} m from the cup; least clearance {:.4} m ({:.4} m if the pillar is ignored)",
         cup.distance(&path[STEPS]),
         clearance(&path),
         clearance(&careless)
@@ -66,11 +66,11 @@ fn main() -> Result<(), DynamicsError> {
         Err(violation) => println!("certificate: BROKEN, {violation}"),
     }
     println!(
-        "largest turn from the straight way: {:.0} degrees",
+        "largest angle to the straight line: {:.0} degrees",
         certificate.largest_angle().to_degrees()
     );
 
-    // The same flow in plain Euler steps.
+    // The same flow with plain Euler steps.
     let plain = rollout(&careful, &Euler, start, TIME_STEP, STEPS)?;
     match LyapunovCertificate::of_rollout(&careful, &plain, TIME_STEP)?.holds() {
         Ok(()) => println!("plain Euler steps: hold"),

@@ -1,4 +1,4 @@
-//! The attractor: a potential that is least at the goal, and its slope.
+//! The attractor: a potential with its minimum at the goal, and its gradient.
 
 use nalgebra::SVector;
 
@@ -8,14 +8,14 @@ use crate::{
     real::Real,
 };
 
-/// A potential with its only minimum at a goal `p*`: what every flow of this crate descends.
+/// A potential with its only minimum at a goal `p*`; every flow of this crate descends it.
 ///
 /// | | `Phi(p)` | `grad Phi` | a flow down it |
 /// |---|---|---|---|
 /// | [`new`](Self::new) | `\|e\|` | `u = e / \|e\|` | keeps its speed and arrives in finite time |
-/// | [`quadratic`](Self::quadratic) | `\|e\|^2 / 2` | `e` | slows down near the goal, which it nears exponentially |
+/// | [`quadratic`](Self::quadratic) | `\|e\|^2 / 2` | `e` | slows down near the goal and approaches it exponentially |
 ///
-/// with `e = p - p*`. Both grow with the distance alone, so one falls exactly when the other does.
+/// with `e = p - p*`. Both depend only on the distance and increase with it, so one falls exactly when the other does.
 ///
 /// # Shapes
 /// `D` components, in metres.
@@ -35,7 +35,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// The distance to `goal` (metres): `Phi(p) = |p - p*|`.
     ///
     /// # Errors
-    /// [`DynamicsError::NonFinite`] when a component of the goal is NaN or infinite.
+    /// [`DynamicsError::NonFinite`] if a component of the goal is NaN or infinite.
     pub fn new(goal: SVector<T, D>) -> Result<Self, DynamicsError> {
         Self::growing(goal, Growth::Linear)
     }
@@ -45,7 +45,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// Its gradient is in metres, so the entries of a metric `P` are rates (1/s).
     ///
     /// # Errors
-    /// [`DynamicsError::NonFinite`] when a component of the goal is NaN or infinite.
+    /// [`DynamicsError::NonFinite`] if a component of the goal is NaN or infinite.
     pub fn quadratic(goal: SVector<T, D>) -> Result<Self, DynamicsError> {
         Self::growing(goal, Growth::Quadratic)
     }
@@ -69,7 +69,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// The distance to the goal, `|p - p*|` (metres).
     ///
     /// # Numerics
-    /// Zero only when `position` equals the goal component by component: squares that underflow or overflow do no harm.
+    /// Zero only if `position` equals the goal component by component; squares that underflow or overflow are handled.
     /// A distance above the largest number of `T` is infinite.
     #[inline]
     pub fn distance(&self, position: &SVector<T, D>) -> T {
@@ -85,8 +85,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
         self.potential_and_gradient(position).0
     }
 
-    /// The gradient of the potential: the unit vector `u = e / |e|` away from the goal, or the offset `e` when
-    /// quadratic; 0 at the goal.
+    /// The gradient of the potential: the unit vector `u = e / |e|` away from the goal, or the offset `e` if quadratic;
+    /// 0 at the goal.
     ///
     /// # Numerics
     /// `u` has length 1 for every offset but zero, subnormal and huge ones included.
@@ -95,7 +95,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
         self.potential_and_gradient(position).1
     }
 
-    /// [`potential`](Self::potential) and [`gradient`](Self::gradient) at the cost of one.
+    /// [`potential`](Self::potential) and [`gradient`](Self::gradient) together, at the cost of one.
     #[inline]
     pub fn potential_and_gradient(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         let (distance, away) = self.distance_and_direction(position);
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_gradient_has_unit_length_however_near_or_far() {
+    fn the_gradient_has_unit_length_at_every_distance() {
         let attractor = Attractor::new(Vector2::new(0.0_f32, 0.0)).unwrap();
         for size in [1e-45_f32, 1e-40, 1e-30, 1e-12, 1.0, 1e30, f32::MAX] {
             let (distance, direction) = attractor.potential_and_gradient(&Vector2::new(0.0, -size));
@@ -143,7 +143,7 @@ mod tests {
         );
         assert_eq!(bowl.distance(&position), 5.0);
         assert_eq!(bowl.gradient(bowl.goal()), Vector2::zeros());
-        // The square underflows, the distance does not.
+        // The square underflows, but the distance does not.
         let near = Vector2::new(1.0 + f64::EPSILON, 1.0);
         assert_eq!(bowl.distance(&near), f64::EPSILON);
     }

@@ -14,14 +14,14 @@ pub use straightening::Straightening;
 
 /// A smooth map `y = psi(x)` of space onto itself with a smooth inverse.
 ///
-/// Seen through it, a straight line may be a path around a corner: the potential `|psi(x) - psi(p*)|` is zero at the
-/// goal alone.
+/// Its inverse may map a straight line to a path around a corner. The potential `|psi(x) - psi(p*)|` is zero only at
+/// the goal.
 ///
-/// # What is promised
+/// # Guarantees
 /// - `psi` is smooth, and one-to-one from the whole space onto the whole space.
 /// - `det J > 0` everywhere, and above a positive number that each implementation states.
-/// - No panic for any input; what `apply` and `inverse` give for finite input is a number, or infinite where it is too
-///   large for `T`, never NaN. A Jacobian with an entry too large for `T` is not finite.
+/// - No panic for any input. For finite input, `apply` and `inverse` return a number, or infinity where it is too large
+///   for `T`, never NaN. A Jacobian with an entry too large for `T` is not finite.
 pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The image `psi(x)` of `position` (metres).
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D>;
@@ -29,7 +29,7 @@ pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The position `psi^-1(y)` whose image is `image` (metres).
     fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D>;
 
-    /// [`apply`](Self::apply) and [`jacobian`](Self::jacobian) at the cost of one.
+    /// [`apply`](Self::apply) and [`jacobian`](Self::jacobian) together, at the cost of one.
     fn apply_with_jacobian(&self, position: &SVector<T, D>) -> (SVector<T, D>, SMatrix<T, D, D>);
 
     /// The Jacobian `J = d psi / d x` at `position`: row `i`, column `j` is `d y_i / d x_j` (no unit).

@@ -1,10 +1,10 @@
-//! What can be wrong with the input of this crate.
+//! Errors of this crate.
 
 use thiserror::Error;
 
 use crate::real::Real;
 
-/// An input that has no meaning for a stable flow; nothing in this crate panics on it.
+/// An invalid input. Nothing in this crate panics on invalid input.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -27,11 +27,15 @@ pub enum DynamicsError {
     },
     #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
     FactorTooLarge,
-    #[error("the map is not finite or has no inverse: P seen through it is not positive definite")]
+    #[error(
+        "the map is not finite or has no inverse: the transformed P would not be positive definite"
+    )]
     SingularMap,
-    #[error("the share is {0}: it must be above 0, or P is not positive definite, and at most 1")]
+    #[error(
+        "the share is {0}: it must be above 0, so that P stays positive definite, and at most 1"
+    )]
     InvalidShare(f64),
-    #[error("the direction is the zero vector: it must have a length")]
+    #[error("the direction is the zero vector: its length must be positive")]
     NoDirection,
     #[error(
         "the flow is too stiff: {steps} inner steps were not enough for {covered} s of a time step; \
@@ -41,25 +45,29 @@ pub enum DynamicsError {
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]
     DistanceTooLarge,
     #[error(
-        "the local translation is not invertible: sqrt(2/e) rho |v| is {contraction}, and must be at most {largest}; shorten the translation v or lower the rate rho"
+        "the local translation is not invertible: sqrt(2/e) rho |v| is {contraction}, and must be at most {largest}; \
+         shorten the translation v or lower the rate rho"
     )]
     NotInvertible { contraction: f64, largest: f64 },
     #[error(
-        "a path of {points} points and {length} m cannot be straightened: it needs two different points at least, and a length that is a finite number"
+        "a path of {points} points and {length} m cannot be straightened: it needs at least two different points, and \
+         a finite length"
     )]
     InvalidPathLength { points: usize, length: f64 },
     #[error(
-        "the path turns back on itself {along:.2} m after its start: straighten the parts before and after it, or round the turn"
+        "the path turns back on itself {along:.2} m after its start: straighten the parts before and after it, or \
+         round the turn"
     )]
     PathTurnsBack { along: f64 },
-    #[error("the metric schedule is empty: it needs the metric of at least one step")]
+    #[error("the metric schedule is empty: give the metric of at least one step")]
     EmptySchedule,
     #[error(
         "{positions} positions and {metrics} metrics: a rollout of n steps has n + 1 positions and n metrics"
     )]
     LengthMismatch { positions: usize, metrics: usize },
     #[error(
-        "position {position} is not as far from the goal as the certificate says: it is of another path or goal"
+        "the distance of position {position} from the goal differs from the certificate: \
+         the path or the goal is another one"
     )]
     OtherPath { position: usize },
     #[error("step {step} of the rollout failed: {cause}")]

@@ -1,4 +1,4 @@
-//! Flows: the velocity with which a pedestrian is drawn to its goal.
+//! Flows: the velocity with which a pedestrian approaches its goal.
 
 mod avoiding;
 mod diffeomorphic;
@@ -15,17 +15,17 @@ pub use avoiding::AvoidingFlow;
 pub use diffeomorphic::DiffeomorphicFlow;
 pub use natural_gradient::NaturalGradientFlow;
 
-/// A velocity field with one attractor, stable by its form.
+/// A velocity field with one attractor, stable by construction.
 ///
-/// A flow is an [`attractor`](Self::attractor) `Phi`, a positive-definite [`metric`](Self::metric) `P` at every state
-/// and, if need be, a [`chart`](Self::chart) `psi`. With `y = psi(p)` (`y = p` without a chart) it moves as
+/// A flow has an [`attractor`](Self::attractor) `Phi`, a positive-definite [`metric`](Self::metric) `P` at every state
+/// and, optionally, a [`chart`](Self::chart) `psi`. With `y = psi(p)` (`y = p` without a chart) its motion is
 ///
 /// ```text
 /// dy/dt = -P grad Phi(y),      so      d Phi / dt = -(grad Phi)^T P grad Phi < 0 away from the goal
 /// ```
 ///
-/// whatever `P` depends on. What is left of this in steps of finite length is the [`Integrator`](crate::Integrator)'s
-/// part.
+/// for every dependence of `P` on the state. The [`Integrator`](crate::Integrator) has to preserve this in steps of
+/// finite length.
 pub trait Flow<T: Real, const D: usize> {
     /// The attractor that the flow descends, in the coordinates of the [`chart`](Self::chart).
     fn attractor(&self) -> &Attractor<T, D>;
@@ -38,24 +38,24 @@ pub trait Flow<T: Real, const D: usize> {
     /// The metric `P` at `state`, in the coordinates of the [`chart`](Self::chart).
     ///
     /// # Errors
-    /// Whatever keeps the flow from giving a metric, see the implementation.
+    /// If the flow cannot determine a metric; see the implementation.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
 
-    /// The velocity of the pedestrian at `state` (m/s): `-P grad Phi`, or what becomes of it in space where there is a
-    /// chart. It must agree with [`metric`](Self::metric): integrators use either.
+    /// The velocity of the pedestrian at `state` (m/s): `-P grad Phi`, transformed to space if there is a chart. It
+    /// must agree with [`metric`](Self::metric), because integrators use either.
     ///
     /// # Errors
     /// Those of [`metric`](Self::metric).
     fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError>;
 
-    /// The coordinates in which the potential is a plain distance; `None` where space itself is meant.
+    /// The coordinates in which the potential is a plain distance; `None` if these are the coordinates of space.
     fn chart(&self) -> Option<&dyn Diffeomorphism<T, D>> {
         None
     }
 
-    /// How long `velocity` (m/s) may be followed from `state` at most (seconds, positive); `None` where
-    /// the flow sets no limit. A flow with a [`chart`](Self::chart) is not asked by
-    /// [`StableEuler`](crate::StableEuler), whose steps are straight in the chart.
+    /// The longest time for which `velocity` (m/s) may be followed from `state` (seconds, positive); `None` if the flow
+    /// sets no limit. [`StableEuler`](crate::StableEuler) ignores it for flows with a [`chart`](Self::chart), because
+    /// its steps are straight in the chart.
     fn longest_step(&self, state: &State<'_, T, D>, velocity: &SVector<T, D>) -> Option<T> {
         let _ = (state, velocity);
         None

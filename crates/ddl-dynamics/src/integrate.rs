@@ -12,7 +12,7 @@ pub use dormand_prince::DormandPrince;
 pub use euler::Euler;
 pub use stable_euler::{StableEuler, StableStep, StepLimit};
 
-/// A rule that carries a pedestrian over one time step.
+/// An integration rule for one time step.
 pub trait Integrator<T: Real, const D: usize> {
     /// The position `dt` seconds after `state` (metres).
     ///

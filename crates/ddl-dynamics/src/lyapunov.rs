@@ -1,4 +1,4 @@
-//! Lyapunov certificates: the evidence that a rollout kept the guarantee.
+//! Lyapunov certificates: evidence that a rollout kept the stability guarantee.
 
 mod certified_step;
 mod motion;
@@ -21,16 +21,16 @@ pub use certified_step::CertifiedStep;
 pub use motion::{Bounded, MotionEvidence};
 pub use violation::Violation;
 
-/// The evidence that a rollout went to its goal: for every step what the theory speaks about.
+/// Evidence that a rollout approached its goal: the quantities of the stability proof for every step.
 ///
-/// It is computed from the positions themselves, whatever integrator made them, so it also judges rollouts of other
-/// programs. It does not check that the positions follow from the metrics, that the pedestrian arrived
-/// ([`final_potential`](Self::final_potential) says how near it came), nor that obstacles were kept clear of. With a
+/// It is computed from the positions alone, for any integrator, so it can also check rollouts of other programs. It
+/// does not check that the positions follow from the metrics, that the pedestrian arrived
+/// ([`final_potential`](Self::final_potential) is the remaining distance), or that obstacles were avoided. With a
 /// [chart](Flow::chart) goal, potentials, eigenvalues and angles are those of the chart, not of space. `Phi` is the
 /// distance to the goal, also for a quadratic attractor.
 ///
-/// JSON keeps it bit by bit with the feature `float_roundtrip` of `serde_json`; without it a rounding can change the
-/// strict verdict on a pedestrian who hardly moves.
+/// JSON keeps it exactly with the feature `float_roundtrip` of `serde_json`. Without the feature, rounding can change
+/// the strict verdict on a pedestrian that hardly moves.
 ///
 /// # Examples
 /// ```
@@ -61,16 +61,16 @@ pub struct LyapunovCertificate<T> {
 }
 
 impl<T: Real> LyapunovCertificate<T> {
-    /// The same certificate with the figures of the [motion](Self::motion), each with the bound that [`MotionBounds`]
-    /// set to it: [`holds`](Self::holds) judges these too.
+    /// The same certificate with the [motion](Self::motion) figures and their bounds from [`MotionBounds`].
+    /// [`holds`](Self::holds) checks these as well.
     ///
     /// # Shapes
-    /// `path`: the positions that the certificate is of (metres), the start first. `alone` unless obstacles were
-    /// minded, which may hold a pedestrian up: only its speed is bounded then.
+    /// `path`: the positions of the certificate (metres), the start first. Set `alone` unless obstacles were avoided:
+    /// these may delay a pedestrian, so then only its speed is bounded.
     ///
     /// # Errors
-    /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] when the distances from the goal are not
-    /// those that the certificate is of, as with a [chart](Flow::chart).
+    /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] if the distances from the goal differ from
+    /// those of the certificate, as with a [chart](Flow::chart).
     pub fn within(
         self,
         path: &[SVector<T, 2>],
@@ -87,7 +87,7 @@ impl<T: Real> LyapunovCertificate<T> {
         let certified = self.steps.iter().map(|step| step.potential);
         let certified = certified.chain([self.final_potential]);
         let distances = path.iter().map(|p| attractor.distance(p));
-        // NaN equals nothing
+        // NaN differs from everything.
         if let Some(position) = distances.zip(certified).position(|(a, b)| a != b) {
             return Err(DynamicsError::OtherPath { position });
         }
@@ -98,7 +98,8 @@ impl<T: Real> LyapunovCertificate<T> {
         })
     }
 
-    /// How fast, how abrupt and how far off the straight way the motion was, and whether it arrived; `None` where no bounds were set.
+    /// Speed, change of speed, deviation from the straight line and final distance of the motion, with their bounds;
+    /// `None` if no bounds were set.
     pub fn motion(&self) -> Option<&MotionEvidence<T>> {
         self.motion.as_ref()
     }
@@ -106,12 +107,12 @@ impl<T: Real> LyapunovCertificate<T> {
     /// The certificate of a rollout with steps of `dt` seconds.
     ///
     /// # Shapes
-    /// `n + 1` positions (metres) and `n` metrics: `metrics[k]` is the one at `positions[k]`.
+    /// `n + 1` positions (metres) and `n` metrics: `metrics[k]` is the metric at `positions[k]`.
     ///
     /// # Errors
-    /// [`DynamicsError::LengthMismatch`], [`DynamicsError::NotPositive`], and, inside
-    /// [`DynamicsError::Step`] with the index of the position, [`DynamicsError::NonFinite`] or
-    /// [`DynamicsError::DistanceTooLarge`]. A rollout that breaks the guarantee is no error.
+    /// [`DynamicsError::LengthMismatch`], [`DynamicsError::NotPositive`], and, inside [`DynamicsError::Step`] with the
+    /// index of the position, [`DynamicsError::NonFinite`] or [`DynamicsError::DistanceTooLarge`]. A rollout that
+    /// breaks the guarantee is not an error.
     pub fn new<const D: usize>(
         positions: &[SVector<T, D>],
         metrics: &[CholeskyMetric<T, D>],
@@ -151,8 +152,8 @@ impl<T: Real> LyapunovCertificate<T> {
 
     /// The certificate of a rollout of `flow` with steps of `dt` seconds.
     ///
-    /// The metrics are asked of the flow at each position, with the history so far. With a [`chart`](Flow::chart)
-    /// everything is said in its coordinates.
+    /// The flow is queried for its metric at each position, with the history so far. With a [`chart`](Flow::chart), all
+    /// quantities are in its coordinates.
     ///
     /// # Errors
     /// Those of [`new`](Self::new), and, inside [`DynamicsError::Step`], those of the flow's metric.
@@ -181,12 +182,12 @@ impl<T: Real> LyapunovCertificate<T> {
         }
     }
 
-    /// Whether the guarantee was kept: `P` positive definite and `d Phi / dt < 0` at every step
-    /// away from the goal, `Phi` strictly smaller after every such step, and rest at the goal; and, where
-    /// [bounds were set](Self::within), every figure of the [motion](Self::motion) within its bound.
+    /// Checks the guarantee: `P` positive definite, `d Phi / dt < 0` and `Phi` strictly smaller after every step away
+    /// from the goal, and no motion at the goal. If [bounds were set](Self::within), every [motion](Self::motion)
+    /// figure must be within its bound.
     ///
     /// # Errors
-    /// The [`Violation`] of the first step that breaks it.
+    /// The [`Violation`] of the first step that breaks the guarantee.
     pub fn holds(&self) -> Result<(), Violation> {
         let after = self.potentials().skip(1);
         self.steps
@@ -212,7 +213,7 @@ impl<T: Real> LyapunovCertificate<T> {
         &self.steps
     }
 
-    /// The distances to the goal at all positions, one more than there are steps (metres).
+    /// The distances to the goal at all positions, one more than steps (metres).
     pub fn potentials(&self) -> impl Iterator<Item = T> + '_ {
         self.steps
             .iter()
@@ -220,12 +221,12 @@ impl<T: Real> LyapunovCertificate<T> {
             .chain([self.final_potential])
     }
 
-    /// The distance to the goal at the end (metres).
+    /// The distance to the goal after the last step (metres).
     pub fn final_potential(&self) -> T {
         self.final_potential
     }
 
-    /// The smallest eigenvalue of all metrics (m/s); `None` without a step.
+    /// The smallest eigenvalue of all metrics (m/s); `None` if there are no steps.
     pub fn min_eigenvalue(&self) -> Option<T> {
         self.steps
             .iter()
@@ -233,7 +234,7 @@ impl<T: Real> LyapunovCertificate<T> {
             .reduce(T::min)
     }
 
-    /// The smallest of the step margins (no unit); `None` when no step has one.
+    /// The smallest of the step margins (no unit); `None` if no step has one.
     pub fn min_step_margin(&self) -> Option<T> {
         self.steps
             .iter()
@@ -241,7 +242,7 @@ impl<T: Real> LyapunovCertificate<T> {
             .reduce(T::min)
     }
 
-    /// The largest angle between a move and the direction to the goal (radians); 0 without a step.
+    /// The largest angle between a move and the direction to the goal (radians); 0 if there are no steps.
     pub fn largest_angle(&self) -> T {
         self.steps
             .iter()

@@ -1,4 +1,4 @@
-//! The metric `P = L L^T + sigma I`, kept as its Cholesky factor.
+//! The metric `P = L L^T + sigma I`, stored as its Cholesky factor.
 
 mod transform;
 
@@ -19,8 +19,8 @@ pub const PUBLISHED_SIGMA: f64 = 1e-8;
 /// those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least `sigma`, whatever `L` is.
 ///
 /// # Numerics
-/// `P` is never formed to be applied: in `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a` as soon as `|a| >=
-/// 0.5`, and a matrix meant to be positive definite is singular.
+/// `P` is never formed to be applied. In `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a` as soon as `|a| >=
+/// 0.5`, so a matrix that should be positive definite would be singular.
 ///
 /// # References
 /// Equations (11) and (12) of the paper.
@@ -31,7 +31,7 @@ pub struct CholeskyMetric<T, const D: usize> {
 }
 
 impl<T: Real> CholeskyMetric<T, 2> {
-    /// The metric of the plane with `L = [a 0; b c]`: the three numbers the network emits.
+    /// The metric of the plane with `L = [a 0; b c]`: the three outputs of the network.
     ///
     /// # Errors
     /// Those of [`CholeskyMetric::new`].
@@ -55,9 +55,10 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     ///
     /// # Errors
     /// - [`DynamicsError::NotPositive`]: `sigma` is zero, negative, NaN or infinite.
-    /// - [`DynamicsError::NonFinite`], [`DynamicsError::NotLowerTriangular`]: which entry.
-    /// - [`DynamicsError::FactorTooLarge`]: `|L|^2 + sigma` exceeds a quarter of the largest number
-    ///   of `T`. Below that, `P u` and `u^T P u` of a unit vector `u` are finite.
+    /// - [`DynamicsError::NonFinite`], [`DynamicsError::NotLowerTriangular`]: an entry of the factor, which the error
+    ///   names.
+    /// - [`DynamicsError::FactorTooLarge`]: `|L|^2 + sigma` exceeds a quarter of the largest number of `T`. Below that,
+    ///   `P u` and `u^T P u` of a unit vector `u` are finite.
     pub fn new(factor: SMatrix<T, D, D>, sigma: T) -> Result<Self, DynamicsError> {
         ensure_positive(
             "sigma, without which P is not positive definite,",
@@ -104,7 +105,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// `P u = L (L^T u) + sigma u`.
     ///
     /// # Numerics
-    /// Where `L^T u` almost cancels (a factor far from round, seen along its weak direction), the computed `P u` may
+    /// Where `L^T u` almost cancels (an ill-conditioned factor and `u` near its weak direction), the computed `P u` may
     /// fail to point away from the goal although [`quadratic_form`](Self::quadratic_form) is positive.
     #[inline]
     pub fn apply(&self, u: &SVector<T, D>) -> SVector<T, D> {
@@ -118,14 +119,14 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
         })
     }
 
-    /// `u^T P u = |L^T u|^2 + sigma |u|^2`, the rate at which the distance to the goal falls (m/s) when `u` is the unit
-    /// vector away from it. A sum of squares: for a unit vector it is positive in `f32` as in `f64`.
+    /// `u^T P u = |L^T u|^2 + sigma |u|^2`: the rate at which the distance to the goal falls (m/s) if `u` is the unit
+    /// vector away from it. As a sum of squares it is positive for a unit vector, in `f32` as in `f64`.
     #[inline]
     pub fn quadratic_form(&self, u: &SVector<T, D>) -> T {
         self.transposed_times(u).norm_squared() + self.sigma * u.norm_squared()
     }
 
-    /// `P` as a matrix (m/s), exactly symmetric; for display and tests, see the type's numerics.
+    /// `P` as a matrix (m/s), exactly symmetric, for display and tests; see the type's numerics.
     pub fn to_matrix(&self) -> SMatrix<T, D, D> {
         SMatrix::from_fn(|i, j| {
             let mut sum = if i == j { self.sigma } else { T::zero() };
@@ -171,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cannot_be_a_metric_is_refused() {
+    fn invalid_metrics_are_refused() {
         let message = |b: f64, above: f64, sigma: f64| {
             let metric = CholeskyMetric::new(Matrix2::new(1.0, above, b, 1.0), sigma);
             metric.unwrap_err().to_string()
@@ -188,14 +189,14 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::float_cmp, reason = "exact to the last bit is what is claimed")]
+    #[expect(clippy::float_cmp, reason = "the result is exact")]
     fn sigma_is_not_lost_in_single_precision() {
         assert_eq!(
             0.5_f32 * 0.5 + PUBLISHED_SIGMA as f32,
             0.25,
-            "what forming P would do"
+            "forming P loses sigma"
         );
-        // Along u the factor alone gives 0: only sigma is left.
+        // The factor alone gives 0 along u: only sigma remains.
         let metric = CholeskyMetric::planar(1e3_f32, 0.0, 0.0, PUBLISHED_SIGMA as f32).unwrap();
         let u = Vector2::new(0.0, 1.0);
         assert_eq!(metric.quadratic_form(&u), 1e-8);

@@ -1,4 +1,4 @@
-//! Where the metric of a step comes from: a constant, a schedule, or a function of the state.
+//! Sources of the metric of a step: a constant, a schedule, or a function of the state.
 
 use crate::{
     attractor::Attractor,
@@ -9,7 +9,7 @@ use crate::{
     state::State,
 };
 
-/// Gives the metric `P(p(t))` at a state.
+/// A source of the metric `P(p(t))` at a state.
 ///
 /// Implemented by a [`CholeskyMetric`] (the same everywhere), by a [`MetricSchedule`] (one per step) and by every
 /// closure of the state.
@@ -17,7 +17,7 @@ pub trait MetricSource<T: Real, const D: usize> {
     /// The metric at `state`.
     ///
     /// # Errors
-    /// Whatever keeps the source from giving a metric, for instance a factor that is not finite.
+    /// If the source cannot give a metric, for instance because a factor is not finite.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
 }
 
@@ -47,7 +47,7 @@ impl<T: Real, const D: usize> MetricSchedule<T, D> {
     /// The schedule that uses `metrics[k]` in step `k`.
     ///
     /// # Errors
-    /// [`DynamicsError::EmptySchedule`] when there is no metric.
+    /// [`DynamicsError::EmptySchedule`] if there is no metric.
     pub fn new(metrics: Vec<CholeskyMetric<T, D>>) -> Result<Self, DynamicsError> {
         if metrics.is_empty() {
             return Err(DynamicsError::EmptySchedule);
@@ -68,8 +68,8 @@ impl<T: Real, const D: usize> MetricSource<T, D> for MetricSchedule<T, D> {
     }
 }
 
-/// One metric per step, each brought within the bounds of a motion that arrives at its goal with the last of
-/// them ([`MotionBounds::shape`]). What the bounds are depends on where the pedestrian is by then.
+/// One metric per step, each adapted to the bounds of a motion that arrives at its goal with the last step
+/// ([`MotionBounds::shape`]). The bounds depend on the current position of the pedestrian.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArrivingSchedule<T: Real> {
     metrics: MetricSchedule<T, 2>,
@@ -79,11 +79,11 @@ pub struct ArrivingSchedule<T: Real> {
 }
 
 impl<T: Real> ArrivingSchedule<T> {
-    /// The schedule that shapes step `k` by `metrics[k]` within `bounds`, and arrives after the last one.
-    /// Steps take `time_step` seconds.
+    /// The schedule that shapes step `k` by `metrics[k]` within `bounds` and arrives after the last step. Steps take
+    /// `time_step` seconds.
     ///
     /// # Errors
-    /// [`DynamicsError::EmptySchedule`] when there is no metric.
+    /// [`DynamicsError::EmptySchedule`] if there is no metric.
     pub fn new(
         metrics: Vec<CholeskyMetric<T, 2>>,
         attractor: Attractor<T, 2>,

@@ -1,26 +1,26 @@
-//! Bounds on a motion that has to arrive in time, and the neutral motion within them.
+//! Bounds of a motion that has to arrive in time, and the neutral motion within them.
 
 use nalgebra::{Vector2, Vector3};
 
 use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::EigenvalueRange};
 
-/// The bounds between which a metric shapes the way of a pedestrian that arrives at its goal in time, and the motion
-/// that is made where nothing shapes it.
+/// Bounds within which a metric shapes the path of a pedestrian that arrives at its goal in time, and the neutral
+/// motion that applies without a metric.
 ///
-/// With the distance `d` to the goal and `n` steps of `dt` seconds left, the *arriving speed* is `s = d / (n dt)`: at
-/// this constant speed the straight walk ends on the goal. The eigenvalues of `P` are kept within
+/// With the distance `d` to the goal and `n` remaining steps of `dt` seconds, the *arriving speed* is `s = d / (n dt)`:
+/// at this constant speed a straight path ends on the goal. The eigenvalues of `P` are kept within
 ///
 /// ```text
 /// m = max(SLOWEST s, n s - (n - 1) V)        M = min(FASTEST s, n s, V)        m = M = s  if n = 1
 /// ```
 ///
-/// with `V` the [top speed](Self::top_speed). The *neutral* metric `N` within these bounds leads from the pedestrian's own
-/// velocity over to the arriving one. What shapes a step is `N + share (P - N)`, with `P = N + s (Q - I)` of a given metric
-/// `Q`, or `P = Q` of an [absolute](Self::absolute) one, brought within the bounds.
+/// with `V` the [top speed](Self::top_speed). The *neutral* metric `N` within these bounds leads from the pedestrian's
+/// own velocity to the arriving velocity. A step is shaped by `N + share (P - N)`, brought within the bounds. Here `P =
+/// N + s (Q - I)` for a given metric `Q`, or `P = Q` for an [absolute](Self::absolute) one.
 ///
 /// # What is guaranteed
-/// If `d <= n dt V` at the start, then for every sequence of metrics: no step is faster than `V`, no step
-/// of the remaining ones passes the goal, and the last one ends on it. `docs/stability.md` has the formulas and the proof.
+/// If `d <= n dt V` at the start, then for every sequence of metrics no step is faster than `V`, none of the remaining
+/// steps passes the goal, and the last one ends on it. `docs/stability.md` has the formulas and the proof.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MotionBounds<T: Real> {
     top_speed: T,
@@ -29,19 +29,19 @@ pub struct MotionBounds<T: Real> {
     absolute: bool,
 }
 
-/// When a step is made: after how many, with how many left, this one included, and how long each takes.
+/// Time of a step within the motion: steps made before it, steps remaining, and their duration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepTime<T> {
-    /// Steps made since the pedestrian was last observed.
+    /// Steps made since the last observation of the pedestrian.
     pub done: usize,
-    /// Steps until it should be at its goal, this one included.
+    /// Steps until the pedestrian should be at its goal, this one included.
     pub left: usize,
-    /// Seconds a step.
+    /// Duration of a step (seconds).
     pub dt: T,
 }
 
 impl<T: Real> Default for MotionBounds<T> {
-    /// Those of a pedestrian that was not seen to move, whose metric is taken whole.
+    /// The bounds of a pedestrian without observed motion, with the whole metric (`share` 1).
     fn default() -> Self {
         Self {
             top_speed: Self::top_speed_after(T::zero()),
@@ -53,38 +53,38 @@ impl<T: Real> Default for MotionBounds<T> {
 }
 
 impl<T: Real> MotionBounds<T> {
-    /// The smallest eigenvalue in arriving speeds (no unit), unless the goal would come out of reach.
+    /// Smallest eigenvalue in arriving speeds (no unit), unless the goal would become unreachable.
     pub const SLOWEST: f64 = 0.25;
     /// The largest eigenvalue in arriving speeds (no unit).
     pub const FASTEST: f64 = 2.0;
-    /// The top speed of a pedestrian that was not seen to move (m/s).
+    /// Top speed of a pedestrian without observed motion (m/s).
     pub const LEAST_TOP_SPEED: f64 = 2.15;
-    /// Top speed for each m/s of the fastest observed step (no unit).
+    /// Top speed per m/s of the fastest observed step (no unit) ...
     pub const SPEEDING_UP: f64 = 1.3;
-    /// Top speed beyond that (m/s).
+    /// ... and the constant added to it (m/s).
     pub const SPEED_MARGIN: f64 = 0.45;
-    /// Share of the own velocity in the neutral motion at the start (no unit).
+    /// Weight of the own velocity in the neutral motion at the start (no unit).
     pub const MOMENTUM: f64 = 0.75;
-    /// Time in which that share falls to its e-th part (s).
+    /// Time in which that weight falls by a factor e (s).
     pub const RELAXATION: f64 = 1.0;
-    /// The neutral motion's largest component across the way to the goal, in components along it (no unit).
+    /// Largest lateral component of the neutral motion, relative to its component towards the goal (no unit).
     pub const STEEPEST: f64 = 2.0;
 
-    /// The top speed (m/s) of a pedestrian whose fastest observed step was made at `fastest` m/s:
-    /// 2.15 m/s, or 1.3 times that speed and 0.45 m/s, whichever is more.
+    /// The top speed (m/s) of a pedestrian whose fastest observed step had the speed `fastest` (m/s): the larger of
+    /// 2.15 m/s and `1.3 fastest + 0.45 m/s`.
     pub fn top_speed_after(fastest: T) -> T {
         let faster = fastest * T::rounded(Self::SPEEDING_UP) + T::rounded(Self::SPEED_MARGIN);
         faster.max(T::rounded(Self::LEAST_TOP_SPEED))
     }
 
-    /// The share of the own velocity in the neutral motion, in the middle of a step (no unit).
+    /// The weight of the own velocity in the neutral motion, in the middle of a step (no unit).
     pub fn momentum(time: StepTime<T>) -> f64 {
         let middle = (time.done as f64 + 0.5) * time.dt.as_f64();
         Self::MOMENTUM * (-middle / Self::RELAXATION).exp()
     }
 
     /// Bounds with the top speed `V` (m/s, positive), the pedestrian's own velocity `v0` (m/s), and the `share` (0 to
-    /// 1) of the metric in what shapes a step; `None` when one is out of range or not finite.
+    /// 1) of the metric; the rest is neutral. `None` if one is out of range or not finite.
     pub fn new(top_speed: T, velocity: Vector2<T>, share: T) -> Option<Self> {
         let valid = top_speed.is_finite()
             && top_speed > T::zero()
@@ -99,7 +99,7 @@ impl<T: Real> MotionBounds<T> {
         })
     }
 
-    /// The same bounds for metrics in m/s, as published, and not in arriving speeds about the neutral motion.
+    /// The same bounds for metrics in m/s, as published, instead of relative to the neutral motion in arriving speeds.
     #[must_use]
     pub fn absolute(self) -> Self {
         Self {
@@ -118,23 +118,23 @@ impl<T: Real> MotionBounds<T> {
         self.velocity
     }
 
-    /// The share of the metric in what shapes a step; the rest is neutral (no unit).
+    /// The weight of the metric against the neutral motion (no unit).
     pub fn share(&self) -> T {
         self.share
     }
 
-    /// The speed at which a pedestrian `distance` metres from its goal arrives in `left` steps of `dt`
-    /// seconds (m/s), never more than the [top speed](Self::top_speed).
+    /// The speed at which a pedestrian `distance` metres from its goal arrives in `left` steps of `dt` seconds (m/s),
+    /// at most the [top speed](Self::top_speed).
     pub fn arriving_speed(&self, distance: T, left: usize, dt: T) -> T {
         let steps = T::rounded(left.max(1) as f64);
-        // Positive, so that a metric with this eigenvalue is one, also at the goal.
+        // Positive, so that it is a valid eigenvalue also at the goal.
         (distance / (steps * dt))
             .min(self.top_speed)
             .max(T::MIN_POSITIVE)
     }
 
-    /// The range of the eigenvalues `distance` metres from the goal with `left` steps of `dt` seconds
-    /// left, this one included (m/s). Where the goal is out of reach both ends are the top speed.
+    /// The range of the eigenvalues (m/s), `distance` metres from the goal with `left` remaining steps of `dt` seconds,
+    /// this one included. If the goal is out of reach, both ends are the top speed.
     pub fn eigenvalues(&self, distance: T, left: usize, dt: T) -> EigenvalueRange<T> {
         let s = self.arriving_speed(distance, left, dt);
         if left <= 1 {
@@ -154,8 +154,8 @@ impl<T: Real> MotionBounds<T> {
         }
     }
 
-    /// What shapes a step of a pedestrian for whom `metric` was given, with the way to the goal `towards` (m). Its
-    /// smallest eigenvalue is exact, and positive, also where `metric` is singular.
+    /// The metric that shapes a step, from the given `metric` and the displacement `towards` the goal (m). Its smallest
+    /// eigenvalue is exact and positive, also if `metric` is singular.
     pub fn shape(
         &self,
         metric: &CholeskyMetric<T, 2>,
@@ -176,8 +176,8 @@ impl<T: Real> MotionBounds<T> {
         into_metric(&(neutral + (given - neutral) * self.share), &range)
     }
 
-    /// `N`, before its eigenvalues are brought within the bounds: of all matrices with this flow the one of the
-    /// least condition number.
+    /// `N`, before its eigenvalues are brought within the bounds: of all matrices with this flow, the one with the
+    /// smallest condition number.
     fn neutral(
         &self,
         s: T,
@@ -206,8 +206,8 @@ fn entries<T: Real>(metric: &CholeskyMetric<T, 2>) -> Vector3<T> {
     Vector3::new(p.m11, p.m12, p.m22)
 }
 
-/// Mean of the eigenvalues, half their difference, and the cosine and sine of twice the angle of the larger one's
-/// eigenvector.
+/// Mean of the eigenvalues, half their difference, and the cosine and sine of twice the angle of the eigenvector of the
+/// larger one.
 fn axes<T: Real>(p: &Vector3<T>) -> (T, T, [T; 2]) {
     let two = T::rounded(2.0);
     let (mean, half) = (p.x / two + p.z / two, p.x / two - p.z / two);
@@ -226,7 +226,7 @@ fn within<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> Vector3<T> {
 fn into_metric<T: Real>(p: &Vector3<T>, range: &EigenvalueRange<T>) -> CholeskyMetric<T, 2> {
     let (mean, radius, [cos, sin]) = axes(p);
     let (first, second) = clamped(mean, radius, range);
-    // Half of the double angle: (1 + cos, sin) has its direction, and so has (sin, 1 - cos).
+    // Half of the double angle: (1 + cos, sin) has its direction, and so does (sin, 1 - cos).
     let axis = if cos >= T::zero() {
         Vector2::new(T::one() + cos, sin)
     } else {

@@ -1,4 +1,4 @@
-//! What a pedestrian keeps clear of: balls that stand still or move.
+//! Obstacles: balls that stand still or move.
 
 use nalgebra::SVector;
 
@@ -50,9 +50,9 @@ impl<T: Real, const D: usize> Ball<T, D> {
     }
 }
 
-/// Which obstacles there are at a state.
+/// A source of the obstacles at a state.
 ///
-/// Implemented by arrays and vectors of balls (the same all the time) and by [`ObstacleSchedule`].
+/// Implemented by arrays and vectors of balls (constant in time) and by [`ObstacleSchedule`].
 pub trait ObstacleSource<T: Real, const D: usize> {
     /// The obstacles at `state`.
     fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>];
@@ -64,7 +64,7 @@ impl<T: Real, const D: usize, O: AsRef<[Ball<T, D>]>> ObstacleSource<T, D> for O
     }
 }
 
-/// Obstacles that move: those to keep clear of in each step, the last ones in all later steps.
+/// Moving obstacles: a set per step; the last one holds for all later steps.
 ///
 /// Give each step the obstacles as they will be at its *end*; see
 /// [`AvoidingFlow`](crate::AvoidingFlow#obstacles-that-move).
@@ -74,7 +74,7 @@ pub struct ObstacleSchedule<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> ObstacleSchedule<T, D> {
-    /// The schedule with `steps[k]` in step `k`; empty for no obstacles at all.
+    /// The schedule with `steps[k]` in step `k`; empty for no obstacles.
     pub fn new(steps: Vec<Vec<Ball<T, D>>>) -> Self {
         Self { steps }
     }

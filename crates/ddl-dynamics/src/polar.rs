@@ -8,7 +8,7 @@ use crate::real::Real;
 ///
 /// # Numerics
 /// A vector whose squares underflow or overflow is divided by its largest component first, so the direction is accurate
-/// down to subnormal components. The length may be infinite; the direction still is exact to rounding. A component that
+/// down to subnormal components. The length may be infinite; the direction is still exact to rounding. A component that
 /// is not finite gives NaN.
 #[inline]
 pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVector<T, D>) {
@@ -27,7 +27,7 @@ pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVec
     (largest * scaled_length, scaled / scaled_length)
 }
 
-/// The length of the way `to - from` and the unit vector along it, also where the way is too long for `T`.
+/// The length of `to - from` and the unit vector along it, also if the difference is too large for `T`.
 #[inline]
 pub(crate) fn polar_way<T: Real, const D: usize>(
     from: &SVector<T, D>,
@@ -37,7 +37,7 @@ pub(crate) fn polar_way<T: Real, const D: usize>(
     if length.is_finite() {
         return (length, direction);
     }
-    // The offset of two finite points can overflow; half of it cannot.
+    // The difference of two finite points can overflow, but half of it cannot.
     let half = T::rounded(0.5);
     let (half_length, direction) = polar(&(to * half - from * half));
     (half_length + half_length, direction)
@@ -65,7 +65,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_has_no_direction_and_nan_stays_visible() {
+    fn zero_has_no_direction_and_nan_stays_nan() {
         assert_eq!(polar(&Vector2::new(0.0_f32, -0.0)), (0.0, Vector2::zeros()));
         assert!(polar(&Vector2::new(0.0_f32, f32::NAN)).1.x.is_nan());
     }

@@ -1,4 +1,4 @@
-//! The numbers the crate computes with: `f32` and `f64`.
+//! The number types of the crate: `f32` and `f64`.
 
 use nalgebra::RealField;
 

@@ -1,4 +1,4 @@
-//! Rollouts: a flow followed for a number of steps.
+//! Rollouts: a flow integrated for a number of steps.
 
 use nalgebra::SVector;
 
@@ -10,14 +10,14 @@ use crate::{
     state::State,
 };
 
-/// Follows `flow` from `start` for `steps` steps of `dt` seconds.
+/// Integrates `flow` from `start` for `steps` steps of `dt` seconds.
 ///
 /// # Shapes
 /// `steps + 1` positions in metres, `start` first.
 ///
 /// # Errors
-/// [`DynamicsError::NotPositive`], [`DynamicsError::NonFinite`] for the start, and
-/// [`DynamicsError::Step`] naming the step in which the flow or the integrator failed.
+/// [`DynamicsError::NotPositive`] for `dt`, [`DynamicsError::NonFinite`] for the start, and [`DynamicsError::Step`]
+/// with the step in which the flow or the integrator failed.
 pub fn rollout<T, const D: usize, F, I>(
     flow: &F,
     integrator: &I,
@@ -35,11 +35,11 @@ where
     Ok(positions)
 }
 
-/// [`rollout`] into a slice: `positions[0]` becomes `start`, and a step is made for each further
-/// place. Allocates nothing; an empty slice is left alone.
+/// [`rollout`] into a slice: `positions[0]` becomes `start`, and each further element is one step. Allocates nothing;
+/// an empty slice stays unchanged.
 ///
 /// # Errors
-/// Those of [`rollout`]; the positions before the failing step are valid then.
+/// Those of [`rollout`]; the positions before the failing step are then valid.
 pub fn rollout_into<T, const D: usize, F, I>(
     flow: &F,
     integrator: &I,
@@ -60,7 +60,7 @@ where
     for next in 1..positions.len() {
         let step = next - 1;
         let (history, ahead) = positions.split_at_mut(next);
-        // Multiplied, not summed up: 12 steps of 0.4 s end at 4.8 s.
+        // Multiplied, not accumulated: 12 steps of 0.4 s end at exactly 4.8 s.
         let time = dt * T::rounded(step as f64);
         let state = State::new(history[step], step, time, history);
         ahead[0] = integrator

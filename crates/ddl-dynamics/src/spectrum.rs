@@ -1,10 +1,10 @@
-//! The eigenvalues that bound a metric.
+//! Smallest and largest eigenvalue of a metric.
 
 use nalgebra::{DMatrix, SMatrix, SVD};
 
 use crate::real::Real;
 
-/// Iterations of the singular value decomposition granted per dimension; a handful is usual.
+/// Iterations of the singular value decomposition allowed per dimension; a few are usual.
 const ITERATIONS_PER_DIMENSION: usize = 1000;
 
 /// Smallest and largest eigenvalue of a metric (m/s).
@@ -31,13 +31,13 @@ fn planar<T: Real>(a: T, b: T, c: T) -> (T, T) {
     if large.is_zero() {
         return (T::zero(), T::zero());
     }
-    // |det L| = small * large. Divided first: a * c may underflow where the quotient does not.
+    // |det L| = small * large. Divided first: a * c may underflow although the quotient does not.
     (a.max(c) / large * a.min(c), large)
 }
 
 fn iterative<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
-    // A matrix of dynamic size takes the general algorithm; the one that nalgebra keeps for 3 x 3
-    // decomposes L^T L and so loses half of the digits of a small singular value.
+    // A dynamically sized matrix uses the general algorithm. nalgebra's special case for 3 x 3 decomposes L^T L and so
+    // loses half of the digits of a small singular value.
     let general = DMatrix::from_fn(D, D, |row, column| factor[(row, column)]);
     let decomposition = SVD::try_new_unordered(
         general,
@@ -48,7 +48,7 @@ fn iterative<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
     );
     match decomposition {
         Some(svd) => (svd.singular_values.min(), svd.singular_values.max()),
-        // Never seen. Both ends are still bounds, and so every use of them is on the safe side.
+        // Never observed. Both values are still bounds, so every use of them is safe.
         None => (T::zero(), factor.norm()),
     }
 }

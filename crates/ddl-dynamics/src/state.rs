@@ -1,18 +1,18 @@
-//! What a flow may look at when it is asked for a velocity.
+//! The state of a rollout, from which a flow determines its velocity.
 
 use nalgebra::SVector;
 
-/// A moment of a rollout: where the pedestrian is, when, and where it has been.
+/// A moment of a rollout: position, time and history of the pedestrian.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct State<'a, T, const D: usize> {
-    /// Position now (metres).
+    /// Current position (metres).
     pub position: SVector<T, D>,
     /// Steps taken so far.
     pub step: usize,
     /// Time since the start (seconds).
     pub time: T,
-    /// Every position from the start to the present one, oldest first (metres). Empty outside a rollout.
+    /// Every position from the start to the current one, oldest first (metres). Empty outside a rollout.
     pub history: &'a [SVector<T, D>],
 }
 

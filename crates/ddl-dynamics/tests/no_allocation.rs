@@ -1,4 +1,4 @@
-//! A rollout into a slice touches the heap not once, whatever integrator follows the flow.
+//! A rollout into a slice allocates nothing, with any integrator.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![expect(
     unsafe_code,
@@ -21,18 +21,18 @@ use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 
 thread_local! {
-    // Each thread counts its own: the tests of this file run side by side. A constant start and no destructor: reading
-    // it allocates nothing.
+    // Counted per thread, because the tests of this file run in parallel. A constant initial value and no destructor:
+    // reading it allocates nothing.
     static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
 }
 
 struct Counting;
 
-// SAFETY: every call is handed on to the system's allocator unchanged, which keeps the contract.
+// SAFETY: every call is forwarded unchanged to the system's allocator, which keeps the contract.
 unsafe impl GlobalAlloc for Counting {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller's layout, as the contract of this method asks for.
+        // SAFETY: the caller's layout, as the contract of this method requires.
         unsafe { System.alloc(layout) }
     }
 
@@ -60,7 +60,7 @@ fn allocations(run: impl FnOnce()) -> u64 {
 fn allocates_nothing<T: Real, const D: usize>(integrator: &impl Integrator<T, D>) {
     let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(300, 7);
     let dt = T::rounded(TIME_STEP);
-    // 40 steps: all pedestrians come to their goals, so no branch of a step is left out.
+    // 40 steps: all pedestrians reach their goals, so every branch of a step is covered.
     let mut positions = [SVector::<T, D>::zeros(); 41];
     let made = allocations(|| {
         for MadeUpWalk { flow, start } in &hypotheses {

@@ -1,4 +1,4 @@
-//! The pictures of `docs/stability.md` are those that the example draws, and its caption says what they show.
+//! The pictures of `docs/stability.md` are current, and their caption agrees with them.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 #[path = "../examples/pictures/around.rs"]
@@ -17,19 +17,19 @@ fn committed(file: &str) -> String {
 }
 
 #[test]
-fn the_committed_pictures_are_those_drawn() {
+fn the_committed_pictures_are_current() {
     for (file, svg) in [
         ("stability.svg", circling::draw().unwrap()),
         ("around.svg", around::draw().unwrap()),
     ] {
-        let anew = "draw them anew: cargo run -p ddl-dynamics --example pictures -- docs";
+        let anew = "draw them again: cargo run -p ddl-dynamics --example pictures -- docs";
         assert!(committed(file) == svg, "{file}: {anew}");
     }
 }
 
 /// The angle of the caption is the largest one, and `V` falls in every step.
 #[test]
-fn the_caption_says_what_is_drawn() {
+fn the_caption_agrees_with_the_pictures() {
     let followed = around::behind_a_wall().unwrap();
     assert!(
         followed
@@ -43,6 +43,6 @@ fn the_caption_says_what_is_drawn() {
     let caption = format!("at up to {largest:.0}\u{B0} from the direction");
     assert!(
         committed("stability.md").contains(&caption),
-        "the caption is to say: {caption}"
+        "the caption must contain: {caption}"
     );
 }

@@ -1,8 +1,9 @@
-//! Goal error on validation pedestrians of the recordings, fold by fold: `cargo run --release --example goal_validation`.
+//! Goal error on validation pedestrians of the recordings, fold by fold: `cargo run --release --example
+//! goal_validation`.
 //!
 //! `DDL_DATASETS` names the folder of the recordings. The library holds the first 75 % (by time) of a fold's training
-//! recordings; validated on are the pedestrians of the last 25 % (`tails`), and of two recordings that no library holds and
-//! no fold tests (`unseen`). An argument n takes every n-th of them only.
+//! recordings. Validation uses the pedestrians of the last 25 % (`tails`), and those of two recordings that are in no
+//! library and that no fold tests (`unseen`). An argument n uses only every n-th pedestrian.
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 
 use std::error::Error;
@@ -19,7 +20,7 @@ const LIBRARY_SHARE: f64 = 0.75;
 
 type Positions = Vec<[f64; 2]>;
 
-/// The complete tracks (m) that lie in a part of the recording's time, by start and end.
+/// The complete tracks (m) within a part of the recording's time, selected by start and end.
 fn within(recording: &Recording, part: impl Fn(f64, f64) -> bool) -> Vec<Positions> {
     let frames = recording.frames();
     let (first, length) = (frames[0], frames[frames.len() - 1] - frames[0]);
@@ -51,7 +52,7 @@ impl Judged {
             let observed: Vec<&[[f64; 2]]> = pedestrians.iter().map(|track| &track[..8]).collect();
             let sets = estimator.estimate_batch(&observed)?;
             for (goals, track) in sets.iter().zip(pedestrians) {
-                // A goal of no weight would cost infinitely much.
+                // A goal of weight 0 would have an infinite log loss.
                 let weight = goals.weights()[goals.nearest(track[19])].max(1e-4);
                 self.log_loss -= weight.ln();
                 sum += star_files::goal_error(goals, track)

@@ -1,11 +1,11 @@
-//! Where is this pedestrian heading? Goals with weights, from a library of pedestrians whose whole way is known.
+//! Weighted goals of one pedestrian, estimated from a library of complete tracks.
 //!
 //! ```text
 //! cargo run --release -p ddl-goal --example goals_of_a_pedestrian
 //! ```
-//! The library is made up: at a fork people walk on, bear left or bear right, at many speeds and in all directions.
-//! Somebody new, seen for 3.2 s (8 positions), begins to bear left; the goals are for 4.8 s later.
-#![expect(clippy::print_stdout, reason = "what it is for")]
+//! The library is synthetic: at a fork pedestrians walk on, bear left or bear right, at many speeds and in all
+//! directions. A new pedestrian, seen for 3.2 s (8 positions), begins to bear left; the goals are for 4.8 s later.
+#![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use std::error::Error;
 
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let [x, y] = observed[7];
     println!(
-        "seen for 3.2 s, now at ({x:.2}, {y:.2}) m; {} experts of {} pedestrians say where in 4.8 s:",
+        "seen for 3.2 s, now at ({x:.2}, {y:.2}) m; {} experts of {} pedestrians give the goals in 4.8 s:",
         estimator.params().experts,
         estimator.library().len()
     );
@@ -70,7 +70,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             off(goal)
         );
     }
-    // What is known without a library: going on as in the last step.
+    // The baseline without a library: repeating the last step.
     let straight =
         [0, 1].map(|axis| observed[7][axis] + 12.0 * (observed[7][axis] - observed[6][axis]));
     println!(

@@ -1,4 +1,4 @@
-//! Goals from analogues: pedestrians who moved alike, each seen from its own heading, and how they went on.
+//! Goals from analogues: similar pedestrians in their own heading frames, and their endpoints.
 
 use crate::choice::choose;
 use crate::error::{GoalError, LibraryError, TrackError};
@@ -10,11 +10,11 @@ use crate::motion_index::{Alike, MotionIndex};
 use crate::points::{Points, is_in_range};
 use crate::span::QuerySpan;
 
-/// Temperature of the weights, in distances of the farthest analogue.
+/// Temperature of the weights, relative to the distance of the farthest analogue.
 const TEMPERATURE: f64 = 0.4;
-/// Squared difference of motions below which it is rounding.
+/// Squared difference of motions that is attributed to rounding.
 const ROUNDING: f64 = 1e-9;
-/// Steps of Lloyd's iteration. More of them fit the goals to these analogues, and not to the pedestrian.
+/// Steps of Lloyd's iteration. More steps would fit the goals to these analogues and not to the pedestrian.
 const STEPS: usize = 3;
 const KEPT: usize = 100;
 
@@ -22,7 +22,7 @@ const KEPT: usize = 100;
 #[derive(Clone, Debug)]
 pub(crate) struct Analogues {
     index: MotionIndex,
-    /// How each track deviates from going straight on, in its own frame (m).
+    /// Deviation of each track from going straight on, in its own frame (m).
     deviations: Vec<[f64; 2]>,
     time_step: f64,
 }
@@ -65,7 +65,7 @@ impl Analogues {
         Ok(GoalSet::new(goals, choice.weights, experts))
     }
 
-    /// Deviations of the analogues, weighted by likeness; the weights sum to 1.
+    /// Deviations of the analogues, weighted by similarity; the weights sum to 1.
     fn weighted_deviations(&self, found: &[Alike]) -> Points {
         let distance = |alike: &Alike| f64::from(alike.distance);
         let nearest = found.first().map_or(0.0, distance);

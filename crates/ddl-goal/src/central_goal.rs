@@ -1,37 +1,40 @@
-//! The one goal for who may have only one.
+//! The central goal, for forecasts with a single goal.
 
 use crate::goal_set::GoalSet;
 
 /// Steps from the last observed frame to the end of the forecast.
 const STEPS_AHEAD: f64 = 12.0;
-/// Share of the way from the median of the goals to where the last step leads, of steps that change little.
+/// Weight of the endpoint extrapolated from the last step, for steps that change little.
 const TRUST: f64 = 0.7;
-/// Share of the way to where the mean observed velocity leads, of positions with independent errors.
+/// Weight of the endpoint extrapolated from the mean velocity, for positions with independent errors.
 const STEADINESS: f64 = 0.3;
-/// Mean change of the observed step (m) at which the last step is trusted by a factor e less.
+/// Mean change of the step (m) at which the weight of the last step has fallen by a factor e.
 const JITTER: f64 = 0.06;
-/// Mean change of the observed step (m) below which the motion simply goes on.
+/// Mean change of the step (m) below which the motion is simply extrapolated.
 const EXACT: f64 = 0.005;
-/// Weight of the changes against the mean step: who moves less than this share of them does not walk.
+/// Weight of the changes against the mean step: a pedestrian that moves less than this share of them stands.
 const STANDING: f64 = 0.5;
 /// Independent errors of the positions give successive changes of the step the correlation -2/3.
 const OF_ERRORS: f64 = -2.0 / 3.0;
 
 impl GoalSet {
-    /// The one goal for who may have only one: the [`median`](Self::median) of the goals, drawn towards where the observed velocity
-    /// leads, by what the 8 frames say of it.
+    /// The single best goal: the [`median`](Self::median) of the goals, moved towards the extrapolation of the observed
+    /// velocity. The 8 observed frames determine how far.
     ///
-    /// With m the median, p the last observed position, s the last step, a the mean step, d the changes of the step and w their mean length:
+    /// Let m be the median, p the last observed position, s the last step, a the mean step, d the changes of the step
+    /// and w their mean length. Then:
     ///
-    /// - n, the share of d that errors of the positions explain: the correlation of successive d, divided by -2/3, in 0 to 1;
-    /// - b = 0.7 (1 - n) exp(-(w / 6 cm)²) |a|² / (|a|² + (w/2)²): how much the last step says, 0 of who stands and trembles;
-    /// - x = exp(-(w / 5 mm)²): whether the motion goes on as it is.
+    /// - n is the share of d that errors of the positions explain: the correlation of successive d, divided by -2/3,
+    ///   clamped to 0..1;
+    /// - b = 0.7 (1 - n) exp(-(w / 6 cm)²) |a|² / (|a|² + (w/2)²) is the weight of the last step, 0 for a standing
+    ///   pedestrian with noise;
+    /// - x = exp(-(w / 5 mm)²) measures how uniform the motion is.
     ///
-    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/accuracy.md` tells on which
-    /// recordings the constants were chosen.
+    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/accuracy.md` lists
+    /// the recordings on which the constants were chosen.
     ///
     /// # Shapes
-    /// `observed`: the observed positions (m), the last one last. Fewer than three show no change: the median stands alone.
+    /// `observed`: the observed positions (m), the last one last. With fewer than three, the result is the median.
     pub fn central(&self, observed: &[[f64; 2]]) -> [f64; 2] {
         let median = self.median();
         let &[first, .., before, last] = observed else {
@@ -64,7 +67,7 @@ impl GoalSet {
         })
     }
 
-    /// The set of the [`central`](Self::central) goal alone, of weight 1; `observed` are the pedestrian's positions (m), as there.
+    /// A set with only the [`central`](Self::central) goal, of weight 1; `observed` are the same positions (m).
     #[must_use]
     pub fn only_central(&self, observed: &[[f64; 2]]) -> Self {
         let experts = self.experts().to_vec();
@@ -72,14 +75,14 @@ impl GoalSet {
     }
 }
 
-/// n: how much of the changes of the step errors of the positions explain, 0 to 1.
+/// n: the share of the step changes that errors of the positions explain, 0 to 1.
 fn noise_share(changes: &[[f64; 2]]) -> f64 {
     let dot = |[a, b]: [f64; 2], [c, d]: [f64; 2]| a * c + b * d;
     let square = changes.iter().map(|&d| dot(d, d)).sum::<f64>() / changes.len() as f64;
     let pairs = changes.array_windows().map(|&[a, b]| dot(a, b));
     let count = pairs.len();
     let share = pairs.sum::<f64>() / count as f64 / square / OF_ERRORS;
-    // Where there is one change, or none but 0, or squares overflow.
+    // With fewer than two changes, with changes that are all 0, or if squares overflow.
     if share.is_nan() {
         return 0.0;
     }
@@ -101,11 +104,11 @@ mod tests {
         (0..8_u32).map(|t| [0.5 * f64::from(t), 0.0]).collect()
     }
 
-    /// The formula of [`GoalSet::central`] written down in numpy, outside this project: the median at (4, -2) m, the observation
-    /// x = a t, y = b t² + e (3 t mod 5). Errors explain 0.36, none and 0.93 of the changes, the motion goes on as it is by 0.60, and three
-    /// positions tell no correlation.
+    /// The formula of [`GoalSet::central`], evaluated in numpy outside this project. The median is at (4, -2) m, the
+    /// observation is x = a t, y = b t² + e (3 t mod 5). The cases: errors explain 0.36, 0 and 0.93 of the changes; x
+    /// is 0.60; and three positions give no correlation.
     #[test]
-    fn the_goal_is_that_of_the_formula() {
+    fn the_goal_agrees_with_the_formula() {
         for (a, b, e, positions, expected) in [
             (0.42, 0.006, 0.004, 8, [6.076_515_04, -0.398_573_36]),
             (0.40, 0.002, 0.0005, 8, [7.162_573_46, 0.107_064_57]),
@@ -124,8 +127,8 @@ mod tests {
     }
 
     #[test]
-    #[expect(clippy::float_cmp, reason = "the place itself")]
-    fn where_the_motion_says_all_or_nothing() {
+    #[expect(clippy::float_cmp, reason = "the result is exact")]
+    fn uniform_motion_is_extrapolated_and_noise_is_not() {
         let set = set(&[[4.0, -2.0]]);
         assert_eq!(set.central(&[[1.0, 2.0]; 8]), [1.0, 2.0]);
         let leaps: Vec<[f64; 2]> = (0..8).map(|t| [1e200 * f64::from(t % 3), 0.0]).collect();
@@ -141,13 +144,14 @@ mod tests {
             observed in prop::collection::vec(prop::array::uniform2(-0.02..0.02_f64), 8),
             (turn, x, y) in (0.0..6.3_f64, -50.0..50.0_f64, -50.0..50.0_f64),
         ) {
-            let observed: Vec<[f64; 2]> = observed.iter().zip(walk()).map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect();
+            let observed = observed.iter().zip(walk());
+            let observed: Vec<[f64; 2]> = observed.map(|(a, b)| [a[0] + b[0], a[1] + b[1]]).collect();
             let (sin, cos) = turn.sin_cos();
             let image = |[a, b]: [f64; 2]| [cos * a - sin * b + x, sin * a + cos * b + y];
             let images = |points: &[[f64; 2]]| -> Vec<[f64; 2]> { points.iter().map(|&p| image(p)).collect() };
             let here = image(set(&goals).central(&observed));
             let there = set(&images(&goals)).central(&images(&observed));
-            // the median is iterated until a step is below 0.1 mm
+            // The median is iterated until a step is below 0.1 mm.
             prop_assert!((here[0] - there[0]).hypot(here[1] - there[1]) < 0.02);
         }
     }

@@ -1,17 +1,17 @@
-//! Few goals that stand for many weighted points.
+//! Choice of a few goals that represent many weighted points.
 
 use crate::lloyd::Lloyd;
 use crate::points::Points;
 
-/// Goals with the weight of the points nearest to each.
+/// Goals, each with the total weight of its nearest points.
 pub(crate) struct Choice {
     pub(crate) goals: Vec<[f64; 2]>,
     pub(crate) weights: Vec<f64>,
 }
 
-/// Chooses `clusters` goals such that the weighted mean distance of a point to the nearest goal is small: cells are cut in
-/// two, the costliest first, then `steps` of Lloyd's iteration. Nothing is random. Where there are fewer distinct points,
-/// goals are repeated with weight 0.
+/// Chooses `clusters` goals such that the weighted mean distance of a point to its nearest goal is small. Cells are
+/// divided in two, the costliest first; then `steps` of Lloyd's iteration follow. The result is deterministic. If there
+/// are fewer distinct points than goals, goals are repeated with weight 0.
 pub(crate) fn choose(points: &Points, clusters: usize, steps: usize) -> Choice {
     let centres = first_centres(points, clusters).into_iter().cycle();
     let mut run = Lloyd::from_centres(points, centres.take(clusters).collect());
@@ -31,14 +31,14 @@ struct Cell {
     mean: [f64; 2],
     /// Unit vector along which the points vary most.
     axis: [f64; 2],
-    /// Weight times standard deviation: about the sum of the weighted distances to the mean.
+    /// Weight times standard deviation: approximately the sum of the weighted distances to the mean.
     cost: f64,
 }
 
-/// Chooses `clusters` centres, or fewer where the points are at fewer places. Starting with one cell that holds all
-/// points, the cell with the largest Σw · √(Σw d² / Σw) (w weight, d distance to the weighted mean) is cut through its
-/// mean, across the axis along which it varies most. This cost is in metres, as the mean distance of the nearest goal
-/// is. The centres are the means of the cells.
+/// Chooses `clusters` centres, or fewer if there are fewer distinct points. It starts with one cell that holds all
+/// points. The cell with the largest Σw · √(Σw d² / Σw) (w weight, d distance to the weighted mean) is divided through
+/// its mean, across its axis of largest variance. This cost is in metres, like the mean distance to the nearest goal.
+/// The centres are the means of the cells.
 fn first_centres(points: &Points, clusters: usize) -> Vec<[f64; 2]> {
     let mut cells = vec![Cell::new(points, (0..points.len()).collect())];
     while cells.len() < clusters {
@@ -58,7 +58,7 @@ fn first_centres(points: &Points, clusters: usize) -> Vec<[f64; 2]> {
         };
         let [behind, ahead] = parted(members, is_behind);
         if behind.is_empty() || ahead.is_empty() {
-            cells[costliest].cost = 0.0; // only rounding is left to divide
+            cells[costliest].cost = 0.0; // only rounding differences remain
         } else {
             cells[costliest] = Cell::new(points, behind);
             cells.push(Cell::new(points, ahead));
@@ -71,7 +71,7 @@ fn parted(members: &[usize], is_first: impl Fn(usize) -> bool) -> [Vec<usize>; 2
     let mut parts = [vec![0; members.len()], vec![0; members.len()]];
     let mut counts = [0; 2];
     for &index in members {
-        // Written to both, kept in one: there is no branch to mispredict.
+        // Each index is written to both lists and kept in one: this avoids an unpredictable branch.
         for (part, count) in parts.iter_mut().zip(counts) {
             part[count] = index;
         }
@@ -134,9 +134,10 @@ mod tests {
             .sum()
     }
 
-    /// By hand: a point on the cut is ahead of it; two numbers that are next to each other have no mean between them and stay one cell.
+    /// By hand: a point on the cut belongs to the front half. Two adjacent floating-point numbers have no mean between
+    /// them and stay one cell.
     #[test]
-    fn a_point_on_the_cut_is_ahead_and_what_cannot_be_cut_stays() {
+    fn a_point_on_the_cut_is_in_front_and_an_indivisible_cell_stays() {
         let points = weighted(&[([-1.0, 0.0], 1.0), ([0.0, 0.0], 1.0), ([1.0, 0.0], 1.0)]);
         assert_eq!(first_centres(&points, 2), [[-1.0, 0.0], [0.5, 0.0]]);
         let next = 1.0 + f64::EPSILON;
@@ -149,7 +150,7 @@ mod tests {
 
         #[test]
         fn evenly_spread_points_are_covered_well(count in 200..600_usize, clusters in 4..25_usize) {
-            // The plane's best arrangement of n centres in a unit square leaves a mean distance of about 0.377 / √n.
+            // The optimal arrangement of n centres in a unit square has a mean distance of about 0.377 / √n.
             let points: Vec<_> = (0..count)
                 .map(|i| ([(i as f64 * 0.754_877_666).fract(), (i as f64 * 0.569_840_291).fract()], 1.0 / count as f64))
                 .collect();

@@ -1,9 +1,9 @@
-//! What can be wrong with parameters, tracks and libraries, said so that the reader knows where to look.
+//! Errors of parameters, tracks and libraries.
 
 use ddl_softdtw::{SearchError, SoftDtwError};
 use thiserror::Error;
 
-/// A parameter of the goal estimator that makes no sense.
+/// An invalid parameter of the goal estimator.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -19,7 +19,7 @@ pub enum ParamsError {
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
     InvalidGamma { gamma: f64 },
     #[error(
-        "query is published-future and frame is heading: the query that reads the future belongs to frame world"
+        "query is published-future and frame is heading: the query that reads the future requires frame world"
     )]
     FutureInHeadingFrame,
 }
@@ -29,9 +29,9 @@ pub enum ParamsError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum TrackError {
-    #[error("the track has {found} positions, {needed} are needed")]
+    #[error("the track has {found} positions, at least {needed} are needed")]
     TooShort { found: usize, needed: usize },
-    #[error("the track has {found} positions, one of the library has exactly {needed}")]
+    #[error("the track has {found} positions, a track of the library needs exactly {needed}")]
     WrongLength { found: usize, needed: usize },
     #[error("position {index} is ({x}, {y}): must be finite")]
     NonFinite { index: usize, x: f64, y: f64 },
@@ -39,7 +39,7 @@ pub enum TrackError {
     VelocityOverflow { index: usize },
 }
 
-/// Why a library of experts could not be made.
+/// A library of experts cannot be created.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -54,15 +54,15 @@ pub enum LibraryError {
     Track { index: usize, source: TrackError },
 }
 
-/// Why goals could not be estimated.
+/// Goals cannot be estimated.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum GoalError {
-    #[error("goals of given ends: {problem}")]
+    #[error("goals of given endpoints: {problem}")]
     Ends { problem: String },
     #[error(
-        "the library holds {tracks} tracks but {experts} experts are to be retrieved: give it more tracks or lower `experts`"
+        "the library holds {tracks} tracks but {experts} experts are to be retrieved: add tracks or lower `experts`"
     )]
     TooFewTracks { tracks: usize, experts: usize },
     #[error(transparent)]
@@ -79,7 +79,8 @@ pub enum GoalError {
     #[error("the search for similar pedestrians: {0}")]
     Search(#[from] SearchError),
     #[error(
-        "the clustering of the experts' endpoints: point {index} is ({x}, {y}): coordinates must be finite and below 1e150"
+        "the clustering of the experts' endpoints: point {index} is ({x}, {y}): coordinates must be finite and below \
+         1e150"
     )]
     EndOutOfRange { index: usize, x: f64, y: f64 },
 }

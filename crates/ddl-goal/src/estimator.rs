@@ -1,4 +1,4 @@
-//! The goal estimator: retrieve similar pedestrians, and place goals among where they ended.
+//! The goal estimator: it retrieves similar pedestrians and places goals among their endpoints.
 
 use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 use rayon::prelude::*;
@@ -13,16 +13,17 @@ use crate::motion::Motion;
 use crate::params::{RetrievalFrame, ValidGoalEstimatorParams};
 use crate::span::{QuerySpan, velocities};
 
-/// Estimates where pedestrians are heading from how similar pedestrians of a library went on.
+/// Estimates the goals of pedestrians from the endpoints of similar pedestrians in a library.
 ///
-/// In [`RetrievalFrame::Heading`], the default, every pedestrian is described in its [`crate::HeadingFrame`] by its velocities,
-/// divided by its pace; the N tracks of the library, or mirror images of tracks, that moved most alike are the experts,
-/// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on (`docs/goals.md`).
+/// In [`RetrievalFrame::Heading`], the default, every pedestrian is described in its [`crate::HeadingFrame`] by its
+/// velocities, divided by its pace. The experts are the N most similar tracks of the library, or mirror images of
+/// tracks, weighted by similarity. K goals are chosen among the deviations of their endpoints from going straight on
+/// (`docs/goals.md`).
 ///
-/// In [`RetrievalFrame::World`], the published estimator, velocities are compared in the normalised soft-DTW distance
-/// (equations 4 and 5 of the paper), and k-means of the N nearest tracks' ends (equation 6) gives K goals.
+/// In [`RetrievalFrame::World`], the published estimator, velocities are compared by the normalised soft-DTW distance
+/// (equations 4 and 5 of the paper), and k-means of the endpoints of the N nearest tracks (equation 6) gives K goals.
 ///
-/// The result depends on the library, the parameters and the positions that [`crate::QuerySpan`] reads alone.
+/// The result depends only on the library, the parameters and the positions that [`crate::QuerySpan`] reads.
 ///
 /// # References
 /// Wang, Zhi, Batista, Chandra, *Pedestrian trajectory prediction using dynamics-based deep learning*, ICRA 2024,
@@ -38,7 +39,7 @@ use crate::span::{QuerySpan, velocities};
 /// let params = GoalEstimatorParams::default().experts(30).clusters(3).check()?;
 /// let estimator = GoalEstimator::new(params, ExpertLibrary::new(tracks, 0.4)?)?;
 ///
-/// // Somebody who walks north, seen for 3.2 s.
+/// // A pedestrian that walks north, seen for 3.2 s.
 /// let observed: Vec<[f64; 2]> = (0..8).map(|t| [5.0, 0.48 * f64::from(t)]).collect();
 /// let goals = estimator.estimate(&observed)?;
 /// let [x, y] = goals.goals()[0];
@@ -59,11 +60,11 @@ enum Preparation {
 }
 
 impl GoalEstimator {
-    /// Prepares an estimator.
+    /// Creates an estimator and its search index.
     ///
     /// # Errors
-    /// [`GoalError::TooFewTracks`] when the library is smaller than the number of experts and the frame is
-    /// [`RetrievalFrame::World`]; errors of a library whose velocities leave the range of `f64`.
+    /// [`GoalError::TooFewTracks`] if the frame is [`RetrievalFrame::World`] and the library is smaller than the number
+    /// of experts. Also for a library whose velocities exceed the range of `f64`.
     pub fn new(
         params: ValidGoalEstimatorParams,
         library: ExpertLibrary,
@@ -92,7 +93,7 @@ impl GoalEstimator {
         &self.params
     }
 
-    /// The library the goals come from.
+    /// The library that the goals come from.
     pub fn library(&self) -> &ExpertLibrary {
         &self.library
     }
@@ -100,11 +101,11 @@ impl GoalEstimator {
     /// The goals of one pedestrian.
     ///
     /// # Shapes
-    /// `track`: the observed positions (m), at least 8, at least 9 for [`crate::QuerySpan::PublishedFuture`]; later ones
-    /// are not read.
+    /// `track`: the observed positions (m), at least 8, and at least 9 for [`crate::QuerySpan::PublishedFuture`]. Later
+    /// positions are not read.
     ///
     /// # Errors
-    /// A track that is too short, not finite, or so far out that distances leave the range of `f64`.
+    /// If the track is too short, not finite, or so far out that distances exceed the range of `f64`.
     pub fn estimate(&self, track: &[[f64; 2]]) -> Result<GoalSet, GoalError> {
         let (experts, clusters) = (self.params.experts, self.params.clusters);
         match &self.method {
@@ -126,10 +127,10 @@ impl GoalEstimator {
         }
     }
 
-    /// The goals of many pedestrians, in parallel over the current `rayon` pool.
+    /// The goals of many pedestrians, computed in parallel on the current `rayon` pool.
     ///
     /// # Shapes
-    /// A set a track, in their order; tracks as [`GoalEstimator::estimate`] takes them (m).
+    /// One set per track, in the order of the tracks; each track (m) as for [`GoalEstimator::estimate`].
     ///
     /// # Errors
     /// [`GoalError::BatchTrack`] for the first track that [`GoalEstimator::estimate`] refuses.
@@ -150,10 +151,11 @@ impl GoalEstimator {
             .collect()
     }
 
-    /// The track of an expert carried over to the pedestrian of `track`, as its end is for the goals: to be drawn, say.
+    /// The track of an expert, transformed to the pedestrian of `track` like its endpoint for the goals; for example
+    /// for figures.
     ///
-    /// In [`RetrievalFrame::World`] it is moved to the pedestrian's first position. In [`RetrievalFrame::Heading`] its deviation
-    /// from repeating the last observed step is added to the pedestrian's own last step, repeated.
+    /// In [`RetrievalFrame::World`] it is moved to the pedestrian's first position. In [`RetrievalFrame::Heading`] its
+    /// deviation from repeating the last observed step is added to the pedestrian's own last step, repeated.
     ///
     /// # Shapes
     /// `track`: as for [`GoalEstimator::estimate`]; the result has [`TRACK_LENGTH`] positions (m).
@@ -162,7 +164,7 @@ impl GoalEstimator {
     /// As [`GoalEstimator::estimate`].
     ///
     /// # Panics
-    /// When `expert` is not of this estimator's library.
+    /// If `expert` is not of this estimator's library.
     pub fn carry_over(
         &self,
         expert: &Expert,
@@ -191,8 +193,8 @@ impl GoalEstimator {
     }
 }
 
-/// DDL paper, equations 4 and 5. The cost is the squared Euclidean distance, as in the published code (the text of the
-/// paper says Euclidean).
+/// Retrieval by equations 4 and 5 of the DDL paper. The cost is the squared Euclidean distance, as in the published
+/// code (the text of the paper says Euclidean).
 #[derive(Clone, Debug)]
 struct Retriever {
     index: SearchIndex<2>,
@@ -212,7 +214,7 @@ impl Retriever {
         })
     }
 
-    /// The `experts` tracks of the library nearest to `track`, nearest first, ties by their place in the library.
+    /// The `experts` tracks of the library nearest to `track`, nearest first, ties by index.
     fn nearest(&self, track: &[[f64; 2]], experts: usize) -> Result<Vec<Neighbour>, GoalError> {
         let velocities = velocities(track, self.time_step, self.span)?;
         Ok(self.index.nearest(&velocities, experts)?)

@@ -1,18 +1,18 @@
-//! A pedestrian of the library that a goal set comes from.
+//! An expert: a pedestrian of the library that a goal set comes from.
 
 use ddl_softdtw::Neighbour;
 
 use crate::motion_index::Alike;
 
-/// A pedestrian of the library who moved like the observed one.
+/// A pedestrian of the library that moved like the observed one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expert {
-    /// Position of its track in the library, from 0.
+    /// Index of its track in the library, from 0.
     pub index: usize,
-    /// Distance from the observed pedestrian: normalised soft-DTW (m²/s²) in [`crate::RetrievalFrame::World`], a squared
-    /// difference of velocities over paces (no unit) in [`crate::RetrievalFrame::Heading`].
+    /// Distance from the observed pedestrian: normalised soft-DTW (m²/s²) in [`crate::RetrievalFrame::World`], a
+    /// squared difference of velocities relative to the pace (no unit) in [`crate::RetrievalFrame::Heading`].
     pub distance: f64,
-    /// Whether the mirror image of the track is meant.
+    /// Whether the expert is the mirror image of the track.
     pub mirrored: bool,
 }
 

@@ -1,26 +1,28 @@
-//! The point with the least weighted mean distance to given points.
+//! The geometric median: the point with the least weighted mean distance to given points.
 
 use crate::points::squared_distance;
 
-/// A step shorter than this (m) is the last.
+/// The iteration ends after a step shorter than this (m).
 const LAST_STEP: f64 = 1e-4;
 const MOST_STEPS: usize = 100;
-/// A point is better than the way between the points only where it is by more than this share: pulls that balance, as those of two
-/// equal points, have medians all the way between, and rounding must not choose.
+/// A given point is returned only if it is better than the iterated point by more than this share. Where the median is
+/// not unique, as between two equal points, rounding must not decide.
 const ROUNDING: f64 = 1e-9;
 
-/// The point with the least weighted mean distance to `points` (m): one of them, or one between them.
+/// The point with the least weighted mean distance to `points` (m): one of them, or a point between them.
 ///
 /// # Shapes
-/// `points`: at least one; `weights`: as many, not negative, of a positive sum.
+/// `points`: at least one; `weights`: one per point, not negative, with a positive sum.
 ///
 /// # Numerics
-/// A point whose weight outweighs the pull of all others is the median, to the bit. Otherwise Weiszfeld's steps lead
-/// there from the weighted mean, until one is below 0.1 mm, at most 100, and a point comes out instead if it is better.
+/// A point whose weight exceeds the pull of all others is the median, returned exactly. Otherwise Weiszfeld's iteration
+/// starts at the weighted mean, until a step is below 0.1 mm, for at most 100 steps. A given point is returned instead
+/// if it is better.
 ///
 /// # References
-/// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937; H. W. Kuhn, "A note on Fermat's
-/// problem", 1973 (when a point is the median); Y. Vardi, C.-H. Zhang, "The multivariate L1-median and associated data depth", 2000 (the step from a point).
+/// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937; H. W. Kuhn, "A
+/// note on Fermat's problem", 1973 (when a point is the median); Y. Vardi, C.-H. Zhang, "The multivariate L1-median and
+/// associated data depth", 2000 (the step from a point).
 pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
     let outweighs = |&&point: &&[f64; 2]| {
         let pull = Pull::at(point, points, weights);
@@ -31,7 +33,7 @@ pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2]
     }
     debug_assert!(
         weights.iter().sum::<f64>() > 0.0,
-        "points that count nothing have no median"
+        "the weights must have a positive sum"
     );
     let mut centre = mean(points, weights);
     for _ in 0..MOST_STEPS {
@@ -69,7 +71,7 @@ fn total_distance(centre: [f64; 2], points: &[[f64; 2]], weights: &[f64]) -> f64
 
 #[derive(Debug, Clone, Copy, Default)]
 struct Pull {
-    /// Weight of the points of the place itself.
+    /// Total weight of the points at this place.
     here: f64,
     /// Sum of weight x direction over the others.
     sum: [f64; 2],
@@ -97,7 +99,7 @@ impl Pull {
         self.sum[0].hypot(self.sum[1])
     }
 
-    /// To the mean under weight / distance; less far from a place that has weight itself.
+    /// Step to the mean with weights weight / distance; shortened at a place that has weight itself.
     fn step(&self) -> [f64; 2] {
         let strength = self.strength();
         if strength <= self.here {
@@ -117,9 +119,9 @@ mod tests {
         squared_distance(a, b).sqrt()
     }
 
-    /// Found by scipy's Nelder-Mead search to 1e-10 m, outside this project.
+    /// Found with scipy's Nelder-Mead search to 1e-10 m, outside this project.
     #[test]
-    fn the_median_is_where_a_search_finds_it() {
+    fn the_median_agrees_with_a_numerical_search() {
         let five = [[0.0, 0.0], [4.0, 1.0], [1.0, 5.0], [-2.0, 3.0], [2.5, 2.0]];
         let median = geometric_median(&five, &[1.0, 2.0, 0.5, 1.5, 0.7]);
         assert!(apart(median, [2.181_201_52, 1.726_761_91]) < 1e-3);
@@ -138,24 +140,24 @@ mod tests {
         assert!((total - 4.902_558_409_6).abs() < 1e-7, "{total}");
     }
 
-    /// Where a triangle's angle is 120 degrees, its corner is the median: steps creep there.
+    /// A corner with an angle of 120 degrees is the median of its triangle; the iteration converges slowly there.
     #[test]
-    fn a_corner_at_the_edge_of_being_the_median_is_it() {
+    fn a_corner_with_120_degrees_is_the_median() {
         let wide = [[0.0, 0.0], [1.0, 0.0], [-0.5, 0.75_f64.sqrt()]];
         for weight in [0.999, 1.0, 1.001] {
             let median = geometric_median(&wide, &[weight, 1.0, 1.0]);
             assert!(apart(median, [0.0; 2]) < 1e-2, "{weight}: {median:?}");
-            // no way between ends closer than the corner itself
+            // A weighted distance not larger than at the corner itself.
             assert!(weight < 1.0 || apart(median, [0.0; 2]) <= 0.0);
         }
     }
 
-    /// Every place between is as good: the middle, wherever rounding leans.
+    /// Every place between is equally good; the result is the middle, independent of rounding.
     #[test]
     fn two_equal_points_meet_half_way() {
         let median = geometric_median(&[[0.1, 0.2], [3.1, 4.2]], &[0.5; 2]);
         assert!(apart(median, [1.6, 2.2]) < 1e-9, "{median:?}");
-        // nor does a point that counts nothing
+        // A point of weight 0 changes nothing.
         let three = [[-1.0, 0.0], [1.0, 0.0], [0.5, 0.0]];
         let median = geometric_median(&three, &[0.5, 0.5, 0.0]);
         assert!(apart(median, [0.0, 0.0]) < 1e-9, "{median:?}");

@@ -10,9 +10,10 @@ use crate::points::{Points, is_in_range, squared_distance};
 /// Steps of Lloyd's iteration of [`GoalSet::of_ends`].
 const STEPS: usize = 10;
 
-/// Possible goals of one pedestrian with their weights, most likely first.
+/// Weighted goals of one pedestrian, most likely first.
 ///
-/// Goals of equal weight are ordered by their first, then their second coordinate, so that equal inputs give equal bytes.
+/// Goals of equal weight are ordered by their first, then their second coordinate, so that equal inputs give equal
+/// results.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GoalSet {
     goals: Vec<[f64; 2]>,
@@ -22,7 +23,7 @@ pub struct GoalSet {
 }
 
 impl GoalSet {
-    /// Goals with as many weights that sum to 1, in any order.
+    /// Goals with one weight each, summing to 1, in any order.
     pub(crate) fn new(goals: Vec<[f64; 2]>, weights: Vec<f64>, experts: Vec<Expert>) -> Self {
         let mut ranked: Vec<([f64; 2], f64)> = goals.into_iter().zip(weights).collect();
         ranked.sort_by(|(a, a_weight), (b, b_weight)| {
@@ -40,17 +41,17 @@ impl GoalSet {
         }
     }
 
-    /// `clusters` goals such that the weighted mean distance of an end to the nearest goal is small.
+    /// `clusters` goals such that the weighted mean distance of an endpoint to its nearest goal is small.
     ///
-    /// Cells of ends are cut in two, the costliest first, and steps of Lloyd's iteration follow; nothing is random. A
-    /// goal's weight is the sum of the weights of the ends nearest to it.
+    /// Cells of endpoints are divided in two, the costliest first; then steps of Lloyd's iteration follow. The result
+    /// is deterministic. A goal's weight is the sum of the weights of the endpoints nearest to it.
     ///
     /// # Shapes
-    /// `ends` (m, in the pedestrian's `frame`) and `weights` (not negative, not all 0): as many of each, at least one. Fewer
-    /// distinct ends than goals: goals are repeated, with weight 0.
+    /// `ends` (m, in the pedestrian's `frame`) and `weights` (not negative, not all 0): the same number of each, at
+    /// least one. If there are fewer distinct endpoints than goals, goals are repeated with weight 0.
     ///
     /// # Errors
-    /// [`GoalError::Ends`] when the lists do not fit, and when an end or weight is not finite or out of range.
+    /// [`GoalError::Ends`] if the lists differ in length, or if an endpoint or weight is not finite or out of range.
     ///
     /// # Examples
     /// ```
@@ -72,8 +73,8 @@ impl GoalSet {
         if ends.is_empty() || ends.len() != weights.len() || clusters == 0 {
             let (ends, weights) = (ends.len(), weights.len());
             return wrong(format!(
-                "{ends} ends with {weights} weights for {clusters} goals: need as many weights as ends, and at least \
-                 one end and one goal"
+                "{ends} endpoints with {weights} weights for {clusters} goals: need one weight per endpoint, and at \
+                 least one endpoint and one goal"
             ));
         }
         let total: f64 = weights.iter().sum();
@@ -85,9 +86,12 @@ impl GoalSet {
         let mut points = Points::default();
         for (index, (&end, weight)) in ends.iter().zip(weights).enumerate() {
             if !is_in_range(end) {
-                return wrong(format!("end {index} is ({}, {})", end[0], end[1]));
+                return wrong(format!(
+                    "endpoint {index} is ({}, {}): coordinates must be finite and below 1e150",
+                    end[0], end[1]
+                ));
             }
-            // the share may be 0 where the weight is not
+            // The normalised weight may underflow to 0.
             let share = weight / total;
             if share > 0.0 {
                 points.push(end, share);
@@ -102,22 +106,22 @@ impl GoalSet {
         Ok(Self::new(goals, choice.weights, Vec::new()))
     }
 
-    /// The goals (m, in the coordinates of the observed track), as many as clusters were asked for: repeated where the
-    /// experts ended at fewer distinct places.
+    /// The goals (m, in the coordinates of the observed track), as many as clusters requested. Goals are repeated where
+    /// the experts have fewer distinct endpoints.
     pub fn goals(&self) -> &[[f64; 2]] {
         &self.goals
     }
 
-    /// Estimated probability of each goal to be the one nearest the true end; sums to 1.
+    /// Estimated probability of each goal of being the one nearest to the true endpoint; the sum is 1.
     ///
-    /// It is the share of the experts whose carried-over end is nearest the goal, each expert counted by its likeness
-    /// ([`crate::RetrievalFrame::Heading`]) or all alike. Of repeated goals one has the whole share and the others have
-    /// 0.
+    /// It is the share of the experts whose transformed endpoint is nearest to the goal. Experts count by similarity
+    /// ([`crate::RetrievalFrame::Heading`]) or equally ([`crate::RetrievalFrame::World`]). Of repeated goals, one has
+    /// the whole share and the others have 0.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
-    /// The same set with every goal farther than `radius` (m, not negative) from `centre` drawn to that distance.
+    /// The same set with every goal farther than `radius` (m, not negative) from `centre` moved to that distance.
     #[must_use]
     pub fn within(mut self, centre: [f64; 2], radius: f64) -> Self {
         for goal in &mut self.goals {
@@ -130,8 +134,9 @@ impl GoalSet {
         self
     }
 
-    /// The same goals with flatter or steeper weights: each to the `power` (positive), divided by their sum, and then with the share `uniform` (0
-    /// to 1) of the probability divided equally among all. Order and [`median`](Self::median) stay as they are.
+    /// The same goals with flatter or steeper weights: each weight is raised to `power` (positive) and divided by the
+    /// sum; then the share `uniform` (0 to 1) of the probability is divided equally among all goals. The order and the
+    /// [`median`](Self::median) do not change.
     #[must_use]
     pub fn tempered(mut self, power: f64, uniform: f64) -> Self {
         let powers: Vec<f64> = self
@@ -152,11 +157,13 @@ impl GoalSet {
         0
     }
 
-    /// The geometric median of the goals: it minimises the mean distance to them under their weights raised to the power
-    /// [`SHARPNESS`](Self::SHARPNESS), before they were [tempered](Self::tempered). No goal of the set need be there.
+    /// The geometric median of the goals. It minimises the mean distance to them under their weights raised to the
+    /// power [`SHARPNESS`](Self::SHARPNESS), before they were [tempered](Self::tempered). It need not be a goal of the
+    /// set.
     ///
     /// # Numerics
-    /// A goal itself where one outweighs all others, otherwise iterated until a step is below 0.1 mm, at most 100 times: no goal is better.
+    /// Exactly a goal if its weight outweighs all others, otherwise iterated until a step is below 0.1 mm, at most 100
+    /// times. No goal has a smaller mean distance.
     pub fn median(&self) -> [f64; 2] {
         let estimated = self.estimated.as_ref().unwrap_or(&self.weights);
         let sharpened: Vec<f64> = estimated
@@ -170,8 +177,8 @@ impl GoalSet {
     /// (`docs/accuracy.md`).
     pub const SHARPNESS: f64 = 1.5;
 
-    /// Index of the goal nearest to `point` (m), the first of equally near ones: with the true end, the oracle choice
-    /// of the published protocol.
+    /// Index of the goal nearest to `point` (m), the first of equally near ones. With the true endpoint this is the
+    /// oracle choice of the published protocol.
     pub fn nearest(&self, point: [f64; 2]) -> usize {
         let distances = self.goals.iter().map(|&goal| squared_distance(goal, point));
         distances
@@ -180,8 +187,7 @@ impl GoalSet {
             .map_or(0, |(index, _)| index)
     }
 
-    /// The pedestrians of the library the goals come from, most similar first; in [`crate::RetrievalFrame::Heading`] the
-    /// first 100.
+    /// The experts that the goals come from, most similar first; in [`crate::RetrievalFrame::Heading`] the first 100.
     pub fn experts(&self) -> &[Expert] {
         &self.experts
     }
@@ -191,9 +197,9 @@ impl GoalSet {
 mod tests {
     use super::*;
 
-    /// Worked by hand: (6, 8) and (-3, 0) from (1, 1) lead 10 m and 3 m far; of what is at the radius no bit changes.
+    /// By hand: (6, 8) and (-3, 0) are 10 m and 3 m away from (1, 1); goals within the radius keep every bit.
     #[test]
-    fn goals_beyond_the_radius_are_drawn_to_it() {
+    fn goals_beyond_the_radius_are_moved_to_it() {
         let goals = vec![[7.0, 9.0], [-2.0, 1.0], [1.1, 1.7]];
         let set = GoalSet::new(goals, vec![0.5, 0.3, 0.2], Vec::new());
         let drawn = set.clone().within([1.0, 1.0], 5.0);
@@ -208,7 +214,7 @@ mod tests {
         }
     }
 
-    /// Worked by hand: roots of 0.64, 0.16 and 0.04 are as 4, 2 and 1; a tenth is divided equally.
+    /// By hand: the roots of 0.64, 0.16 and 0.04 are in proportion 4 : 2 : 1; a tenth is divided equally.
     #[test]
     fn tempered_weights_are_powers_and_a_share_for_all() {
         let goals = vec![[3.0, 1.0], [4.0, 1.0], [9.0, 1.0]];
@@ -233,10 +239,10 @@ mod tests {
         assert_eq!(set.most_likely(), 0);
     }
 
-    /// Worked by hand: 0.45 is less than the rest, 0.45^1.5 = 0.302 more than 0.2^1.5 + 0.35^1.5 = 0.297.
+    /// By hand: 0.45 is less than the rest, but 0.45^1.5 = 0.302 is more than 0.2^1.5 + 0.35^1.5 = 0.297.
     #[test]
-    #[expect(clippy::float_cmp, reason = "the goal itself")]
-    fn the_median_weighs_the_goals_by_sharpened_weights() {
+    #[expect(clippy::float_cmp, reason = "the median is exactly a goal")]
+    fn the_median_uses_sharpened_weights() {
         let goals = vec![[3.0, 1.0], [4.0, 1.0], [9.0, 1.0]];
         let set = GoalSet::new(goals, vec![0.45, 0.2, 0.35], Vec::new());
         assert_eq!(set.median(), [3.0, 1.0]);

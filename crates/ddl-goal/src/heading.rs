@@ -1,24 +1,24 @@
-//! A pedestrian's own coordinates: where it is and which way it is heading.
+//! The heading frame: coordinates relative to a pedestrian's position and heading.
 
 use crate::error::TrackError;
 use crate::span::check_finite;
 
-/// Length of the last step (m) below which it says little about the heading.
+/// Length of the last step (m) below which it determines the heading only in part.
 const SHORT_STEP: f64 = 0.2;
-/// Length (m) below which a motion is rounding and has no direction.
+/// Length (m) below which a motion is attributed to rounding and has no direction.
 const NEGLIGIBLE: f64 = 1e-6;
 
-/// Coordinates of one pedestrian: the origin at its last observed position, the first axis along its heading, the second
-/// axis to the left of it.
+/// Coordinates of one pedestrian: the origin is its last observed position, the first axis points along its heading,
+/// the second axis to its left.
 ///
-/// With s the last step and l the way from the first to the last observed position, the heading is the direction of
+/// With s the last step and l the displacement from the first to the last observed position, the heading is the
+/// direction of
 ///
 /// h = s + max(0, 1 − |s| / 0.2 m) l.
 ///
-/// So a pedestrian heads where its last step led, and the shorter that step, the more the whole observation counts. Whoever
-/// has
-/// |h| below 1 µm stands, and keeps the axes of the world. Turning or moving the scene turns or moves the frame with it;
-/// mirroring it changes the sign of the second coordinate.
+/// The heading is the direction of the last step; the shorter that step, the more the whole observation counts. If |h|
+/// is below 1 µm, the pedestrian stands, and the frame has the axes of the world. Rotating or translating the scene
+/// rotates or translates the frame with it; mirroring the scene changes the sign of the second coordinate.
 ///
 /// # Examples
 ///
@@ -40,10 +40,11 @@ impl HeadingFrame {
     /// The frame of a pedestrian.
     ///
     /// # Shapes
-    /// `observed`: at least 2 positions (m), all of them read: hand over no position of the future.
+    /// `observed`: at least 2 positions (m), all of which are read: pass no future positions.
     ///
     /// # Errors
-    /// Fewer than 2 positions, one that is not finite, or positions so far apart that their difference is not finite.
+    /// If there are fewer than 2 positions, one is not finite, or positions are so far apart that their difference is
+    /// not finite.
     pub fn new(observed: &[[f64; 2]]) -> Result<Self, TrackError> {
         let [first, before, last] = match *observed {
             [first, last] => [first, first, last],
@@ -79,17 +80,17 @@ impl HeadingFrame {
         self.origin
     }
 
-    /// Unit vector of the heading in the coordinates of the world: the first axis.
+    /// Unit vector of the heading in world coordinates: the first axis.
     pub fn heading(&self) -> [f64; 2] {
         self.heading
     }
 
-    /// A position of the world (m) in this frame: metres ahead, metres to the left.
+    /// Transforms a position from world coordinates (m) to this frame: metres ahead, metres to the left.
     pub fn to_frame(&self, point: [f64; 2]) -> [f64; 2] {
         self.turn_to_frame([point[0] - self.origin[0], point[1] - self.origin[1]])
     }
 
-    /// A position in this frame (m) in the coordinates of the world.
+    /// Transforms a position from this frame (m) to world coordinates.
     pub fn to_world(&self, point: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;
         let [ahead, left] = point;
@@ -99,7 +100,7 @@ impl HeadingFrame {
         ]
     }
 
-    /// A displacement or velocity of the world in the axes of this frame.
+    /// Rotates a displacement or velocity from world coordinates to the axes of this frame.
     pub fn turn_to_frame(&self, vector: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;
         [

@@ -8,14 +8,16 @@ use crate::lloyd::Lloyd;
 use crate::points::{Points, is_in_range};
 use crate::seeding::first_centres;
 
-/// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts, of which the one of least inertia counts.
+/// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts, of which the one with the least inertia is
+/// used.
+///
 /// Inertia is the sum of the squared distances of the points to their centres (m²). A run ends when no point changes
-/// its cluster, when the centres together move less than `tolerance` times the mean variance of the coordinates
-/// (squared distances), or after `max_iterations`: the rules and the defaults of scikit-learn. A cluster that loses all
-/// its points is moved to the point farthest from its own centre. Equal points count as one with a multiplicity. Where
-/// there are fewer distinct points than clusters, each is a centre and the first of them are repeated until there are
-/// enough: always exactly as many centres as asked. The result depends on the set of points and the seed, not on the
-/// order of the points.
+/// its cluster, when the sum of the squared movements of the centres is below `tolerance` times the mean variance of
+/// the coordinates, or after `max_iterations`: the rules and defaults of scikit-learn. A cluster that loses all its
+/// points is moved to the point farthest from its own centre. Equal points count as one with a multiplicity. If there
+/// are fewer distinct points than clusters, each is a centre and the first of them are repeated, so the number of
+/// centres is always the requested one. The result depends on the set of points and the seed, not on the order of the
+/// points.
 #[derive(Clone, Debug)]
 pub(crate) struct KMeans {
     pub(crate) clusters: usize,
@@ -26,12 +28,12 @@ pub(crate) struct KMeans {
 
 #[derive(Debug)]
 pub(crate) struct Clustering {
-    /// Exactly as many as clusters were asked for (m).
+    /// Exactly as many centres as clusters requested (m).
     pub(crate) centres: Vec<[f64; 2]>,
-    /// For each point the index of its nearest centre (the first of equally near ones).
+    /// Index of the nearest centre of each point (the first of equally near ones).
     pub(crate) labels: Vec<usize>,
-    /// Of the best run (m²).
-    #[cfg_attr(not(test), expect(dead_code, reason = "what the tests judge it by"))]
+    /// Inertia of the best run (m²).
+    #[cfg_attr(not(test), expect(dead_code, reason = "used by the tests"))]
     pub(crate) inertia: f64,
 }
 
@@ -47,7 +49,7 @@ impl Clustering {
 }
 
 impl KMeans {
-    /// k-means with so many clusters and restarts, at least one of each; at most 300 iterations, tolerance 1e-4.
+    /// k-means with at least one cluster and at least one restart; at most 300 iterations, tolerance 1e-4.
     pub(crate) fn new(clusters: usize, restarts: usize) -> Self {
         Self {
             clusters,
@@ -57,10 +59,10 @@ impl KMeans {
         }
     }
 
-    /// Clusters `points` (m), at least one, with the random numbers of `seed`.
+    /// Clusters `points` (m), at least one, with random numbers from `seed`.
     ///
     /// # Errors
-    /// A point that is not finite or beyond 1e150.
+    /// If a point is not finite or beyond 1e150.
     pub(crate) fn fit(&self, points: &[[f64; 2]], seed: u64) -> Result<Clustering, GoalError> {
         if let Some(index) = points.iter().position(|&point| !is_in_range(point)) {
             let [x, y] = points[index];

@@ -1,4 +1,4 @@
-//! The pedestrians whose whole track is known.
+//! The library of complete tracks.
 
 use serde::{Deserialize, Serialize};
 
@@ -8,7 +8,7 @@ use crate::span::check_finite;
 /// Positions of a complete track: 8 observed and 12 to forecast.
 pub const TRACK_LENGTH: usize = 20;
 
-/// Complete tracks of pedestrians from the training scenes, the experts of which the most similar ones are retrieved.
+/// Complete tracks of pedestrians from the training scenes; the most similar ones are retrieved as experts.
 ///
 /// # Examples
 /// ```
@@ -42,13 +42,14 @@ impl TryFrom<UncheckedLibrary> for ExpertLibrary {
 }
 
 impl ExpertLibrary {
-    /// A library of tracks sampled every `time_step` seconds.
+    /// Creates a library of tracks sampled every `time_step` seconds.
     ///
     /// # Shapes
     /// `tracks`: at least one, each of [`TRACK_LENGTH`] positions (m).
     ///
     /// # Errors
-    /// An empty list, a track of another length or with a position that is not finite, a time step that is not positive.
+    /// If the list is empty, a track has another length or a position that is not finite, or the time step is not
+    /// positive.
     pub fn new(tracks: Vec<Vec<[f64; 2]>>, time_step: f64) -> Result<Self, LibraryError> {
         if !(time_step.is_finite() && time_step > 0.0) {
             return Err(LibraryError::InvalidTimeStep { time_step });
@@ -84,7 +85,7 @@ impl ExpertLibrary {
         self.tracks.len()
     }
 
-    /// Never true: a library without tracks cannot be made.
+    /// Always false: a library has at least one track.
     pub fn is_empty(&self) -> bool {
         false
     }
@@ -99,10 +100,10 @@ impl ExpertLibrary {
         self.time_step
     }
 
-    /// Where pedestrian `index` ended, relative to where it was first seen (m): equation 6 of the paper.
+    /// Endpoint of track `index` relative to its first position (m): equation 6 of the paper.
     ///
     /// # Panics
-    /// When `index` is not below [`ExpertLibrary::len`].
+    /// If `index` is not below [`ExpertLibrary::len`].
     pub fn end(&self, index: usize) -> [f64; 2] {
         let track = &self.tracks[index];
         [0, 1].map(|d| track[TRACK_LENGTH - 1][d] - track[0][d])
@@ -115,7 +116,7 @@ mod tests {
     use crate::error::{LibraryError, TrackError};
 
     #[test]
-    fn what_cannot_be_used_is_named() {
+    fn invalid_tracks_are_reported() {
         let track = vec![[0.0, 1.0]; 20];
         let refused = |tracks: &[&[[f64; 2]]], time_step| {
             let tracks = tracks.iter().map(|track| track.to_vec()).collect();
@@ -140,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn a_library_survives_json_and_a_broken_one_is_refused() {
+    fn a_library_survives_json_and_an_invalid_one_is_refused() {
         let track: Vec<[f64; 2]> = (0..20).map(|i| [0.1 * f64::from(i), 1.0 / 3.0]).collect();
         let library = ExpertLibrary::new(vec![track], 0.4).unwrap();
         assert!(!library.is_empty());

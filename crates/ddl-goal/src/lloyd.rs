@@ -1,6 +1,6 @@
-//! Lloyd's iteration: each point to its nearest centre, each centre to the mean of its points.
+//! Lloyd's iteration: assign each point to its nearest centre, then move each centre to the mean of its points.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use crate::points::{Points, squared_distance};
 use ddl_simd::{Dispatch, Register, RegisterKernel};
@@ -26,8 +26,8 @@ impl Lloyd {
         run
     }
 
-    /// Moves the centres until they move by `enough` or less (sum of squared distances): by nothing, once no point changes its
-    /// cluster; or until `max_iterations` have passed.
+    /// Iterates until the centres move by `enough` or less (sum of squared distances), or for `max_iterations`. They
+    /// move by 0 once no point changes its cluster.
     pub(crate) fn iterate(&mut self, points: &Points, max_iterations: usize, enough: f64) {
         for _ in 0..max_iterations {
             let moved = self.move_centres(points);
@@ -38,7 +38,7 @@ impl Lloyd {
         }
     }
 
-    /// Gives each point to its nearest centre, the first of equally near ones.
+    /// Assigns each point to its nearest centre, the first of equally near ones.
     fn assign(&mut self, points: &Points) {
         Dispatch::detect().run_on_registers(Assign {
             points,
@@ -101,7 +101,7 @@ struct Assign<'a> {
 impl RegisterKernel for Assign<'_> {
     type Output = ();
 
-    /// Plain loops, compiled for the instruction set: the same bits with each.
+    /// Plain loops, compiled for the instruction set; the result has the same bits for every instruction set.
     #[inline(always)]
     fn run<R: Register>(self, _: R) {
         self.labels.fill(0);
@@ -110,7 +110,7 @@ impl RegisterKernel for Assign<'_> {
             let k = k as u64;
             let positions = self.points.x.iter().zip(&self.points.y);
             let cells = self.nearest.iter_mut().zip(self.labels.iter_mut());
-            // The inner loop has no branches and becomes vector instructions.
+            // The inner loop has no branches and is vectorised.
             for ((nearest, label), (&x, &y)) in cells.zip(positions) {
                 let distance = squared_distance([x, y], centre);
                 let nearer = distance < *nearest;
@@ -126,8 +126,8 @@ mod tests {
     use super::Lloyd;
     use crate::points::Points;
 
-    /// By hand: nobody is near the second centre, so it takes the point at 10, the farthest from its own centre; the first is left with 0
-    /// and 1, of weights 1 and 3.
+    /// By hand: no point is near the second centre, so it takes the point at 10, the farthest from its own centre. The
+    /// first centre keeps the points 0 and 1, of weights 1 and 3.
     #[test]
     fn a_cluster_without_points_takes_the_farthest_point() {
         let mut points = Points::default();

@@ -1,30 +1,31 @@
-//! How a pedestrian moved, in its own frame and compared with its own pace.
+//! The motion of a pedestrian in its own frame, relative to its own pace.
 
 use crate::error::TrackError;
 use crate::heading::HeadingFrame;
 use crate::library::TRACK_LENGTH;
 use crate::span::{QuerySpan, velocities};
 
-/// Components that are compared: 7 velocities ahead, the direction in the world, 7 velocities to the left.
+/// Components compared: 7 velocities ahead, the direction in the world (2), 7 velocities to the left.
 pub(crate) const COMPONENTS: usize = SIGNED + STEPS;
-/// The first component that a mirror image has with the other sign: all from here on.
+/// The first component whose sign a mirror image changes; it changes all from here on.
 pub(crate) const SIGNED: usize = STEPS + 2;
 const STEPS: usize = 7;
-/// Weight of a squared difference against that of the next later step.
+/// Factor between the weights of the squared differences of a step and of the next later step.
 const FADING: f64 = 0.5;
-/// Pace of somebody who stands (m/s): keeps the noise of standing pedestrians from counting as motion.
+/// Pace of a standing pedestrian (m/s): keeps the noise of standing pedestrians from counting as motion.
 const STANDING_PACE: f64 = 0.25;
 
 const DIRECTION: f64 = 0.2;
-/// Speed (m/s) from which on the direction counts in full.
+/// Speed (m/s) from which the direction has full weight.
 const WALKING: f64 = 1.0;
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Motion {
     pub(crate) frame: HeadingFrame,
-    /// Velocities in the frame, divided by the pace, earlier ones scaled down; and the direction in the world.
+    /// Velocities in the frame, divided by the pace, with smaller weights for earlier ones; and the direction in the
+    /// world.
     pub(crate) components: [f32; COMPONENTS],
-    /// Where the pedestrian would end (m, in the frame) if it repeated its last step.
+    /// Endpoint (m, in the frame) if the pedestrian repeated its last step.
     pub(crate) straight_on: [f64; 2],
 }
 
@@ -48,7 +49,7 @@ impl Motion {
             components[SIGNED + step] = (scale * (left / pace)) as f32;
             scale *= FADING.sqrt();
         }
-        // Who stands has no direction.
+        // A standing pedestrian has no direction.
         let share = DIRECTION * (recently / WALKING).min(1.0);
         for (component, direction) in components[STEPS..SIGNED].iter_mut().zip(frame.heading()) {
             *component = (share * direction) as f32;
@@ -64,13 +65,14 @@ impl Motion {
         })
     }
 
-    /// How far a place (m) is from where repeating the last step leads in a share of the time to the end, ahead and to the left (m).
+    /// Deviation of a place (m) from repeating the last step for a share of the time to the end, ahead and to the left
+    /// (m).
     pub(crate) fn deviation(&self, place: [f64; 2], share: f64) -> [f64; 2] {
         let place = self.frame.to_frame(place);
         [0, 1].map(|d| place[d] - share * self.straight_on[d])
     }
 
-    /// The place (m) with this deviation (m): the inverse of [`Motion::deviation`].
+    /// The place (m) with a given deviation (m): the inverse of [`Motion::deviation`].
     pub(crate) fn place(&self, deviation: [f64; 2], share: f64) -> [f64; 2] {
         let in_frame = [0, 1].map(|d| share * self.straight_on[d] + deviation[d]);
         self.frame.to_world(in_frame)

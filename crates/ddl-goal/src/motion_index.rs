@@ -1,11 +1,11 @@
-//! The tracks of a library that moved most like a pedestrian, their mirror images among them.
+//! Exact nearest-neighbour search over the motions of a library and their mirror images.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use crate::motion::{COMPONENTS, SIGNED};
 use ddl_simd::{Dispatch, Register, RegisterKernel};
 
-/// Tracks compared at once: the loop over them becomes vector instructions.
+/// Tracks compared at once, so that the loop over them is vectorised.
 const LANES: usize = 16;
 
 type Block = [[f32; LANES]; COMPONENTS];
@@ -27,7 +27,7 @@ pub(crate) struct MotionIndex {
 impl MotionIndex {
     pub(crate) fn new(motions: &[[f32; COMPONENTS]]) -> Self {
         let block = |motions: &[[f32; COMPONENTS]]| {
-            // Lanes without a track are infinitely far from everybody.
+            // Lanes without a track are infinitely far from every query.
             let mut block = [[f32::INFINITY; LANES]; COMPONENTS];
             for (lane, motion) in motions.iter().enumerate() {
                 for (components, &component) in block.iter_mut().zip(motion) {
@@ -42,7 +42,7 @@ impl MotionIndex {
         }
     }
 
-    /// The `wanted` nearest of the tracks and their mirror images (all where there are fewer), nearest first, ties by
+    /// The `wanted` nearest of the tracks and their mirror images (all if there are fewer), nearest first; ties by
     /// index, a track before its image.
     pub(crate) fn nearest(&self, query: &[f32; COMPONENTS], wanted: usize) -> Vec<Alike> {
         let wanted = wanted.min(2 * self.len);
@@ -60,7 +60,7 @@ impl MotionIndex {
     }
 }
 
-/// The keys of the nearest, and of some others.
+/// The keys of the nearest tracks, and of some others.
 struct NearestMotions<'a> {
     blocks: &'a [Block],
     query: &'a [f32; COMPONENTS],
@@ -70,20 +70,20 @@ struct NearestMotions<'a> {
 impl RegisterKernel for NearestMotions<'_> {
     type Output = Vec<u64>;
 
-    /// Plain loops, compiled for the instruction set: the same bits with each.
+    /// Plain loops, compiled for the instruction set; the result has the same bits for every instruction set.
     #[inline(always)]
     fn run<R: Register>(self, _: R) -> Vec<u64> {
-        // Room for what a block adds before the nearest are selected.
+        // Room for the keys that one block adds before the nearest are selected.
         let mut kept = vec![0; 2 * (self.wanted + LANES)];
         let mut count = 0;
         let mut bound = f32::INFINITY;
         for (first, block) in (0..).step_by(LANES).zip(self.blocks) {
             let both = distances(self.query, block);
             for (mirrored, distances) in both.iter().enumerate() {
-                // Without an early exit the minimum is a few vector instructions.
+                // Without an early exit the minimum takes a few vector instructions.
                 let least = |least, &d| if d < least { d } else { least };
                 if distances.iter().fold(f32::INFINITY, least) < bound {
-                    // Each is written, and stays if it is near enough: there is no branch to mispredict.
+                    // Each key is written, and kept if it is near enough: this avoids an unpredictable branch.
                     for (lane, &distance) in distances.iter().enumerate() {
                         kept[count] = key(distance, 2 * (first + lane) + mirrored);
                         count += usize::from(distance < bound);
@@ -101,7 +101,7 @@ impl RegisterKernel for NearestMotions<'_> {
     }
 }
 
-/// Squared distances of a query to sixteen tracks, and to their mirror images.
+/// Squared distances of a query to sixteen tracks and to their mirror images.
 #[inline(always)]
 fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
     let (same, signed) = query.split_at(SIGNED);
@@ -124,8 +124,8 @@ fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
     [own, image]
 }
 
-/// Distance and number in one integer that sorts by distance, then number: bits of floats that are not negative are
-/// ordered like the floats. 2³¹ tracks would fill 700 GB.
+/// Distance and number in one integer that sorts by distance, then number. The bits of floats that are not negative
+/// have the same order as the floats. 2³¹ tracks would take 700 GB.
 fn key(distance: f32, number: usize) -> u64 {
     (u64::from(distance.to_bits()) << 32) + number as u64
 }
@@ -149,7 +149,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn motion() -> impl Strategy<Value = [f32; COMPONENTS]> {
-        // Coarse numbers now and then: equal motions and ties.
+        // Occasionally coarse numbers: equal motions and ties.
         let coarse = prop::array::uniform16((-2..3_i32).prop_map(|v| v as f32 / 2.0));
         prop_oneof![coarse, prop::array::uniform16(-3.0..3.0_f32)]
     }
@@ -171,7 +171,7 @@ mod tests {
                 });
             }
         }
-        all.sort_by(|a, b| a.distance.total_cmp(&b.distance)); // stable: ties stay in order
+        all.sort_by(|a, b| a.distance.total_cmp(&b.distance)); // stable: ties keep their order
         all
     }
 

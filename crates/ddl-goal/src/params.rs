@@ -1,36 +1,36 @@
-//! The parameters of the goal estimator, before and after they are checked.
+//! Parameters of the goal estimator, unchecked and checked.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::ParamsError;
 use crate::span::QuerySpan;
 
-/// In which coordinates pedestrians are compared and their ends are carried over.
+/// Coordinates in which pedestrians are compared and endpoints are transferred.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RetrievalFrame {
-    /// The coordinates of the recording: a pedestrian is like another only if both head the same way. What the published
-    /// estimator does, with soft-DTW and k-means.
+    /// The coordinates of the recording: two pedestrians are similar only if both head the same way. The published
+    /// estimator uses them, with soft-DTW and k-means.
     World,
-    /// The pedestrian's own [`crate::HeadingFrame`], in which every track of the library also serves as its mirror image.
+    /// The pedestrian's own [`crate::HeadingFrame`]; every track of the library also serves as its mirror image.
     #[default]
     Heading,
 }
 
-/// Parameters of a [`crate::GoalEstimator`], to be checked.
+/// Unchecked parameters of a [`crate::GoalEstimator`].
 ///
 /// | parameter | default | published | |
 /// |---|---|---|---|
-/// | `frame` | [`RetrievalFrame::Heading`] | [`RetrievalFrame::World`] | in which coordinates pedestrians are compared |
+/// | `frame` | [`RetrievalFrame::Heading`] | [`RetrievalFrame::World`] | coordinates of the comparison |
 /// | `experts` | 800 | 100 | similar pedestrians retrieved, N of the paper |
 /// | `clusters` | 20 | 20 | goals, K of the paper |
-/// | `query` | [`QuerySpan::Observed`] | [`QuerySpan::PublishedFuture`] | what the retrieval may look at |
+/// | `query` | [`QuerySpan::Observed`] | [`QuerySpan::PublishedFuture`] | positions that the retrieval may read |
 /// | `gamma` | 1 | 1 | smoothing of soft-DTW (m²/s²), in the frame `World` only |
-/// | `restarts` | 10 | 10 | runs of k-means, of which the best counts, in the frame `World` only |
-/// | `seed` | 0 | 0 | of the seeding of k-means, in the frame `World` only |
+/// | `restarts` | 10 | 10 | runs of k-means, of which the best is used, in the frame `World` only |
+/// | `seed` | 0 | 0 | seed of k-means, in the frame `World` only |
 ///
-/// In the frame `Heading` each track counts twice, as itself and as its mirror image, and a library with fewer than
-/// `experts` of those is retrieved whole; in `World` it is refused.
+/// In the frame `Heading` each track counts twice, as itself and as its mirror image. If these are fewer than
+/// `experts`, all are retrieved; in `World` a library with fewer tracks than `experts` is refused.
 ///
 /// # Examples
 /// ```
@@ -42,7 +42,7 @@ pub enum RetrievalFrame {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GoalEstimatorParams {
-    /// In which coordinates pedestrians are compared.
+    /// Coordinates of the comparison.
     pub frame: RetrievalFrame,
     /// Number of similar pedestrians to retrieve.
     pub experts: usize,
@@ -54,7 +54,7 @@ pub struct GoalEstimatorParams {
     pub restarts: usize,
     /// Seed of k-means.
     pub seed: u64,
-    /// What the retrieval may look at.
+    /// Positions that the retrieval may read.
     pub query: QuerySpan,
 }
 
@@ -80,7 +80,7 @@ impl GoalEstimatorParams {
         Self::default().into_published()
     }
 
-    /// The estimator exactly as published, with the seed of this one.
+    /// The published estimator with the seed of `self`.
     #[must_use]
     pub fn into_published(self) -> Self {
         Self {
@@ -125,7 +125,7 @@ impl GoalEstimatorParams {
     /// Checks the parameters.
     ///
     /// # Errors
-    /// A count of 0, a gamma that is negative or not finite, or the query that reads the future in the frame `Heading`.
+    /// If a count is 0, gamma is negative or not finite, or the query reads the future in the frame `Heading`.
     pub fn check(self) -> Result<ValidGoalEstimatorParams, ParamsError> {
         if self.experts == 0 {
             return Err(ParamsError::NoExperts);
@@ -146,7 +146,7 @@ impl GoalEstimatorParams {
     }
 }
 
-/// Parameters that passed [`GoalEstimatorParams::check`], to be read field by field.
+/// Parameters that passed [`GoalEstimatorParams::check`]; the fields can be read.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(transparent)]
 pub struct ValidGoalEstimatorParams(GoalEstimatorParams);
@@ -166,7 +166,7 @@ mod tests {
     use crate::span::QuerySpan;
 
     #[test]
-    fn each_senseless_value_is_refused() {
+    fn each_invalid_value_is_refused() {
         let refused = |params: GoalEstimatorParams| params.check().unwrap_err();
         let params = GoalEstimatorParams::default;
         assert_eq!(refused(params().experts(0)), ParamsError::NoExperts);

@@ -1,6 +1,6 @@
-//! Points in the plane, equal ones counted together.
+//! Weighted points in the plane; equal points are merged.
 
-/// Coordinates (m) are smaller than this: their squares, summed over many points, are finite.
+/// Limit of the coordinates (m), below which sums of squares are finite.
 const LARGEST: f64 = 1e150;
 
 /// Whether squared distances of such a point stay finite; false for NaN.
@@ -8,7 +8,7 @@ pub(crate) fn is_in_range(point: [f64; 2]) -> bool {
     point.iter().all(|value| value.abs() < LARGEST)
 }
 
-/// Points with weights: multiplicities where [`Points::distinct`] made them.
+/// Points with weights; [`Points::distinct`] uses multiplicities as weights.
 #[derive(Debug, Default)]
 pub(crate) struct Points {
     pub(crate) x: Vec<f64>,
@@ -17,9 +17,9 @@ pub(crate) struct Points {
 }
 
 impl Points {
-    /// The distinct points, sorted, with their multiplicities, and for each point given its place among them.
+    /// The distinct points, sorted, with their multiplicities, and the index among them of each given point.
     pub(crate) fn distinct(points: &[[f64; 2]]) -> (Self, Vec<usize>) {
-        // Adding 0 turns −0 into +0: they are one point.
+        // Adding 0 turns −0 into +0, so that they are one point.
         let clean = |index: usize| points[index].map(|value| value + 0.0);
         let mut order: Vec<usize> = (0..points.len()).collect();
         order.sort_unstable_by(|&a, &b| {

@@ -7,8 +7,8 @@ use crate::points::{Points, squared_distance};
 
 /// Chooses `clusters` of the points as first centres.
 ///
-/// The first is drawn by multiplicity; each further one is the best of 2 + ln K draws with probability proportional to
-/// the squared distance to the centres so far (times multiplicity), best being the draw that leaves the least sum of those.
+/// The first is drawn by multiplicity. Each further one is the best of 2 + ln K draws with probability proportional to
+/// the squared distance to the centres so far (times multiplicity); the best draw leaves the least sum of these.
 ///
 /// # References
 /// Arthur & Vassilvitskii, *k-means++: the advantages of careful seeding*, SODA 2007 (the greedy variant of section 5).
@@ -51,7 +51,7 @@ pub(crate) fn first_centres(
     centres
 }
 
-/// Squared distances to the nearest centre once `centre` is one, written to `into`, and their weighted sum.
+/// Writes the squared distances to the nearest centre, `centre` included, to `into`, and returns their weighted sum.
 fn add_centre(points: &Points, nearest: &[f64], centre: [f64; 2], into: &mut [f64]) -> f64 {
     let positions = points.x.iter().zip(&points.y);
     for ((into, nearest), (&x, &y)) in into.iter_mut().zip(nearest).zip(positions) {
@@ -68,7 +68,7 @@ fn add_centre(points: &Points, nearest: &[f64], centre: [f64; 2], into: &mut [f6
         .sum()
 }
 
-/// Index drawn with probability proportional to `weights`; uniform when all are 0.
+/// Index drawn with probability proportional to `weights`; uniform if all are 0.
 fn draw(weights: &[f64], rng: &mut ChaCha8Rng) -> usize {
     let total: f64 = weights.iter().sum();
     if total <= 0.0 {
@@ -98,9 +98,10 @@ mod tests {
 
     const SEEDS: u64 = 2000;
 
-    /// By hand: the first centre is the heavy point at 0. The next is drawn twice, the point at 1 (squared distance times weight 8) with
-    /// probability 2/3, that at -2 with 1/3, and the first is better (it leaves 4 m², the other 8): it comes out unless both draws are the other.
-    /// Four standard deviations of a share of so many draws are at most 0.045.
+    /// By hand: the first centre is the heavy point at 0. The next is drawn twice: the point at 1 (squared distance
+    /// times weight 8) with probability 2/3, that at -2 with 1/3. The point at 1 is better (it leaves 4 m², the other
+    /// 8), so it is chosen unless both draws are the other. Four standard deviations of a share of so many draws are at
+    /// most 0.045.
     #[test]
     fn the_next_centre_is_the_best_of_draws_by_squared_distance_and_weight() {
         let mut points = Points::default();

@@ -1,23 +1,24 @@
-//! How much of a track a retrieval may look at, and the velocities in it.
+//! The part of a track that a retrieval may read, and its velocities.
 
 use serde::{Deserialize, Serialize};
 
 use crate::error::TrackError;
 
-/// How much of a track a retrieval may look at.
+/// The part of a track that a retrieval may read.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum QuerySpan {
-    /// The 7 forward differences of the 8 observed positions: nothing of the future. What every honest protocol uses.
+    /// The 7 forward differences of the 8 observed positions, without the future. Used by every protocol except
+    /// `published`.
     #[default]
     Observed,
-    /// 8 forward differences, the last of which reads position 9, the first one to be forecast: what the published code
-    /// does. Only to reproduce published numbers.
+    /// 8 forward differences, as in the published code: the last one reads position 9, the first one to be forecast.
+    /// Only to reproduce published numbers.
     PublishedFuture,
 }
 
 impl QuerySpan {
-    /// Number of velocities that are compared: 7 or 8.
+    /// Number of velocities compared: 7 or 8.
     pub fn velocities(self) -> usize {
         match self {
             Self::Observed => 7,
@@ -25,13 +26,13 @@ impl QuerySpan {
         }
     }
 
-    /// Number of positions that are read, from the first: 8 or 9.
+    /// Number of positions read, from the first: 8 or 9.
     pub fn positions(self) -> usize {
         self.velocities() + 1
     }
 }
 
-/// Forward differences (m/s) of the positions that `span` may read; later positions are not looked at.
+/// Forward differences (m/s) of the positions that `span` may read; later positions are ignored.
 ///
 /// # Shapes
 /// `track`: at least [`QuerySpan::positions`] positions (m), `time_step` (s) apart.
@@ -74,7 +75,7 @@ pub(crate) fn check_finite(positions: &[[f64; 2]]) -> Result<(), TrackError> {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
+    #![expect(clippy::float_cmp, reason = "the results are exact")]
 
     use super::{QuerySpan, velocities};
 
@@ -85,7 +86,7 @@ mod tests {
     }
 
     #[test]
-    fn velocities_are_forward_differences_of_what_the_span_reads() {
+    fn velocities_are_forward_differences_of_the_positions_read() {
         let observed = velocities(&walk(8), 0.5, QuerySpan::Observed).unwrap();
         assert_eq!(observed.len(), 7);
         assert_eq!(observed[0], [1.0, -2.0]);

@@ -1,4 +1,4 @@
-//! Cost of a full memory of 20,000 stretches: a recall, and a frame of 25 people.
+//! Cost of a full memory of 20,000 stretches: a recall, and a frame of 25 pedestrians.
 
 #[path = "../tests/crowd/mod.rs"]
 mod crowd;
@@ -11,9 +11,9 @@ use crowd::Crowd;
 use ddl_data::{OBSERVED, PedestrianId, Position};
 use ddl_memory::SceneMemory;
 
-const PEOPLE: usize = 25;
+const PEDESTRIANS: usize = 25;
 
-/// A memory that has forgotten already, its crowd, the next frame, and what the memory would be asked.
+/// A memory that has begun to forget, its crowd, the next frame, and queries for the memory.
 fn full() -> (
     SceneMemory,
     Crowd,
@@ -21,17 +21,21 @@ fn full() -> (
     Vec<(PedestrianId, [Position; OBSERVED])>,
 ) {
     let mut memory = SceneMemory::new(1, SceneMemory::DEFAULT_CAPACITY).expect("in range");
-    let mut crowd = Crowd::new(1, PEOPLE);
+    let mut crowd = Crowd::new(1, PEDESTRIANS);
     let mut last = Vec::new();
     for frame in 0..4_000 {
-        let people = crowd.step();
-        memory.observe(frame, people.clone()).expect("valid");
-        last.push(people);
+        let pedestrians = crowd.step();
+        memory.observe(frame, pedestrians.clone()).expect("valid");
+        last.push(pedestrians);
     }
     let last = &last[last.len() - OBSERVED..];
     let observed = |id| {
-        last.iter()
-            .map(move |people| people.iter().find(|seen| seen.0 == id).map(|seen| seen.1))
+        last.iter().map(move |pedestrians| {
+            pedestrians
+                .iter()
+                .find(|seen| seen.0 == id)
+                .map(|seen| seen.1)
+        })
     };
     let queries = last[OBSERVED - 1].iter().filter_map(|&(id, _)| {
         let positions: Option<Vec<Position>> = observed(id).collect();
@@ -40,7 +44,7 @@ fn full() -> (
     (memory, crowd, 4_000, queries.collect())
 }
 
-/// Times every run alone, for percentiles.
+/// Times every run separately, for percentiles.
 fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Duration) {
     let mut times: Vec<Duration> = Vec::new();
     criterion.bench_function(name, |b| {
@@ -53,7 +57,7 @@ fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Durat
     times.sort_unstable();
     let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
     let [median, most, worst] = [0.5, 0.99, 1.0].map(at);
-    eprintln!("{name}: median {median:?}, 99 % within {most:?}, worst {worst:?}\n");
+    eprintln!("{name}: median {median:?}, 99th percentile {most:?}, maximum {worst:?}\n");
 }
 
 fn recall(criterion: &mut Criterion) {
@@ -72,10 +76,10 @@ fn recall(criterion: &mut Criterion) {
 
 fn observe(criterion: &mut Criterion) {
     let (mut memory, mut crowd, mut frame, _) = full();
-    measure(criterion, "observe 25 people", || {
-        let people = crowd.step();
+    measure(criterion, "observe 25 pedestrians", || {
+        let pedestrians = crowd.step();
         let start = Instant::now();
-        memory.observe(frame, people).expect("valid");
+        memory.observe(frame, pedestrians).expect("valid");
         frame += 1;
         start.elapsed()
     });

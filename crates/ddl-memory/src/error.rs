@@ -1,4 +1,4 @@
-//! What a scene memory refuses, said with the place and the remedy.
+//! Errors of a scene memory.
 
 use std::path::PathBuf;
 
@@ -7,16 +7,17 @@ use thiserror::Error;
 
 use crate::memory::LARGEST_CAPACITY;
 
-/// Why a memory cannot be made, fed, written or read. After an error of `observe` the memory is unchanged.
+/// A memory cannot be created, updated, written or read. After an error of `observe` the memory is unchanged.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum MemoryError {
-    /// The frame step or a frame, as `ddl_data::LiveTracks` would refuse it.
+    /// The frame step or a frame is invalid, by the rules of `ddl_data::LiveTracks`.
     #[error(transparent)]
     Frame(#[from] LiveError),
     #[error(
-        "the memory has {memory} raw frames in a step of 0.4 s, the recording {recording}: a memory is of one frame rate"
+        "the memory has {memory} raw frames per step of 0.4 s, the recording {recording}: use recordings of the \
+         memory's frame rate"
     )]
     OtherFrameStep { memory: i64, recording: i64 },
     #[error("the capacity must lie in 1..={LARGEST_CAPACITY} stretches, found {found}")]
@@ -32,7 +33,7 @@ pub enum MemoryError {
         source: std::io::Error,
     },
     #[error(
-        "{} is not a scene memory that can be read: {problem}. Put back a copy, or remove the file and start with an \
+        "{} is not a readable scene memory: {problem}. Restore a copy, or remove the file and start with an \
          empty memory",
         .path.display()
     )]

@@ -1,4 +1,4 @@
-//! A memory in a file: a line of text with the SHA-256 of what follows, and the memory as JSON.
+//! Memory files: a line of text with the SHA-256 of the rest, and the memory as JSON.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -15,9 +15,9 @@ use crate::memory::Seen;
 use crate::track::{MOST_PIECES, RunningTrack, Track};
 use crate::{MemoryError, SceneMemory};
 
-/// What a file begins with: what it is, and of which version.
+/// The beginning of a file: format and version.
 const MAGIC: &str = "ddl-memory 1 ";
-/// What a file of any version begins with.
+/// The beginning of a file of any version.
 const ANY_VERSION: &str = "ddl-memory ";
 /// Bytes of the first line: `MAGIC`, 64 hexadecimal digits, a line feed.
 const HEAD: usize = MAGIC.len() + 65;
@@ -34,10 +34,11 @@ struct Stored<'a> {
 }
 
 impl SceneMemory {
-    /// Writes the memory, with those who are there, to a file that is replaced when the new one is whole.
+    /// Writes the memory, including the pedestrians currently present. The file is replaced once the new one is
+    /// complete.
     ///
     /// # Errors
-    /// [`MemoryError::Write`] if the file cannot be written; an earlier one is then left as it was.
+    /// [`MemoryError::Write`] if the file cannot be written; an existing file then stays unchanged.
     pub fn write(&self, path: &Path) -> Result<(), MemoryError> {
         let stored = Stored {
             frame_step: self.frame_step,
@@ -58,17 +59,16 @@ impl SceneMemory {
         })
     }
 
-    /// Whether these first bytes of a file say that it holds a memory, be it of another version or damaged.
+    /// Whether the first bytes of a file are those of a memory, even of another version or a damaged one.
     #[must_use]
     pub fn begins(bytes: &[u8]) -> bool {
         bytes.starts_with(ANY_VERSION.as_bytes())
     }
 
-    /// Reads a memory as it was written. If the tracker has started anew since, call [`interrupt`](Self::interrupt)
-    /// next.
+    /// Reads a memory file. If the tracker has restarted since, call [`interrupt`](Self::interrupt) next.
     ///
     /// # Errors
-    /// [`MemoryError::Read`] if the file cannot be read, [`MemoryError::File`] if it is not what was written.
+    /// [`MemoryError::Read`] if the file cannot be read, [`MemoryError::File`] if its content is invalid or damaged.
     pub fn read(path: &Path) -> Result<Self, MemoryError> {
         let failed = |source| MemoryError::Read {
             path: path.to_owned(),
@@ -90,7 +90,8 @@ impl SceneMemory {
         let mut content = Vec::new();
         file.read_to_end(&mut content).map_err(failed)?;
         if head(&content).as_bytes() != start {
-            let problem = "it is damaged or cut off, for its SHA-256 is not that of its first line";
+            let problem =
+                "it is damaged or cut off: its SHA-256 differs from the one in its first line";
             return Err(refused(problem.to_owned()));
         }
         let stored =
@@ -107,7 +108,7 @@ fn head(content: &[u8]) -> String {
     line + "\n"
 }
 
-/// The memory, if the program could have made it.
+/// The memory, if its content is possible.
 fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     let error = |error: MemoryError| error.to_string();
     let mut memory = SceneMemory::new(stored.frame_step, stored.capacity).map_err(error)?;
@@ -124,7 +125,7 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
         checked_frame(frame, None, []).map_err(|error| error.to_string())?;
     }
     if last_frames.max() > memory.last_frame {
-        return Err("somebody was seen after the last frame".to_owned());
+        return Err("a pedestrian was seen after the last frame".to_owned());
     }
     for track in memory
         .ended

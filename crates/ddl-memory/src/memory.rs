@@ -1,4 +1,4 @@
-//! The memory itself: fed frame by frame, never larger than its capacity.
+//! The scene memory: updated frame by frame, never larger than its capacity.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -10,36 +10,37 @@ use crate::MemoryError;
 use crate::piece::is_remembered;
 use crate::track::{RunningTrack, Track};
 
-/// Stretches; of the shortest tracks they take 180 MB.
+/// Largest capacity in stretches; with the shortest tracks it takes 180 MB.
 pub(crate) const LARGEST_CAPACITY: usize = 1 << 18;
-/// A full memory forgets this share of its capacity at once.
+/// A full memory removes this fraction (1/n) of its capacity at once ...
 const FORGOTTEN_AT_ONCE: usize = 32;
-/// It forgets among this share of the tracks, the oldest.
+/// ... from this fraction (1/n) of the tracks, the oldest ones.
 const OLDEST: usize = 8;
 
-/// What one camera has seen so far.
+/// The tracks that one camera has observed.
 ///
-/// A *stretch* is 20 positions of one pedestrian, a step of 0.4 s apart, all of them observed. Where frames come faster
-/// than steps, the positions of a track that count are those at whole steps after its first frame, or after the first
-/// frame behind a hole. A stretch holds positions of observed frames only.
+/// A *stretch* is 20 positions of one pedestrian, one step of 0.4 s apart, all of them observed. If frames come faster
+/// than steps, a track uses the positions at whole steps after its first frame, or after the first frame behind a hole.
+/// A stretch contains only positions of observed frames.
 ///
 /// - A missing step ends a run of stretches. A track ends after more than
 ///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps without a position. The same id later starts a new track.
-/// - Two stretches are alike where their squared distance, that of [`recall`](Self::recall), is below 1.
-/// - A track is kept in runs of up to 8 stretches. A run is not kept if its first and its last stretch are alike to some
-///   of an earlier run of the same track; the run right before it does not count. Of the others the latest
-///   [`MOST_PIECES`](crate::MOST_PIECES) are kept. So a pedestrian who stands for an hour takes the room of three runs.
-/// - The memory holds at most `capacity` stretches. A full memory makes room for 1/32 of them among the oldest eighth of
-///   the ended tracks: first go those whose middle is alike to a newer track, then the others, each time the oldest
-///   first. Where all tracks are running, the longest loses its oldest run.
-/// - Besides, it holds the people of the last 3.2 s.
-/// - The same frames give the same memory, in whichever order the people of a frame come.
+/// - Two stretches are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
+/// - A track is kept in runs of up to 8 stretches. A run is removed if its first and its last stretch are both similar
+///   to stretches of an earlier run of the same track (the run right before it does not count). Of the others the
+///   latest [`MOST_PIECES`](crate::MOST_PIECES) are kept. So a pedestrian that stands for an hour takes the space of
+///   three runs.
+/// - The memory holds at most `capacity` stretches. A full memory frees 1/32 of them among the oldest eighth of the
+///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, each time the
+///   oldest first. If no track has ended, the longest one loses its oldest run.
+/// - In addition, it holds the pedestrians of the last 3.2 s.
+/// - The same frames give the same memory, for any order of the pedestrians within a frame.
 ///
 /// ```
 /// use ddl_data::PedestrianId;
 /// use ddl_memory::SceneMemory;
 ///
-/// let mut memory = SceneMemory::new(10, SceneMemory::DEFAULT_CAPACITY)?; // 25 frames a second
+/// let mut memory = SceneMemory::new(10, SceneMemory::DEFAULT_CAPACITY)?; // 25 frames per second
 /// for step in 0..30 {
 ///     memory.observe(10 * step, [(PedestrianId(1), [0.5 * step as f64, 2.0])])?;
 /// }
@@ -57,12 +58,12 @@ pub struct SceneMemory {
     pub(crate) last_frame: Option<i64>,
     pub(crate) seen: Seen,
     pub(crate) stretches: usize,
-    /// Tracks with a stretch at least, in the order in which they ended.
+    /// Tracks with at least one stretch, in the order in which they ended.
     pub(crate) ended: Vec<Track>,
     pub(crate) running: BTreeMap<PedestrianId, RunningTrack>,
 }
 
-/// What is counted and not forgotten.
+/// Counts that are never reduced.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Seen {
@@ -84,10 +85,10 @@ impl Seen {
 }
 
 impl SceneMemory {
-    /// Stretches that a memory holds where nothing else is known: those of some hundreds to thousands of pedestrians.
+    /// Default capacity in stretches: those of some hundreds to thousands of pedestrians.
     pub const DEFAULT_CAPACITY: usize = 20_000;
 
-    /// Nothing seen yet; so many raw frames make a step of 0.4 s, such as 10 of a camera at 25 frames a second.
+    /// An empty memory; `frame_step` is the number of raw frames per step of 0.4 s, such as 10 at 25 frames per second.
     ///
     /// # Errors
     /// [`MemoryError::Frame`] or [`MemoryError::Capacity`] for a number that is out of range.
@@ -99,7 +100,7 @@ impl SceneMemory {
         Ok(Self::empty(frame_step, capacity))
     }
 
-    /// A memory of the same frame step and capacity that holds nothing.
+    /// An empty memory with the same frame step and capacity.
     #[must_use]
     pub fn emptied(&self) -> Self {
         Self::empty(self.frame_step, self.capacity)
@@ -117,48 +118,48 @@ impl SceneMemory {
         }
     }
 
-    /// Raw frames in one step of 0.4 s.
+    /// Raw frames per step of 0.4 s.
     pub fn frame_step(&self) -> i64 {
         self.frame_step
     }
 
-    /// The most stretches that are held.
+    /// The largest number of stretches held.
     pub fn capacity(&self) -> usize {
         self.capacity
     }
 
-    /// The last frame observed since the camera started.
+    /// The last frame observed since the start of the camera.
     pub fn last_frame(&self) -> Option<i64> {
         self.last_frame
     }
 
-    /// Stretches held, at most the capacity.
+    /// Number of stretches held, at most the capacity.
     pub fn stretches(&self) -> usize {
         self.stretches
     }
 
     /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
-    /// A memory accepts what [`LiveTracks`](ddl_data::LiveTracks) accepts. It does not remember a position whose x or y
-    /// is beyond 1e7 m. It remembers nobody if no two frames are a step apart, as when every third frame of a camera with
-    /// 10 frames a step is given: [`summary`](Self::summary) then counts pedestrians, but no stretches.
+    /// A memory accepts the frames that [`LiveTracks`](ddl_data::LiveTracks) accepts. It ignores positions with x or y
+    /// beyond 1e7 m. If no two frames are one step apart, it holds no stretches, although [`summary`](Self::summary)
+    /// counts pedestrians. An example is every third frame of a camera with 10 frames per step.
     ///
     /// # Errors
-    /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. Nothing has changed then.
+    /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. The memory is then unchanged.
     pub fn observe(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<(), MemoryError> {
-        let people = checked_frame(frame, self.last_frame, people)?;
+        let positions = checked_frame(frame, self.last_frame, positions)?;
         let watched = self.last_frame.map_or(0, |last| frame.abs_diff(last));
         self.seen.watched = self.seen.watched.saturating_add(watched);
         self.seen.frames = self.seen.frames.saturating_add(1);
         self.last_frame = Some(frame);
         let step = self.frame_step;
         self.end_tracks(|track| track.is_gone(frame, step));
-        let people = people.into_iter();
-        for (id, position) in people.filter(|(_, position)| is_remembered(*position)) {
+        let positions = positions.into_iter();
+        for (id, position) in positions.filter(|(_, position)| is_remembered(*position)) {
             self.seen.add(position);
             match self.running.entry(id) {
                 Entry::Occupied(mut running) => {
@@ -177,7 +178,8 @@ impl SceneMemory {
         Ok(())
     }
 
-    /// The camera or its tracker starts anew: all tracks end, and frames may begin at any number. Nothing is forgotten.
+    /// Marks a restart of the camera or its tracker: all tracks end, and frames may begin at any number. Nothing is
+    /// forgotten.
     pub fn interrupt(&mut self) {
         self.end_tracks(|_| true);
         self.last_frame = None;
@@ -204,7 +206,8 @@ impl SceneMemory {
         }
     }
 
-    /// Removes tracks of the oldest eighth until few enough stretches are left: first those that newer tracks repeat.
+    /// Removes tracks of the oldest eighth until the number of stretches is low enough, first those that newer tracks
+    /// repeat.
     fn forget_ended(&mut self, enough: usize) {
         let oldest = self.ended.len().div_ceil(OLDEST);
         for repeated_only in [true, false] {

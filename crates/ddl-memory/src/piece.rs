@@ -1,11 +1,11 @@
-//! Consecutive stretches of one track, compared with a pedestrian all at once.
+//! A piece: consecutive stretches of one track, all compared with a pedestrian at once.
 
 use ddl_data::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Stretches compared at once: the loop over them becomes vector instructions.
+/// Stretches compared at once, so that the loop over them is vectorised.
 const LANES: usize = 8;
-/// Positions that two pieces share where the second follows on the first: all of a stretch but its last.
+/// Positions that a piece shares with the following one: all of a stretch but its last.
 pub(crate) const SHARED: usize = WINDOW - 1;
 /// Positions of a full piece.
 const PATH: usize = LANES + SHARED;
@@ -16,19 +16,20 @@ const VELOCITIES: usize = 4;
 const COMPONENTS: usize = 2 + VELOCITIES;
 /// Scales of late and early velocity (m/s): a difference of one scale adds 1 to the squared distance, as 1 m does.
 const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
-/// Squared distance of two stretches that say much the same: those of two who walk 1 m apart.
+/// Squared distance below which two stretches are similar: that of two pedestrians that walk 1 m apart.
 const ALIKE: f32 = 1.0;
-/// Present positions of a piece are so near to the first (m) that an `f32` tells micrometres; a pedestrian gets 6 m far.
+/// Present positions of a piece are so close to the first (m) that an `f32` resolves micrometres; a pedestrian gets 6 m
+/// far.
 const REACH: f64 = 30.0;
 
-/// A pedestrian's motion over 8 positions: where now (m), late and early velocity in units of their scales.
+/// A pedestrian's motion over 8 positions: present position (m), late and early velocity in units of their scales.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Motion {
     now: Position,
     velocities: [f32; VELOCITIES],
 }
 
-/// Whether a position is near enough to the origin for distances in `f32` to be finite.
+/// Whether a position is close enough to the origin for distances in `f32` to be finite.
 pub(crate) fn is_remembered(position: Position) -> bool {
     position.iter().all(|x| x.abs() <= COORDINATE_LIMIT)
 }
@@ -51,8 +52,7 @@ impl Motion {
         }
     }
 
-    /// All components, the place relative to an origin: in `f32` it is exact to micrometres near the origin, wherever
-    /// that is.
+    /// All components, with the place relative to an origin. In `f32` they are exact to micrometres near that origin.
     fn from(&self, origin: Position) -> [f32; COMPONENTS] {
         let [x, y] = [0, 1].map(|axis| (self.now[axis] - origin[axis]) as f32);
         let [u, v, early_u, early_v] = self.velocities;
@@ -60,18 +60,18 @@ impl Motion {
     }
 }
 
-/// Positions a step apart, 1 to 27, and the up to 8 stretches of 20 that begin at the first ones. In a file it is the
-/// positions.
+/// Positions one step apart, 1 to 27 of them, and the up to 8 stretches of 20 that begin at the first ones. A file
+/// holds the positions.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "Vec<Position>")]
 pub(crate) struct Piece {
-    /// Motions of the stretches relative to the present position of the first; those that are not there are infinite.
+    /// Motions of the stretches relative to the present position of the first; lanes without a stretch are infinite.
     motions: [[f32; LANES]; COMPONENTS],
     path: Vec<Position>,
 }
 
 impl Piece {
-    /// The first positions of a run, or the last ones of a piece.
+    /// A piece of the first positions of a run, or of the last ones of a piece.
     fn of(path: &[Position]) -> Self {
         let mut piece = Self {
             motions: [[f32::INFINITY; LANES]; COMPONENTS],
@@ -98,7 +98,7 @@ impl Piece {
         }
     }
 
-    /// Adds the next position, or gives the piece that begins with it where this one is full or too far away.
+    /// Adds the next position. If this piece is full or too far away, returns the piece that begins with it instead.
     pub(crate) fn push(&mut self, position: Position) -> Option<Self> {
         if self.path.len() >= SHARED {
             let lane = self.len();
@@ -113,12 +113,12 @@ impl Piece {
         None
     }
 
-    /// What a piece that follows on this one begins with: no stretch yet, but a position short of one.
+    /// The beginning of the following piece: one position short of a stretch.
     pub(crate) fn rest(&self) -> Self {
         Self::of(&self.path[self.path.len().saturating_sub(SHARED)..])
     }
 
-    /// Stretches.
+    /// Number of stretches.
     pub(crate) fn len(&self) -> usize {
         self.path.len().saturating_sub(SHARED)
     }
@@ -127,7 +127,7 @@ impl Piece {
         &self.path
     }
 
-    /// 20 positions of the stretch of a lane.
+    /// The 20 positions of the stretch of a lane.
     pub(crate) fn stretch(&self, lane: usize) -> [Position; WINDOW] {
         std::array::from_fn(|t| self.path[lane + t])
     }
@@ -147,12 +147,12 @@ impl Piece {
         self.nearest(motion) < ALIKE
     }
 
-    /// Whether both its first and its last stretch are alike to stretches of another piece. It must have a stretch.
+    /// Whether both its first and its last stretch are similar to stretches of another piece. It must have a stretch.
     pub(crate) fn is_repeated_by(&self, other: &Self) -> bool {
         other.is_alike(&self.motion(0)) && other.is_alike(&self.motion(self.len() - 1))
     }
 
-    /// Squared distance of each stretch from a motion, infinite or NaN where there is none.
+    /// Squared distance of each stretch from a motion; infinite or NaN for lanes without a stretch.
     #[inline]
     fn distances(&self, motion: &Motion) -> [f32; LANES] {
         let origin = self.path.get(NOW).copied().unwrap_or_default();
@@ -171,7 +171,7 @@ impl Piece {
     #[inline]
     pub(crate) fn nearest(&self, motion: &Motion) -> f32 {
         let mut least = self.distances(motion);
-        // Halves: the minimum of all is a few vector instructions.
+        // Halves are compared, so that the minimum takes a few vector instructions.
         for half in [4, 2, 1] {
             for lane in 0..half {
                 let other = least[lane + half];
@@ -185,7 +185,7 @@ impl Piece {
         least[0]
     }
 
-    /// The first of the stretches that are nearest to a motion.
+    /// The first of the stretches nearest to a motion.
     pub(crate) fn nearest_lane(&self, motion: &Motion) -> usize {
         let distances = self.distances(motion);
         (1..self.len()).fold(0, |least, lane| {
@@ -210,7 +210,7 @@ impl TryFrom<Vec<Position>> for Piece {
     fn try_from(path: Vec<Position>) -> Result<Self, String> {
         if !(1..=PATH).contains(&path.len()) {
             let found = path.len();
-            return Err(format!("a run has {found} positions, of 1 to {PATH}"));
+            return Err(format!("a run has {found} positions, it needs 1 to {PATH}"));
         }
         match path.iter().find(|position| !is_remembered(**position)) {
             Some(position) => Err(format!("position {position:?} is too far from the origin")),

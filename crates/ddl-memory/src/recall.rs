@@ -1,25 +1,25 @@
-//! Earlier pedestrians that moved as one does now.
+//! Recall of earlier pedestrians with a similar motion.
 
 use ddl_data::{OBSERVED, PedestrianId, Position, Remembered};
 
 use crate::SceneMemory;
 use crate::piece::{Motion, Piece};
 
-/// Stretches at this squared distance or farther do not count.
+/// Squared distance from which stretches are ignored.
 pub const FARTHEST: f64 = 60.0;
 
 impl SceneMemory {
-    /// What at most `count` other pedestrians did who moved as this one does, the nearest first, of each the nearest
-    /// stretch: its 20 positions (m, in the world), and its squared distance.
+    /// Returns the tracks of at most `count` other pedestrians with a similar motion, nearest first. Each is
+    /// represented by its nearest stretch: 20 positions (m, world coordinates) and the squared distance.
     ///
-    /// The last of the 8 observed positions (m, a step of 0.4 s apart) is now. The squared distance of a stretch is
-    /// `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`, with `dp` the difference of the eighth positions,
-    /// `dv` that of the velocities over the last 3 steps of the 8, and `de` over the first 3. It is computed in `f32`,
-    /// to about 1e-5, and must lie below [`FARTHEST`]. Where two pedestrians are equally
-    /// near, those who have left come before those who are there: who left earlier first, then by id.
+    /// The last of the 8 observed positions (m, one step of 0.4 s apart) is the present one. The squared distance of a
+    /// stretch is `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`. Here `dp` is the difference of the eighth
+    /// positions, `dv` that of the velocities over the last 3 of the 8 steps, and `de` that over the first 3. It is
+    /// computed in `f32`, to about 1e-5, and must be below [`FARTHEST`]. Of equally near pedestrians, those that have
+    /// left come first, in the order in which they left, then those present, by id.
     ///
-    /// `own` is the id of this pedestrian, whose running track is left out. If a component of the
-    /// motion is not finite, nothing is recalled.
+    /// `own` is the id of this pedestrian, whose running track is left out. If a component of the motion is not finite,
+    /// the result is empty.
     #[must_use]
     pub fn recall(
         &self,

@@ -1,13 +1,13 @@
-//! A recording watched again: its windows, each with what was known of the place at that moment.
+//! Replay of a recording: its windows, each with the tracks remembered at that moment.
 
 use ddl_data::{OBSERVED, Recording, Window};
 
 use crate::{MemoryError, SceneMemory};
 
-/// In which order the frames of a recording are watched.
+/// The order in which the frames of a recording are observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Playback {
-    /// As they were recorded.
+    /// In recorded order.
     Onward,
     /// From the last to the first, for windows that are [reversed](Window::reversed).
     Backward,
@@ -21,24 +21,24 @@ impl Playback {
         }
     }
 
-    /// The moment from which is forecast.
+    /// The frame from which the forecast starts.
     fn now(self, window: &Window) -> i64 {
         match self {
             Self::Onward => window.frames()[OBSERVED - 1],
-            // The frames of a reversed window are those of the window.
+            // A reversed window has the same frames as the window.
             Self::Backward => -window.frames()[window.steps() - OBSERVED],
         }
     }
 }
 
 impl SceneMemory {
-    /// The windows of one recording, each with what this memory recalls for its pedestrians, at most `count` for each,
-    /// after it has also watched the recording before the last observed frame of the window. Nothing later is read.
+    /// The windows of one recording, each with at most `count` remembered tracks per pedestrian. Before each window,
+    /// this memory observes the recording up to the last observed frame of the window; nothing later is read.
     ///
-    /// Backward, watching begins at the last frame of the windows.
+    /// With [`Playback::Backward`], observation begins at the last frame of the windows.
     ///
     /// # Errors
-    /// [`MemoryError`] when the recording has another number of raw frames a step than the memory.
+    /// [`MemoryError`] if the number of raw frames per step differs between recording and memory.
     pub fn replay(
         mut self,
         recording: &Recording,
@@ -60,17 +60,16 @@ impl SceneMemory {
         for index in order {
             let now = playback.now(&windows[index]);
             while let Some(frame) = frames.next_if(|frame| playback.time(*frame) < now) {
-                let people = recording.at(frame).iter();
-                let people = people.map(|seen| (seen.pedestrian, seen.position));
-                self.observe(playback.time(frame), people)?;
+                let positions = recording.at(frame).iter();
+                let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+                self.observe(playback.time(frame), positions)?;
             }
             windows[index] = self.recalling(windows[index].clone(), count);
         }
         Ok(windows)
     }
 
-    /// The window with what this memory recalls for its pedestrians, at most `count` for each; their own running tracks are left
-    /// out.
+    /// The window with at most `count` remembered tracks per pedestrian; their own running tracks are left out.
     #[must_use]
     pub fn recalling(&self, window: Window, count: usize) -> Window {
         let recall = |i: usize| match window.observed(i).first_chunk() {
@@ -82,17 +81,18 @@ impl SceneMemory {
         window.with_remembered(|_| remembered.next().unwrap_or_default())
     }
 
-    /// Watches a whole recording, and whatever is watched next as a recording of its own.
+    /// Observes a whole recording. The next one observed counts as a recording of its own.
     ///
     /// # Errors
-    /// [`MemoryError`] when the recording has another number of raw frames a step than the memory. Nothing has changed then.
+    /// [`MemoryError`] if the number of raw frames per step differs between recording and memory. The memory is then
+    /// unchanged.
     pub fn watch(&mut self, recording: &Recording) -> Result<(), MemoryError> {
         self.ensure_step_of(recording)?;
         self.interrupt();
         for &frame in recording.frames() {
-            let people = recording.at(frame).iter();
-            let people = people.map(|seen| (seen.pedestrian, seen.position));
-            self.observe(frame, people)?;
+            let positions = recording.at(frame).iter();
+            let positions = positions.map(|seen| (seen.pedestrian, seen.position));
+            self.observe(frame, positions)?;
         }
         self.interrupt();
         Ok(())

@@ -1,30 +1,30 @@
-//! What a memory tells about itself.
+//! Summary of a scene memory.
 
 use ddl_data::{Position, TIME_STEP};
 
 use crate::SceneMemory;
 use crate::track::Track;
 
-/// What a memory holds and what it was fed.
+/// Content of a memory and statistics of its input.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MemorySummary {
-    /// Stretches held. None after many frames: are frames a whole number of steps of 0.4 s apart?
+    /// Stretches held. If it stays 0, check that frames are a whole number of steps of 0.4 s apart.
     pub stretches: usize,
-    /// Pedestrians with a stretch that is held.
+    /// Pedestrians with at least one stretch.
     pub tracks: usize,
-    /// Pedestrians seen; who comes back after 3.2 s counts again.
+    /// Pedestrians seen; a pedestrian that returns after 3.2 s counts again.
     pub pedestrians: u64,
     /// Frames observed, empty ones included.
     pub frames: u64,
-    /// Time watched, without interruptions (s).
+    /// Time observed, without interruptions (s).
     pub seconds: f64,
-    /// Least and largest x and y of all positions (m); `None` without one.
+    /// Smallest and largest x and y of all positions (m); `None` without positions.
     pub extent: Option<[Position; 2]>,
 }
 
 impl SceneMemory {
-    /// What the memory holds.
+    /// A summary of the memory.
     #[must_use]
     pub fn summary(&self) -> MemorySummary {
         MemorySummary {
@@ -37,8 +37,8 @@ impl SceneMemory {
         }
     }
 
-    /// The positions held of each pedestrian with a stretch (m), a step of 0.4 s apart but where steps were missed or
-    /// forgotten: first those who left, in the order in which they did, then those who are there, by id.
+    /// The positions (m) of each pedestrian with a stretch, one step of 0.4 s apart except where steps were missed or
+    /// forgotten. Pedestrians that have left come first, in the order in which they left, then those present, by id.
     pub fn tracks(&self) -> impl Iterator<Item = Vec<Position>> {
         self.held().map(Track::positions)
     }

@@ -1,16 +1,16 @@
-//! One pedestrian's stretches, and the track of one who may be seen again.
+//! The stretches of one pedestrian, and the running track of one that may be seen again.
 
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};
 
 use crate::piece::{Motion, Piece, SHARED};
 
-/// After so many steps of 0.4 s (3.2 s in all) without a position a track ends. The same id later starts a new track.
+/// A track ends after this many steps of 0.4 s (3.2 s) without a position. The same id later starts a new track.
 pub const LONGEST_ABSENCE: i64 = 8;
-/// Of one pedestrian at most so many runs of 8 stretches are kept, the latest: 102 s of somebody who roams about.
+/// Largest number of runs of 8 stretches kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
 pub const MOST_PIECES: usize = 32;
 
-/// A pedestrian of this memory: pieces, the oldest first. Only the last may be without a stretch.
+/// A pedestrian of this memory: pieces, oldest first. Only the last may be without a stretch.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Track {
@@ -22,14 +22,15 @@ impl Track {
         self.pieces.iter().map(Piece::len).sum()
     }
 
-    /// The piece with the stretch that is nearest to a motion, the first of those, and its squared distance.
+    /// The piece with the stretch nearest to a motion (the first if several are equally near), and its squared
+    /// distance.
     pub(crate) fn nearest(&self, motion: &Motion) -> Option<(f32, &Piece)> {
         let distances = self.pieces.iter();
         let distances = distances.map(|piece| (piece.nearest(motion), piece));
         distances.reduce(|least, next| if next.0 < least.0 { next } else { least })
     }
 
-    /// Whether a stretch from its middle is alike to one of other tracks.
+    /// Whether a stretch from its middle is similar to one of other tracks.
     pub(crate) fn is_repeated_by(&self, others: &[Self]) -> bool {
         let middle = self.pieces.get(self.pieces.len().saturating_sub(1) / 2);
         let mut others = others.iter().flat_map(|track| &track.pieces);
@@ -38,8 +39,8 @@ impl Track {
             .is_some_and(|motion| others.any(|other| other.is_alike(&motion)))
     }
 
-    /// Adds a piece. The last piece so far goes if it repeats an earlier one; the one right before it does not count.
-    /// Returns how many stretches are gone.
+    /// Adds a piece. The previous last piece is removed if it repeats an earlier one; the one right before it does not
+    /// count. Returns the number of stretches removed.
     fn add(&mut self, piece: Piece) -> usize {
         let gone = match &self.pieces[..] {
             [.., last] if last.len() == 0 => self.pieces.pop(),
@@ -53,7 +54,8 @@ impl Track {
         gone.map_or(0, |piece| piece.len())
     }
 
-    /// Removes the oldest piece, but of the only one what the next stretch needs. Returns how many stretches are gone.
+    /// Removes the oldest piece. From an only piece it keeps the positions that the next stretch needs. Returns the
+    /// number of stretches removed.
     pub(crate) fn forget_oldest(&mut self) -> usize {
         let Some(first) = self.pieces.first_mut() else {
             return 0;
@@ -79,7 +81,7 @@ impl Track {
     }
 }
 
-/// The track of somebody who was seen a short time ago.
+/// The track of a pedestrian seen within the last 3.2 s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RunningTrack {
@@ -102,7 +104,7 @@ impl RunningTrack {
         frame - self.last > LONGEST_ABSENCE * step
     }
 
-    /// Adds a position, unless it lies between two steps. Returns how many stretches are new, and how many are gone.
+    /// Adds a position, unless it lies between two steps. Returns the numbers of stretches added and removed.
     pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
         let due = self.last + step;
         if frame < due {

@@ -1,6 +1,6 @@
-//! Which vector instructions there are, and running a kernel with them.
+//! Detection of vector instructions at run time, and dispatch of kernels.
 
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ use crate::simd::Kernel;
 #[cfg(target_arch = "x86_64")]
 use crate::x86::{Avx2, Avx512, Avx512Bf16};
 
-/// Vector instructions that kernels can be run with.
+/// Instruction sets that kernels can run with.
 ///
 /// # Examples
 /// ```
@@ -24,7 +24,7 @@ use crate::x86::{Avx2, Avx512, Avx512Bf16};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum InstructionSet {
-    /// What the program was compiled for: plain loops, on any machine.
+    /// The instructions that the program was compiled for: plain loops, on any machine.
     Portable,
     /// 256-bit vectors with fused multiplication (x86-64-v3).
     Avx2,
@@ -35,7 +35,7 @@ pub enum InstructionSet {
 impl InstructionSet {
     const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 
-    /// The fastest of this machine.
+    /// The fastest one of this machine.
     pub fn detect() -> Self {
         let available = Self::ALL.into_iter().rev().find(|set| set.is_available());
         available.unwrap_or(Self::Portable)
@@ -63,7 +63,7 @@ impl fmt::Display for InstructionSet {
     }
 }
 
-/// An instruction set that the machine has been seen to have.
+/// An instruction set that the machine is known to have.
 #[derive(Clone, Copy, Debug)]
 pub struct Dispatch(Set);
 
@@ -77,7 +77,7 @@ enum Set {
 }
 
 impl Dispatch {
-    /// `None` when the machine lacks `set`.
+    /// `None` if the machine lacks `set`.
     pub fn new(set: InstructionSet) -> Option<Self> {
         let set = match set {
             InstructionSet::Portable => Some(Set::Portable(Portable)),
@@ -91,7 +91,7 @@ impl Dispatch {
         set.map(Self)
     }
 
-    /// The fastest of this machine.
+    /// The fastest one of this machine.
     pub fn detect() -> Self {
         Self::new(InstructionSet::detect()).unwrap_or(Self(Set::Portable(Portable)))
     }
@@ -131,7 +131,7 @@ impl Dispatch {
     }
 }
 
-/// How pairs of bf16 numbers are computed with: all ways give the same bits.
+/// Implementation of the arithmetic on pairs of bf16 numbers; all give the same bits.
 #[derive(Clone, Copy, Debug)]
 pub struct PairDispatch(PairSet);
 
@@ -143,7 +143,7 @@ enum PairSet {
 }
 
 impl PairDispatch {
-    /// The fastest of this machine.
+    /// The fastest one of this machine.
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(pairs) = Avx512Bf16::detect() {
@@ -152,12 +152,12 @@ impl PairDispatch {
         Self::emulated(Dispatch::detect())
     }
 
-    /// By portable code, compiled for the instruction set.
+    /// Portable code, compiled for the instruction set.
     pub fn emulated(dispatch: Dispatch) -> Self {
         Self(PairSet::Emulated(dispatch))
     }
 
-    /// Whether the machine has instructions for it.
+    /// Whether the machine has native instructions for it.
     pub fn is_native(self) -> bool {
         !matches!(self.0, PairSet::Emulated(_))
     }

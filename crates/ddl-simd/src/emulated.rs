@@ -1,4 +1,4 @@
-//! The bf16 instructions, emulated to the bit: for machines without them, slower than `f32`.
+//! Exact emulation of the bf16 instructions, for machines without them; slower than `f32`.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -7,7 +7,7 @@ use crate::pairs::{Floats, PairKernel, Pairs};
 use crate::register::{Register, RegisterKernel};
 use crate::simd::Simd;
 
-/// Pairs in plain loops, beside the `f32` arithmetic of an instruction set.
+/// Plain loops over pairs, with the `f32` arithmetic of an instruction set.
 #[derive(Clone, Copy, Debug)]
 struct Emulated<S>(S);
 
@@ -85,7 +85,7 @@ impl<S: Simd> Pairs for Emulated<S> {
         let lower = |word: u32| normal(f32::from_bits(word << 16));
         let mut sums = self.numbers(sum);
         for l in 0..LANES {
-            // Rounded once each, whatever the machine.
+            // Each operation is rounded once, on every machine.
             let first = normal(upper(a[l]).mul_add(upper(b[l]), normal(sums[l])));
             sums[l] = normal(lower(a[l]).mul_add(lower(b[l]), first));
         }
@@ -93,7 +93,7 @@ impl<S: Simd> Pairs for Emulated<S> {
     }
 }
 
-/// The upper half of the nearest bf16 number, ties to even. What is not a number stays so.
+/// The upper half of the nearest bf16 number, ties to even. NaN stays NaN.
 #[inline(always)]
 fn rounded(value: f32) -> u32 {
     let bits = normal(value).to_bits();

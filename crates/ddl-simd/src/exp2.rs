@@ -1,21 +1,21 @@
-//! Powers of two, from additions and multiplications.
+//! Powers of two, computed with additions and multiplications.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use crate::register::Register;
 
-/// Largest exponent of [`Register::exp2_each`], negated: a larger one counts as this.
+/// Magnitude of the smallest exponent of [`Register::exp2_each`]; smaller exponents are clamped.
 pub const COST_LIMIT: f32 = 124.0;
 /// Bound on the relative error of [`Register::exp2_each`].
 pub const EXP2_ERROR: f64 = 3e-7;
-/// Largest exponent of [`wide_exp2_each`], negated.
+/// Magnitude of the smallest exponent of [`wide_exp2_each`].
 pub const COST_LIMIT_64: f64 = 900.0;
-/// Bound on the relative error of [`wide_exp2_each`], ten units of rounding.
+/// Bound on the relative error of [`wide_exp2_each`]: ten rounding units.
 pub const EXP2_ERROR_64: f64 = 1.2e-15;
 
-/// Adding and subtracting 1.5 · 2^23 rounds a small number to an integer, which then sits in the low bits of the sum.
+/// Adding and subtracting 1.5 · 2^23 rounds a small number to an integer, which is in the low bits of the sum.
 const ROUNDING: f32 = 12_582_912.0;
-/// 1.5 · 2^52, likewise.
+/// The same for `f64`: 1.5 · 2^52.
 const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 struct Approximation {
@@ -23,7 +23,7 @@ struct Approximation {
     coefficients: [f32; 6],
 }
 
-/// 2^f on [−1/2, 1/2] with the least largest relative error (Remez exchange, 7.5e-8).
+/// 2^f on [−1/2, 1/2] with the smallest maximum relative error (Remez exchange, 7.5e-8).
 const NORMAL: Approximation = Approximation {
     lowest: -COST_LIMIT,
     coefficients: [
@@ -36,9 +36,9 @@ const NORMAL: Approximation = Approximation {
     ],
 };
 
-/// 2^f on [−1/2, 1/2]: of the polynomials with P(0) = 1 the one with the least largest relative error (iteratively
-/// reweighted least squares; 1.1e-7 with coefficients of f32).
-#[expect(clippy::approx_constant, reason = "the fit, not ln 2")]
+/// 2^f on [−1/2, 1/2]: the polynomial with P(0) = 1 and the smallest maximum relative error (iteratively reweighted
+/// least squares; 1.1e-7 with coefficients of f32).
+#[expect(clippy::approx_constant, reason = "a fitted coefficient, not ln 2")]
 const VANISHING: Approximation = Approximation {
     lowest: -127.0,
     coefficients: [
@@ -53,7 +53,10 @@ const VANISHING: Approximation = Approximation {
 
 /// 2^f on [0, 1], degree 5 (Remez exchange, 7.5e-8).
 #[cfg(target_arch = "x86_64")]
-#[expect(clippy::excessive_precision, reason = "as the exchange printed them")]
+#[expect(
+    clippy::excessive_precision,
+    reason = "digits as printed by the Remez exchange"
+)]
 pub(crate) const UPWARD_POLYNOMIAL: [f32; 6] = [
     0.999_999_9,
     0.693_153_07,
@@ -67,7 +70,7 @@ pub(crate) const UPWARD_POLYNOMIAL: [f32; 6] = [
 #[expect(
     clippy::excessive_precision,
     clippy::approx_constant,
-    reason = "as the exchange printed them"
+    reason = "digits as printed by the Remez exchange"
 )]
 const WIDE_POLYNOMIAL: [f64; 12] = [
     1.0,
@@ -84,7 +87,7 @@ const WIDE_POLYNOMIAL: [f64; 12] = [
     4.435_280_944_610_336_161_06e-10,
 ];
 
-/// [`Register::exp2_each`] without instructions of its own.
+/// [`Register::exp2_each`] for instruction sets without special instructions.
 #[inline(always)]
 pub(crate) fn normal<R: Register, const G: usize>(
     register: R,
@@ -132,8 +135,8 @@ fn by_rounding<R: Register, const G: usize>(
 /// 2^exponent of several registers of `f64`, for exponents that are not positive.
 ///
 /// # Numerics
-/// The relative error is below [`EXP2_ERROR_64`], the bits are the same with every instruction set. Exponents below
-/// −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`]: no result is denormal.
+/// The relative error is below [`EXP2_ERROR_64`]; every instruction set gives the same bits. Exponents below
+/// −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`], so that no result is denormal.
 #[inline(always)]
 pub fn wide_exp2_each<R: Register, const G: usize>(
     register: R,

@@ -1,15 +1,15 @@
-//! How numbers lie in memory, sixteen at a time.
+//! Memory layout of numbers, in groups of sixteen.
 
-/// Numbers of `f32` that go through an operation together.
+/// Number of `f32` values in a group.
 pub const LANES: usize = 16;
 
-/// Numbers of `f64` that take the place of [`LANES`] numbers of `f32`.
+/// Number of `f64` values in the space of [`LANES`] values of `f32`.
 pub const WIDE_LANES: usize = LANES / 2;
 
-/// Vectors in a [`Quad`].
+/// Number of vectors in a [`Quad`].
 pub const DEPTH: usize = 4;
 
-/// Sixteen numbers. Aligned, because a register's load that crosses a cache line costs two.
+/// Sixteen numbers, aligned, because a load across a cache line costs two.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct Lanes(pub [f32; LANES]);
@@ -19,7 +19,7 @@ impl Lanes {
     pub const ZERO: Self = Self([0.0; LANES]);
 }
 
-/// Four times sixteen numbers: four numbers of each lane.
+/// Four groups of sixteen numbers: four numbers per lane.
 pub type Quad = [Lanes; DEPTH];
 
 /// A [`Quad`] of zeros.

@@ -3,14 +3,14 @@
 use crate::lanes::LANES;
 use crate::simd::Simd;
 
-/// Arithmetic on sixteen pairs of bf16 numbers at a time, beside that on `f32`.
+/// Arithmetic on sixteen pairs of bf16 numbers at a time, together with that on `f32`.
 ///
-/// A bf16 number is the upper half of an `f32`: its range, with 8 significant bits. A pair is a word of 32 bits, the first
-/// number its lower half.
+/// A bf16 number is the upper half of an `f32`: the same range, with 8 significant bits. A pair is a 32-bit word; the
+/// first number is its lower half.
 ///
 /// # Numerics
-/// As the instructions of AVX-512 BF16 have it, to the bit: to the nearest, ties to even; what is subnormal counts as 0,
-/// as argument and as result.
+/// Exactly as the instructions of AVX-512 BF16: rounded to nearest, ties to even; subnormal arguments and results count
+/// as 0.
 pub trait Pairs: Copy + Send + Sync {
     /// The arithmetic on `f32`.
     type Simd: Simd;
@@ -37,7 +37,7 @@ pub trait Pairs: Copy + Send + Sync {
 /// Sixteen `f32` beside sixteen pairs.
 pub type Floats<P> = <<P as Pairs>::Simd as Simd>::Floats;
 
-/// A computation on pairs that is compiled once for each instruction set. What is said of [`Kernel`](crate::Kernel) holds.
+/// A computation on pairs that is compiled once for each instruction set. The rules of [`Kernel`](crate::Kernel) apply.
 pub trait PairKernel {
     /// The computation.
     fn run<P: Pairs>(self, pairs: P);

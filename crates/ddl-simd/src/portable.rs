@@ -1,4 +1,4 @@
-//! Plain loops over short arrays, which the compiler turns into the vector instructions every machine of its kind has.
+//! Plain loops over short arrays, which the compiler vectorises with the baseline instructions of the target.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -8,7 +8,7 @@ use crate::register::{Register, RegisterKernel};
 use crate::simd::TiledKernel;
 use crate::sixteen::Sixteen;
 
-/// Lanes of a part: what the smallest vector registers hold.
+/// Lanes of a part: the size of the smallest vector registers.
 const WIDTH: usize = 4;
 type Floats = [f32; WIDTH];
 type Bits = [u32; WIDTH];
@@ -17,7 +17,7 @@ type Wide = [f64; WIDTH / 2];
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Portable;
 
-/// Applies an expression to each lane. A loop, not `map`: the call `map` makes is not always inlined.
+/// Applies an expression to each lane. A loop, because the call that `map` makes is not always inlined.
 macro_rules! each_lane {
     ($a:ident, |$l:ident| $value:expr) => {{
         let mut result = $a;
@@ -29,7 +29,8 @@ macro_rules! each_lane {
 }
 
 macro_rules! lane_by_lane {
-    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($($a:ident: $kind:ty),*; $($b:ident: $scalar:ty),*) -> $result:ident = |$l:ident| $value:expr;)*) => {$(
+    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($($a:ident: $kind:ty),*; $($b:ident: $scalar:ty),*)
+        -> $result:ident = |$l:ident| $value:expr;)*) => {$(
         #[inline(always)]
         fn $name$(<const $n: $constant>)?(self, $($a: $kind,)* $($b: $scalar),*) -> $result {
             let mut result = <$result>::default();
@@ -47,7 +48,7 @@ impl Register for Portable {
     type Wide = Wide;
     type Sixteen = Sixteen<Self, 4>;
     const WIDTH: usize = WIDTH;
-    // Without the instruction a fused product is a slow call of the mathematical library.
+    // Without the instruction, a fused product is a slow call of the math library.
     const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
     #[inline]
@@ -62,7 +63,7 @@ impl Register for Portable {
 
     #[inline(always)]
     fn run_tiled<K: TiledKernel>(self, kernel: K) {
-        // Half of the sixteen registers that most machines have.
+        // Half of the sixteen registers of most machines.
         kernel.run::<Self::Sixteen, 2, 1>(Sixteen(self));
     }
 

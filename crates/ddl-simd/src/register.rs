@@ -1,25 +1,26 @@
-//! Arithmetic on one register of an instruction set: what each instruction set has to offer.
+//! Arithmetic on one register, as every instruction set must provide it.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use crate::lanes::{LANES, WIDE_LANES};
 use crate::simd::{Simd, TiledKernel};
 
-/// Arithmetic on one register at a time, of `f32`, of `f64` and of words of 32 bits.
+/// Arithmetic on one register at a time, of `f32`, of `f64` and of 32-bit words.
 ///
 /// Sixteen numbers of `f32` (eight of `f64`) are a group, which fills [`PARTS`](Self::PARTS) registers. A kernel that
-/// needs many registers goes through a group part by part; the others take [`Simd`], a whole group at a time. Operations
-/// without words are those of [`Simd`], on one register or, called `wide_`, on `f64`; `part` counts the registers of a group.
+/// needs many registers processes a group part by part; other kernels use [`Simd`], a whole group at a time.
+/// Undocumented operations are those of [`Simd`], on one register; the prefix `wide_` marks `f64`. `part` is the index
+/// of a register in its group.
 ///
-/// A value of a type that implements it is the proof that the machine has the instructions, so that all methods are safe
-/// to call. Loads and stores panic when `part >= PARTS`, a check that disappears in a loop over `0..PARTS`.
+/// A value that implements this trait proves that the machine has the instructions, so all methods are safe to call.
+/// Loads and stores panic if `part >= PARTS`; the check is optimised away in a loop over `0..PARTS`.
 ///
 /// # Numerics
-/// Operations on `f64` are rounded one by one (there is no fused multiplication), so that every instruction set gives the
-/// same bits. Those on `f32` may be fused.
+/// Operations on `f64` are rounded separately (without fused multiplication), so that every instruction set gives the
+/// same bits. Operations on `f32` may be fused.
 #[expect(
     missing_docs,
-    reason = "operations without words are those of `Simd`, on one register or on f64"
+    reason = "undocumented operations are those of `Simd`, on one register or on f64"
 )]
 pub trait Register: Copy + Send + Sync {
     /// `WIDTH` numbers of `f32`.
@@ -32,13 +33,13 @@ pub trait Register: Copy + Send + Sync {
     const WIDTH: usize;
     /// Whether [`mul_add`](Self::mul_add) is rounded once.
     const FUSED: bool;
-    /// Registers that make up a group.
+    /// Number of registers in a group.
     const PARTS: usize = LANES / Self::WIDTH;
 
     /// Compiles `kernel` with this instruction set and runs it.
     fn run<K: RegisterKernel>(self, kernel: K) -> K::Output;
     fn sixteen(self) -> Self::Sixteen;
-    /// Runs `kernel`, within one that runs already, with the [`Tile`](crate::Tile) that the registers hold.
+    /// Runs `kernel` within a running one, with the [`Tile`](crate::Tile) size that fits the registers.
     fn run_tiled<K: TiledKernel>(self, kernel: K);
 
     fn splat(self, value: f32) -> Self::Floats;
@@ -59,12 +60,13 @@ pub trait Register: Copy + Send + Sync {
     fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
     /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
     fn scale(self, power: Self::Floats, exponent: Self::Floats) -> Self::Floats;
-    /// 2^exponent of several registers, for exponents that are not positive, a stage at a time, so that none waits for
-    /// the others.
+    /// 2^exponent of several registers, for exponents that are not positive. The registers are processed stage by
+    /// stage, so that the processor can overlap them.
     ///
     /// # Numerics
-    /// The relative error is below [`EXP2_ERROR`](crate::EXP2_ERROR). Exponents below −[`COST_LIMIT`](crate::COST_LIMIT)
-    /// (and NaN) count as −[`COST_LIMIT`](crate::COST_LIMIT): no result is denormal.
+    /// The relative error is below [`EXP2_ERROR`](crate::EXP2_ERROR). Exponents below
+    /// −[`COST_LIMIT`](crate::COST_LIMIT) (and NaN) count as −[`COST_LIMIT`](crate::COST_LIMIT), so that no result is
+    /// denormal.
     fn exp2_each<const G: usize>(self, exponents: [Self::Floats; G]) -> [Self::Floats; G];
 
     #[inline(always)]
@@ -77,7 +79,7 @@ pub trait Register: Copy + Send + Sync {
     fn transpose(self, groups: [Self::Floats; 4]) -> [Self::Floats; 4];
     /// [`Simd::spread`] of a part.
     fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
-    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j over k, the farthest ones first.
+    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j over k; the farthest ones are added first.
     fn sum_of_fours(self, a: Self::Floats) -> Self::Floats;
 
     fn count_from(self, first: u32) -> Self::Bits;
@@ -98,7 +100,7 @@ pub trait Register: Copy + Send + Sync {
     fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
 }
 
-/// A [`Kernel`](crate::Kernel) that is written for one register at a time, with a result. What is said there holds.
+/// A [`Kernel`](crate::Kernel) written for one register at a time, with a result. The rules of `Kernel` apply.
 pub trait RegisterKernel {
     /// The result.
     type Output;

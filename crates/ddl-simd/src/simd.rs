@@ -1,4 +1,4 @@
-//! Arithmetic on sixteen numbers, and the computations that are written with it.
+//! Arithmetic on sixteen numbers, and traits of the computations that use it.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -6,19 +6,18 @@ use crate::lanes::{DEPTH, LANES, Quad};
 
 /// Arithmetic on sixteen numbers at a time, in one or more registers.
 ///
-/// A value of a type that implements it is the proof that the machine has the instructions, so that all methods are safe
-/// to call.
+/// A value that implements this trait proves that the machine has the instructions, so all methods are safe to call.
 ///
 /// # Numerics
-/// Every operation is rounded once to the nearest `f32`, but [`mul_add`](Self::mul_add), which portable code may round
-/// twice.
+/// Every operation is rounded once to the nearest `f32`, except [`mul_add`](Self::mul_add), which portable code may
+/// round twice.
 pub trait Simd: Copy + Send + Sync {
     /// Sixteen numbers.
     type Floats: Copy;
     /// Sixteen words of 32 bits.
     type Bits: Copy;
 
-    /// Runs `kernel`, within one that runs already, with the [`Tile`] that the registers hold.
+    /// Runs `kernel` within a running one, with the [`Tile`] size that fits the registers.
     fn run_tiled<K: TiledKernel>(self, kernel: K);
 
     /// `value` in every lane.
@@ -46,12 +45,12 @@ pub trait Simd: Copy + Send + Sync {
     /// 2^`exponent` for exponents that are not positive, and exactly 0 from −127 on.
     ///
     /// # Numerics
-    /// The relative error is below 3e-7 down to −126, and the result is exactly 1 at 0. Below −126 it lies in [0, 2^−125].
-    /// NaN counts as −127.
+    /// The relative error is below 3e-7 down to −126, and the result is exactly 1 at 0. Below −126 it lies in [0,
+    /// 2^−125]. NaN counts as −127.
     fn exp2(self, exponent: Self::Floats) -> Self::Floats;
-    /// Lane 4 i + j of group k becomes lane 4 i + k of group j: its own inverse.
+    /// Lane 4 i + j of group k becomes lane 4 i + k of group j. The operation is its own inverse.
     fn transpose(self, groups: Vectors<Self>) -> Vectors<Self>;
-    /// Lane 4 i + j of the result is lane 4 i + `FROM` / 0x55 of `a`, the way instructions encode it.
+    /// Lane 4 i + j of the result is lane 4 i + `FROM` / 0x55 of `a`; `FROM` is encoded as in the instructions.
     fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
     /// Lane 4 i + j of the result is the sum of the lanes 4 k + j of `a` over k, (0 + 2) + (1 + 3).
     fn sum_of_quarters(self, a: Self::Floats) -> Self::Floats;
@@ -144,17 +143,17 @@ pub type Tile<S, const R: usize, const V: usize> = [[<S as Simd>::Floats; V]; R]
 
 /// A computation that is compiled once for each instruction set.
 ///
-/// `run` must be `#[inline(always)]`, and so must everything it calls with vectors: code that is not inlined, closures
-/// included, is not compiled for the instruction set.
+/// `run` must be `#[inline(always)]`, and so must everything it calls with vectors. Code that is not inlined, including
+/// closures, is not compiled for the instruction set.
 pub trait Kernel {
     /// The computation.
     fn run<S: Simd>(self, simd: S);
 }
 
-/// A [`Kernel`] of products of matrices, written for a [`Tile`] of any size.
+/// A [`Kernel`] for matrix products, written for a [`Tile`] of any size.
 ///
-/// The instruction set says how many accumulators its registers hold: `R` divides 8, `V` is 1 or 2. What is said of
-/// [`Kernel`] holds here as well.
+/// The instruction set determines how many accumulators fit its registers: `R` divides 8, `V` is 1 or 2. The rules of
+/// [`Kernel`] apply.
 pub trait TiledKernel {
     /// The computation.
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S);

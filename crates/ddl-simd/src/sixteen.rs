@@ -1,4 +1,4 @@
-//! Sixteen numbers in as many registers as they take.
+//! Sixteen numbers in as many registers as needed.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -10,12 +10,16 @@ use crate::simd::{Simd, TiledKernel, Vectors};
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sixteen<R, const P: usize>(pub(crate) R);
 
-/// Methods that do the same to each part of their first argument. A loop, not `map`: the call `map` makes is not always
-/// inlined.
+/// Methods that apply the same operation to each part of their first argument. A loop, because the call that `map`
+/// makes is not always inlined.
 macro_rules! part_by_part {
-    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($a:ident: $kind:ident$(, $b:ident: $other:ident)*; $($c:ident: $scalar:ty),*);)*) => {$(
+    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?(
+        $a:ident: $kind:ident$(, $b:ident: $other:ident)*; $($c:ident: $scalar:ty),*
+    );)*) => {$(
         #[inline(always)]
-        fn $name$(<const $n: $constant>)?(self, $a: Self::$kind, $($b: Self::$other,)* $($c: $scalar),*) -> Self::$kind {
+        fn $name$(<const $n: $constant>)?(
+            self, $a: Self::$kind, $($b: Self::$other,)* $($c: $scalar),*
+        ) -> Self::$kind {
             let mut result = $a;
             for p in 0..P {
                 result[p] = self.0.$name$(::<$n>)?($a[p], $($b[p],)* $($c),*);

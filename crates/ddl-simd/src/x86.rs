@@ -1,7 +1,7 @@
 //! Vector instructions of x86-64 processors: the only unsafe code of the crate.
 //!
-//! [`Avx2`], [`Avx512`] and [`Avx512Bf16`] can be made by their `detect` alone, which asks the processor: whoever holds one
-//! may execute its instructions.
+//! [`Avx2`], [`Avx512`] and [`Avx512Bf16`] are only created by their `detect`, which queries the processor. So a value
+//! of these types proves that the processor has the instructions.
 
 #![allow(
     unsafe_code,
@@ -10,7 +10,7 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 #![allow(
     clippy::wildcard_imports,
-    reason = "the names of instructions say where they are from"
+    reason = "the names of instructions show their origin"
 )]
 
 use std::arch::x86_64::*;
@@ -42,7 +42,7 @@ impl Avx2 {
 }
 
 impl Avx512 {
-    /// With the instructions of AVX2, which code that is compiled along may use.
+    /// Includes the instructions of AVX2, which inlined code may use.
     pub(crate) fn detect() -> Option<Self> {
         let found = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
         Avx2::detect().filter(|_| found).map(|_| Self(()))
@@ -66,13 +66,14 @@ impl Avx512Bf16 {
     }
 }
 
-/// Methods that are one expression of instructions of the set each.
+/// Methods that consist of one expression of intrinsics each.
 macro_rules! instructions {
-    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($($argument:ident: $kind:ty),*) -> $result:ty = $value:expr;)*) => {$(
+    ($(fn $name:ident$(<const $n:ident: $constant:ty>)?($($argument:ident: $kind:ty),*)
+        -> $result:ty = $value:expr;)*) => {$(
         #[inline(always)]
         fn $name$(<const $n: $constant>)?(self, $($argument: $kind),*) -> $result {
-            // SAFETY: `self` is the proof that the processor has the instructions. They touch no memory but, without
-            // asking for alignment, the whole of an array.
+            // SAFETY: `self` is the proof that the processor has the instructions. They access no memory, except whole
+            // arrays without a requirement on alignment.
             unsafe { $value }
         }
     )*};
@@ -84,7 +85,7 @@ macro_rules! memory {
         fn $load(self, from: &[$number; $lanes], part: usize) -> $value {
             assert!(part < Self::PARTS);
             // SAFETY: `self` is the proof that the processor has the instruction; PARTS registers are as long as the
-            // array, and the instruction asks for no alignment.
+            // array, and the instruction requires no alignment.
             unsafe { $load_from(from.as_ptr().add(part * ($lanes / Self::PARTS))) }
         }
 
@@ -137,7 +138,7 @@ impl Register for Avx512 {
         fn mul(a: __m512, b: __m512) -> __m512 = _mm512_mul_ps(a, b);
         fn div(a: __m512, b: __m512) -> __m512 = _mm512_div_ps(a, b);
         fn sqrt(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
-        // The second operand is the result when one is NaN.
+        // The second operand is the result if one is NaN.
         fn max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
         fn mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmadd_ps(a, b, c);
         fn neg_mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fnmadd_ps(a, b, c);
@@ -192,7 +193,7 @@ impl Register for Avx512 {
         ));
     }
 
-    /// With f = exponent − floor(exponent), and the power scaled, by one instruction each.
+    /// Uses f = exponent − floor(exponent), and scales the power, with one instruction each.
     #[inline(always)]
     fn exp2_each<const G: usize>(self, mut exponents: [__m512; G]) -> [__m512; G] {
         let mut fractions = exponents;
@@ -236,7 +237,7 @@ impl Pairs for Avx512Bf16 {
         fn store(value: __m512i, into: &mut [u32; LANES]) -> () =
             _mm512_storeu_epi32(into.as_mut_ptr().cast(), value);
         fn neighbours(a: [__m512; 1], b: [__m512; 1]) -> __m512i = words(_mm512_cvtne2ps_pbh(b[0], a[0]));
-        // Rounded numbers 0 of a and b, which are 0 and 16 of both side by side; then 1 and 17, and so on.
+        // Rounded numbers 0 of a and b, which are numbers 0 and 16 of both side by side; then 1 and 17, and so on.
         fn across(a: [__m512; 1], b: [__m512; 1]) -> __m512i = _mm512_permutexvar_epi16(
             _mm512_add_epi32(
                 _mm512_mullo_epi32(
@@ -304,7 +305,7 @@ impl Register for Avx2 {
         fn mul(a: __m256, b: __m256) -> __m256 = _mm256_mul_ps(a, b);
         fn div(a: __m256, b: __m256) -> __m256 = _mm256_div_ps(a, b);
         fn sqrt(a: __m256) -> __m256 = _mm256_sqrt_ps(a);
-        // The second operand is the result when one is NaN.
+        // The second operand is the result if one is NaN.
         fn max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
         fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
         fn neg_mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fnmadd_ps(a, b, c);
@@ -344,7 +345,7 @@ impl Register for Avx2 {
         fn shift_left<const N: u32>(a: __m256i) -> __m256i =
             _mm256_sll_epi32(a, _mm_cvtsi32_si128(N.cast_signed()));
         fn mul_low(a: __m256i, b: u32) -> __m256i = _mm256_mullo_epi32(a, _mm256_set1_epi32(b.cast_signed()));
-        // There is no comparison of unsigned words: a >= b where their maximum is a.
+        // AVX2 has no comparison of unsigned words: a >= b where their maximum is a.
         fn keep(a: __m256, bits: __m256i, least: u32) -> __m256 = _mm256_and_ps(a, _mm256_castsi256_ps(
             _mm256_cmpeq_epi32(bits, _mm256_max_epu32(bits, _mm256_set1_epi32(least.cast_signed())))
         ));

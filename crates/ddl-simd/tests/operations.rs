@@ -1,6 +1,6 @@
-//! Every operation is what its documentation says, with every instruction set: against plain numbers, one after the other.
+//! Every operation agrees with its documentation on every instruction set: compared with scalar arithmetic.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use ddl_simd::{
     DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd,
@@ -54,7 +54,7 @@ impl Kernel for OnGroups<'_> {
             e,
             f,
             g,
-            // A product of two and a sum are rounded once or twice.
+            // A multiply-add is rounded once or twice.
             simd.mul_add(a, b, c),
         ];
         for result in results {
@@ -70,7 +70,7 @@ fn mixed(first: u32, lane: usize) -> u32 {
     (word ^ (word >> 7)).wrapping_mul(0x85eb_ca6b)
 }
 
-/// The same for one lane, as documented.
+/// The expected results of one lane, as documented.
 fn expected([a, b, c]: &[Narrow; 3], word: u32, l: usize) -> Vec<f32> {
     let four = l / DEPTH * DEPTH;
     let quarter = |from: usize| a[l % DEPTH + from * DEPTH];
@@ -122,7 +122,10 @@ proptest! {
                 let expected = expected(&numbers, word, l);
                 prop_assert_eq!(floats.len(), expected.len());
                 for (i, (found, expected)) in floats.iter().zip(expected).enumerate() {
-                    prop_assert!(same(found[l], expected), "{:?}, {}, lane {}: {} {}", dispatch, i, l, found[l], expected);
+                    prop_assert!(
+                        same(found[l], expected),
+                        "{:?}, {}, lane {}: {} {}", dispatch, i, l, found[l], expected
+                    );
                 }
                 let [a, b, c] = numbers.map(|numbers| numbers[l]);
                 prop_assert!(is_product(product[l], a, b, c), "{:?}, lane {}", dispatch, l);
@@ -154,7 +157,7 @@ proptest! {
     }
 }
 
-/// Every operation of registers that groups lack, on three groups.
+/// Every operation that only registers have, on three groups.
 struct OnRegisters<'a>(&'a [Narrow; 3], &'a [Wide; 2]);
 
 struct Results {
@@ -231,7 +234,7 @@ fn quads() {
     }
 }
 
-/// Notes the size of the tile that it is compiled for.
+/// Records the tile size that it is compiled for.
 struct OnTiles<'a>(&'a mut Vec<(usize, usize)>);
 
 impl TiledKernel for OnTiles<'_> {
@@ -241,8 +244,8 @@ impl TiledKernel for OnTiles<'_> {
     }
 }
 
-/// An accumulator of sixteen numbers fills one of the 32 registers of AVX-512, two of the 16 of AVX2 and four of the 16
-/// that other machines have at least. The tile must leave registers for the operands.
+/// An accumulator of sixteen numbers fills one of the 32 registers of AVX-512, two of the 16 of AVX2, and four of the
+/// at least 16 of other machines. The tile must leave registers for the operands.
 #[test]
 fn tiled_kernels_run_once_with_a_tile_that_the_registers_hold() {
     for dispatch in each_set() {
@@ -274,12 +277,12 @@ fn the_fastest_set_is_the_last_of_those_that_are_available() {
     for dispatch in each_set() {
         let set = dispatch.instruction_set();
         assert!(set.is_available());
-        // AVX2 is taken with fused multiplication alone.
+        // AVX2 is only used together with fused multiplication.
         assert!(dispatch.is_fused() || set == InstructionSet::Portable);
     }
 }
 
-/// By what the standard library finds out about the processor.
+/// Compared with the feature detection of the standard library.
 #[cfg(target_arch = "x86_64")]
 #[test]
 fn every_instruction_set_of_the_processor_is_available() {

@@ -1,7 +1,7 @@
-//! Arithmetic on pairs of bf16 numbers: every way of it gives the bits that the definition says.
+//! Arithmetic on pairs of bf16 numbers: every implementation gives the bits of the definition.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![allow(clippy::float_cmp, reason = "rounding is exact")]
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use proptest::prelude::*;
 
@@ -54,7 +54,7 @@ fn all(way: PairDispatch, numbers: &[[f32; LANES]; 2], words: &[[u32; LANES]; 2]
     results
 }
 
-/// The bf16 number that `value` is rounded to, by way of the two that enclose it.
+/// The bf16 number nearest to `value`, found from the two that enclose it.
 fn rounded(value: f32) -> u16 {
     if value.is_nan() {
         return (value.to_bits() >> 16) as u16 | 0x40;
@@ -64,7 +64,7 @@ fn rounded(value: f32) -> u16 {
     }
     let below = (value.to_bits() >> 16) as u16;
     let wide = |half: u16| f64::from(f32::from_bits(u32::from(half) << 16));
-    // Beyond the largest finite number lies, for rounding, the next power of two.
+    // For rounding, the next power of two follows the largest finite number.
     let above = below + u16::from(value.is_finite());
     let end = if wide(above).is_infinite() && value.is_finite() {
         2_f64.powi(128).copysign(f64::from(value))
@@ -119,7 +119,7 @@ fn check(numbers: &[[f32; LANES]; 2], words: &[[u32; LANES]; 2]) {
     }
 }
 
-/// Any bits, and numbers of like size, whose sums cancel and round.
+/// Any bits, and numbers of similar size, whose sums cancel and round.
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         any::<u32>().prop_map(f32::from_bits),
@@ -140,7 +140,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn every_way_is_as_defined(
+    fn every_implementation_agrees_with_the_definition(
         numbers in prop::array::uniform2(prop::array::uniform16(number())),
         words in prop::array::uniform2(prop::array::uniform16(word())),
     ) {
@@ -160,7 +160,7 @@ fn known_numbers() {
             assert_eq!(found.across, found.neighbours, "{way:?}");
         }
     }
-    // (1 + 2^24) - 2^24, where the first sum is half way between two numbers and rounds to 2^24.
+    // (1 + 2^24) - 2^24: the first sum is half way between two numbers and rounds to 2^24.
     let words = [[0x4580_4580; LANES], [0x4580_c580; LANES]];
     for way in ways() {
         let sums = all(way, &[[1.0; LANES]; 2], &words).dot;

@@ -1,6 +1,6 @@
-//! Powers of two keep the errors that are stated, with every instruction set.
+//! Powers of two are within the stated error bounds on every instruction set.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-#![expect(clippy::inline_always, reason = "kernels are compiled for the set")]
+#![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use ddl_simd::{
     COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64, InstructionSet, Kernel, LANES,
@@ -50,7 +50,7 @@ fn registers_keep_the_error_bound_over_the_whole_range() {
         }
         let set = dispatch.instruction_set();
         assert!(worst < EXP2_ERROR, "{set}: {worst:e}");
-        assert!(worst > 1e-8, "{set}: a test that cannot fail: {worst:e}");
+        assert!(worst > 1e-8, "{set}: implausibly small error {worst:e}");
     });
 }
 
@@ -117,7 +117,7 @@ fn powers(dispatch: Dispatch, exponents: &[f32]) -> Vec<f32> {
     lanes
 }
 
-/// Against the f64 of the standard library, on steps that hit every fraction many times.
+/// Compared with the standard library in f64, on steps that cover every fraction many times.
 #[test]
 fn groups_are_powers_of_two_to_seven_digits() {
     let exponents: Vec<f32> = (0..2_000_000)

@@ -1,6 +1,7 @@
-//! What every fuzz target links: an allocator that stops whoever asks for too much at once.
+//! Shared by all fuzz targets: an allocator that aborts at a single allocation above the limit.
 //!
-//! libFuzzer's `-malloc_limit_mb` sees allocations only where a sanitizer is built in; this one sees those of Rust always.
+//! libFuzzer's `-malloc_limit_mb` sees allocations only if a sanitizer is built in; this allocator always sees those of
+//! Rust.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
@@ -12,7 +13,7 @@ macro_rules! target {
     };
 }
 
-/// Bytes that no reader of a small input may ask for at once.
+/// Largest single allocation of a reader of a small input, in bytes.
 const MOST: usize = 64 << 20;
 
 struct Bounded;
@@ -27,7 +28,7 @@ fn check(size: usize) {
     }
 }
 
-// SAFETY: every call is handed on to the system's allocator as it is.
+// SAFETY: every call is forwarded unchanged to the system's allocator.
 unsafe impl GlobalAlloc for Bounded {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         check(layout.size());

@@ -1,4 +1,4 @@
-//! What a test can do with a command.
+//! Classification of the commands on a page.
 
 use crate::console::Command;
 use crate::page_run::Depth;
@@ -8,7 +8,7 @@ const TRAINING: &str = "docs/training.md";
 const PROGRAM: &str = "docs/program.md";
 const PERFORMANCE: &str = "docs/performance.md";
 
-/// Commands that take minutes, by page and how they begin: they are begun.
+/// Commands that take minutes, by page and beginning; they are only started.
 pub const LONG: &[(&str, &str)] = &[
     (TRAINING, "ddl train --data recordings --out runs/own"),
     (TRAINING, "ddl train --fold zara1"),
@@ -24,8 +24,8 @@ pub const LONG: &[(&str, &str)] = &[
     (PROGRAM, "ddl goals --model runs/eth --measure"),
 ];
 
-/// Commands that another machine or another tool is needed for, by page and how they begin: on a machine with a graphics card, where
-/// PyTorch is installed, in a shell that the line sets up, or by what such a line wrote.
+/// Commands that need another machine or another tool, by page and beginning: a graphics card, an installed PyTorch, a
+/// shell that the line sets up, or the output of such a line.
 pub const ELSEWHERE: &[(&str, &str)] = &[
     ("docs/gpu.md", ""),
     ("docs/libtorch.md", "export LIBTORCH="),
@@ -37,7 +37,7 @@ pub const ELSEWHERE: &[(&str, &str)] = &[
     ("crates/ddl/README.md", "eval \"$(cargo xtask env)\""),
 ];
 
-/// Folds of the recordings, whose commands are begun where there are none.
+/// Folds of the recordings; without recordings, their commands are only started.
 const FOLDS: [&str; 5] = [
     "--fold eth",
     "--fold hotel",
@@ -54,9 +54,9 @@ pub fn begins(page: &str, command: &Command, (of, start): (&str, &str)) -> bool 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Class {
     Run(Depth),
-    /// xtask's own tests read it.
+    /// xtask's own tests check it.
     OfXtask,
-    /// What it names must be in the workspace; that it builds is known.
+    /// The packages and targets that it names must exist; the build itself is not tested.
     OfCargo,
     Elsewhere,
 }
@@ -76,7 +76,7 @@ pub(super) fn of(page: &str, command: &Command, depth: fn(&str, &Command) -> Dep
 
 pub(super) fn whole_or_begun(page: &str, command: &Command) -> Depth {
     let of_recordings = FOLDS.iter().any(|fold| command.typed.contains(fold))
-        // reads what the line before it wrote of them
+        // It reads the output of the previous line.
         || command.typed.contains("constant_velocity.py windows.jsonl");
     let is_long = LONG.iter().any(|&entry| begins(page, command, entry));
     if is_long || of_recordings && recordings::star_folder().is_none() {
@@ -86,7 +86,7 @@ pub(super) fn whole_or_begun(page: &str, command: &Command) -> Depth {
     }
 }
 
-/// None is run to its end.
+/// For pages on which no command is run to its end.
 pub fn begun(_: &str, _: &Command) -> Depth {
     Depth::Begun
 }

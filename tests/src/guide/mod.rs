@@ -1,7 +1,7 @@
-//! Commands that the documentation shows: whatever [`class`] does not name runs to its end and must answer as its page
-//! says. Calls of `cargo xtask` are held to its arguments by a test of xtask (`xtask/src/command/docs.rs`).
+//! Commands shown in the documentation: those not listed in [`class`] run to their end and must answer as on the page.
+//! The arguments of `cargo xtask` are checked by a test of xtask (`xtask/src/command/docs.rs`).
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 pub mod class;
 
@@ -18,7 +18,7 @@ pub fn checkout() -> PathBuf {
     tests.parent().unwrap().to_path_buf()
 }
 
-/// The commands of a page, which is named by its place in the workspace.
+/// The commands of a page, given by its path in the workspace.
 pub fn commands(page: &str) -> Vec<Command> {
     console::commands(&text_of(page))
 }
@@ -32,7 +32,7 @@ pub fn check(page: &str) {
     check_to(page, class::whole_or_begun);
 }
 
-/// Runs the commands of a page, each as far as `depth` says.
+/// Runs the commands of a page, each as far as `depth` determines.
 pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
     let text = text_of(page);
     let commands = console::commands(&text);
@@ -53,11 +53,11 @@ pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
     assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
 }
 
-/// Packages, examples, benchmarks and tests that a call of cargo names exist.
+/// Checks that the packages, examples, benchmarks and tests named in a call of cargo exist.
 fn check_cargo(page: &str, command: &Command) {
     let words = command
         .words()
-        .unwrap_or_else(|| panic!("{page}:{}: more than a plain call of cargo", command.line));
+        .unwrap_or_else(|| panic!("{page}:{}: not a plain call of cargo", command.line));
     let after = |option: &str| {
         words
             .iter()
@@ -65,7 +65,8 @@ fn check_cargo(page: &str, command: &Command) {
             .nth(1)
             .copied()
     };
-    let package = after("-p").unwrap_or_else(|| panic!("{page}:{}: of no package", command.line));
+    let package =
+        after("-p").unwrap_or_else(|| panic!("{page}:{}: no package is named", command.line));
     let of_tests = package == "ddl-tests";
     let folder = checkout().join(if of_tests {
         "tests".to_owned()

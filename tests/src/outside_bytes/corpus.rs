@@ -1,4 +1,4 @@
-//! The committed corpora, and what a plain test makes of them.
+//! The committed corpora, and edits of them for plain tests.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use super::edits::Choices;
 use crate::chance::Chance;
 
 const EDITS: u64 = 300;
-/// Longest file of which every truncation is read; of a longer one as many are.
+/// Longest file of which every truncation is read; of a longer one, this many truncations are read.
 const MOST_TRUNCATIONS: usize = 2048;
 
 /// The files of a reader's corpus, by name.
@@ -29,7 +29,7 @@ pub fn files(reader: &str) -> Vec<(PathBuf, Vec<u8>)> {
     paths.into_iter().map(read).collect()
 }
 
-/// Hands a reader every file of its corpus, all their truncations, and some edits of each, the same at every call.
+/// Passes every file of the corpus to a reader, with truncations and some edits, the same at every call.
 pub fn run((name, read): Reader) {
     for (path, bytes) in files(name) {
         let hand_over = |bytes: &[u8], how: &str| {

@@ -1,4 +1,4 @@
-//! Bytes as choices, and as edits of something whole: what lies behind a reader's first checks is reached by changing what passes them.
+//! Input bytes as choices and as edits of a valid file. Edits reach the code behind a reader's first checks.
 
 const ODD_NUMBERS: [&str; 16] = [
     "0",
@@ -58,7 +58,7 @@ impl<'a> Choices<'a> {
         std::mem::take(&mut self.0)
     }
 
-    /// A number below `limit`, 0 if that is 0.
+    /// A number below `limit`; 0 if `limit` is 0.
     pub(super) fn below(&mut self, limit: usize) -> usize {
         let number = if limit <= 256 {
             usize::from(self.byte())
@@ -69,7 +69,7 @@ impl<'a> Choices<'a> {
         number % limit.max(1)
     }
 
-    /// A coordinate: mostly one that people walk at, now and then any bits.
+    /// A coordinate: usually a plausible one, occasionally any bits.
     pub(super) fn number(&mut self) -> f64 {
         match self.byte() {
             255 => f64::from_le_bytes(self.bytes()),
@@ -77,7 +77,7 @@ impl<'a> Choices<'a> {
         }
     }
 
-    /// The bytes changed: cut short, turned, overwritten, doubled, taken out, or with an odd number for one of theirs.
+    /// Edits the bytes: truncates, flips, overwrites, doubles, removes, or replaces a number by an unusual one.
     pub(super) fn edit(&mut self, bytes: &mut Vec<u8>) {
         let place = self.below(bytes.len());
         match self.byte() % 7 {
@@ -115,7 +115,7 @@ impl<'a> Choices<'a> {
     }
 }
 
-/// Puts a number in the place of the first one that is written in digits at `place` or after it.
+/// Replaces the first number written in digits at or after `place`.
 fn replace_number(bytes: &mut Vec<u8>, place: usize, number: &str) {
     let in_number = |byte: &u8| byte.is_ascii_digit() || b"+-.eE".contains(byte);
     let Some(start) = bytes[place..].iter().position(u8::is_ascii_digit) else {

@@ -1,4 +1,4 @@
-//! Forecasts of another program, in the three formats.
+//! External forecasts, in the three formats.
 
 use std::sync::OnceLock;
 
@@ -34,8 +34,8 @@ pub fn read_trajnet(bytes: &[u8]) {
     check(bytes, ExternalFormat::TrajNet);
 }
 
-/// The first byte says whether part of the pedestrians will do; the others are the file. What is read, written as JSON lines, reads the
-/// same.
+/// The first byte chooses whether a part of the pedestrians is sufficient; the others are the file. Forecasts that were
+/// read, written as JSON lines, must be read back unchanged.
 fn check(bytes: &[u8], format: ExternalFormat) {
     let Some((&part, file)) = bytes.split_first() else {
         return;
@@ -67,9 +67,9 @@ fn check(bytes: &[u8], format: ExternalFormat) {
     }
     let mut written = Vec::new();
     external::write_forecasts(&matched.windows, &matched.forecasts, &mut written)
-        .expect("what was read can be written");
+        .expect("the forecasts can be written");
     let again = read(&written, ExternalFormat::JsonLines).unwrap_or_else(|error| {
-        panic!("what was read is refused when written: {error}");
+        panic!("written forecasts are refused: {error}");
     });
     assert_eq!(again, matched);
 }

@@ -2,14 +2,14 @@
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 
-/// Reads bytes as a library, and as parameters with which goals of a library of one pedestrian are estimated.
+/// Reads bytes as a library, and as parameters for goals from a library of one pedestrian.
 pub fn read(bytes: &[u8]) {
     if let Ok(library) = serde_json::from_slice::<ExpertLibrary>(bytes) {
-        let text = serde_json::to_string(&library).expect("what was read can be written");
+        let text = serde_json::to_string(&library).expect("valid values can be written");
         assert_eq!(serde_json::from_str(&text).ok(), Some(library));
     }
     if let Ok(params) = serde_json::from_slice::<GoalEstimatorParams>(bytes) {
-        let text = serde_json::to_string(&params).expect("what was read can be written");
+        let text = serde_json::to_string(&params).expect("valid values can be written");
         assert_eq!(serde_json::from_str(&text).ok(), Some(params.clone()));
         let Ok(params) = params.check() else {
             return;

@@ -2,10 +2,10 @@
 
 use ddl_data::{Homography, Observation, PedestrianId, PedestrianNames};
 
-/// Pixels that are asked for: corners, the middle, and beyond the image.
+/// Pixels to transform: corners, the middle, and beyond the image.
 const PIXELS: [[f64; 2]; 4] = [[0.0, 0.0], [320.0, 240.0], [-1e6, 1e6], [1e-300, -0.0]];
 
-/// Reads bytes as a homography, and asks it for places.
+/// Reads bytes as a homography, and transforms pixels.
 pub fn read(bytes: &[u8]) {
     let text = String::from_utf8_lossy(bytes);
     let Ok(homography) = text.parse::<Homography>() else {

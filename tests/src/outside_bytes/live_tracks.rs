@@ -1,10 +1,11 @@
-//! Frames with any numbers, pushed as a program pushes them.
+//! Frames with arbitrary numbers, pushed as by a program.
 
 use ddl_data::{Completion, LiveTracks, PedestrianId, Position};
 
 use super::edits::Choices;
 
-/// Each few bytes are a frame: how far it is ahead, and who is where; now and then a number of any bits.
+/// Every few bytes are a frame: the distance to the previous one, and positions of pedestrians; occasionally a number
+/// of any bits.
 pub fn read(bytes: &[u8]) {
     let mut choices = Choices::new(bytes);
     let completion = Completion::new(2 + choices.below(7), choices.below(3));
@@ -20,15 +21,15 @@ pub fn read(bytes: &[u8]) {
             255 => i64::from_le_bytes(choices.bytes()),
             ahead => frame.wrapping_add(i64::from(ahead % 24) - 2),
         };
-        let people: Vec<(PedestrianId, Position)> = (0..choices.below(5))
+        let pedestrians: Vec<(PedestrianId, Position)> = (0..choices.below(5))
             .map(|_| {
                 let id = PedestrianId(choices.below(6) as i64);
                 (id, [choices.number(), choices.number()])
             })
             .collect();
         let before = tracks.clone();
-        let count = people.len();
-        match tracks.push(frame, people) {
+        let count = pedestrians.len();
+        match tracks.push(frame, pedestrians) {
             Err(error) => {
                 assert!(!error.to_string().is_empty());
                 assert_eq!(tracks, before, "an error changes nothing");

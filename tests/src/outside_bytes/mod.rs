@@ -1,6 +1,6 @@
-//! Every reader of bytes that somebody else wrote, as a function that holds it to its laws: no panic, whatever the
-//! bytes; what is read and written again reads the same; a stream in pieces gives what it gives at once; an error
-//! changes nothing. Called by the fuzz targets of `tests/fuzz`, and by plain tests with the committed corpora.
+//! A test function for every reader of untrusted input. Rules: no panic for any bytes; data that was read is written
+//! and read back unchanged; a stream in pieces gives the same result as at once; an error changes nothing. The fuzz
+//! targets of `tests/fuzz` call these functions, and so do plain tests with the committed corpora.
 
 pub mod corpus;
 mod edits;
@@ -15,7 +15,7 @@ pub mod scene_memory;
 pub mod stream;
 pub mod tracks;
 
-/// A reader under its laws, by the name of its fuzz target and corpus.
+/// The test function of a reader, with the name of its fuzz target and corpus.
 pub type Reader = (&'static str, fn(&[u8]));
 
 /// The readers that need no libtorch.

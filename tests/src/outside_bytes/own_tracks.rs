@@ -1,4 +1,4 @@
-//! A user's own tracks, as `ddl forecast` takes them: format guessed, rate given, windows cut.
+//! A user's own tracks, as in `ddl forecast`: format guessed, rate given, windows cut.
 
 use ddl_data::{
     COORDINATE_LIMIT, Completion, Format, OBSERVED, Recording, WindowRule, parse_recording,
@@ -7,10 +7,10 @@ use ddl_data::{
 use super::tracks::bounded;
 
 const NAMES: [&str; 4] = ["a.csv", "a.txt", "a.ndjson", "a"];
-/// Seconds a frame that the second byte chooses from.
+/// Seconds per frame; the second byte chooses one.
 const FRAME_TIMES: [f64; 6] = [0.4, 0.04, 1.0 / 30.0, 0.1, 1e-9, 7.0];
 
-/// How far away positions are padded, m.
+/// Limit of padded positions, m.
 const PADDED_LIMIT: f64 = (1.0 + 6.0 * 2.0) * COORDINATE_LIMIT;
 
 /// The first byte chooses the name of a file of tracks, the second the rate; the others are its content.
@@ -40,8 +40,8 @@ fn cut(recording: &Recording) {
         assert_eq!(window.steps(), OBSERVED);
         assert!(window.frames().last() <= last.as_ref());
         for i in 0..window.len() {
-            // Up to 6 positions are padded at its start, on a straight line at the mean velocity seen: at most from one end of the bound to
-            // the other in a step.
+            // Up to 6 positions are padded at the start, on a straight line at the mean observed velocity: at most from
+            // one end of the bound to the other in one step.
             let mut far = window.observed(i).as_flattened().iter();
             assert!(far.all(|c| c.abs() <= PADDED_LIMIT), "{window:?}");
         }

@@ -4,14 +4,14 @@ use std::sync::OnceLock;
 
 use ddl_report::{Moment, Report, page::Page};
 
-/// Reads bytes as `report.json`, and makes a page of it. Written again, it reads the same.
+/// Reads bytes as `report.json` and creates a page. A report that was read is written and read back unchanged.
 pub fn read(bytes: &[u8]) {
     let Ok(report) = Report::from_json(&String::from_utf8_lossy(bytes)) else {
         return;
     };
-    let text = report.to_json().expect("what was read can be written");
+    let text = report.to_json().expect("valid data can be written");
     let again = Report::from_json(&text)
-        .unwrap_or_else(|error| panic!("what was read is refused when written: {error}\n{text}"));
+        .unwrap_or_else(|error| panic!("a written report is refused: {error}\n{text}"));
     assert_eq!(again, report);
     let document = report.document();
     let _ = (document.to_markdown(), document.to_latex());
@@ -19,14 +19,14 @@ pub fn read(bytes: &[u8]) {
     assert!(page.figures().is_ok() && page.to_html().is_ok());
 }
 
-/// Reads bytes as `moments.json`, and draws them.
+/// Reads bytes as `moments.json` and draws them.
 pub fn read_moments(bytes: &[u8]) {
     static EMPTY: OnceLock<Report> = OnceLock::new();
     let Ok(moments) = serde_json::from_slice::<Vec<Moment>>(bytes) else {
         return;
     };
-    let text = serde_json::to_string(&moments).expect("what was read can be written");
-    let again: Vec<Moment> = serde_json::from_str(&text).expect("what was written can be read");
+    let text = serde_json::to_string(&moments).expect("valid data can be written");
+    let again: Vec<Moment> = serde_json::from_str(&text).expect("written moments can be read");
     assert_eq!(again, moments);
     let empty = EMPTY.get_or_init(|| Report::new("none", []).expect("no rows, no conflict"));
     let moments = &moments;
@@ -34,6 +34,6 @@ pub fn read_moments(bytes: &[u8]) {
         moments,
         ..Page::new(empty)
     };
-    // Moments that are not whole are refused, and by both alike.
+    // Incomplete moments are refused, by both functions alike.
     assert_eq!(page.figures().is_ok(), page.to_html().is_ok());
 }

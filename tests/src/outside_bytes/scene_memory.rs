@@ -10,7 +10,7 @@ use tempfile::TempDir;
 
 use super::edits::Choices;
 
-const PEOPLE: i64 = 3;
+const PEDESTRIANS: i64 = 3;
 const FRAMES: i64 = 45;
 
 fn at(frame: i64, id: i64) -> (PedestrianId, Position) {
@@ -18,7 +18,7 @@ fn at(frame: i64, id: i64) -> (PedestrianId, Position) {
     (PedestrianId(id), place)
 }
 
-/// One who left, one who came late, one who was missed once.
+/// One pedestrian that left, one that came late, one that was missed once.
 fn observe(memory: &mut SceneMemory, first: i64) {
     for frame in 0..FRAMES {
         let is_there = |id: &i64| match id {
@@ -26,9 +26,9 @@ fn observe(memory: &mut SceneMemory, first: i64) {
             1 => frame > 20,
             _ => frame != 21,
         };
-        let people = (0..PEOPLE).filter(is_there).map(|id| at(frame, id));
-        // a memory that was edited may have seen a later frame
-        let _ = memory.observe(first + frame, people);
+        let pedestrians = (0..PEDESTRIANS).filter(is_there).map(|id| at(frame, id));
+        // An edited memory may have seen a later frame.
+        let _ = memory.observe(first + frame, pedestrians);
         assert!(memory.stretches() <= memory.capacity());
     }
 }
@@ -36,7 +36,7 @@ fn observe(memory: &mut SceneMemory, first: i64) {
 struct Sound {
     folder: TempDir,
     file: Vec<u8>,
-    /// Bytes of its first line.
+    /// Length of its first line.
     head: usize,
 }
 
@@ -57,7 +57,7 @@ impl Sound {
         self.folder.path().join("gate.memory")
     }
 
-    /// Edits of the file, or of its content with the digest made anew, as the first byte says.
+    /// Edits of the file, or of its content with an updated digest; the first byte decides.
     fn edited(&self, bytes: &[u8]) -> Vec<u8> {
         match bytes.split_first() {
             None => self.file.clone(),
@@ -74,8 +74,8 @@ impl Sound {
     }
 }
 
-/// Reads an edited file. At most one byte edits nothing. What is read works; where the first byte says so, it is written
-/// and read the same.
+/// Reads an edited file. With at most one byte nothing is edited. A memory that was read must work. If the first byte
+/// says so, it is written and read back.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound = Sound::new();
@@ -86,7 +86,7 @@ pub fn read(bytes: &[u8]) {
         let mut memory = match SceneMemory::read(&path) {
             Ok(memory) => memory,
             Err(error) => {
-                assert!(bytes.len() > 1, "a sound file: {error}");
+                assert!(bytes.len() > 1, "a valid file: {error}");
                 let text = error.to_string();
                 assert!(text.contains("gate.memory"), "{text}");
                 return;

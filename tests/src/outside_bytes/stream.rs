@@ -1,10 +1,10 @@
-//! Tracks as a tracker writes them, line by line.
+//! Tracks from a tracker, line by line.
 
 use std::io::BufReader;
 
 use ddl_data::{Completion, Frame, FrameReader, LiveTracks};
 
-/// The first byte says in pieces of how many bytes the others come.
+/// The first byte chooses the size of the pieces in which the other bytes arrive.
 pub fn read(bytes: &[u8]) {
     let Some((&piece, text)) = bytes.split_first() else {
         return;
@@ -20,21 +20,22 @@ pub fn read(bytes: &[u8]) {
     for frame in whole.iter().flatten() {
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
         last = Some(frame.number);
-        let people = || frame.people.iter().copied();
+        let pedestrians = || frame.people.iter().copied();
         assert!(
-            people().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
+            pedestrians()
+                .all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
         );
         let window = tracks
-            .push(frame.number, people())
-            .expect("frames that were read can be pushed");
+            .push(frame.number, pedestrians())
+            .expect("frames from the reader can be pushed");
         assert_eq!(window, tracks.window());
         let before = tracks.clone();
-        assert!(tracks.push(frame.number, people()).is_err());
+        assert!(tracks.push(frame.number, pedestrians()).is_err());
         assert_eq!(tracks, before);
     }
 }
 
-/// Every frame and every complaint until the end.
+/// Every frame and every error until the end.
 fn answers<R: std::io::BufRead>(
     mut reader: FrameReader<R>,
     length: usize,
@@ -46,6 +47,9 @@ fn answers<R: std::io::BufRead>(
             Ok(Some(frame)) => answers.push(Ok(frame)),
             Err(error) => answers.push(Err(error.to_string())),
         }
-        assert!(answers.len() <= 2 * length + 2, "the reader does not go on");
+        assert!(
+            answers.len() <= 2 * length + 2,
+            "the reader makes no progress"
+        );
     }
 }

@@ -1,8 +1,9 @@
-//! Files of tracks in every format: what is read keeps its bounds and, written again in the same format, reads the same.
+//! Files of tracks in every format. Recordings keep their bounds and, written in the same format, are read back
+//! unchanged.
 
 use ddl_data::{Format, Observation, PedestrianId, Position, Recording, parse_recording};
 
-/// The table of one's own tracks.
+/// The table format.
 pub fn table(bytes: &[u8]) {
     check(bytes, Format::Table, |rows| {
         let header = "y,frame,x,pedestrian\n".to_owned();
@@ -51,8 +52,8 @@ pub fn obsmat(bytes: &[u8]) {
     });
 }
 
-/// Reads bytes as a file of tracks. What is read keeps its bounds and, written again in the same format, with its rows the other way
-/// round, reads the same.
+/// Reads bytes as a file of tracks. The recording must keep its bounds and, written in the same format with its rows in
+/// reverse order, be read back unchanged.
 fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) -> String) {
     let recording = match parse_recording(bytes, "fuzzed", format) {
         Ok(recording) => recording,
@@ -62,7 +63,7 @@ fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) -> String) {
         }
     };
     bounded(&recording);
-    // The rows below are written with numbers; words have tests of their own in `ddl-data`.
+    // The rows below are written with numbers; words are tested in `ddl-data`.
     if recording
         .observations()
         .iter()
@@ -72,30 +73,30 @@ fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) -> String) {
     }
     let mut rows = recording.observations().to_vec();
     rows.reverse();
-    // the format's rate is no part of its rows
+    // The rate is not part of the rows.
     let rate = recording
         .rate()
         .map(|fps| format!("{{\"scene\": {{\"fps\": {fps}}}}}\n"));
     let text = rate.unwrap_or_default() + &written(&rows);
     let again = parse_recording(text.as_bytes(), "fuzzed", format)
-        .unwrap_or_else(|error| panic!("what was read is refused when written: {error}\n{text}"));
+        .unwrap_or_else(|error| panic!("a written recording is refused: {error}\n{text}"));
     assert_eq!(again, recording, "{text}");
 }
 
-/// Whoever reads tracks may count on these bounds.
+/// The bounds that callers of the readers rely on.
 pub(super) fn bounded(recording: &Recording) {
     for seen in recording.observations() {
         assert!(
             seen.position
                 .iter()
                 .all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
-            "{seen:?} is farther away than anybody walks"
+            "{seen:?} is beyond the coordinate limit"
         );
         assert!(seen.frame.unsigned_abs() < 1 << 53, "{seen:?}");
     }
 }
 
-/// A line for each row, made of frame, pedestrian and position.
+/// One line per row, formatted from frame, pedestrian and position.
 fn lines(rows: &[Observation], line: fn(i64, PedestrianId, Position) -> String) -> String {
     let line = |seen: &Observation| line(seen.frame, seen.pedestrian, seen.position) + "\n";
     rows.iter().map(line).collect()

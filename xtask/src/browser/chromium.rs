@@ -1,4 +1,4 @@
-//! Where a Chromium is, and how to get one where that is possible.
+//! Finds Chromium, or installs it if possible.
 
 use std::env;
 use std::ffi::OsStr;
@@ -16,12 +16,12 @@ const NAMES: [&str; 5] = [
     "google-chrome-stable",
     "chrome",
 ];
-/// What is installed where a machine lets us: the browser, and letters for it to write with.
+/// Packages to install where this is allowed: the browser and a font.
 const PACKAGES: [&str; 2] = ["chromium", "fonts-dejavu-core"];
 const ADVICE: &str = "install Chromium, on Debian with `apt install chromium fonts-dejavu-core`, or name one with \
     DDL_BROWSER=/path/to/program";
 
-/// `$DDL_BROWSER`, or a Chromium on the search path, or one that is installed now.
+/// `$DDL_BROWSER`, a Chromium on the search path, or a newly installed one.
 pub(super) fn find_or_install() -> Result<PathBuf> {
     if let Some(named) = env::var_os("DDL_BROWSER").filter(|value| !value.is_empty()) {
         return named_one(&named);
@@ -31,18 +31,18 @@ pub(super) fn find_or_install() -> Result<PathBuf> {
         return Ok(found);
     }
     if !debian::can_install() {
-        bail!("no browser to check pages with: {ADVICE}");
+        bail!("no browser was found for the checks of pages: {ADVICE}");
     }
     debian::install(&PACKAGES).context(ADVICE)?;
     find().with_context(|| {
-        format!("apt-get installed no browser that is on the search path: {ADVICE}")
+        format!("apt-get installed a browser, but it is not on the search path: {ADVICE}")
     })
 }
 
 fn named_one(named: &OsStr) -> Result<PathBuf> {
     find_on_path(named).with_context(|| {
         format!(
-            "DDL_BROWSER={} is no program: {ADVICE}",
+            "DDL_BROWSER={} is not a program: {ADVICE}",
             Path::new(named).display()
         )
     })

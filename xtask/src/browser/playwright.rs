@@ -1,5 +1,5 @@
-//! The Python package that drives the browser, of one pinned version, in the user's cache: in a folder of its own (`pip
-//! --target`), because Debian's Python makes no virtual environment without a further package.
+//! The pinned version of the Python package that drives the browser, in a folder of the user's cache. It is installed
+//! with `pip --target`, because Debian's Python needs a further package to create a virtual environment.
 
 use std::path::{Path, PathBuf};
 use std::process::Stdio;
@@ -13,7 +13,7 @@ use crate::python::{self, Python};
 
 const REQUIREMENT: &str = "playwright==1.65.2";
 
-/// The folder for Python's search path; the package is fetched when it is not there.
+/// The folder for Python's search path; the package is fetched if it is missing.
 pub(super) fn ensure(python: &Python) -> Result<PathBuf> {
     let folder = cache::folder()?.join(folder_name(python)?);
     if !folder.is_dir() {
@@ -36,7 +36,7 @@ fn folder_name(python: &Python) -> Result<String> {
 fn fetch(work: &Path) -> Result<PathBuf> {
     let python = Python::with_pip()?;
     let target = work.join("packages");
-    eprintln!("{REQUIREMENT}: fetching it with pip, once");
+    eprintln!("fetching {REQUIREMENT} with pip, once");
     let mut pip = python.module("pip");
     pip.args([
         "install",

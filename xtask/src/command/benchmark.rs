@@ -13,8 +13,9 @@ use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Options of `ddl benchmark`, such as `--profile smoke`, paths in them below the checkout; of these `--convention` and `--data` also say which recordings are fetched,
-    /// and `--publish` (without a folder) publishes in this checkout. `--cargo-profile dev` builds the program without optimising it as much
+    /// Options of `ddl benchmark`, such as `--profile smoke`; paths in them must lie below the checkout. `--convention`
+    /// and `--data` also select the recordings to fetch, and `--publish` (without a folder) publishes in this checkout.
+    /// `--cargo-profile dev` builds the program with less optimisation
     #[arg(
         trailing_var_arg = true,
         allow_hyphen_values = true,
@@ -24,7 +25,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Ends in the program, so that Ctrl-C reaches it, and its exit code is this one's.
+    /// Replaces this process by the program, which then receives Ctrl-C and determines the exit code.
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         use std::os::unix::process::CommandExt as _;
         let error = command(workspace, self.options)?.exec();
@@ -32,7 +33,7 @@ impl Arguments {
     }
 }
 
-/// What then does the work: cargo, which builds the program and becomes it.
+/// The cargo command that builds the program and replaces itself by it.
 pub(super) fn command(workspace: &Workspace, mut options: Vec<String>) -> Result<Command> {
     let cargo_profile = take(&mut options, "--cargo-profile")?;
     let asked = take(&mut options, "--convention")?;
@@ -46,7 +47,7 @@ pub(super) fn command(workspace: &Workspace, mut options: Vec<String>) -> Result
     for attempt in attempts {
         eprintln!("{attempt}");
     }
-    // The report shows baselines of the other convention where its recordings are there: nothing wrong may stand for them.
+    // The report shows baselines of the other convention if its recordings are present, so these must not be wrong.
     if let Some(folder) = chosen.folder.as_deref() {
         for convention in data::RECORDED {
             data::find_right(workspace, convention, None)?;
@@ -98,8 +99,8 @@ fn take(options: &mut Vec<String>, name: &str) -> Result<Option<String>> {
     Ok(Some(options.remove(index)))
 }
 
-/// The benchmark as `ci` runs it: small, under every protocol, into a folder of its own, from the start, and
-/// without a second build of everything.
+/// The benchmark as `ci` runs it: small, under every protocol, in a separate folder, from the start, and without a
+/// second build of everything.
 pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
     let out = workspace.path("target/ci-benchmark");
     if out.exists() {
@@ -123,7 +124,7 @@ mod tests {
     use ddl_data::Convention;
 
     #[test]
-    fn what_fetches_and_builds_is_taken_and_the_rest_handed_over() {
+    fn own_options_are_removed_and_the_rest_is_passed_on() {
         let words = "--profile smoke --convention=star --publish --data here --seeds 1";
         let mut options: Vec<String> = words.split(' ').map(str::to_owned).collect();
         let mut taken = |name| take(&mut options, name).unwrap();

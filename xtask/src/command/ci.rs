@@ -1,4 +1,4 @@
-//! `cargo xtask ci`: everything that must hold, cheapest first, tests last.
+//! `cargo xtask ci`: all checks, cheapest first, tests last.
 
 use std::thread;
 use std::time::Instant;
@@ -17,7 +17,7 @@ const CHECKS: [Check; 10] = [
     ("tidy", tidy::run),
     ("packages", package::check),
     ("recordings from the package index", recordings),
-    ("what comes in from outside", deny::run),
+    ("dependencies", deny::run),
     ("set-up", set_up),
     ("lints", lints),
     (
@@ -25,7 +25,7 @@ const CHECKS: [Check; 10] = [
         pages_benchmark_and_wheel,
     ),
     ("Python package", python::test_built),
-    // Last, and the last to print: what a reader of the log looks for is the test results.
+    // The tests are last, so that their results are at the end of the log.
     ("tests", test::run_all),
 ];
 
@@ -52,7 +52,7 @@ fn format(workspace: &Workspace) -> Result<()> {
 }
 
 fn lints(workspace: &Workspace) -> Result<()> {
-    // Warnings are denied here and not by RUSTFLAGS, which would replace the path to libtorch.
+    // Warnings are denied here and not with RUSTFLAGS, which would replace the path to libtorch.
     let arguments = [
         "clippy",
         "--workspace",
@@ -67,7 +67,7 @@ fn lints(workspace: &Workspace) -> Result<()> {
     step("clippy", &workspace.cargo(arguments))
 }
 
-/// The pages and the benchmark keep one core busy, and the wheel, in a build folder of its own, another.
+/// The pages and the benchmark use one core; the wheel, in a separate build folder, uses another.
 fn pages_benchmark_and_wheel(workspace: &Workspace) -> Result<()> {
     thread::scope(|scope| {
         let wheel = scope.spawn(|| python::build_wheel(&Workspace::find()?));
@@ -80,7 +80,7 @@ fn pages_benchmark_and_wheel(workspace: &Workspace) -> Result<()> {
     })
 }
 
-/// The package index is where a machine gets real recordings that reaches nothing else.
+/// On a machine with no other network access, the package index is the only source of real recordings.
 fn recordings(workspace: &Workspace) -> Result<()> {
     println!(
         "{}",

@@ -15,7 +15,7 @@ use crate::data;
 use crate::slurm::{LONGEST_ARRAY, NODES, Slurm};
 use crate::workspace::Workspace;
 
-/// Slurm notices a lost node after half a minute and begins its tasks anew two minutes later.
+/// Slurm notices a lost node after half a minute and restarts its tasks two minutes later.
 const LIMIT: Duration = Duration::from_mins(10);
 
 pub(crate) fn run(workspace: &Workspace) -> Result<()> {
@@ -51,19 +51,19 @@ type Check = (&'static str, fn(&mut Cluster) -> Result<()>);
 const CHECKS: [Check; 5] = [
     ("all folds on this machine alone", Cluster::here),
     (
-        "all folds on Slurm in two arrays: a second command watches and submits nothing, the first is left by Ctrl-C, the same report",
+        "all folds on Slurm in two arrays: a second command only watches, Ctrl-C leaves the first one, same report",
         Cluster::watched,
     ),
     (
-        "a node is lost: its task is done anew on its own, with the same results",
+        "a node is lost: its task restarts automatically, with the same results",
         Cluster::lost_node,
     ),
     (
-        "Slurm warns of the time limit: the task saves, is queued again, goes on to the same results",
+        "Slurm warns of the time limit: the task saves, is queued again, and resumes to the same results",
         Cluster::warned,
     ),
     (
-        "a task is cancelled: it saves and is not queued again; the same command goes on to the same results",
+        "a task is cancelled: it saves and is not queued again; the same command resumes to the same results",
         Cluster::cancelled,
     ),
 ];
@@ -80,16 +80,16 @@ struct Cluster {
     folds: Vec<String>,
 }
 
-/// A `ddl benchmark` that runs.
+/// A running `ddl benchmark`.
 struct Begun {
     child: Child,
     log: PathBuf,
 }
 
-/// A task as Slurm has it.
+/// A task in Slurm's queue.
 #[derive(Debug)]
 struct Element {
-    /// As in `12_3`.
+    /// Such as `12_3`.
     id: String,
     state: String,
     reason: String,
@@ -97,7 +97,7 @@ struct Element {
 }
 
 impl Cluster {
-    /// Begins `ddl benchmark` of the first folds in the folder of this name.
+    /// Starts `ddl benchmark` of the first folds in the folder of this name.
     fn begin(
         &self,
         name: &str,
@@ -141,7 +141,7 @@ impl Cluster {
         let arrays = self.folds.len().div_ceil(LONGEST_ARRAY);
         ensure!(
             submitted.len() == arrays + 1,
-            "jobs {submitted:?} are not {arrays} arrays and a report"
+            "expected {arrays} arrays and a report, found the jobs {submitted:?}"
         );
         let second = self.on_slurm("watched", self.folds.len(), &[])?;
         second.until_it_tells("nothing is submitted")?;
@@ -187,7 +187,7 @@ impl Cluster {
                 .find(|element| element.reason == "BeginTime"))
         })?;
         for element in self.elements()? {
-            // One of them may have ended this moment.
+            // One of them may have just ended.
             let _ = self.update(&element.id, "TimeLimit=60");
         }
         self.update(&warned.id, "StartTime=now")?;
@@ -216,7 +216,7 @@ impl Cluster {
         self.compare_tasks("cancelled", 1)
     }
 
-    /// Tasks that wait or run.
+    /// Waiting and running tasks.
     fn elements(&self) -> Result<Vec<Element>> {
         let lines = self.slurm.ask(
             "squeue",
@@ -257,12 +257,12 @@ impl Cluster {
         let job = self.slurm.ask("scontrol", &["show", "job", id])?;
         ensure!(
             job.contains(&format!(" Restarts={times} ")),
-            "job {id} was not begun anew {times} times: {job}"
+            "job {id} was not restarted {times} times: {job}"
         );
         Ok(())
     }
 
-    /// Until the first stage of so many tasks is trained, and the second under way.
+    /// Waits until the first stage of `tasks` tasks is trained and the second is running.
     fn until_trained_in(&self, name: &str, tasks: usize) -> Result<()> {
         let trained = |fold: &String| {
             let run = format!("{name}/{fold}-full-1/run/proposal.safetensors");
@@ -273,7 +273,7 @@ impl Cluster {
         })
     }
 
-    /// What was made in the folder of this name has the bits of what was made on this machine alone.
+    /// Checks that a file equals the one made on this machine without Slurm.
     fn compare(&self, name: &str, file: &str) -> Result<()> {
         let read = |folder: &str| {
             let file = self.folder.join(folder).join(file);
@@ -332,7 +332,7 @@ fn until<T>(what: &str, mut look: impl FnMut() -> Result<Option<T>>) -> Result<T
         }
         ensure!(
             begun.elapsed() < LIMIT,
-            "{what:?} did not come within {} s",
+            "{what:?} did not happen within {} s",
             LIMIT.as_secs()
         );
         sleep(Duration::from_millis(100));

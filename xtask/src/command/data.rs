@@ -11,9 +11,9 @@ use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// What to do
+    /// Action on the recordings
     action: Action,
-    /// One convention only: star or social-gan
+    /// Only this convention: star or social-gan
     #[arg(long)]
     convention: Option<Convention>,
     /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
@@ -23,18 +23,18 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Action {
-    /// Get the recordings, if they are not there already
+    /// Fetch the recordings, unless they are already present
     Fetch,
-    /// Hash every file that is there and compare it with the manifest
+    /// Hash all files and compare them with the manifest
     Verify,
-    /// Say which conventions are there, and where
+    /// List the available conventions and their folders
     Where,
 }
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         if self.convention == Some(Convention::Simulated) {
-            println!("simulated: made on the fly, needs no files");
+            println!("simulated: generated on demand, needs no files");
             return Ok(());
         }
         match self.action {
@@ -44,7 +44,7 @@ impl Arguments {
         }
     }
 
-    /// Without a convention: the preferred one that can be had.
+    /// Without a convention: the preferred one that is available.
     fn fetch(&self, workspace: &Workspace) -> Result<()> {
         let mut reasons = Vec::new();
         for convention in self.conventions() {
@@ -64,7 +64,7 @@ impl Arguments {
         match (self.convention, reasons.pop()) {
             (Some(_), Some(error)) => Err(error),
             _ => bail!(
-                "no recordings could be had (reasons above); copy them by hand as \
+                "no recordings could be fetched (reasons above); copy them by hand as \
                  docs/recordings.md says, or work with `--convention simulated`"
             ),
         }
@@ -85,11 +85,14 @@ impl Arguments {
             data::check(&folder, entry)
                 .with_context(|| format!("{convention} in {}", folder.display()))?;
             let files = entry.files.len();
-            println!("{convention}: {files} files right, in {}", folder.display());
+            println!(
+                "{convention}: {files} files verified in {}",
+                folder.display()
+            );
         }
         if absent.len() == self.conventions().len() {
             bail!(
-                "there is nothing to verify: get the recordings with `cargo xtask data fetch` ({})",
+                "no recordings to verify: fetch them with `cargo xtask data fetch` ({})",
                 absent.join("; ")
             );
         }
@@ -126,14 +129,14 @@ pub(super) fn fetch_one(
 ) -> Result<String> {
     if let Ok(Some(there)) = data::find_right(workspace, convention, folder) {
         return Ok(format!(
-            "{convention}: its files are there already, in {}",
+            "{convention}: the files are already present in {}",
             there.display()
         ));
     }
     let say = &mut |text: &str| eprintln!("{text}");
     let (folder, source) = data::fetch_to(workspace, convention, folder, say)?;
     Ok(format!(
-        "{convention}: hashes right, from {source}, in {}",
+        "{convention}: fetched from {source} to {}, hashes verified",
         folder.display()
     ))
 }

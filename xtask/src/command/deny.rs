@@ -1,4 +1,4 @@
-//! `cargo xtask deny`: what may come in from outside, checked with cargo-deny by `deny.toml`.
+//! `cargo xtask deny`: checks the dependencies against `deny.toml` with cargo-deny.
 
 use std::process::Command;
 
@@ -14,12 +14,13 @@ const TOOL: CargoTool = CargoTool {
     options: &[],
     version_call: &["--version"],
 };
-/// What needs no network once the dependencies are there. Advisories do: their database changes by the day.
+/// Checks that need no network once the dependencies are present. Advisories are left out, because their database
+/// changes daily.
 const CHECKS: [&str; 3] = ["bans", "licenses", "sources"];
 
 pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let tool = TOOL.ensure(workspace)?;
-    // The list of dependencies is of every platform, what a build here brought in is not.
+    // The list has the dependencies of every platform; a build here fetched only some of them.
     let fetched = workspace
         .cargo_process()
         .args(["fetch", "--locked", "--quiet"])
@@ -27,7 +28,8 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
         .context("cargo cannot be started")?;
     if !fetched.success() {
         bail!(
-            "`cargo fetch --locked` failed (above): connect to the package index, or run `cargo update --workspace` if Cargo.lock is out of date"
+            "`cargo fetch --locked` failed (above): connect to the package index, or run `cargo update --workspace` if \
+             Cargo.lock is out of date"
         );
     }
     let status = Command::new(&tool)
@@ -38,7 +40,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
         .with_context(|| format!("{} cannot be started", tool.display()))?;
     if !status.success() {
         bail!(
-            "deny.toml forbids a dependency (above): do without it, or say in deny.toml why it may come in"
+            "deny.toml forbids a dependency (above): remove it, or allow it in deny.toml with a reason"
         );
     }
     Ok(())

@@ -12,10 +12,10 @@ use crate::workspace::{Workspace, absolute};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Show the first page in a browser
+    /// Open the first page in a browser
     #[arg(long)]
     open: bool,
-    /// Look at every page of the guide in a browser, and keep pictures of some in this folder, wide and narrow, light
+    /// Check every page of the guide in a browser, and write screenshots of some to this folder, wide and narrow, light
     /// and dark
     #[arg(long, value_name = "DIR")]
     screenshots: Option<PathBuf>,
@@ -28,13 +28,17 @@ impl Arguments {
         if let Some(folder) = self.screenshots {
             let folder = absolute(&folder)?;
             let script = workspace.path("tests/page/check_site.py");
-            let site = first.parent().context("the site has a folder")?;
+            let site = first.parent().context("the site must be in a folder")?;
             let options = [OsStr::new("--screenshots").as_ref(), folder.as_path()];
             Browser::ready()?.run_check(&script, site, options)?;
         }
         if self.open {
-            open::that_detached(&first)
-                .with_context(|| format!("open {} yourself", first.display()))?;
+            open::that_detached(&first).with_context(|| {
+                format!(
+                    "no browser could be started; open {} yourself",
+                    first.display()
+                )
+            })?;
         }
         Ok(())
     }
@@ -54,7 +58,7 @@ mod tests {
     use clap::Parser as _;
 
     #[test]
-    fn every_call_of_this_program_in_the_documentation_is_one() {
+    fn every_call_of_this_program_in_the_documentation_is_valid() {
         let workspace = Workspace::find().unwrap();
         let mut understood = 0;
         for page in workspace.files().unwrap() {

@@ -1,4 +1,4 @@
-//! `cargo xtask faults`: everything that can go wrong outside, tried often, as a table.
+//! `cargo xtask faults`: tests of external faults with many repetitions, as a table.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -10,7 +10,8 @@ use super::set_up;
 use crate::whole_file;
 use crate::workspace::{Workspace, step};
 
-/// Names the file that the tests add their figures to; with it they try every fault the full number of times.
+/// Environment variable with the file to which the tests append their figures. If it is set, the tests use the full
+/// number of repetitions.
 const FIGURES: &str = "DDL_FAULTS_FIGURES";
 
 const PAGE: &str = "docs/reliability.md";
@@ -23,7 +24,7 @@ pub(crate) struct Arguments {
     /// Also write the figures to docs/reliability.md
     #[arg(long, conflicts_with = "rest")]
     publish: bool,
-    /// Handed to the tests, as in `-- killed_training`
+    /// Passed to the tests, as in `-- killed_training`
     #[arg(last = true)]
     rest: Vec<String>,
 }
@@ -35,9 +36,9 @@ impl Arguments {
         let begun = Instant::now();
         let file = workspace.path("target/faults/rows.md");
         whole_file::write(&file, b"")?;
-        // One after the other: they measure time and memory.
+        // One after the other, because they measure time and memory.
         let command = workspace
-            // The test `program` has the program built with it.
+            // The test `program` makes cargo build the program.
             .cargo(["test", "--package", "ddl-tests", "--package", "ddl-cli"])
             .args([
                 "--test",
@@ -73,7 +74,7 @@ impl Arguments {
     }
 }
 
-/// The rows under their heading, in an order that does not depend on that of the tests.
+/// The rows under their heading, in an order that does not depend on the order of the tests.
 fn table(rows: &str) -> String {
     let mut rows: Vec<&str> = rows.lines().collect();
     rows.sort_unstable();
@@ -86,7 +87,8 @@ fn table(rows: &str) -> String {
 fn made_by(commit: &str, time: &str, took: Duration) -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     format!(
-        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, {time}, in {} min {} s.",
+        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, \
+         {time}, in {} min {} s.",
         took.as_secs() / 60,
         took.as_secs() % 60
     )
@@ -106,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn figures_are_replaced_and_the_words_around_them_stay() {
+    fn figures_are_replaced_and_the_text_around_them_stays() {
         let page = format!("# Title\n\n{BEGIN}\nold\n{END}\n\nMore.\n");
         let new = with_figures(&page, &table("| b | 2 | x |\n| a | 1 | y |\n")).unwrap();
         let expected = "| fault | tried | found |\n|---|---|---|\n| a | 1 | y |\n| b | 2 | x |";

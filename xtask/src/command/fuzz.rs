@@ -1,4 +1,4 @@
-//! `cargo xtask fuzz`: the fuzz targets of `tests/fuzz`, and a table of how far each came.
+//! `cargo xtask fuzz`: runs the fuzz targets of `tests/fuzz` and prints a table of the results.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,31 +11,31 @@ use crate::libtorch::{self, Request};
 use crate::workspace::{Workspace, absolute, find_on_path};
 
 const FOLDER: &str = "tests/fuzz";
-/// Where memory is a folder, files of model readers are written and read without a disk.
+/// Temporary files of model readers are put into this memory file system if it exists.
 const MEMORY: &str = "/dev/shm";
 const HEADING: &str =
     "| target | executions | a second | corpus | result |\n|---|---:|---:|---:|---|\n";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Only these targets; otherwise all
+    /// Only these targets [default: all]
     targets: Vec<String>,
     /// Executions of each target
     #[arg(long, default_value_t = 10_000_000)]
     executions: u64,
-    /// Stop a target after so many seconds, however many executions it has done
+    /// Stop a target after this many seconds, even if it has not finished its executions
     #[arg(long, value_name = "SECONDS")]
     most_seconds: Option<u64>,
     /// Sanitizer to build with; libtorch is not built for any
     #[arg(long, value_enum, default_value_t = Sanitizer::None)]
     sanitizer: Sanitizer,
-    /// Do not trace comparisons: for inputs that only choose edits, which what is compared cannot be put into
+    /// Do not trace comparisons: for inputs that only select edits, where compared values cannot be inserted
     #[arg(long)]
     no_trace_compares: bool,
     /// Only targets that need no libtorch; nothing is set up
     #[arg(long)]
     no_torch: bool,
-    /// Also write the table into this file, as markdown
+    /// Also write the table to this file, as markdown
     #[arg(long, value_name = "FILE")]
     table: Option<PathBuf>,
 }
@@ -46,7 +46,7 @@ enum Sanitizer {
     Address,
 }
 
-/// A fuzz target, as `tests/fuzz/Cargo.toml` lists it.
+/// A fuzz target of `tests/fuzz/Cargo.toml`.
 #[derive(Debug, PartialEq, Eq)]
 struct Target {
     name: String,
@@ -58,7 +58,8 @@ impl Arguments {
         for tool in ["rustup", "cargo-fuzz"] {
             if find_on_path(tool.as_ref()).is_none() {
                 bail!(
-                    "{tool} is missing; with rustup, get the rest by\n  rustup toolchain install nightly\n  cargo install cargo-fuzz"
+                    "{tool} is missing; with rustup, install the rest by\n  rustup toolchain install nightly\n  \
+                     cargo install cargo-fuzz"
                 );
             }
         }
@@ -86,7 +87,7 @@ impl Arguments {
             let row = row(&name, &log, corpus, passed);
             rows += &row.with_context(|| format!("{name} was not fuzzed (above)"))?;
             if let Some(table) = &table {
-                // After each target, so that an interrupted night is not lost.
+                // After each target, so that an interrupted run keeps its results.
                 fs::write(table, &rows)
                     .with_context(|| format!("{} cannot be written", table.display()))?;
             }
@@ -97,7 +98,7 @@ impl Arguments {
         println!("{rows}");
         if !broken.is_empty() {
             bail!(
-                "{} broke; the inputs are in {FOLDER}/artifacts: mend the reader, and put each into the corpus",
+                "{} failed; the inputs are in {FOLDER}/artifacts: fix the reader, and add each input to the corpus",
                 broken.join(", ")
             );
         }
@@ -110,7 +111,7 @@ impl Arguments {
                 None => {
                     let names: Vec<&str> = all.iter().map(|target| target.name.as_str()).collect();
                     bail!(
-                        "there is no fuzz target {asked}; there are {}",
+                        "there is no fuzz target {asked}; the targets are {}",
                         names.join(", ")
                     );
                 }
@@ -162,7 +163,7 @@ impl Arguments {
     }
 }
 
-/// What libFuzzer said, and whether no fault was found; the end of a log that tells of one is shown.
+/// The output of libFuzzer, and whether it found no fault. After a fault, the end of the log is printed.
 fn run(command: &mut Command) -> Result<(String, bool)> {
     let output = command.output().context("rustup cannot be started")?;
     let log = String::from_utf8_lossy(&output.stderr).into_owned();
@@ -186,7 +187,7 @@ fn targets(manifest: &str) -> Result<Vec<Target>> {
     Ok(bins.into_iter().flatten().filter_map(target).collect())
 }
 
-/// A row of the table; none where nothing was executed.
+/// A row of the table; `None` if nothing was executed.
 fn row(name: &str, log: &str, corpus: usize, passed: bool) -> Option<String> {
     let number = |what: &str| -> Option<u64> {
         let line = log.lines().find(|line| line.starts_with(what))?;
@@ -219,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn what_libfuzzer_says_becomes_a_row() {
+    fn the_output_of_libfuzzer_becomes_a_row() {
         let log =
             "Done 10 runs\nstat::number_of_executed_units: 10\nstat::average_exec_per_sec:     5\n";
         let expected = "| table | 10 | 5 | 3 | no fault |\n";

@@ -1,4 +1,4 @@
-//! `cargo xtask mutants`: faults put into the numeric code one at a time, and how many of them the tests find.
+//! `cargo xtask mutants`: inserts faults into the numeric code one at a time, and counts how many the tests find.
 
 use std::fs;
 use std::path::Path;
@@ -18,7 +18,7 @@ const TOOL: CargoTool = CargoTool {
     version_call: &["mutants", "--version"],
 };
 
-/// The crates without libtorch that compute, and where in their `src` they do.
+/// The numeric crates without libtorch, and the numeric files in their `src`.
 const NUMERIC: [(&str, &[&str]); 7] = [
     ("ddl-simd", &["**"]),
     ("ddl-softdtw", &["**"]),
@@ -46,31 +46,31 @@ const NUMERIC: [(&str, &[&str]); 7] = [
         &["baseline/**", "metric/**", "region", "significance/**"],
     ),
 ];
-/// Errors and tests compute nothing that a forecast depends on.
+/// Errors and tests affect no forecast.
 const EXCLUDED: [&str; 3] = ["**/error.rs", "**/tests.rs", "**/tests/**"];
 
-/// These functions only decide whether other threads are woken. No result depends on it.
+/// These functions only decide whether other threads are woken, so no result depends on them.
 const WITHOUT_RESULT: &str = r"(in|replace) (\w+::)?work( |$)";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Only these crates; otherwise all with numeric code
+    /// Only these crates [default: all with numeric code]
     #[arg(long = "crate", value_name = "NAME", value_parser = NUMERIC.map(|(name, _)| name))]
     crates: Vec<String>,
-    /// Only these files, by a pattern as in `crates/ddl-simd/src/exp2.rs`
+    /// Only files that match this pattern, such as `crates/ddl-simd/src/exp2.rs`
     #[arg(long = "file", value_name = "PATTERN")]
     files: Vec<String>,
-    /// Handed to cargo-mutants, as in `-- --jobs 2`
+    /// Passed to cargo-mutants, as in `-- --jobs 2`
     #[arg(last = true)]
     rest: Vec<String>,
 }
 
-/// What cargo-mutants counted in a crate (`mutants.out/outcomes.json`).
+/// The counts of cargo-mutants for one crate (`mutants.out/outcomes.json`).
 #[derive(Debug, Default, PartialEq, Eq, Deserialize)]
 struct Counts {
     caught: usize,
     missed: usize,
-    /// Mutants with which the tests did not end in time: these are found, too.
+    /// Mutants with which the tests did not end in time; these count as found.
     timeout: usize,
 }
 
@@ -93,7 +93,8 @@ impl Arguments {
             let out = workspace.path("target/mutants").join(name);
             let call = || {
                 let mut call = Command::new(&tool);
-                // In one folder the tests of one mutant would overwrite those of another that is tested meanwhile.
+                // In a common folder the tests of one mutant would overwrite those of another one tested at the same
+                // time.
                 call.current_dir(workspace.root())
                     .env_remove("CARGO_TARGET_DIR")
                     .args(["mutants", "--package", name]);
@@ -116,10 +117,10 @@ impl Arguments {
     }
 }
 
-/// Runs cargo-mutants, whose output stays in `out`, and reads what it counted.
+/// Runs cargo-mutants, whose output stays in `out`, and reads its counts.
 fn mutate(call: &mut Command, out: &Path) -> Result<Counts> {
     fs::create_dir_all(out).with_context(|| format!("{} cannot be made", out.display()))?;
-    // Examples of the documentation are compiled one by one, for every mutant anew: they are left out.
+    // The examples of the documentation are left out: they are compiled one by one, again for every mutant.
     let status = call
         .arg("--output")
         .arg(out)
@@ -157,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_cargo_mutants_counts_becomes_a_row() {
+    fn the_counts_of_cargo_mutants_become_a_row() {
         let outcomes = r#"{"outcomes": [], "total_mutants": 9, "missed": 1, "caught": 6, "timeout": 1, "unviable": 1}"#;
         let counts: Counts = serde_json::from_str(outcomes).unwrap();
         assert_eq!(
@@ -168,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn every_place_of_the_table_is_there() {
+    fn every_path_of_the_table_exists() {
         let workspace = Workspace::find().unwrap();
         for (name, places) in NUMERIC {
             for place in places {

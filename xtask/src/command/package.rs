@@ -1,4 +1,4 @@
-//! `cargo xtask package`: the crates as a registry would get them.
+//! `cargo xtask package`: packs the crates as for a registry.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -10,15 +10,16 @@ use serde_json::Value;
 
 use crate::workspace::{Workspace, step};
 
-/// Registries take no package beyond this, in bytes, compressed.
+/// Size limit of registries for a compressed package, in bytes.
 const LIMIT: u64 = 10 * 1024 * 1024;
 const NEEDED: [&str; 4] = ["Cargo.toml", "README.md", "LICENSE-MIT", "LICENSE-APACHE"];
-/// Folders of which a package may leave files out, because nothing that is built by those who use it needs them.
+/// Folders whose files may be left out of a package, because users of the crate do not build them.
 const SPARED: [&str; 3] = ["tests", "benches", "examples"];
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Also build every package from what is in it, as publishing does: minutes, most of them for the binding of libtorch
+    /// Also build every package from its own files, as publishing does; takes minutes, mainly for the binding of
+    /// libtorch
     #[arg(long)]
     verify: bool,
 }
@@ -30,14 +31,15 @@ impl Arguments {
             return Ok(());
         }
         super::set_up(workspace)?;
-        // Packages are built without the workspace's profiles: side by side, neither build undoes the other.
+        // Packages are built without the workspace's profiles; a separate folder keeps the two builds from invalidating
+        // each other.
         let place = ["--target-dir", "target/publish"];
         let publish = workspace.cargo(["publish", "--workspace", "--dry-run", "--allow-dirty"]);
         step("`cargo publish --dry-run`", &publish.args(place))
     }
 }
 
-/// Packs every crate that is published, builds nothing, and looks at what is in the packages and how large they are.
+/// Packs every published crate without building it, and checks the contents and size of the packages.
 pub(crate) fn check(workspace: &Workspace) -> Result<()> {
     let pack = [
         "package",
@@ -100,7 +102,7 @@ fn packed_files(workspace: &Workspace, name: &str) -> Result<BTreeSet<PathBuf>> 
     Ok(list.lines().map(PathBuf::from).collect())
 }
 
-/// What is wrong with a package; `own` are the files that git tracks in the crate's folder.
+/// Faults of a package; `own` are the files that git tracks in the crate's folder.
 fn faults_of<'a>(
     name: &str,
     own: impl Iterator<Item = &'a Path>,
@@ -127,7 +129,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_built_must_be_in_the_package() {
+    fn required_files_must_be_in_the_package() {
         let own = [
             "Cargo.toml",
             "src/lib.rs",

@@ -8,13 +8,13 @@ use clap::Args;
 use crate::browser::Browser;
 use crate::workspace::{Workspace, absolute, step};
 
-/// Where the page goes, and whether pictures of it are kept.
+/// Destination of the page, and of screenshots of it.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Folder for the page, its figures and its data
     #[arg(long, value_name = "DIR", default_value = "target/report-page")]
     out: PathBuf,
-    /// Folder for pictures of the whole page, wide and narrow, light and dark
+    /// Folder for screenshots of the whole page, wide and narrow, light and dark
     #[arg(long, value_name = "DIR")]
     screenshots: Option<PathBuf>,
 }

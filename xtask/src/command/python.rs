@@ -1,4 +1,4 @@
-//! `cargo xtask python`: the wheel of the Python package, tested in a virtual environment of its own.
+//! `cargo xtask python`: the wheel of the Python package, tested in a virtual environment.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -11,13 +11,13 @@ use crate::debian;
 use crate::python::Python;
 use crate::workspace::{Workspace, absolute, program_on_path, step};
 
-/// What the environment of the tests has beside the wheel, in pinned versions.
+/// Pinned packages of the test environment, besides the wheel.
 const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
 /// The virtual environment, beside the wheel.
 const ENVIRONMENT: &str = "environment";
-/// A wheel that is larger is not what `pip install` should fetch.
+/// Largest size of a wheel in bytes: `pip install` should not fetch more.
 const LARGEST: u64 = 12_000_000;
-/// The cargo profile of the wheel that is given away.
+/// The cargo profile of a wheel for users.
 const RELEASED: &str = "wheel";
 
 #[derive(Debug, Args)]
@@ -25,15 +25,15 @@ pub(crate) struct Arguments {
     /// Folder for the wheel
     #[arg(long, value_name = "DIR", default_value = FOLDER)]
     out: PathBuf,
-    /// Only build it
+    /// Only build the wheel
     #[arg(long)]
     no_tests: bool,
-    /// Handed to pytest, as in `-- -k live`
+    /// Passed to pytest, as in `-- -k live`
     #[arg(last = true)]
     rest: Vec<String>,
 }
 
-/// Where the wheel and the environment of its tests lie, unless told otherwise.
+/// Default folder of the wheel and its test environment.
 const FOLDER: &str = "target/python";
 
 impl Arguments {
@@ -54,20 +54,20 @@ pub(super) fn build_wheel(workspace: &Workspace) -> Result<()> {
     make(workspace, &workspace.path(FOLDER), "dev").map(drop)
 }
 
-/// The second half: the tests of the wheel that the first has made.
+/// The second half: tests the wheel of the first half.
 pub(super) fn test_built(workspace: &Workspace) -> Result<()> {
     let out = workspace.path(FOLDER);
     test(workspace, &out, &wheel_in(&out)?, &[])
 }
 
-/// The environment and the wheel.
+/// Creates the environment and builds the wheel.
 fn make(workspace: &Workspace, out: &Path, profile: &str) -> Result<PathBuf> {
     let environment = out.join(ENVIRONMENT);
     make_environment(workspace, &environment)?;
     build(workspace, &environment, out, profile)
 }
 
-/// A new virtual environment with what tests and building need.
+/// A new virtual environment with the packages needed for building and testing.
 fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
     let python = Python::with_pip()?;
     if folder.exists() {
@@ -77,7 +77,8 @@ fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
     let made = python.module("venv").arg(folder).status();
     if !made.is_ok_and(|status| status.success()) {
         bail!(
-            "no virtual environment could be made: install Python's venv, on Debian or Ubuntu with `apt install python3-venv`"
+            "no virtual environment could be created: install Python's venv, on Debian or Ubuntu with \
+             `apt install python3-venv`"
         );
     }
     let pip = in_environment(workspace, folder, "pip")
@@ -108,7 +109,7 @@ fn build(
     let size = fs::metadata(&wheel)?.len();
     if profile == RELEASED && size > LARGEST {
         bail!(
-            "{} has {size} bytes, more than {LARGEST}: find out what grew",
+            "{} has {size} bytes, more than {LARGEST}: find out which files grew",
             wheel.display()
         );
     }
@@ -116,12 +117,12 @@ fn build(
 }
 
 fn wheel_in(out: &Path) -> Result<PathBuf> {
-    let built = fs::read_dir(out.join("wheels")).context("there is no wheel")?;
+    let built = fs::read_dir(out.join("wheels")).context("no wheel was built")?;
     built
         .filter_map(Result::ok)
         .map(|entry| entry.path())
         .find(|path| path.extension().is_some_and(|extension| extension == "whl"))
-        .context("there is no wheel")
+        .context("no wheel was built")
 }
 
 fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Result<()> {
@@ -146,7 +147,7 @@ fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Res
         ),
     ];
     for (name, arguments) in checks {
-        // not in a folder from which the package could be imported without being installed
+        // Run in a folder from which the package cannot be imported unless it is installed.
         let check = in_environment(workspace, environment, "python").args(arguments);
         step(name, &check)?;
     }
@@ -167,7 +168,7 @@ fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Res
     step("pytest", &pytest)
 }
 
-/// The MQTT broker of a test, where that can be; the test says itself what it lacks, and fails in CI.
+/// Installs the MQTT broker for a test, if possible. Without it the test prints what is missing, and fails in CI.
 fn bring_in_broker() {
     if !program_on_path("mosquitto_sub".as_ref()) && debian::can_install() {
         let installed = debian::install(&["mosquitto", "mosquitto-clients"]);
@@ -177,7 +178,7 @@ fn bring_in_broker() {
     }
 }
 
-/// A program of the environment, which sees what a plain cargo would see.
+/// A program of the environment, with the environment variables of a plain cargo.
 fn in_environment<'a>(workspace: &'a Workspace, environment: &Path, program: &str) -> Cmd<'a> {
     let path = environment.join("bin").join(program);
     workspace

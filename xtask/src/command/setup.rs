@@ -11,10 +11,10 @@ use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Folder that holds the pinned wheels, for a machine without a package index
+    /// Folder with the pinned wheels, for a machine without a package index
     #[arg(long, value_name = "DIR")]
     wheel_dir: Option<PathBuf>,
-    /// Folder for the laid-out libraries [default: the user's cache, `~/.cache/ddl`]
+    /// Folder for the unpacked libraries [default: the user's cache, `~/.cache/ddl`]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
     /// Hash the libraries again
@@ -36,7 +36,7 @@ impl Arguments {
             libtorch::VERSION,
             ready.folder.display(),
             ready.origin,
-            if self.verify { ", hashes right" } else { "" },
+            if self.verify { ", hashes verified" } else { "" },
             start.elapsed().as_secs_f64()
         );
         let written = if ready.reconfigured {
@@ -49,7 +49,7 @@ impl Arguments {
     }
 }
 
-/// Prints `export` lines; a shell evaluates them with `eval "$(cargo xtask env)"`.
+/// Prints `export` lines for a shell: `eval "$(cargo xtask env)"`.
 pub(crate) fn print_environment(workspace: &Workspace) -> Result<()> {
     let ready = libtorch::ensure(workspace, &Request::default())?;
     let folder = ready

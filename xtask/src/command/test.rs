@@ -1,4 +1,4 @@
-//! `cargo xtask test`: every test of the workspace.
+//! `cargo xtask test`: all tests of the workspace.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -13,10 +13,10 @@ use crate::workspace::{Workspace, absolute, step};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Only what needs no libtorch; nothing is set up
+    /// Only tests that need no libtorch; nothing is set up
     #[arg(long)]
     no_torch: bool,
-    /// Handed to `cargo test`, as in `-- --release some_test`
+    /// Passed to `cargo test`, as in `-- --release some_test`
     #[arg(last = true)]
     rest: Vec<String>,
 }
@@ -26,7 +26,7 @@ impl Arguments {
         if !self.no_torch {
             set_up(workspace)?;
         }
-        // Best effort: a test that needs recordings says itself what it lacks, and fails in CI.
+        // Best effort: a test that needs recordings prints what is missing, and fails in CI.
         for convention in RECORDED {
             match fetch_one(workspace, convention, None) {
                 Ok(message) => eprintln!("{message}"),
@@ -46,7 +46,7 @@ impl Arguments {
         if self.no_torch {
             return Ok(());
         }
-        // The other side: what libtorch adds.
+        // The tests that need libtorch.
         let packages = ["-p", "ddl-star", "-p", "ddl", "-p", "ddl-cli"];
         let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
         cargo_test(workspace, &arguments, &self.rest)?;
@@ -56,7 +56,7 @@ impl Arguments {
     }
 }
 
-/// Every test, after set-up and fetching: the last step of `ci`.
+/// All tests, after set-up and fetching: the last step of `ci`.
 pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
     Arguments {
         no_torch: false,
@@ -70,8 +70,8 @@ fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Res
         .cargo(["test"])
         .args(selection)
         .args(rest)
-        // Tests run side by side already: a thread each keeps them from fighting for cores, and
-        // libtorch's sums in one order.
+        // Tests run in parallel already. One thread each avoids contention for cores and fixes the order of libtorch's
+        // sums.
         .env("OMP_NUM_THREADS", "1");
     if let Some(folder) = recordings(workspace)? {
         command = command.env("DDL_DATASETS", folder);

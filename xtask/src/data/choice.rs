@@ -1,4 +1,4 @@
-//! Which convention a command works on, and why.
+//! Choice of the data convention for a command.
 
 use std::path::{Path, PathBuf};
 
@@ -13,12 +13,12 @@ use crate::workspace::{Workspace, absolute};
 pub(crate) struct Chosen {
     pub(crate) convention: Convention,
     pub(crate) folder: Option<PathBuf>,
-    /// Why this one: a clause.
+    /// The reason for this choice: a clause.
     pub(crate) reason: String,
 }
 
-/// The convention asked for, or the first of star, social-gan and simulated that can be had; what is missing is
-/// fetched, into `data` where it is given.
+/// The requested convention, or the first available one of star, social-gan and simulated. Missing files are fetched,
+/// to `data` if given.
 pub(crate) fn choose(
     workspace: &Workspace,
     asked: Option<Convention>,
@@ -30,25 +30,25 @@ pub(crate) fn choose(
         return Ok(Chosen {
             convention,
             folder,
-            reason: format!("as asked for; {found}"),
+            reason: format!("as requested; {found}"),
         });
     }
     if let Some(folder) = data {
-        // A folder that was named is meant: nothing is fetched into a mistyped one.
+        // Nothing is fetched to a folder that was named explicitly, because its name may be mistyped.
         let mut found = false;
         for convention in RECORDED {
             found |= find_right(workspace, convention, data)?.is_some();
         }
         ensure!(
             found,
-            "{} holds no recordings: correct --data, or say with --convention what to fetch there",
+            "{} holds no recordings: correct --data, or name the convention to fetch with --convention",
             folder.display()
         );
     }
     first_that_can_be_had(workspace, data, say)
 }
 
-/// The recorded conventions in turn, then the simulated crowd.
+/// Tries the recorded conventions in order, then the simulated crowd.
 fn first_that_can_be_had(
     workspace: &Workspace,
     data: Option<&Path>,
@@ -56,7 +56,7 @@ fn first_that_can_be_had(
 ) -> Result<Chosen> {
     let mut reasons = Vec::new();
     for convention in RECORDED {
-        // Recordings that are there and not the pinned ones are an error, not a reason to go on.
+        // Recordings that differ from the pinned ones are an error, not a reason to try the next convention.
         find_right(workspace, convention, data)?;
         match obtain(workspace, convention, data, say) {
             Ok((folder, found)) => {
@@ -79,7 +79,7 @@ fn first_that_can_be_had(
     })
 }
 
-/// The folder of a convention's recordings, found or fetched, and a clause that says which.
+/// The folder of a convention's recordings, found or fetched, and a clause that describes it.
 fn obtain(
     workspace: &Workspace,
     convention: Convention,
@@ -89,12 +89,12 @@ fn obtain(
     match convention {
         Convention::Simulated => return Ok((None, "it needs no files".to_owned())),
         Convention::Own => {
-            bail!("nobody but you has your own recordings: choose star, social-gan or simulated")
+            bail!("own recordings cannot be fetched: choose star, social-gan or simulated")
         }
         Convention::Star | Convention::SocialGan => {}
     }
     if let Some(folder) = find_right(workspace, convention, data)? {
-        let found = format!("its files are in {}, hashes right", folder.display());
+        let found = format!("its files are in {}, hashes verified", folder.display());
         return Ok((Some(folder), found));
     }
     let absent = locate(convention, data).err();
@@ -104,8 +104,8 @@ fn obtain(
     Ok((Some(folder), found))
 }
 
-/// The folder whose files of a convention are all there and right, or none; files that are there and wrong are an
-/// error, for nothing may stand in for them in silence.
+/// The folder in which all files of a convention are present and right, or `None`. Wrong files are an error, because
+/// nothing may replace them silently.
 pub(crate) fn find_right(
     workspace: &Workspace,
     convention: Convention,
@@ -117,7 +117,7 @@ pub(crate) fn find_right(
     let manifest = Manifest::load(workspace)?;
     check(&folder, manifest.entry(convention)?).with_context(|| {
         format!(
-            "{} does not hold the pinned {convention} recordings: delete the wrong files, then \
+            "{} does not hold the pinned {convention} recordings: delete the wrong files, then run \
              `cargo xtask data fetch --convention {convention}`",
             folder.display()
         )
@@ -125,7 +125,7 @@ pub(crate) fn find_right(
     absolute(&folder).map(Some)
 }
 
-/// Brings in what is missing or wrong of a convention; the folder, and where it came from.
+/// Fetches the missing and wrong files of a convention. Returns the folder and the source.
 pub(crate) fn fetch_to(
     workspace: &Workspace,
     convention: Convention,
@@ -169,7 +169,7 @@ mod tests {
     }
 
     #[test]
-    fn without_recordings_and_network_the_crowd_is_simulated_and_says_why() {
+    fn without_recordings_and_network_the_crowd_is_simulated_with_a_reason() {
         let (folder, workspace) = workspace();
         let data = folder.path().join("empty");
         let chosen = first_that_can_be_had(&workspace, Some(&data), &mut |_| {}).unwrap();
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn files_that_are_there_but_wrong_are_never_used_nor_replaced_in_silence() {
+    fn wrong_files_are_neither_used_nor_replaced_silently() {
         let (folder, workspace) = workspace();
         let manifest = Manifest::load(&workspace).unwrap();
         let data = folder.path().join("star");
@@ -197,7 +197,7 @@ mod tests {
         for file in &manifest.entry(Convention::Star).unwrap().files {
             fs::write(data.join(&file.name), "1,2\n1,1\n0,0\n0,0\n").unwrap();
         }
-        // Also where they lie beside what was named.
+        // Also if they are in the folder beside the named one.
         let beside = folder.path().join("social-gan");
         fs::create_dir(&beside).unwrap();
         for (asked, place) in [

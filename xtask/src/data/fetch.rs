@@ -1,4 +1,4 @@
-//! Bringing in the recordings of one convention.
+//! Fetching of the recordings of one convention.
 
 use std::fs;
 use std::path::Path;
@@ -10,8 +10,8 @@ use super::manifest::{Entry, PinnedFile};
 use super::source;
 use crate::python::Python;
 
-/// Puts every file of a convention that is missing or wrong into `folder`, from the first source of the manifest that
-/// has it; the source's name, or none if nothing was missing. `say` hears about each attempt.
+/// Puts every missing or wrong file of a convention into `folder`, from the first source of the manifest that has it.
+/// Returns the source's name, or `None` if nothing was missing. `say` receives a message for each attempt.
 pub(crate) fn fetch<'a>(
     convention: Convention,
     entry: &'a Entry,
@@ -30,7 +30,7 @@ pub(crate) fn fetch<'a>(
             Err(error) => reasons.push(format!("{}: {error:#}", source.name())),
         }
     }
-    // Only an empty folder can be removed: what arrived before is right and stays.
+    // Only an empty folder can be removed: files that arrived before are right and stay.
     let _ = fs::remove_dir(folder);
     bail!(
         "the {convention} recordings cannot be fetched ({}); check the network, or copy them by \

@@ -20,7 +20,8 @@ fn pinned(name: &str, contents: &[u8]) -> PinnedFile {
     }
 }
 
-/// The two files, from sources in this folder that hold the first one and, but for a missing one, this for the second.
+/// The two files, and sources in this folder. Each source holds the first file and, unless it is `None`, the given
+/// bytes as the second.
 fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> Entry {
     let source = |(index, second): (usize, Option<&[u8]>)| {
         let data = folder.join(format!("source {index}/data"));
@@ -58,7 +59,7 @@ fn try_fetch(entry: &Entry, folder: &Path) -> Result<Option<String>> {
 }
 
 #[test]
-fn a_second_fetch_asks_nobody_and_a_damaged_file_is_fetched_again() {
+fn a_second_fetch_uses_no_source_and_a_damaged_file_is_fetched_again() {
     let [from, to] = [0, 1].map(|_| tempfile::tempdir().unwrap());
     let entry = entry(from.path(), &[Some(TWO)]);
     let fetched = || try_fetch(&entry, to.path()).unwrap();
@@ -77,7 +78,7 @@ fn a_second_fetch_asks_nobody_and_a_damaged_file_is_fetched_again() {
 }
 
 #[test]
-fn a_bad_file_is_named_and_leaves_only_right_ones() {
+fn a_wrong_file_is_reported_and_only_right_ones_stay() {
     let [from, to] = [0, 1].map(|_| tempfile::tempdir().unwrap());
     let entry = entry(from.path(), &[Some(&TWO[..10])]);
     let message = format!("{:#}", try_fetch(&entry, to.path()).unwrap_err());
@@ -89,7 +90,7 @@ fn a_bad_file_is_named_and_leaves_only_right_ones() {
 }
 
 #[test]
-fn the_next_source_gives_what_the_first_does_not() {
+fn the_next_source_is_used_for_files_that_the_first_lacks() {
     let [from, to] = [0, 1].map(|_| tempfile::tempdir().unwrap());
     let entry = entry(from.path(), &[None, Some(b"half"), Some(TWO)]);
     let mut said = Vec::new();
@@ -126,9 +127,9 @@ fn members_of_an_archive_are_checked_one_by_one() {
     let unpack = |member: &str, files: &[&PinnedFile]| {
         source::unpack(&python, &archive, member, files, target.path())
     };
-    // The members lie under p/, the manifest's paths under data/.
+    // The members are below p/, the paths of the manifest below data/.
     let message = format!("{:#}", unpack("{path}", &files).unwrap_err());
-    assert!(message.contains("holds no data/one.csv"), "{message}");
+    assert!(message.contains("has no data/one.csv"), "{message}");
     let moved: Vec<PinnedFile> = entry
         .files
         .iter()

@@ -1,4 +1,4 @@
-//! `datasets/manifest.toml`: every file of each recorded convention, pinned.
+//! `datasets/manifest.toml`: the pinned files of each recorded convention.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -28,7 +28,7 @@ pub(crate) struct Entry {
     pub(crate) terms: String,
     /// Keys of the manifest's citations.
     pub(crate) cite: Vec<String>,
-    /// Tried in order until one gives every file.
+    /// Tried in order until one has every file.
     #[serde(rename = "source")]
     pub(crate) sources: Vec<Source>,
     #[serde(rename = "file")]
@@ -40,7 +40,7 @@ pub(crate) struct Entry {
 pub(crate) struct PinnedFile {
     /// Its name in a folder of recordings.
     pub(crate) name: String,
-    /// What stands for `{path}` in a source.
+    /// Replaces `{path}` in the address of a source.
     pub(crate) path: String,
     pub(crate) bytes: u64,
     pub(crate) sha256: String,
@@ -87,13 +87,13 @@ impl Manifest {
         toml::from_str(&text).with_context(|| format!("{FILE} is not well formed"))
     }
 
-    /// The entry of a convention; there is none of those without pinned files.
+    /// The entry of a convention with pinned files.
     pub(crate) fn entry(&self, convention: Convention) -> Result<&Entry> {
         match convention {
             Convention::Star => Ok(&self.star),
             Convention::SocialGan => Ok(&self.social_gan),
             Convention::Simulated | Convention::Own => {
-                bail!("no file of the {convention} convention is pinned")
+                bail!("the {convention} convention has no pinned files")
             }
         }
     }
@@ -112,7 +112,7 @@ mod tests {
     use crate::data::RECORDED;
 
     #[test]
-    fn the_manifest_pins_what_the_folds_use() {
+    fn the_manifest_pins_the_files_of_the_folds() {
         let manifest = Manifest::load(&Workspace::find().unwrap()).unwrap();
         for convention in RECORDED {
             let entry = manifest.entry(convention).unwrap();

@@ -1,4 +1,4 @@
-//! Getting files from where the manifest says they are.
+//! Fetching of files from the sources of the manifest.
 
 use std::fs::File;
 use std::io::{self, Read};
@@ -12,7 +12,7 @@ use super::manifest::{PinnedFile, Source};
 use crate::digest::Pin;
 use crate::python::{self, Python};
 
-/// Seconds in which a host must answer.
+/// Time limit for the answer of a host, in seconds.
 const PATIENCE: &str = "10";
 
 /// Puts the files into a folder, each complete and right or not at all.
@@ -92,13 +92,13 @@ fn download(
     };
     let placed = pin.place(&mut bytes, path);
     let ended = bytes.ended;
-    // Closing the pipe ends a script that would go on sending.
+    // Closing the pipe ends a script that would continue to send.
     drop(bytes);
     let output = child
         .wait_with_output()
         .context("Python cannot be waited for")?;
     match placed {
-        // The bytes ran out because the script failed: it knows why.
+        // The bytes ended because the script failed; its output has the reason.
         Err(_) if ended && !output.status.success() => {
             bail!("{}", python::complaint(&output.stderr))
         }
@@ -119,7 +119,7 @@ impl<R: Read> Read for Watched<R> {
     }
 }
 
-/// Takes the files out of a checked archive, each by way of its own pin.
+/// Extracts the files from a verified archive, and checks each against its own pin.
 pub(super) fn unpack(
     python: &Python,
     archive: &Path,

@@ -1,4 +1,4 @@
-//! The generated cargo configuration, which `.cargo/config.toml` includes: where libtorch lies, and the path to its
+//! The generated cargo configuration, which `.cargo/config.toml` includes: the folder of libtorch, and the path to its
 //! libraries.
 
 use std::fs;
@@ -11,7 +11,7 @@ use crate::whole_file;
 /// Relative to the workspace root; git ignores it.
 pub(super) const GENERATED: &str = ".cargo/config.generated.toml";
 
-/// Writes the configuration, unless it is there already, so that nothing is rebuilt; whether it was written.
+/// Writes the configuration unless it is up to date, so that nothing is rebuilt. Returns whether it was written.
 pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
     let text = render(libtorch)?;
     let is_there = fs::read_to_string(file).is_ok_and(|present| present == text);
@@ -37,8 +37,8 @@ fn render(libtorch: &Path) -> Result<String> {
     };
     if folder.contains([',', '\n']) {
         bail!(
-            "libtorch's path {shown} holds a comma or a line break, which the linker takes for \
-               the end of it: choose another folder"
+            "libtorch's path {shown} has a comma or a line break, where the linker would cut it \
+               off: choose another folder"
         );
     }
     let quote = |text: String| toml::Value::String(text).to_string();
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unchanged_configuration_is_not_touched_and_a_damaged_one_counts_as_none() {
+    fn an_unchanged_configuration_is_not_written_and_a_damaged_one_is_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("config.generated.toml");
         assert_eq!(read(&file), None);
@@ -97,7 +97,7 @@ mod tests {
     }
 
     #[test]
-    fn paths_that_the_linker_would_cut_are_refused() {
+    fn paths_that_the_linker_would_cut_off_are_refused() {
         let message = render(Path::new("/opt/one,two")).unwrap_err().to_string();
         assert!(message.contains("comma"), "{message}");
     }

@@ -1,4 +1,4 @@
-//! Lays libtorch out from the pinned wheels: all of it, or nothing that a later run would trust.
+//! Unpacks libtorch from the pinned wheels, completely or not at all.
 
 use std::fs;
 use std::path::Path;
@@ -12,7 +12,7 @@ use crate::cache;
 use crate::digest::{Pin, measure};
 use crate::python::{self, Python};
 
-/// Written last; a folder without it was never finished.
+/// Written last; a folder without it is unfinished.
 const MARK: &str = ".complete";
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,8 +30,8 @@ struct Library {
     bytes: u64,
 }
 
-/// Whether the folder was finished from the wheels pinned today and still has its libraries, by their sizes: this runs
-/// before every build.
+/// Whether the folder was finished from the currently pinned wheels and still has its libraries, checked by their
+/// sizes, because this runs before every build.
 pub(super) fn is_complete(folder: &Path) -> bool {
     let Ok(complete) = read_mark(folder) else {
         return false;
@@ -44,11 +44,11 @@ pub(super) fn is_complete(folder: &Path) -> bool {
         })
 }
 
-/// Hashes the libraries again and compares them with what was laid out.
+/// Hashes the libraries again and compares them with the recorded hashes.
 pub(super) fn verify(folder: &Path) -> Result<()> {
     let complete = read_mark(folder).with_context(|| {
         format!(
-            "{} was not laid out by `cargo xtask setup`, so there are no hashes to compare with",
+            "{} was not unpacked by `cargo xtask setup`, so it has no recorded hashes",
             folder.display()
         )
     })?;
@@ -121,7 +121,7 @@ fn require_space(python: &Python, folder: &Path, downloading: bool) -> Result<()
 
 fn download(python: &Python, folder: &Path) -> Result<()> {
     let megabytes = WHEELS.iter().map(|wheel| wheel.bytes).sum::<u64>() / 1_000_000;
-    eprintln!("libtorch {VERSION}: downloading {megabytes} MB with pip, once");
+    eprintln!("downloading libtorch {VERSION} with pip, {megabytes} MB, once");
     let mut pip = python.module("pip");
     pip.args([
         "download",
@@ -139,12 +139,12 @@ fn download(python: &Python, folder: &Path) -> Result<()> {
     .arg("--dest")
     .arg(folder)
     .args(WHEELS.iter().map(|wheel| wheel.requirement))
-    // Standard output may be a report that somebody reads or evaluates: pip talks beside it.
+    // Standard output may be a report or evaluated by a shell, so pip writes to standard error.
     .stdout(Stdio::from(std::io::stderr()));
     let status = pip.status().context("pip cannot be started")?;
     if !status.success() {
         bail!(
-            "pip could not download the wheels (its own words are above): connect to a package \
+            "pip could not download the wheels (its output is above): connect to a package \
              index, or give the wheels with `cargo xtask setup --wheel-dir DIR`, or an installed \
              libtorch {VERSION} with LIBTORCH=DIR (docs/libtorch.md){}",
             installed_hint(python)
@@ -153,7 +153,7 @@ fn download(python: &Python, folder: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Names a PyTorch of the right version that Python has anyway, found without importing it.
+/// Names an installed PyTorch of the right version, found without importing it.
 fn installed_hint(python: &Python) -> String {
     let script =
         "import importlib.util as u; print(u.find_spec('torch').submodule_search_locations[0])";
@@ -161,7 +161,7 @@ fn installed_hint(python: &Python) -> String {
         .ok()
         .map(|text| text.trim().to_owned())
         .filter(|folder| super::locate::validate(Path::new(folder)).is_ok())
-        .map(|folder| format!("; Python has one here: LIBTORCH={folder}"))
+        .map(|folder| format!("; Python has one installed: LIBTORCH={folder}"))
         .unwrap_or_default()
 }
 
@@ -169,7 +169,7 @@ fn lay_out(python: &Python, wheel: &Wheel, wheels: &Path, target: &Path) -> Resu
     let file = wheels.join(wheel.file);
     if !file.is_file() {
         bail!(
-            "{} is missing: it must hold the pinned wheels {}",
+            "{} is missing: the folder must contain the pinned wheels {}",
             file.display(),
             WHEELS.map(|wheel| wheel.file).join(", ")
         );
@@ -186,13 +186,13 @@ fn lay_out(python: &Python, wheel: &Wheel, wheels: &Path, target: &Path) -> Resu
     Ok(())
 }
 
-/// Adds what the wheels lack, and the mark.
+/// Adds the files that the wheels lack, and the completion mark.
 fn finish(folder: &Path) -> Result<()> {
     // The binding links `torch`, which in the wheel is a shim that also needs the CUDA libraries.
     #[cfg(unix)]
     std::os::unix::fs::symlink("libtorch_cpu.so", folder.join("lib/libtorch.so"))
         .context("libtorch.so cannot be linked")?;
-    // With this file the binding's build script compares versions itself.
+    // With this file the binding's build script compares the versions itself.
     fs::write(folder.join("build-version"), format!("{VERSION}\n"))
         .context("build-version cannot be written")?;
     let mut libraries = Vec::new();

@@ -1,8 +1,8 @@
-//! What is trusted, what is not, and what a failed set-up leaves behind.
+//! Which folders are trusted, and what remains after a failed set-up.
 
 use super::*;
 
-/// A folder as the wheels' members would leave it, with a few bytes in each library.
+/// A folder with the members of the wheels, with a few bytes in each library.
 fn laid_out() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("lib")).unwrap();
@@ -16,7 +16,7 @@ fn laid_out() -> tempfile::TempDir {
 }
 
 #[test]
-fn what_was_finished_from_these_wheels_and_is_still_whole_is_trusted() {
+fn only_complete_folders_of_the_pinned_wheels_are_trusted() {
     let folder = laid_out();
     let at = |file: &str| folder.path().join(file);
     let is_trusted = || is_complete(folder.path());
@@ -27,7 +27,7 @@ fn what_was_finished_from_these_wheels_and_is_still_whole_is_trusted() {
 
     let library = at("lib/libc10.so");
     let whole = fs::read(&library).unwrap();
-    // Other contents of the same size are found by their hash alone.
+    // Other contents of the same size are detected only by their hash.
     fs::write(&library, "LIB/LIBC10.SO").unwrap();
     assert!(is_trusted());
     let message = format!("{:#}", verify(folder.path()).unwrap_err());
@@ -52,7 +52,7 @@ fn what_was_finished_from_these_wheels_and_is_still_whole_is_trusted() {
 }
 
 #[test]
-fn missing_and_wrong_wheels_are_named_and_nothing_is_left() {
+fn missing_and_wrong_wheels_are_reported_and_nothing_is_left() {
     if !pin::is_supported() {
         return; // nothing is fetched on such a platform
     }

@@ -1,4 +1,4 @@
-//! Whether a folder holds the libtorch that this workspace is made for.
+//! Checks whether a folder holds the libtorch version of this workspace.
 
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
@@ -6,29 +6,28 @@ use std::path::Path;
 
 use super::pin::VERSION;
 
-/// A header that only a libtorch with its C++ interface has.
+/// A header that exists only in a libtorch with its C++ interface.
 const HEADER: &str = "include/torch/csrc/api/include/torch/torch.h";
 
-/// Checks files and version, not hashes; the reason is a clause for a sentence.
+/// Checks files and version, but no hashes. The reason is a clause for a sentence.
 pub(super) fn validate(folder: &Path) -> Result<(), String> {
     if !folder.is_dir() {
-        return Err("there is no such folder".to_owned());
+        return Err("the folder does not exist".to_owned());
     }
     for library in ["torch", "torch_cpu", "c10"] {
         let file = format!("lib/{DLL_PREFIX}{library}{DLL_SUFFIX}");
         if !folder.join(&file).exists() {
-            return Err(format!("it holds no {file}"));
+            return Err(format!("it has no {file}"));
         }
     }
     if !folder.join(HEADER).is_file() {
-        return Err(format!("it holds no {HEADER} (libraries without headers)"));
+        return Err(format!("it has no {HEADER} (libraries without headers)"));
     }
     match version(folder) {
-        // A build of the same version for another backend, as in 2.11.0+cu130, has the same
-        // interface.
+        // A build of the same version for another backend, as in 2.11.0+cu130, has the same interface.
         Some(found) if found.split('+').next() == Some(VERSION) => Ok(()),
         Some(found) => Err(format!("it is libtorch {found}")),
-        None => Err("neither build-version nor version.py tells its version".to_owned()),
+        None => Err("neither build-version nor version.py states its version".to_owned()),
     }
 }
 
@@ -72,7 +71,7 @@ mod tests {
         assert_eq!(reason("version.py", python, ""), Ok(()));
         for (file, contents, version) in [
             ("build-version", "2.7.0", "2.7.0"),
-            // A longer version that merely begins the same is another one.
+            // A longer version with the same beginning is a different one.
             ("version.py", "__version__ = '2.11.01'", "2.11.01"),
         ] {
             let message = format!("it is libtorch {version}");
@@ -86,12 +85,12 @@ mod tests {
     }
 
     #[test]
-    fn missing_pieces_are_named() {
+    fn missing_files_are_reported() {
         let missing = |file: &str| reason("build-version", VERSION, file).unwrap_err();
         assert!(missing(HEADER).contains("torch.h"));
         let library = format!("lib/{DLL_PREFIX}torch_cpu{DLL_SUFFIX}");
-        assert_eq!(missing(&library), format!("it holds no {library}"));
+        assert_eq!(missing(&library), format!("it has no {library}"));
         let gone = validate(Path::new("/nowhere/libtorch")).unwrap_err();
-        assert_eq!(gone, "there is no such folder");
+        assert_eq!(gone, "the folder does not exist");
     }
 }

@@ -1,15 +1,14 @@
-//! The pinned libtorch: one version, three wheels, and the files of them that are needed: the CPU libraries, and CUDA's
-//! runtime and profiling libraries, which those of the wheel need to load.
+//! The pinned libtorch: one version, three wheels, and the files needed from them. These are the CPU libraries, and
+//! CUDA's runtime and profiling libraries, which the wheel's libraries need to load.
 
-/// Version of libtorch that the binding in `Cargo.lock` is made for.
+/// Version of libtorch that the binding in `Cargo.lock` requires.
 pub(crate) const VERSION: &str = "2.11.0";
 
-/// The binding's own version; a test holds the two together.
+/// Version of the binding; a test checks that the two agree.
 #[cfg(test)]
 const BINDING_VERSION: &str = "0.24.0";
 
-/// Python version of the wheel that is fetched. The libraries taken from it do not depend on
-/// Python, so any Python 3 may do the fetching.
+/// Python version of the wheel to fetch. The libraries in it do not depend on Python, so any Python 3 can fetch it.
 pub(super) const PYTHON_VERSION: &str = "3.11";
 
 /// Platform tags of the three wheels.
@@ -20,10 +19,10 @@ pub(super) const PLATFORMS: [&str; 4] = [
     "manylinux2014_x86_64",
 ];
 
-/// A package file and what is taken out of it.
+/// A package file and the members used from it.
 #[derive(Debug)]
 pub(super) struct Wheel {
-    /// As pip is asked for it.
+    /// The requirement passed to pip.
     pub(super) requirement: &'static str,
     pub(super) file: &'static str,
     pub(super) sha256: &'static str,
@@ -68,10 +67,10 @@ pub(super) const WHEELS: [Wheel; 3] = [
     },
 ];
 
-/// Space that the laid-out libraries take, in bytes (495 MB measured), with a margin.
+/// Space that the unpacked libraries take, in bytes (495 MB measured), with a margin.
 pub(super) const LAID_OUT_BYTES: u64 = 560_000_000;
 
-/// The folder's name in a cache, which may hold several versions side by side.
+/// Name of the folder in a cache, which may hold several versions.
 pub(super) fn folder_name() -> String {
     format!("libtorch-{VERSION}")
 }
@@ -89,7 +88,7 @@ mod tests {
     use super::*;
     use crate::workspace::Workspace;
 
-    /// Which libtorch a binding expects is fixed in the binding's build script.
+    /// The binding's build script fixes the libtorch version that it requires.
     #[test]
     fn the_locked_binding_is_the_one_this_libtorch_is_for() {
         let lock = std::fs::read_to_string(Workspace::find().unwrap().path("Cargo.lock")).unwrap();
@@ -106,7 +105,7 @@ mod tests {
         }
     }
 
-    /// What is fetched, and what runs record as their libtorch.
+    /// The fetched version is the one that runs record as their libtorch.
     #[test]
     fn the_version_that_runs_record_is_the_pinned_one() {
         let device = Workspace::find()

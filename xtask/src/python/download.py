@@ -1,6 +1,6 @@
 """Streams the bytes of one address to standard output: ADDRESS TIMEOUT_SECONDS [CA_FILE].
 
-Checks nothing: length and hash are the caller's. A failure is one line on standard error.
+The caller checks length and hash. A failure prints one line to standard error.
 """
 
 import base64
@@ -11,7 +11,7 @@ import urllib.request
 
 
 def request_for(address):
-    """Moves a user name and password of the address into a header, where urllib wants them."""
+    """Moves user name and password of the address to a header, as urllib requires."""
     parts = urllib.parse.urlsplit(address)
     host = parts.netloc.rpartition("@")[2]
     request = urllib.request.Request(urllib.parse.urlunsplit(parts._replace(netloc=host)))
@@ -33,7 +33,7 @@ def main(address, timeout, authorities=None):
                     break
                 sys.stdout.buffer.write(block)
         sys.stdout.buffer.flush()
-    except Exception as error:  # whatever it is, the caller needs it in one line
+    except Exception as error:  # the caller needs any error in one line
         reason = getattr(error, "reason", None) or error
         host = urllib.parse.urlsplit(address).hostname or address
         sys.exit(f"{host}: {getattr(reason, 'strerror', None) or reason}".replace("\n", " "))

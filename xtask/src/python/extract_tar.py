@@ -1,6 +1,6 @@
 """Copies chosen members of a tar archive: ARCHIVE FOLDER MEMBER=NAME...
 
-Nothing of the archive is executed, and every file gets the plain NAME the caller gives it.
+Nothing in the archive is executed, and every file gets the NAME given by the caller.
 """
 
 import pathlib
@@ -18,7 +18,7 @@ def main(archive, folder, *rules):
                 with tar.extractfile(member) as source, open(path, "wb") as file:
                     shutil.copyfileobj(source, file, 1 << 20)
     if wanted:
-        sys.exit(f"{archive} holds no {next(iter(wanted))}")
+        sys.exit(f"{archive} has no {next(iter(wanted))}")
 
 
 try:

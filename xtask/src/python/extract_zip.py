@@ -1,7 +1,7 @@
 """Copies chosen members of a zip archive: ARCHIVE FOLDER FROM=TO...
 
-A FROM that ends in a slash is a whole tree. Nothing of the archive is executed, and no name of the
-archive decides where a file goes beyond its place below TO.
+A FROM that ends in a slash is a whole tree. Nothing in the archive is executed, and names in the archive cannot
+place a file outside TO.
 """
 
 import pathlib
@@ -21,10 +21,10 @@ def main(archive, folder, *rules):
             else:
                 chosen = [(name, target) for name in names if name == source]
             if not chosen:
-                sys.exit(f"{archive} holds no {source}")
+                sys.exit(f"{archive} has no {source}")
             for name, place in chosen:
                 if ".." in pathlib.PurePosixPath(place).parts:
-                    sys.exit(f"{archive} holds a member outside its tree: {name}")
+                    sys.exit(f"{archive} has a member outside its tree: {name}")
                 path = root / place
                 path.parent.mkdir(parents=True, exist_ok=True)
                 with wheel.open(name) as member, open(path, "wb") as file:

@@ -1,7 +1,7 @@
-"""Finds a file on the package index the way pip does: PACKAGE FILE.
+"""Finds a file on the package index like pip: PACKAGE FILE.
 
-Prints JSON: the file's address and the certificate bundle pip is configured with. The index is the
-one pip would ask, from its options, its configuration files and its environment.
+Prints JSON: the file's address and pip's certificate bundle. The index is the one that pip would use, from its
+options, configuration files and environment.
 """
 
 import html.parser
@@ -27,7 +27,7 @@ class Links(html.parser.HTMLParser):
 
 
 def configuration():
-    """Index addresses and certificate bundle of pip, with pip's own defaults if it changed inside."""
+    """Index addresses and certificate bundle of pip, with pip's defaults if pip's internal interface has changed."""
     try:
         from pip._internal.commands import create_command
 
@@ -49,7 +49,7 @@ def main(package, name):
         try:
             with urllib.request.urlopen(request, timeout=10, context=context) as response:
                 base, text = response.geturl(), response.read().decode("utf-8", "replace")
-        except Exception as error:  # the next index may answer
+        except Exception as error:  # the next index may have it
             complaints.append(f"{getattr(error, 'reason', None) or error}")
             continue
         links = Links()

@@ -1,4 +1,4 @@
-//! The interface of every crate, as rustdoc shows it.
+//! The interface of every crate, rendered by rustdoc.
 
 use std::fs;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
         let kinds: Vec<&Value> = targets
             .flat_map(|target| target["kind"].as_array().into_iter().flatten())
             .collect();
-        // The library of a program is there for the program alone.
+        // The library of a program is internal to the program.
         let has = |name: &str| kinds.iter().any(|kind| **kind == name);
         package["publish"].is_null() && has("lib") && !has("bin")
     });
@@ -38,23 +38,24 @@ pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
         .collect()
 }
 
-/// Runs rustdoc, for which every warning is an error (`[workspace.lints.rustdoc]`), and moves its pages from `made` to `out`.
+/// Runs rustdoc, for which every warning is an error (`[workspace.lints.rustdoc]`), and moves its pages from `made` to
+/// `out`.
 pub(super) fn build(
     workspace: &Workspace,
     libraries: &[Library],
     made: &Path,
     out: &Path,
 ) -> Result<()> {
-    // Crates that are gone, or dependencies from another call, would be in every list and search.
+    // Crates that no longer exist, and dependencies from other calls, would appear in every list and search.
     super::remove(made)?;
-    // rustdoc links to another crate's item only if that crate's folder is there. Cargo removes a crate's folder before
-    // it runs rustdoc for it: one job at a time, so that no other crate is rendered meanwhile.
+    // rustdoc links to an item of another crate only if that crate's folder exists. Cargo removes a crate's folder
+    // before it runs rustdoc for it. With one job, no other crate is rendered meanwhile.
     for library in libraries {
         let folder = made.join(&library.module);
         fs::create_dir_all(&folder)
             .with_context(|| format!("{} cannot be made", folder.display()))?;
     }
-    // All of the interface, and no libtorch on the machine.
+    // The whole interface, on a machine without libtorch.
     let features = "ddl-cli/torch,ddl-cli/doc-only";
     let arguments = [
         "doc",
@@ -75,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_library_crates_are_found_with_what_they_say_of_themselves() {
+    fn the_library_crates_are_found_with_their_descriptions() {
         let found = libraries(&Workspace::find().unwrap().metadata().unwrap());
         let has = |name: &str| found.iter().any(|library| library.package == name);
         assert!(has("ddl") && has("ddl-softdtw"), "{found:?}");

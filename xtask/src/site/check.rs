@@ -1,4 +1,4 @@
-//! Every link inside the site leads to a page that is there, and to a place on it; nothing is loaded from elsewhere.
+//! Checks of the site: every internal link leads to an existing page and anchor, and nothing is loaded from elsewhere.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 
 use super::page::{Page, Reference};
 
-/// Addresses that are no places.
+/// Schemes of addresses that are not pages.
 const OTHER_SCHEMES: [&str; 3] = ["data:", "javascript:", "mailto:"];
 
 #[derive(Debug, Default)]
@@ -65,7 +65,7 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
     Ok(checked)
 }
 
-/// What is wrong with a link of the page `file` to somewhere on the site.
+/// The fault of a link from the page `file` to another place of the site, if any.
 fn fault(
     file: &Path,
     target: &str,
@@ -74,28 +74,29 @@ fn fault(
     let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
     let path = resolved(file, path.split('?').next().unwrap_or_default());
     if !path.is_file() {
-        // Every page of a trait names the file of its implementors, which rustdoc writes only where there are some.
+        // Every page of a trait names the file of its implementors, which rustdoc writes only if there are some.
         return (!path.iter().any(|part| part == "trait.impl")).then_some("does not exist");
     }
     if anchor.is_empty() {
         return None;
     }
     let Some((_, page)) = pages.get(&path) else {
-        return Some("has a place on what is no page");
+        return Some("has an anchor, but its target is not a page");
     };
-    // A page that leads on has the places of the one it leads to.
+    // A page that redirects has the anchors of its target.
     let onward = page
         .redirect
         .as_ref()
         .and_then(|onward| pages.get(&resolved(&path, onward)));
     let known = &onward.map_or(page, |(_, page)| page).anchors;
-    // A browser looks for the name as it is written, then for what it means; of a range of lines rustdoc has the first.
+    // A browser looks up the name first as written, then decoded. For a range of lines, rustdoc has an anchor of the
+    // first line.
     let first_line = anchor.split_once('-').map_or(anchor, |(first, _)| first);
     let is_line = !first_line.is_empty() && first_line.bytes().all(|byte| byte.is_ascii_digit());
     let found = known.contains(anchor)
         || known.contains(&decoded(anchor))
         || is_line && known.contains(first_line);
-    (!found).then_some("has no such place")
+    (!found).then_some("has an anchor that does not exist")
 }
 
 fn is_foreign(target: &str) -> bool {
@@ -104,7 +105,7 @@ fn is_foreign(target: &str) -> bool {
         .any(|start| target.starts_with(start))
 }
 
-/// What a style would fetch from elsewhere.
+/// Addresses outside the site that a style would load.
 fn foreign_style(css: &str) -> Option<&str> {
     let loads = css
         .split("url(")
@@ -137,7 +138,7 @@ fn resolved(file: &Path, address: &str) -> PathBuf {
     }
 }
 
-/// An address without `%20` and the like.
+/// Decodes `%20` and the like.
 fn decoded(address: &str) -> String {
     let mut parts = address.split('%');
     let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
@@ -195,11 +196,12 @@ mod tests {
     }
 
     #[test]
-    fn links_that_lead_somewhere_pass() {
-        let body = "<a href=\"old.html#a b\"></a><a href='guide/index.html#a%20b'></a><a href=\"guide/#B%3CT%3E\"></a><a href=\"#top\" id=\"top\"></a>\
-            <a href=\"api/src/x.rs.html#3-7\"></a><a href=\"https://a.example/\"></a><a href=\"guide/index.html?q=1\"></a>\
-            <img src=\"data:image/png;base64,AA\"><script src=\"api/trait.impl/x/trait.X.js\"></script>\
-            <script>\"<a href='x'>\"</script><!-- <a href='y'> -->";
+    fn valid_links_pass() {
+        let body = "<a href=\"old.html#a b\"></a><a href='guide/index.html#a%20b'></a><a \
+            href=\"guide/#B%3CT%3E\"></a><a href=\"#top\" id=\"top\"></a><a href=\"api/src/x.rs.html#3-7\"></a><a \
+            href=\"https://a.example/\"></a><a href=\"guide/index.html?q=1\"></a><img \
+            src=\"data:image/png;base64,AA\"><script src=\"api/trait.impl/x/trait.X.js\"></script>\
+             <script>\"<a href='x'>\"</script><!-- <a href='y'> -->";
         assert_eq!(
             faults(body, "a { background: url(\"x.svg\"); }"),
             [] as [&str; 0]
@@ -207,17 +209,23 @@ mod tests {
     }
 
     #[test]
-    fn links_that_lead_nowhere_are_named() {
+    fn broken_links_are_reported() {
         for (body, needle) in [
             (
                 "<a href=\"nowhere.html\"></a>",
                 "index.html: nowhere.html does not exist",
             ),
             ("<a href=ddl_star::Star></a>", "does not exist"),
-            ("<a href=\"guide/index.html#c\"></a>", "no such place"),
-            ("<a href=\"#top\"></a>", "no such place"),
-            ("<a href=\"api/src/x.rs.html#4-7\"></a>", "no such place"),
-            ("<a href=\"style.css#x\"></a>", "no page"),
+            (
+                "<a href=\"guide/index.html#c\"></a>",
+                "anchor that does not exist",
+            ),
+            ("<a href=\"#top\"></a>", "anchor that does not exist"),
+            (
+                "<a href=\"api/src/x.rs.html#4-7\"></a>",
+                "anchor that does not exist",
+            ),
+            ("<a href=\"style.css#x\"></a>", "not a page"),
             ("<img src=\"p.png\">", "p.png does not exist"),
         ] {
             let found = faults(body, "");

@@ -1,4 +1,4 @@
-//! What a page refers to, and what can be referred to on it.
+//! The references and anchors of a page.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use html5gum::{DefaultEmitter, Token, Tokenizer};
 #[derive(Debug)]
 pub(super) struct Reference {
     pub(super) target: String,
-    /// The browser fetches it by itself, as a picture or a style.
+    /// Whether the browser loads it automatically, as a picture or a style.
     pub(super) loaded: bool,
 }
 
@@ -22,7 +22,7 @@ impl Page {
     pub(super) fn read(html: &str) -> Self {
         let mut page = Self::default();
         let mut emitter = DefaultEmitter::default();
-        emitter.naively_switch_states(true); // what is in scripts and styles is no HTML
+        emitter.naively_switch_states(true); // scripts and styles are not HTML
         for Ok(token) in Tokenizer::new_with_emitter(html, emitter) {
             let Token::StartTag(tag) = token else {
                 continue;

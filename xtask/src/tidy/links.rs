@@ -1,10 +1,10 @@
-//! Links between files of the repository. A page of `docs/` is read here and on the site, a crate's README in a
-//! registry too: their links out of `docs/` or of the crate are whole addresses. Links inside `docs/` are checked on
+//! Links between files of the repository. Pages of `docs/` are also read on the site, and READMEs of crates in a
+//! registry, so their links out of `docs/` or of the crate must be whole addresses. Links inside `docs/` are checked on
 //! the site (`cargo xtask docs`).
 
 use std::path::{Component, Path, PathBuf};
 
-/// Where the repository is read, before a path in it; `workspace.package.repository` says the same.
+/// Address of a path in the repository, as in `workspace.package.repository`.
 const REPOSITORY: &str = "https://github.com/ddl-forecast/ddl/blob/main/";
 
 pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> {
@@ -28,7 +28,7 @@ fn fault(file: &Path, target: &str, files: &[PathBuf]) -> Option<&'static str> {
     let target = target.split('#').next().unwrap_or_default();
     let is_there = |path: &Path| files.iter().any(|file| file.starts_with(path));
     if let Some(path) = target.strip_prefix(REPOSITORY) {
-        return (!is_there(Path::new(path))).then_some("there is no such file in the repository");
+        return (!is_there(Path::new(path))).then_some("the file does not exist in the repository");
     }
     // In a crate's README a path without a slash or an ending is an item of the crate.
     let in_crate = file.starts_with("crates");
@@ -39,9 +39,11 @@ fn fault(file: &Path, target: &str, files: &[PathBuf]) -> Option<&'static str> {
     }
     let path = joined(file.parent()?, target);
     if in_crate || file.starts_with("docs") && !path.starts_with("docs") {
-        return Some("this page is read elsewhere, too: give the whole address in the repository");
+        return Some(
+            "this page is also published elsewhere: use the whole address in the repository",
+        );
     }
-    (!is_there(&path)).then_some("there is no such file")
+    (!is_there(&path)).then_some("the file does not exist")
 }
 
 /// `folder/relative` without `.` and `..`.
@@ -67,7 +69,7 @@ fn example_name(examples: &Path, file: &Path) -> Option<String> {
     Some(name.to_owned())
 }
 
-/// What the links of a page lead to, outside blocks of code.
+/// The targets of the links of a page, outside code blocks.
 fn targets(text: &str) -> impl Iterator<Item = &str> {
     let mut in_code = false;
     let prose = text.lines().filter(move |line| {
@@ -101,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn links_that_lead_somewhere_pass() {
+    fn valid_links_pass() {
         let whole = format!("[a]({REPOSITORY}docs/goals.md#top), [b](https://other/y), [c](#d)");
         for (file, text) in [
             ("docs/x.md", whole.as_str()),
@@ -118,18 +120,18 @@ mod tests {
     }
 
     #[test]
-    fn links_that_lead_nowhere_or_only_from_here_are_named() {
+    fn broken_and_relative_links_are_reported() {
         let gone = format!("[a]({REPOSITORY}docs/gone.md)");
         for (file, text, needle) in [
             (
                 "docs/x.md",
                 gone.as_str(),
-                "docs/gone.md: there is no such file in the repository",
+                "docs/gone.md: the file does not exist in the repository",
             ),
             (
                 "README.md",
                 "[a](docs/gone.md)",
-                "docs/gone.md: there is no such file",
+                "docs/gone.md: the file does not exist",
             ),
             ("docs/x.md", "[a](../README.md)", "whole address"),
             (

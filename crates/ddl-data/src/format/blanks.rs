@@ -1,19 +1,20 @@
-//! Text of one observation a line, its columns separated by tabs or blanks: `social-gan`, and the `obsmat` of the ETH recordings.
+//! Text with one observation per line, its columns separated by tabs or blanks: `social-gan`, and the `obsmat` of the
+//! ETH recordings.
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::{FIELDS, TrackRow};
 use crate::error::{FormatError, FormatProblem};
 
 const OBSMAT: &str = "frame, pedestrian, x, z, y, v_x, v_z, v_y";
 
-/// The rows of a text: `row` reads a line, given its number and where it is from.
+/// The rows of a text; `row` parses one line, given its number and the name of its origin.
 pub(super) fn parse(
     text: &str,
     origin: &str,
     row: fn(&str, usize, &str) -> Result<TrackRow, FormatError>,
 ) -> Result<Vec<TrackRow>, FormatError> {
-    // Blank lines are an error between observations, and harmless after the last one.
+    // Blank lines are an error between observations, but allowed after the last one.
     let lines = text.trim_end().lines().enumerate();
     lines
         .map(|(index, line)| row(line, index + 1, origin))
@@ -47,9 +48,9 @@ pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, 
     let [frame, pedestrian, x, z, y, v_x, v_z, v_y] = fields(text, line, origin, OBSMAT)?;
     let at = |field: usize| FilePlace::field(line, field);
     let row = TrackRow::of(line, origin, [(1, frame), (2, pedestrian), (3, x), (5, y)])?;
-    // Floats, of which no pedestrian is a word.
+    // Pedestrians are floats in this format, never words.
     let number = at(2).read(origin, field::integer(pedestrian, "pedestrian"))?;
-    // Height and velocities are not used; that they are numbers shows that the columns are these.
+    // Height and velocities are not used. Checking that they are numbers confirms the order of the columns.
     for (field, name, text) in [
         (4, "z", z),
         (6, "v_x", v_x),
@@ -59,7 +60,7 @@ pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, 
         at(field).read(origin, field::number(text, name))?;
     }
     Ok(TrackRow {
-        who: Who::Number(number, None),
+        pedestrian: PedestrianField::Number(number, None),
         ..row
     })
 }

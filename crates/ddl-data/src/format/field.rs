@@ -1,4 +1,4 @@
-//! Single fields: whole numbers and coordinates.
+//! Parsing of single fields: whole numbers, pedestrians and coordinates.
 
 use std::borrow::Cow;
 
@@ -15,7 +15,7 @@ pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProbl
     let text = text.trim();
     let number = text.parse::<i64>().ok().or_else(|| {
         let number = text.parse::<f64>().ok()?;
-        // Within the limit every whole f64 is an i64 exactly.
+        // Within the limit every whole `f64` is exactly an `i64`.
         (number.fract() == 0.0 && number.abs() < FRAME_LIMIT as f64).then_some(number as i64)
     });
     number
@@ -27,15 +27,15 @@ pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProbl
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Who {
-    /// A number, and how it is written where that is not its digits, such as `12.0`.
+pub(super) enum PedestrianField {
+    /// A number, and its spelling where that is not plain digits, such as `12.0`.
     Number(i64, Option<Box<str>>),
-    /// What cannot be a number.
+    /// A name that is not a number.
     Word(Box<str>),
 }
 
-impl Who {
-    /// What the file says, letter by letter.
+impl PedestrianField {
+    /// The text as the file has it.
     pub(super) fn written(&self) -> Cow<'_, str> {
         match self {
             Self::Number(_, Some(text)) | Self::Word(text) => text.as_ref().into(),
@@ -44,19 +44,22 @@ impl Who {
     }
 }
 
-/// A pedestrian: a number as [`integer`] reads it, or a word. A fraction, NaN, an infinite number and an empty field
-/// are refused; whole numbers that are too large are words.
-pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<Who, FormatProblem> {
+/// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
+/// refused. Whole numbers that are too large are words.
+pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<PedestrianField, FormatProblem> {
     let text = text.trim();
     match integer(text, name) {
-        Ok(number) => Ok(Who::Number(number, (!is_plain(text)).then(|| text.into()))),
-        Err(problem) if text.is_empty() || is_no_name(text) => Err(problem),
-        Err(_) => Ok(Who::Word(text.into())),
+        Ok(number) => Ok(PedestrianField::Number(
+            number,
+            (!is_plain(text)).then(|| text.into()),
+        )),
+        Err(problem) if text.is_empty() || is_fraction_or_infinite(text) => Err(problem),
+        Err(_) => Ok(PedestrianField::Word(text.into())),
     }
 }
 
-/// Whether a text is a fraction, NaN or infinite. `12e4567` is not: too large for a number, it is a word.
-fn is_no_name(text: &str) -> bool {
+/// Whether a text is a fraction, NaN or infinite. `12e4567` is not: it is too large for a number and counts as a word.
+fn is_fraction_or_infinite(text: &str) -> bool {
     let digit = text.starts_with(|c: char| c.is_ascii_digit());
     text.parse::<f64>().is_ok_and(|number| {
         if number.is_finite() {
@@ -82,7 +85,7 @@ pub(super) fn coordinate(text: &str, name: &'static str) -> Result<f64, FormatPr
     }
 }
 
-/// A number of any size, NaN included, that is not used: it must be there.
+/// Checks that an unused field holds a number, of any size or NaN.
 pub(super) fn number(text: &str, name: &'static str) -> Result<(), FormatProblem> {
     text.parse::<f64>()
         .map(|_| ())
@@ -104,17 +107,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_read_however_they_are_written_and_the_rest_are_words() {
+    fn numbers_are_parsed_in_every_spelling_and_other_texts_are_words() {
         for text in ["12", " 12.0", "1.2e1"] {
             assert_eq!(integer(text, "frame"), Ok(12), "{text}");
         }
         let read = |text: &str| pedestrian(text, "pedestrian");
         for (text, number) in [(" 12.0", 12), ("-0", 0), ("007", 7)] {
             let as_written = Some(text.trim().into());
-            assert_eq!(read(text), Ok(Who::Number(number, as_written)));
+            assert_eq!(read(text), Ok(PedestrianField::Number(number, as_written)));
         }
         for text in ["7f3e", "12e4567", "5e20", "9007199254740992", " a b "] {
-            assert_eq!(read(text), Ok(Who::Word(text.trim().into())));
+            assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
         }
         for text in ["", " ", "1.5", "NaN", "inf", "-inf"] {
             assert!(

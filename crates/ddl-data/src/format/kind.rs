@@ -1,23 +1,23 @@
-//! Which formats there are, and which one a file of tracks is written in.
+//! The supported formats, and how the format of a file is recognised.
 
 use std::fmt;
 use std::path::Path;
 
-/// How a file of tracks is written.
+/// Format of a file of tracks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Format {
-    /// Four lines of comma-separated numbers, one field an observation: frame, pedestrian, **y**, **x** (m). The files
+    /// Four lines of comma-separated numbers, one field per observation: frame, pedestrian, **y**, **x** (m). The files
     /// of the `star` convention.
     StarCsv,
-    /// One observation a line, four fields separated by tabs or blanks: frame, pedestrian, x, y (m).
+    /// One observation per line, four fields separated by tabs or blanks: frame, pedestrian, x, y (m).
     /// The files of the `social-gan` convention.
     SocialGan,
-    /// A comma-separated table whose header names `frame`, `pedestrian`, `x` and `y` (m) in any order: for one's own
-    /// tracks.
+    /// A comma-separated table whose header names `frame`, `pedestrian`, `x` and `y` (m) in any order: meant for the
+    /// user's own tracks.
     Table,
-    /// The newline-delimited JSON of TrajNet++: `{"track": {"f", "p", "x", "y"}}` a line (frame, pedestrian, metres).
-    /// Lines of forecasts (with `prediction_number`), of scenes and of anything else are no observations.
+    /// The newline-delimited JSON of TrajNet++, with one `{"track": {"f", "p", "x", "y"}}` per line (frame, pedestrian,
+    /// metres). Lines of forecasts (with `prediction_number`), of scenes and of other kinds are skipped.
     TrajNet,
     /// The `obsmat.txt` of the ETH recordings: frame, pedestrian, x, z, **y** (m) and three velocities, separated by
     /// blanks.
@@ -45,15 +45,15 @@ impl Format {
         }
     }
 
-    /// The format of a file, told by its extension and its first lines.
+    /// The format of a file, recognised by its extension and its first lines.
     ///
     /// - `.ndjson` and `.jsonl`, or a first line that begins with `{`: [`TrajNet`](Self::TrajNet);
-    /// - no comma in the first line of what is not called `.csv`: [`Obsmat`](Self::Obsmat) where it has 8 fields, else
-    ///   [`SocialGan`](Self::SocialGan);
-    /// - anything else: [`StarCsv`](Self::StarCsv) where it is four lines of numbers that are longer than four
-    ///   fields, else [`Table`](Self::Table).
+    /// - a first line without a comma, unless the file is called `.csv`: [`Obsmat`](Self::Obsmat) where it has 8
+    ///   fields, else [`SocialGan`](Self::SocialGan);
+    /// - anything else: [`StarCsv`](Self::StarCsv) where the file is four lines of more than four numbers each, else
+    ///   [`Table`](Self::Table).
     ///
-    /// Extensions count in capital letters too. Reading with the format guessed still checks everything.
+    /// Extensions may be in capital letters. Reading with a guessed format still checks everything.
     #[must_use]
     pub fn guess(path: &Path, bytes: &[u8]) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
@@ -88,7 +88,8 @@ impl fmt::Display for Format {
     }
 }
 
-/// Four lines of numbers. Four lines of four numbers may as well be a table whose header was forgotten.
+/// Whether the file is four lines of numbers. Four lines of four numbers may also be a table whose header was
+/// forgotten.
 fn is_star(lines: &[&[u8]]) -> bool {
     let filled = lines.iter().filter(|line| !line.trim_ascii().is_empty());
     let number = |field: &[u8]| {
@@ -107,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_format_is_told_from_the_others() {
+    fn every_format_is_recognised() {
         let cases = r#"
 a.ndjson:: => trajnet
 a::\n {"scene": {}} => trajnet

@@ -1,6 +1,6 @@
-//! File formats of recordings: text in, a checked [`Recording`] out. What a reader does not understand is refused, with
-//! file, line and field. The order of the rows does not matter. In TrajNet++ alone, lines and fields of other kinds may
-//! stand between, and overlapping scenes may repeat a track.
+//! File formats of recordings: parsers from text to a checked [`Recording`]. A parser refuses anything that it does not
+//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ allows lines and
+//! fields of other kinds, and overlapping scenes that repeat a track.
 
 mod blanks;
 mod field;
@@ -23,10 +23,10 @@ use crate::error::{DataError, FormatProblem};
 use crate::recording::Recording;
 use place::FilePlace;
 
-/// Reads one file of tracks; the recording is named after the file, without its extension.
+/// Reads one file of tracks. The recording is named after the file, without its extension.
 ///
-/// The frame step is the most common difference of two successive frames (the smaller one of two equally common). Where
-/// that is wrong, set it with [`Recording::with_frame_step`].
+/// The frame step is the most common difference between successive frames (the smaller of two equally common ones).
+/// Where that is wrong, set it with [`Recording::with_frame_step`].
 ///
 /// # Errors
 /// If the file cannot be read, or its content is wrong: see [`FormatError`](crate::FormatError).
@@ -39,9 +39,9 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
     Ok(parse_recording(&bytes, &path.display().to_string(), format)?.with_name(&*name))
 }
 
-/// Reads tracks from bytes; `origin` is the recording's name, and the file's in error messages.
+/// Parses tracks from bytes. `origin` names the recording, and the file in error messages.
 ///
-/// The frame step is inferred as by [`read_recording`].
+/// The frame step is inferred as in [`read_recording`].
 ///
 /// # Errors
 /// If the content is wrong: see [`FormatError`](crate::FormatError).
@@ -68,7 +68,7 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
             .count();
         FilePlace::line(line).wrong(origin, FormatProblem::NotUtf8)
     })?;
-    // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
+    // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut rate = None;
     let rows = match format {
@@ -84,7 +84,7 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
     Ok(rows::into_recording(rows, origin)?.with_rate(rate))
 }
 
-/// How files begin that gzip, zip (and so spreadsheets), bzip2, xz and zstd have made.
+/// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.
 const COMPRESSED: [&[u8]; 5] = [
     b"\x1f\x8b",
     b"PK\x03\x04",

@@ -1,4 +1,4 @@
-//! Where in a file something is.
+//! Position of a field within a file.
 
 use crate::error::{FormatError, FormatProblem};
 
@@ -19,7 +19,7 @@ impl FilePlace {
         Self { line, field }
     }
 
-    #[expect(clippy::needless_pass_by_value, reason = "a problem is told once")]
+    #[expect(clippy::needless_pass_by_value, reason = "a problem is reported once")]
     pub(super) fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
         let Self { line, field } = self;
         FormatError {

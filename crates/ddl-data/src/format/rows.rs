@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
@@ -14,7 +14,7 @@ pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 #[derive(Debug)]
 pub(super) struct TrackRow {
     pub(super) frame: i64,
-    pub(super) who: Who,
+    pub(super) pedestrian: PedestrianField,
     pub(super) position: Position,
     pub(super) place: FilePlace,
 }
@@ -22,7 +22,7 @@ pub(super) struct TrackRow {
 type Placed = (Observation, FilePlace);
 
 impl TrackRow {
-    /// The observation that frame, pedestrian, x and y of a line make, each with the number of its field.
+    /// The observation in frame, pedestrian, x and y of a line, each given with the number of its field.
     pub(super) fn of(
         line: usize,
         origin: &str,
@@ -31,7 +31,7 @@ impl TrackRow {
         let at = |field: usize| FilePlace::field(line, field);
         Ok(Self {
             frame: at(f).read(origin, field::integer(frame, "frame"))?,
-            who: at(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
+            pedestrian: at(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
             position: [
                 at(i).read(origin, field::coordinate(x, "x"))?,
                 at(j).read(origin, field::coordinate(y, "y"))?,
@@ -41,7 +41,7 @@ impl TrackRow {
     }
 }
 
-/// The recording of all rows; its frame step is inferred.
+/// The recording of all rows, with an inferred frame step.
 pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
         return Err(FilePlace::line(1)
@@ -59,16 +59,19 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
     Ok(recording.with_names(names))
 }
 
-/// The observations with pedestrian numbers: those of the file, or, if any pedestrian of the file is a word, the order of first appearance.
+/// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
+/// word, the order of first appearance.
 fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
-    let words = rows.iter().any(|row| matches!(row.who, Who::Word(_)));
+    let words = rows
+        .iter()
+        .any(|row| matches!(row.pedestrian, PedestrianField::Word(_)));
     let mut numbering = Numbering::remembering(usize::MAX);
     let mut names = BTreeMap::new();
     let placed = rows.into_iter().map(|row| {
-        let pedestrian = match row.who {
-            Who::Number(number, _) if !words => PedestrianId(number),
-            who => {
-                let (id, word) = numbering.number(&who.written());
+        let pedestrian = match row.pedestrian {
+            PedestrianField::Number(number, _) if !words => PedestrianId(number),
+            field => {
+                let (id, word) = numbering.number(&field.written());
                 names.entry(id).or_insert(word);
                 id
             }
@@ -79,7 +82,7 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     (placed.collect(), PedestrianNames::new(names))
 }
 
-/// Sorts the rows by frame and pedestrian; of several duplicates, the first of the file is reported.
+/// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
 fn refuse_duplicates(
     rows: &mut [Placed],
     names: &PedestrianNames,

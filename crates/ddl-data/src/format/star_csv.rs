@@ -1,6 +1,6 @@
-//! The `star` csv: four long lines that run in parallel.
+//! The `star` CSV format: four long parallel lines.
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
@@ -38,12 +38,12 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         let pedestrian = field::integer(pedestrians[index], "pedestrian");
         let frame = place(1).read(origin, field::integer(frames[index], "frame"))?;
         let pedestrian = place(2).read(origin, pedestrian)?;
-        // The third line is y and the fourth x: that is how STAR and DDL read these files.
+        // The third line is y and the fourth x, as in the published code of STAR and DDL.
         let y = place(3).read(origin, field::coordinate(ys[index], "y"))?;
         let x = place(4).read(origin, field::coordinate(xs[index], "x"))?;
         Ok(TrackRow {
             frame,
-            who: Who::Number(pedestrian, None),
+            pedestrian: PedestrianField::Number(pedestrian, None),
             position: [x, y],
             place: place(2),
         })

@@ -1,10 +1,10 @@
-//! Tracks as they arrive: a frame as soon as it is whole.
+//! Reading of tracks frame by frame, while they arrive.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::{BufRead, Read as _};
 use std::sync::Arc;
 
-use super::field::Who;
+use super::field::PedestrianField;
 use super::kind::Format;
 use super::place::FilePlace;
 use super::rows::TrackRow;
@@ -15,44 +15,45 @@ use crate::names::Numbering;
 use crate::{PedestrianId, PedestrianNames, Position};
 
 const LONGEST_LINE: usize = 1 << 16;
-/// People of the fullest frame: beyond any crowd a tracker sees. A frame number that stands still must not fill the memory.
+/// Most pedestrians of one frame, beyond any crowd a tracker sees. It bounds the memory if the frame number never
+/// changes.
 const LARGEST_CROWD: usize = 100_000;
-/// Words that are remembered: more than there are in any frame.
+/// Words that are remembered: more than any frame has.
 const MOST_WORDS: usize = 2 * LARGEST_CROWD;
 
-/// Everybody at one moment.
+/// The positions of all pedestrians at one frame.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Frame {
     /// The raw frame number.
     pub number: i64,
-    /// Who is where (m), in the order of the lines.
+    /// Pedestrians and their positions (m), in the order of the lines.
     pub people: Vec<(PedestrianId, Position)>,
-    /// The words of those whom the lines know by words.
+    /// The words that stand for pedestrians which the lines name by words.
     pub names: PedestrianNames,
 }
 
-/// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation a line.
+/// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation per line.
 ///
-/// A frame is whole when a line of a later one comes, when an empty line comes, or at the end. What the lines are is
-/// told from the first: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`,
-/// `obsmat`). Files of the `star` convention do not arrive in order of time.
+/// A frame is complete when a line of a later frame arrives, at an empty line, or at the end. The first line determines
+/// the format: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`, `obsmat`). Files
+/// of the `star` convention are not in order of time and cannot be streamed.
 ///
-/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of a frame, 100,000
-/// at most, and the last 200,000 words: whose word was forgotten is somebody new.
+/// Pedestrians may be words; a number stays a number, also beside words. Memory is bounded: it holds the pedestrians of
+/// one frame, at most 100,000, and the last 200,000 words. A pedestrian whose word was forgotten gets a new id.
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,
     origin: String,
     lines: usize,
     kind: Option<Kind>,
-    /// What scenes say of it.
+    /// The frame rate that scenes state.
     rate: trajnet::Rate,
     words: Numbering,
-    /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
+    /// Pedestrian numbers not written as plain digits, such as `17.0`: the first 200,000 of them.
     numbers: BTreeSet<Box<str>>,
     current: Option<Growing>,
-    /// The last frame that was given out.
+    /// The last frame that was returned.
     last: Option<i64>,
     ended: bool,
 }
@@ -73,7 +74,7 @@ enum Kind {
 }
 
 impl<R: BufRead> FrameReader<R> {
-    /// Nothing read yet; `origin` is the name in messages.
+    /// A reader that has read nothing yet; `origin` is the name in messages.
     pub fn new(reader: R, origin: impl Into<String>) -> Self {
         Self {
             reader,
@@ -89,11 +90,11 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// The next whole frame; waits for it. `None` at the end.
+    /// The next complete frame; blocks until it has arrived. `None` at the end.
     ///
     /// # Errors
-    /// If nothing can be read any more, or a line is wrong: see [`FormatError`]. After an error the reader is at the
-    /// next line.
+    /// If the input cannot be read, or a line is wrong: see [`FormatError`]. After an error the reader continues with
+    /// the next line.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, DataError> {
         while !self.ended {
             let Some(text) = self.line()? else {
@@ -116,17 +117,17 @@ impl<R: BufRead> FrameReader<R> {
         Ok(self.whole())
     }
 
-    /// The frame that is being read, as far as it has been: for who gives up after an error.
+    /// The part of the current frame that has been read, for callers that stop after an error.
     pub fn unfinished(&mut self) -> Option<Frame> {
         self.whole()
     }
 
-    /// How many frames follow each other in a second, where a line so far has said so: the `fps` of TrajNet++ scenes.
+    /// Frames per second, where a line so far has stated it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate.frames_a_second
     }
 
-    /// The next line without its end; `None` at the end of the file.
+    /// The next line without its line ending; `None` at the end of the file.
     fn line(&mut self) -> Result<Option<String>, DataError> {
         let mut bytes = Vec::new();
         let mut limited = self.reader.by_ref().take(LONGEST_LINE as u64 + 1);
@@ -195,7 +196,7 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// Adds an observation; the frame before, if this is the first of a new one.
+    /// Adds an observation. Returns the previous frame if this observation starts a new one.
     fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, FormatError> {
         let reached = self.current.as_ref().map(|growing| growing.frame.number);
         if let Some(last) = reached.or(self.last)
@@ -219,10 +220,10 @@ impl<R: BufRead> FrameReader<R> {
             lines: BTreeMap::new(),
             words: BTreeMap::new(),
         });
-        let pedestrian = match seen.who {
-            Who::Number(number, None) => PedestrianId(number),
-            // after a word, `1e3` is one as well, unless it was a number before
-            Who::Number(number, Some(text))
+        let pedestrian = match seen.pedestrian {
+            PedestrianField::Number(number, None) => PedestrianId(number),
+            // After a word, `1e3` is a word as well, unless it was a number before.
+            PedestrianField::Number(number, Some(text))
                 if self.words.is_empty() || self.numbers.contains(&text) =>
             {
                 if self.numbers.len() < MOST_WORDS {
@@ -230,8 +231,8 @@ impl<R: BufRead> FrameReader<R> {
                 }
                 PedestrianId(number)
             }
-            who => {
-                let (id, word) = self.words.number(&who.written());
+            field => {
+                let (id, word) = self.words.number(&field.written());
                 growing.words.insert(id, word);
                 id
             }

@@ -1,4 +1,4 @@
-//! The table: comma-separated, with a header, for one's own tracks.
+//! The `table` format: comma-separated, with a header, for the user's own tracks.
 
 use csv::{ErrorKind, StringRecord};
 
@@ -8,11 +8,12 @@ use super::rows::{FIELDS, TrackRow};
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
-const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for a decimal point";
-/// The fields of a row that is one field.
+const FEWER: &str = "frame, pedestrian, x, y; put a comma between two fields, not at the end of a row and not as a \
+                      decimal point";
+/// The expected fields for a row without a comma.
 const ONE: &str = "frame, pedestrian, x, y, separated by commas";
 
-/// What the fields of a row hold, for one that has too few or too many.
+/// The expected fields, for a row with too few or too many.
 fn names(expected: usize, found: usize) -> &'static str {
     match found {
         1 => ONE,
@@ -73,13 +74,12 @@ impl TrackColumns {
             FilePlace { line, field }.wrong(origin, FormatProblem::Header { detail })
         };
         if header.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let detail =
-                "these are numbers; put the line frame,pedestrian,x,y above them".to_owned();
+            let detail = "found numbers; put the line frame,pedestrian,x,y above them".to_owned();
             return Err(wrong(None, detail));
         }
         let mut places = [None; 4];
         for (index, name) in header.iter().enumerate() {
-            // Spreadsheets like capitals.
+            // Spreadsheets often capitalise headers.
             let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
             let Some(column) = column else {
                 let advice = advice(name, header);
@@ -90,7 +90,7 @@ impl TrackColumns {
             if places[column].replace(index).is_some() {
                 return Err(wrong(
                     Some(index + 1),
-                    format!("column {name} is there twice"),
+                    format!("column {name} appears twice"),
                 ));
             }
         }
@@ -122,9 +122,9 @@ fn advice(name: &str, header: &StringRecord) -> String {
     let meant = match plain.as_str() {
         "id" | "ped" | "pedid" | "pedestrianid" | "agent" | "agentid" | "track" | "trackid"
         | "person" | "personid" | "object" | "objectid" => Some("pedestrian"),
-        "t" | "time" | "timestamp" => return "rename it frame, and count frames".to_owned(),
+        "t" | "time" | "timestamp" => return "rename it to frame, and count frames".to_owned(),
         "observeduntil" => {
-            return "this is a table of forecasts; give the tracks that they were made of"
+            return "this is a table of forecasts; give the tracks that they were made from"
                 .to_owned();
         }
         "frameid" | "framenumber" | "frameno" | "framenr" | "frameindex" => Some("frame"),
@@ -137,24 +137,25 @@ fn advice(name: &str, header: &StringRecord) -> String {
         .filter(|column| !known(column))
         .collect();
     if let Some(meant) = meant.filter(|meant| missing.contains(meant)) {
-        return format!("rename it {meant}");
+        return format!("rename it to {meant}");
     }
     if header.len() == 1 && name.contains(['{', '[']) {
-        "this is no table; tracks as JSON are TrajNet++ ndjson, an object a line".to_owned()
+        "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line"
+            .to_owned()
     } else if name.contains([';', '\t']) {
-        "separate columns by commas, and write decimals with a point".to_owned()
+        "separate columns by commas, and use a decimal point".to_owned()
     } else if missing.is_empty() {
-        "leave it out".to_owned()
+        "remove it".to_owned()
     } else {
         format!(
-            "missing yet: {}; rename it, or leave it out",
+            "still missing: {}; rename the column, or remove it",
             missing.join(", ")
         )
     }
 }
 
 fn record(text: &str, line: usize, origin: &str) -> Result<StringRecord, FormatError> {
-    // A reader of tables is costly to make for every line of a stream, and without quotes there is nothing that it knows better.
+    // A CSV reader is costly to create for every line of a stream, and is only needed for quoted fields.
     let plain = text.trim_end_matches(['\r', '\n']);
     if !plain.contains(['"', '\r', '\n']) {
         return Ok(plain.split(',').map(str::trim).collect());
@@ -200,7 +201,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn plain_lines_are_read_as_any(text in "[a0., \t\u{a0}\r\n\"]{0,12}[a0,]\r?\n?") {
+        fn the_fast_path_splits_lines_like_the_csv_reader(text in "[a0., \t\u{a0}\r\n\"]{0,12}[a0,]\r?\n?") {
             let fields = record(&text, 1, "t").unwrap();
             prop_assert_eq!(fields, quoted_record(&text, 1, "t").unwrap());
         }

@@ -1,4 +1,4 @@
-//! The newline-delimited JSON of TrajNet++: scenes and tracks, one object a line.
+//! The newline-delimited JSON of TrajNet++: scenes and tracks, one object per line.
 
 use std::collections::BTreeMap;
 
@@ -7,29 +7,28 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-use super::field::{self, Who};
+use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
 use crate::{PedestrianName, Position};
 
-/// The tracks that were observed: those of forecasts, which name a `prediction_number`, are left out. Rows that agree
-/// count once.
+/// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
 #[expect(
     clippy::float_cmp,
     reason = "a repeated track is written with the same digits"
 )]
 pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), FormatError> {
-    let mut seen: BTreeMap<(i64, Who), (Position, usize)> = BTreeMap::new();
+    let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
     let mut rate = Rate::default();
     for (index, text) in text.lines().enumerate() {
         let Some(row) = observation(text, index + 1, origin, &mut rate)? else {
             continue;
         };
-        let key = match &row.who {
-            Who::Number(number, _) => Who::Number(*number, None),
-            word @ Who::Word(_) => word.clone(),
+        let key = match &row.pedestrian {
+            PedestrianField::Number(number, _) => PedestrianField::Number(*number, None),
+            word @ PedestrianField::Word(_) => word.clone(),
         };
         let (frame, place, position) = (row.frame, row.place, row.position);
         match seen.get(&(frame, key.clone())) {
@@ -41,12 +40,12 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
             Some(&(known, first_line)) => {
                 let problem = FormatProblem::Disagreement {
                     pedestrian: Box::new(match key {
-                        Who::Number(number, _) => PedestrianName::Number(number),
-                        Who::Word(word) => PedestrianName::Word(word.into()),
+                        PedestrianField::Number(number, _) => PedestrianName::Number(number),
+                        PedestrianField::Word(word) => PedestrianName::Word(word.into()),
                     }),
                     frame,
                     first_line,
-                    // shortest digits that tell the two apart
+                    // The shortest digits that distinguish the two.
                     first: format!("{known:?}"),
                     found: format!("{position:?}"),
                 };
@@ -57,7 +56,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
     Ok((rows, rate))
 }
 
-/// How many frames follow each other in a second, as the scenes of a file say it.
+/// Frames per second, as stated by the scenes of a file.
 #[derive(Debug, Default)]
 pub(super) struct Rate {
     line: usize,
@@ -65,7 +64,7 @@ pub(super) struct Rate {
 }
 
 impl Rate {
-    #[expect(clippy::float_cmp, reason = "one rate is written with the same digits")]
+    #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
         let Some(told) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
             return Ok(());
@@ -88,7 +87,7 @@ impl Rate {
     }
 }
 
-/// The parts of a line that are read; others may stand beside them. A part that is there twice is refused.
+/// The parts of a line that are read; other parts are ignored. A repeated part is refused.
 #[derive(Deserialize)]
 struct TrajnetLine<'a> {
     #[serde(borrow, default)]
@@ -121,7 +120,7 @@ fn as_written<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Value
     Value::deserialize(deserializer).map(Some)
 }
 
-/// The observation of a line, if it holds one; the rate of a scene is taken.
+/// The observation of a line, if it holds one. The rate of a scene line is recorded.
 pub(super) fn observation(
     text: &str,
     line: usize,
@@ -146,7 +145,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
         )));
     }
     let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
-    // One that is no object shows that the file is not what it seems.
+    // A scene that is not an object shows that the file is of another kind.
     if let Some(scene) = fields::<SceneFields>(line.scene, "scene")? {
         rate.take(&scene, place.line)?;
     }
@@ -158,30 +157,32 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     }
     let text = |value: Option<Value>, name: &'static str| match value {
         None => Err(FormatProblem::MissingField { name }),
-        // as it is written: a number in its digits, text in quotes, which is no number
+        // As written in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
         Some(value) => Ok(value.to_string()),
     };
     let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
-    let who = match track.p {
-        // in quotes it is a word, whatever its letters
-        Some(Value::String(word)) if !word.trim().is_empty() => Who::Word(word.trim().into()),
+    let pedestrian = match track.p {
+        // A quoted pedestrian is a word, whatever its characters.
+        Some(Value::String(word)) if !word.trim().is_empty() => {
+            PedestrianField::Word(word.trim().into())
+        }
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
         other => {
             let number = field::integer(&text(other, "track.p")?, "track.p")?;
-            Who::Number(number, None)
+            PedestrianField::Number(number, None)
         }
     };
     let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
     Ok(Some(TrackRow {
         frame,
-        who,
+        pedestrian,
         position: [x, y],
         place,
     }))
 }
 
-/// The fields of a part; none where there is none, or null.
+/// The fields of a part; `None` where it is missing or null.
 fn fields<'a, T: Deserialize<'a>>(
     part: Option<&'a RawValue>,
     name: &'static str,

@@ -1,4 +1,4 @@
-//! Recordings as files: what a reader of the format takes back, number by number.
+//! Writing of recordings; the reader of the format returns the same numbers.
 
 use std::fmt::Write as _;
 
@@ -22,11 +22,12 @@ struct TrackFields {
     y: f64,
 }
 
-/// The recording as a file of the format, in order of frames; [`parse_recording`](crate::parse_recording) gives the same positions to
-/// the last bit. How fast frames follow each other is not written. The height and the velocities of [`Format::Obsmat`], which no reader of tracks takes, are written as 0.
+/// The recording as a file of the format, in order of frames. [`parse_recording`](crate::parse_recording) returns the
+/// same positions to the last bit. The frame rate is not written. The height and velocities of [`Format::Obsmat`],
+/// which no reader uses, are written as 0.
 ///
 /// # Errors
-/// [`DataError::Own`] where pedestrians are words, which [`Format::Table`] and [`Format::TrajNet`] alone can name.
+/// [`DataError::Own`] where pedestrians are words: only [`Format::Table`] and [`Format::TrajNet`] can name them.
 pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>, DataError> {
     let all = recording.observations();
     let name = |seen: &Observation| recording.names().of(seen.pedestrian);
@@ -37,7 +38,7 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
             .find(|name| matches!(name, PedestrianName::Word(_)));
         if let Some(word) = word {
             let problem = format!(
-                "the format {format} names pedestrians by numbers, and {word} is a word; write the format {} or {}",
+                "the format {format} names pedestrians by numbers, but {word} is a word; use the format {} or {}",
                 Format::Table,
                 Format::TrajNet
             );

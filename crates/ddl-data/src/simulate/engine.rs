@@ -1,4 +1,4 @@
-//! The simulation itself: people enter, walk, stand and leave, in small steps of time.
+//! The simulation loop: pedestrians enter, walk, stand and leave, in small time steps.
 
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -12,13 +12,13 @@ use crate::{Observation, PedestrianId, Position, TIME_STEP};
 
 /// Raw frames in one step of 0.4 s, as in most real recordings.
 pub(super) const FRAME_STEP: i64 = 10;
-/// Time before recording starts, so that the scene is peopled (s).
+/// Time simulated before recording starts, so that the scene is populated (s).
 const WARM_UP: f64 = 20.0;
-/// Nobody gets faster than this multiple of the desired speed.
+/// Largest speed, as a multiple of the desired speed.
 const TOP_SPEED: f64 = 1.3;
-/// Random restlessness of a pedestrian (m/s per square root of a second).
+/// Random acceleration of a pedestrian (m/s per square root of a second).
 const RESTLESSNESS: f64 = 0.12;
-/// An entry is free when nobody is within this distance (m).
+/// An entry is free when no pedestrian is within this distance (m).
 const ENTRY_CLEARANCE: f64 = 0.7;
 
 #[derive(Debug)]
@@ -62,7 +62,7 @@ pub(super) fn run(layout: &SceneLayout, steps: i64, rng: &mut ChaCha8Rng) -> Tra
 struct Engine<'a> {
     layout: &'a SceneLayout,
     parties: Vec<Party>,
-    /// Parties whose time has come, by index, that found their entry taken.
+    /// Indices of the parties that are due but found their entry occupied.
     waiting: Vec<usize>,
     pedestrians: Vec<SimulatedPedestrian>,
     next: usize,
@@ -142,7 +142,7 @@ impl Engine<'_> {
         self.separate_bodies();
         for (pedestrian, before) in self.pedestrians.iter_mut().zip(&before) {
             pedestrian.motion.position = outside_obstacles(self.layout, pedestrian.motion.position);
-            // What bodies and walls took away from a step is not in the velocity either.
+            // The velocity is the displacement that remains after contact with bodies and walls.
             let moved = scale(sub(pedestrian.motion.position, before.position), 1.0 / DT);
             if norm(moved) < norm(pedestrian.motion.velocity) {
                 pedestrian.motion.velocity = moved;
@@ -218,7 +218,7 @@ impl Engine<'_> {
     }
 }
 
-/// The position, moved out of every wall and pillar. Twice, for corners.
+/// The position, moved out of every wall and pillar. Two passes handle corners.
 fn outside_obstacles(layout: &SceneLayout, position: Position) -> Position {
     (0..2).fold(position, |mut place, _| {
         for wall in &layout.walls {

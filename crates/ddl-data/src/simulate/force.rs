@@ -10,34 +10,34 @@ pub(super) const BODY: f64 = 0.2;
 const RELAXATION: f64 = 0.5;
 
 // The interaction of two pedestrians, Moussaïd et al. 2009, with their symbols.
-/// How strongly they brake or turn at most (m/s²).
+/// Largest acceleration of braking or turning (m/s²).
 const STRENGTH: f64 = 4.5;
 /// Reach of the interaction for each unit of the relative motion (m): gamma.
 const REACH: f64 = 0.35;
-/// How narrow in angle the braking is: n'.
+/// Angular sharpness of braking: n'.
 const BRAKING: f64 = 3.0;
-/// How narrow in angle the turning aside is: n.
+/// Angular sharpness of turning aside: n.
 const TURNING: f64 = 2.0;
 /// Weight of the relative velocity against the direction to the other (s/m): lambda.
 const FORESIGHT: f64 = 2.0;
-/// Preference for one side, which settles who goes where when two meet head on: epsilon.
+/// Preference for one side, which breaks the symmetry when two pedestrians meet head on: epsilon.
 const SIDE: f64 = 0.05;
 /// Beyond this distance two pedestrians ignore each other (m).
 const SIGHT: f64 = 6.0;
 
-/// Walls push away with this strength (m/s²) ...
+/// Repulsion of walls (m/s²) ...
 const WALL_STRENGTH: f64 = 3.0;
-/// ... falling off over this distance (m), counted from the body.
+/// ... which decays over this distance (m), counted from the body.
 const WALL_REACH: f64 = 0.15;
 
 // Groups, after Moussaïd et al. 2010.
-/// Pull towards the centre of the group, for each metre too far from it (1/s²).
+/// Attraction towards the centre of the group, per metre beyond the comfortable distance (1/s²).
 const COHESION: f64 = 1.5;
-/// Comfortable distance from the centre for each other member (m).
+/// Comfortable distance from the centre per other member (m).
 const COMFORT: f64 = 0.5;
-/// Push between members who touch (m/s²) ...
+/// Repulsion between touching members (m/s²) ...
 const ELBOW: f64 = 4.0;
-/// ... falling to nothing at this distance (m).
+/// ... which vanishes at this distance (m).
 const ELBOW_REACH: f64 = 0.65;
 
 #[derive(Debug, Clone, Copy)]
@@ -50,9 +50,10 @@ pub(super) fn driving(pedestrian: WalkingMotion, desired: Position) -> Position 
     scale(sub(desired, pedestrian.velocity), 1.0 / RELAXATION)
 }
 
-/// Away from a stranger: brake, and turn aside early when the two will meet. With `e` the unit vector to the other and
-/// `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B = gamma |D|`, along `D` (braking) and across
-/// it (turning); `d` is counted between the bodies: Moussaïd et al., Proc. R. Soc. B 276 (2009), equations 4 and 5.
+/// Repulsion from a pedestrian outside the group: braking, and turning aside early if the two would meet. With `e` the
+/// unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B = gamma |D|`,
+/// along `D` (braking) and across it (turning); `d` is counted between the bodies. Source: Moussaïd et al., Proc. R.
+/// Soc. B 276 (2009), equations 4 and 5.
 pub(super) fn stranger(
     pedestrian: WalkingMotion,
     other: WalkingMotion,
@@ -99,7 +100,7 @@ pub(super) fn wall(pedestrian: WalkingMotion, wall: &Wall) -> Position {
     )
 }
 
-/// Towards the centre of the own group of `size`, when too far from it.
+/// Attraction towards the centre of the own group of `size` members, beyond the comfortable distance.
 pub(super) fn cohesion(pedestrian: WalkingMotion, centre: Position, size: usize) -> Position {
     let apart = sub(centre, pedestrian.position);
     let excess = norm(apart) - COMFORT * (size - 1) as f64;
@@ -116,9 +117,9 @@ pub(super) fn companion(pedestrian: WalkingMotion, other: WalkingMotion) -> Posi
 mod tests {
     use super::*;
 
-    /// Equations 4 and 5 of Moussaïd et al. 2009, written down in numpy outside this project: two who meet, two who walk on beside each other
-    /// and overlap, a pillar, somebody close ahead, and somebody at the very edge of sight. A line has position and velocity of both, the
-    /// radius of the other, and the force.
+    /// Equations 4 and 5 of Moussaïd et al. 2009, evaluated in numpy outside this project. The cases are two
+    /// pedestrians that meet, two that walk side by side and overlap, a pillar, a pedestrian close ahead, and one at
+    /// the very edge of sight. A line has position and velocity of both, the radius of the other, and the force.
     #[test]
     fn strangers_are_avoided_as_the_equations_say() {
         let cases = "

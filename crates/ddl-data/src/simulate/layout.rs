@@ -1,4 +1,4 @@
-//! The five scenes: walls, pillars, where people come from and where they go.
+//! Layouts of the five scenes: walls, pillars, entries and destinations.
 
 use super::obstacle::{Pillar, Wall};
 use super::scene::CrowdScene;
@@ -43,7 +43,7 @@ pub(super) enum Leg {
     Stand(GateLine),
 }
 
-/// From where, past what, in proportion to which weight.
+/// Entry, gates to pass, and relative frequency of a route.
 #[derive(Debug, Clone)]
 pub(super) struct Route {
     pub(super) origin: GateLine,
@@ -60,7 +60,7 @@ impl Route {
         }
     }
 
-    /// The same route with a rest somewhere between two points before leg `index`.
+    /// The same route with a stop at a random place between two points before leg `index`.
     fn standing(mut self, weight: f64, index: usize, [a, b]: [Position; 2]) -> Self {
         self.legs.insert(index, Leg::Stand(GateLine::new(a, b)));
         self.weight = weight;
@@ -73,7 +73,7 @@ pub(super) struct SceneLayout {
     pub(super) walls: Vec<Wall>,
     pub(super) pillars: Vec<Pillar>,
     pub(super) routes: Vec<Route>,
-    /// Mean time between two arrivals of a person or group (s).
+    /// Mean time between two arrivals of a pedestrian or group (s).
     pub(super) arrival_interval: f64,
 }
 
@@ -89,7 +89,7 @@ impl SceneLayout {
     }
 }
 
-/// A walled way of 26 m x 6 m with two pillars, walked in both directions; some stop at the wall.
+/// A walled way of 26 m x 6 m with two pillars, used in both directions; some pedestrians stop at the wall.
 fn corridor() -> SceneLayout {
     let west = GateLine::new([0.0, 0.0], [0.0, 6.0]);
     let east = GateLine::new([26.0, 0.0], [26.0, 6.0]);
@@ -111,11 +111,11 @@ fn corridor() -> SceneLayout {
     }
 }
 
-/// Two ways of 6 m width that cross at right angles; people go straight on or turn.
+/// Two ways of 6 m width that cross at right angles; pedestrians go straight on or turn.
 fn crossing() -> SceneLayout {
     const HALF: f64 = 3.0;
     const END: f64 = 12.0;
-    // Arms in order east, north, west, south: each the one before, turned by a quarter.
+    // Arms in the order east, north, west, south: each is the previous one turned by 90 degrees.
     let turn = |point: Position, quarters: usize| (0..quarters).fold(point, |p, _| left(p));
     let gate = |distance: f64, quarters: usize| {
         GateLine::new(
@@ -150,7 +150,7 @@ fn crossing() -> SceneLayout {
     }
 }
 
-/// An open square of 22 m x 18 m with a fountain and trees; people cross it or meet and talk.
+/// An open square of 22 m x 18 m with a fountain and trees; pedestrians cross it or meet and talk.
 fn plaza() -> SceneLayout {
     let gates = [
         GateLine::new([0.0, 3.0], [0.0, 8.0]),
@@ -194,7 +194,7 @@ fn plaza() -> SceneLayout {
     }
 }
 
-/// A room of 10 m width that narrows to a passage of 2.4 m; most walk into the passage.
+/// A room of 10 m width that narrows to a passage of 2.4 m; most pedestrians enter the passage.
 fn bottleneck() -> SceneLayout {
     let room = GateLine::new([0.0, -5.0], [0.0, 5.0]);
     let mouth = GateLine::new([11.0, -1.2], [11.0, 1.2]);
@@ -230,7 +230,7 @@ fn bottleneck() -> SceneLayout {
     }
 }
 
-/// Two halls of 18 m width behind each other, joined by two doors of 1.8 m; people wait at the side.
+/// Two halls of 18 m width, one behind the other, joined by two doors of 1.8 m; pedestrians wait at the side.
 fn doorway() -> SceneLayout {
     let south = GateLine::new([1.0, 0.0], [17.0, 0.0]);
     let north = GateLine::new([1.0, 20.0], [17.0, 20.0]);

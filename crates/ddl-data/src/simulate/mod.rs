@@ -1,11 +1,12 @@
 //! Simulated crowds: a social-force model, for machines without real recordings.
 //!
-//! Each pedestrian accelerates towards the velocity it likes, brakes and turns aside for those it would run into, keeps off
-//! walls, and stays with its group (Helbing and Molnár, Phys. Rev. E 51 (1995); Moussaïd et al., Proc. R. Soc. B 276
-//! (2009), and `PLoS` ONE 5 (2010)). Desired speeds are drawn from N(1.34, 0.26) m/s. Arrivals are a Poisson process of
-//! single pedestrians, pairs and groups of three; some stop for a while. Integrated with dt = 0.05 s, sampled every 0.4 s.
+//! Each pedestrian accelerates towards its desired velocity, brakes and turns aside to avoid collisions, keeps away
+//! from walls, and stays with its group (Helbing and Molnár, Phys. Rev. E 51 (1995); Moussaïd et al., Proc. R. Soc. B
+//! 276 (2009), and `PLoS` ONE 5 (2010)). Desired speeds are drawn from N(1.34, 0.26) m/s. Arrivals are a Poisson
+//! process of single pedestrians, pairs and groups of three; some stop for a while. The integration step is 0.05 s, the
+//! sampling interval 0.4 s.
 //!
-//! Numbers measured on such a crowd say nothing about how well real pedestrians are forecast.
+//! Accuracy measured on a simulated crowd does not transfer to real pedestrians.
 //!
 //! ```
 //! let crowd = ddl_data::simulate::CrowdScene::Plaza.simulate(7);
@@ -35,11 +36,11 @@ use layout::SceneLayout;
 const STEPS: i64 = 450;
 
 impl CrowdScene {
-    /// Simulates three minutes of the scene; the same seed gives the same bytes.
+    /// Simulates three minutes of the scene. The same seed gives the same bytes.
     #[must_use]
     #[expect(
         clippy::missing_panics_doc,
-        reason = "no seed makes it panic, see the comment"
+        reason = "the comment shows that no seed panics"
     )]
     pub fn simulate(self, seed: u64) -> Crowd {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -60,15 +61,15 @@ impl CrowdScene {
     }
 }
 
-/// A simulated recording, and what a real one does not tell: walls and groups.
+/// A simulated recording with its ground truth: walls and groups.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Crowd {
-    /// Everybody's positions.
+    /// The positions of all pedestrians.
     pub recording: Recording,
     /// The scene's walls.
     pub walls: Vec<Wall>,
     /// The scene's pillars.
     pub pillars: Vec<Pillar>,
-    /// Groups of two and more who entered together and stay together.
+    /// Groups of two or more pedestrians that entered together and stay together.
     pub groups: Vec<Vec<PedestrianId>>,
 }

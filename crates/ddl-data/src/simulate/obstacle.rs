@@ -1,4 +1,4 @@
-//! What nobody walks through: walls and pillars.
+//! Obstacles of simulated scenes: walls and pillars.
 
 use super::vector::{add, cross, dot, norm, scale, sub, unit};
 use crate::Position;
@@ -22,7 +22,7 @@ pub struct Pillar {
 }
 
 impl Wall {
-    /// A wall from one point to another (m).
+    /// A wall between two points (m).
     #[must_use]
     pub const fn new(from: Position, to: Position) -> Self {
         Self { from, to }
@@ -40,7 +40,7 @@ impl Wall {
         add(self.from, scale(along, share))
     }
 
-    /// Whether the straight way from `a` to `b` (m) goes through the wall.
+    /// Whether the straight line from `a` to `b` (m) crosses the wall.
     #[must_use]
     pub fn blocks(&self, a: Position, b: Position) -> bool {
         let (way, wall) = (sub(b, a), sub(self.to, self.from));
@@ -56,7 +56,7 @@ impl Wall {
 }
 
 impl Pillar {
-    /// A pillar around a point, of a radius (m).
+    /// A pillar with its centre and radius (m).
     #[must_use]
     pub const fn new(centre: Position, radius: f64) -> Self {
         Self { centre, radius }
@@ -67,7 +67,7 @@ impl Pillar {
     }
 }
 
-/// `p`, moved straight away from `point` until it is at the distance; unmoved if it is that far.
+/// `p`, moved straight away from `point` to the given distance; unchanged if it is already that far.
 fn push_away(p: Position, point: Position, distance: f64) -> Position {
     let away = sub(p, point);
     if norm(away) >= distance {
@@ -87,7 +87,7 @@ mod tests {
         assert!(wall.blocks([1.0, -1.0], [1.0, 1.0]));
         assert!(!wall.blocks([3.0, -1.0], [3.0, 1.0]));
         assert!(!wall.blocks([1.0, 0.1], [1.0, 1.0]));
-        // nor what only touches it, or its end
+        // A line that only touches the wall or its end is not blocked.
         assert!(!wall.blocks([1.0, -1.0], [1.0, 0.0]));
         assert!(!wall.blocks([2.0, 1.0], [2.0, -1.0]));
     }

@@ -1,20 +1,20 @@
-//! One pedestrian: where it wants to go, how fast, and when it has got there.
+//! A simulated pedestrian: its target, desired velocity and arrival.
 
 use super::force::WalkingMotion;
 use super::layout::Leg;
 use super::vector::{add, dot, norm, scale, sub, unit};
 use crate::{PedestrianId, Position, TIME_STEP};
 
-/// Integration steps in one step of 0.4 s.
+/// Integration steps per step of 0.4 s.
 pub(super) const SUBSTEPS: i64 = 8;
 /// One integration step (s).
 pub(super) const DT: f64 = TIME_STEP / SUBSTEPS as f64;
 
-/// Who comes this close to a place to stand at has arrived (m) ...
+/// Distance from its place to stand at which a pedestrian has arrived (m) ...
 pub(super) const ARRIVED: f64 = 0.3;
-/// ... and who comes this close settles for it: others may stand there already (m).
+/// ... and distance at which it also stops, because others may occupy the place (m).
 const CLOSE_BY: f64 = 1.5;
-/// How strongly who is ahead of the group slows down, and who is behind hurries (1/m).
+/// Relative speed change per metre ahead of or behind the group (1/m).
 const WAITING: f64 = 0.4;
 
 #[derive(Debug)]
@@ -22,12 +22,12 @@ pub(super) struct SimulatedPedestrian {
     pub(super) id: PedestrianId,
     pub(super) party: usize,
     pub(super) motion: WalkingMotion,
-    /// Where it passes each leg's gate, or stands (m).
+    /// Points at which it passes each leg's gate, or stands (m).
     pub(super) targets: Vec<Position>,
     pub(super) leg: usize,
-    /// How long it still stands where it stands (s).
+    /// Remaining time of standing (s).
     pub(super) rest_left: f64,
-    /// Where the present leg began (m).
+    /// Start of the current leg (m).
     pub(super) leg_start: Position,
 }
 
@@ -36,12 +36,12 @@ impl SimulatedPedestrian {
         norm(sub(self.targets[self.leg], self.motion.position)) < distance
     }
 
-    /// The velocity that the pedestrian likes now (m/s).
+    /// The current desired velocity (m/s).
     pub(super) fn desired(&self, legs: &[Leg], speed: f64, centre: Position) -> Position {
         let target = self.targets[self.leg];
         let way = sub(self.aim(legs, target), self.motion.position);
         if matches!(legs[self.leg], Leg::Stand(_)) && norm(way) < 2.0 * ARRIVED {
-            // Slow down smoothly, then stay.
+            // Slow down smoothly, then stand.
             return scale(way, speed.min(0.8));
         }
         let heading = unit(way);
@@ -49,7 +49,7 @@ impl SimulatedPedestrian {
         scale(heading, speed * (1.0 - WAITING * ahead).clamp(0.3, 1.25))
     }
 
-    /// The point to walk to: a gate is walked through, not up to.
+    /// The point to aim at: beyond a gate, so that the pedestrian walks through it.
     fn aim(&self, legs: &[Leg], target: Position) -> Position {
         match legs[self.leg] {
             Leg::Stand(_) => target,
@@ -101,9 +101,9 @@ mod tests {
         pedestrian.desired(&[leg(gate)], 1.2, place)
     }
 
-    /// At 1.2 m/s to where they stand, slowly over the last 0.6 m, and through a gate without slowing down.
+    /// At 1.2 m/s to the place to stand, slowly over the last 0.6 m, and through a gate without slowing down.
     #[test]
-    fn pedestrians_slow_down_where_they_will_stand_and_nowhere_else() {
+    fn pedestrians_slow_down_only_where_they_will_stand() {
         let near =
             |[x, y]: Position, expected: f64| (x - expected).abs() < 1e-12 && y.abs() < 1e-12;
         assert!(near(desired(Leg::Stand, [-5.0, 0.0]), 1.2));

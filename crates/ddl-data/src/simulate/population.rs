@@ -1,4 +1,4 @@
-//! Who comes when: arrivals, groups, desired speeds and routes, all drawn in advance.
+//! Population of a scene: arrivals, groups, desired speeds and routes, all drawn in advance.
 
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
@@ -8,25 +8,25 @@ use super::layout::{GateLine, Leg, SceneLayout};
 use super::vector::{norm, sub};
 use crate::Position;
 
-/// Mean and standard deviation of the speed that a lone pedestrian likes (m/s): Helbing and Molnár 1995.
+/// Mean and standard deviation of the desired speed of a lone pedestrian (m/s): Helbing and Molnár 1995.
 const DESIRED_SPEED: (f64, f64) = (1.34, 0.26);
 /// Slowest and fastest speed drawn (m/s).
 const SPEED_RANGE: (f64, f64) = (0.7, 2.0);
-/// Groups walk slower than their members would alone, on average.
+/// Mean speed of a group relative to its members walking alone.
 const GROUP_PACE: f64 = 0.93;
-/// Distance at which group members come in side by side (m).
+/// Distance at which group members enter side by side (m).
 pub(super) const GROUP_SPACING: f64 = 0.75;
-/// Distance that arrivals keep from the ends of a gate (m).
+/// Distance of arrivals from the ends of a gate (m).
 const GATE_MARGIN: f64 = 0.5;
-/// Shortest and longest rest of who stands (s).
+/// Shortest and longest time of standing (s).
 const REST: (f64, f64) = (8.0, 28.0);
 
 #[derive(Debug, Clone)]
 pub(super) struct Party {
-    /// When it wants to enter (s).
+    /// Time at which it enters (s).
     pub(super) time: f64,
     pub(super) route: usize,
-    /// Speed that all of it like (m/s).
+    /// Desired speed of all its members (m/s).
     pub(super) speed: f64,
     pub(super) members: Vec<PartyMember>,
 }
@@ -34,13 +34,13 @@ pub(super) struct Party {
 #[derive(Debug, Clone)]
 pub(super) struct PartyMember {
     pub(super) entry: Position,
-    /// Where it passes each leg's gate (m), or stands.
+    /// Points at which it passes each leg's gate, or stands (m).
     pub(super) targets: Vec<Position>,
-    /// How long it rests where it stands (s).
+    /// Time of standing (s).
     pub(super) rest: f64,
 }
 
-/// Everybody who arrives before `end` (s), in order of time.
+/// All parties that arrive before `end` (s), in order of time.
 pub(super) fn draw(layout: &SceneLayout, end: f64, rng: &mut ChaCha8Rng) -> Vec<Party> {
     let interval = Exp::new(1.0 / layout.arrival_interval)
         .expect("arrival intervals of the five layouts are positive");
@@ -70,7 +70,7 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     let chosen = &layout.routes[route];
     let rest = rng.random_range(REST.0..REST.1);
     let entries = side_by_side(chosen.origin, size, rng.random_range(0.0..1.0));
-    // Somebody who comes in on the left tends to stay on the left: one place across for all gates.
+    // A pedestrian that enters on the left tends to stay on the left: one lateral place for all gates.
     let across: f64 = rng.random_range(0.0..1.0);
     let mut targets = vec![Vec::new(); size];
     for leg in &chosen.legs {
@@ -111,7 +111,7 @@ fn choose_route(layout: &SceneLayout, rng: &mut ChaCha8Rng) -> usize {
     layout.routes.len() - 1
 }
 
-/// Places across a gate for a group of this size, clear of the gate's ends where it is wide enough.
+/// Places across a gate for a group of this size, away from the gate's ends where it is wide enough.
 fn side_by_side(gate: GateLine, size: usize, across: f64) -> Vec<Position> {
     let room = (gate.width() - 2.0 * GATE_MARGIN).max(0.0);
     let spacing = GROUP_SPACING.min(room / size as f64);
@@ -136,7 +136,7 @@ fn in_a_ring(centre: Position, size: usize, rng: &mut ChaCha8Rng) -> Vec<Positio
         .collect()
 }
 
-/// Whether a place is free of everybody else by the distance (m).
+/// Whether all others are at least `distance` (m) away from a place.
 pub(super) fn is_free(place: Position, others: &[Position], distance: f64) -> bool {
     others
         .iter()

@@ -1,15 +1,15 @@
-//! The five scenes by name.
+//! The five simulated scenes.
 
 use std::fmt;
 
-/// A place where a crowd can be simulated.
+/// A simulated scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum CrowdScene {
-    /// A walled way with two pillars, walked in both directions.
+    /// A walled way with two pillars, used in both directions.
     Corridor,
     /// Two ways that cross at right angles.
     Crossing,
-    /// An open square with a fountain, crossed in all directions; people stop and talk.
+    /// An open square with a fountain, crossed in all directions; pedestrians stop and talk.
     Plaza,
     /// A room that narrows to a passage.
     Bottleneck,
@@ -27,7 +27,7 @@ impl CrowdScene {
         Self::Doorway,
     ];
 
-    /// The scene's name, which is that of its recording and of its fold.
+    /// The scene's name, also used for its recording and its fold.
     pub fn name(self) -> &'static str {
         match self {
             Self::Corridor => "corridor",

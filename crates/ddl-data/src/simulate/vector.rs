@@ -1,4 +1,4 @@
-//! The little plane geometry that the simulation needs, on `[x, y]` arrays.
+//! Plane geometry for the simulation, on `[x, y]` arrays.
 
 use crate::Position;
 
@@ -37,7 +37,7 @@ pub(super) fn unit(a: Position) -> Position {
     }
 }
 
-/// `a` turned by a quarter, counter-clockwise.
+/// `a` turned by 90 degrees counter-clockwise.
 pub(super) fn left(a: Position) -> Position {
     [-a[1], a[0]]
 }

@@ -1,4 +1,4 @@
-//! Observations that are not whole: what is made up, and what is never touched.
+//! Completion of observations: what is filled in, and what is never changed.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use proptest::prelude::*;
 
 const STEP: i64 = 4;
 
-/// Frames at which somebody is seen: mostly a step apart, with holes, and now and then off the beat.
+/// Frames at which a pedestrian is seen: mostly one step apart, with holes, and occasionally at other times.
 fn frames() -> impl Strategy<Value = Vec<i64>> {
     let later = prop_oneof![
         12 => Just(STEP),
@@ -38,7 +38,7 @@ fn recording(tracks: &[Vec<(i64, Position)>]) -> Recording {
     Recording::new("yard", STEP, seen).unwrap()
 }
 
-/// What the rule says, by search in the whole track, of somebody who is there at the frame `until`.
+/// The result by the definition: a search in the whole track of a pedestrian that is present at the frame `until`.
 fn by_search(
     track: &BTreeMap<i64, Position>,
     until: i64,
@@ -88,7 +88,7 @@ fn bits(track: &[Position]) -> Vec<[u64; 2]> {
 
 proptest! {
     #[test]
-    fn it_is_what_a_search_finds(
+    fn completion_agrees_with_a_search(
         tracks in prop::collection::vec(frames(), 1..5),
         places in prop::collection::vec(prop::array::uniform2(-9.0..9.0_f64), 40),
         (least, gap) in (2..=8_usize, 0..=2_usize),
@@ -131,7 +131,7 @@ fn only_window(frames: &[i64], completion: Completion) -> Option<Window> {
 }
 
 #[test]
-fn holes_of_two_frames_are_filled_and_longer_ones_are_ends() {
+fn holes_of_two_frames_are_filled_and_longer_ones_are_not() {
     let made_up = |frames: &[i64]| {
         only_window(frames, Completion::USUAL).map(|window| {
             let MadeUp { padded, filled } = window.made_up(0);
@@ -144,13 +144,13 @@ fn holes_of_two_frames_are_filled_and_longer_ones_are_ends() {
     assert_eq!(made_up(&[0, 12, 24, 28]), Some((0, 4, 4)));
     assert_eq!(made_up(&[20, 28]), Some((5, 1, 2)));
     assert_eq!(made_up(&[28]), None);
-    // off the beat: the place between is no observation
+    // Between two steps: this position does not count as an observation.
     assert_eq!(made_up(&[22, 28]), None);
     assert_eq!(made_up(&[18, 22, 28]), None);
 }
 
 #[test]
-fn what_is_asked_for_is_checked() {
+fn parameters_out_of_range_are_refused() {
     for least in [0, 1, 9] {
         let error = CompletionError::LeastSeen { found: least };
         assert_eq!(Completion::new(least, 0), Err(error));

@@ -10,7 +10,7 @@ fn key(window: &Window) -> (String, i64) {
     (window.recording().to_owned(), window.start_frame())
 }
 
-/// No moment is both in training and in validation, and neither has a window of its own making.
+/// Training and validation share no moment, and every window is one of the recording.
 fn check_splits(dataset: &Dataset) {
     for fold in dataset.folds() {
         for rule in [
@@ -74,8 +74,8 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     assert!(error.to_string().starts_with(expected), "{error}");
 }
 
-/// Rows of the files `NAME_train.txt` and `NAME_val.txt` that Social-GAN publishes, and the first frame of the
-/// latter: counted from published copies, outside this project.
+/// Number of rows of the files `NAME_train.txt` and `NAME_val.txt` that Social-GAN publishes, and the first frame of
+/// the latter. Counted in published copies, outside this project.
 const PUBLISHED_PARTS: [(&str, usize, usize, i64); 8] = [
     ("eth", 3666, 1826, 10_240),
     ("hotel", 4946, 1597, 14_400),
@@ -105,7 +105,7 @@ fn the_social_gan_split_is_that_of_the_published_files() {
         for fold in dataset.folds() {
             let split = fold.social_gan_split(min_pedestrians);
             let (mut training, mut validation) = (Vec::new(), Vec::new());
-            // as its authors do it: from two recordings, cut where the published files are
+            // As its authors do: from two recordings, cut where the published files are cut.
             for recording in fold.training_recordings() {
                 let mut parts = PUBLISHED_PARTS.iter();
                 let (.., cut) = parts.find(|of| of.0 == recording.name()).unwrap();
@@ -123,7 +123,7 @@ fn the_social_gan_split_is_that_of_the_published_files() {
 }
 
 #[test]
-fn the_parts_of_a_recording_are_all_of_it_in_order() {
+fn the_parts_of_a_recording_together_are_the_recording() {
     let dataset = Dataset::simulated(2);
     let recording = &dataset.recordings()[0];
     for fraction in [0.0, 0.2, 1.0, 7.0, -1.0, f64::NAN] {
@@ -162,7 +162,7 @@ fn folds_never_train_on_what_they_test_on() {
 }
 
 #[test]
-fn a_memory_of_the_place_holds_other_training_recordings_alone() {
+fn a_memory_of_the_place_holds_only_other_training_recordings() {
     for convention in [Convention::Star, Convention::SocialGan] {
         let Some(dataset) = recordings::load(convention) else {
             return;

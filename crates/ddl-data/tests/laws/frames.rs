@@ -1,4 +1,4 @@
-//! Tracks read frame by frame are those of the whole file.
+//! Tracks read frame by frame equal those of the whole file.
 
 use std::fmt::Write as _;
 
@@ -18,14 +18,14 @@ fn frames(text: &[u8]) -> Result<Vec<Frame>, DataError> {
 type Seen = Vec<(i64, Vec<(PedestrianId, Position)>)>;
 
 fn of_whole(recording: &Recording) -> Seen {
-    let people = |frame: &i64| {
+    let pedestrians = |frame: &i64| {
         let at = recording.at(*frame).iter();
         (
             *frame,
             at.map(|seen| (seen.pedestrian, seen.position)).collect(),
         )
     };
-    recording.frames().iter().map(people).collect()
+    recording.frames().iter().map(pedestrians).collect()
 }
 
 fn of_frames(frames: Vec<Frame>) -> Seen {
@@ -35,7 +35,8 @@ fn of_frames(frames: Vec<Frame>) -> Seen {
         .collect()
 }
 
-/// What is written in a format is read back, whatever the order of its rows, and frame by frame where it can be.
+/// Checks that a written recording is read back, whatever the order of its rows, and also frame by frame where the
+/// format allows it.
 fn check(recording: &Recording) {
     let mut rows = recording.observations().to_vec();
     rows.reverse();
@@ -57,7 +58,7 @@ fn check(recording: &Recording) {
 
 proptest! {
     #[test]
-    fn frame_by_frame_as_from_the_whole(
+    fn reading_frame_by_frame_equals_reading_the_file(
         rows in prop::collection::btree_map((-50..50_i64, 0..6_i64), prop::array::uniform2(-1e3..1e3_f64), 1..60),
     ) {
         let rows = rows.into_iter().map(|((f, p), place)| Observation::new(f, PedestrianId(p), place));
@@ -66,7 +67,7 @@ proptest! {
 }
 
 #[test]
-fn real_recordings_too() {
+fn real_recordings_are_read_back() {
     let Some(dataset) = recordings::load(Convention::Star) else {
         return;
     };
@@ -90,7 +91,7 @@ fn an_empty_line_ends_a_frame_at_once() {
 }
 
 #[test]
-fn what_is_wrong_is_named_with_its_line() {
+fn errors_name_their_line() {
     let message = |text: &str| frames(text.as_bytes()).unwrap_err().to_string();
     for (text, needles) in [
         ("frame,pedestrian,x\n", ["line 1", "column y is missing"]),
@@ -119,23 +120,23 @@ fn after_an_error_the_next_line_is_read() {
     let wrong = |reader: &mut FrameReader<&[u8]>| reader.next_frame().unwrap_err().to_string();
     assert!(wrong(&mut reader).contains("line 1: the line is longer"));
     assert!(wrong(&mut reader).contains("line 3"));
-    let people = reader.next_frame().unwrap().unwrap().people;
-    let people: Vec<i64> = people.iter().map(|(who, _)| who.0).collect();
-    assert_eq!(people, [1, 3]);
+    let pedestrians = reader.next_frame().unwrap().unwrap().people;
+    let pedestrians: Vec<i64> = pedestrians.iter().map(|(id, _)| id.0).collect();
+    assert_eq!(pedestrians, [1, 3]);
     assert!(wrong(&mut reader).contains("line 6"));
     assert_eq!(reader.unfinished().map(|frame| frame.number), Some(1));
     assert_eq!(reader.next_frame().unwrap(), None);
 }
 
 #[test]
-fn a_frame_number_that_stands_still_does_not_fill_the_memory() {
+fn a_constant_frame_number_does_not_fill_the_memory() {
     let mut lines: Vec<String> = (0..100_002).map(|id| format!("0 {id} 0 0")).collect();
     lines.push("1 7 0 0\n".to_owned());
     let text = lines.join("\n");
     let mut reader = FrameReader::new(text.as_bytes(), "tracker");
     for line in [100_001, 100_002] {
         let error = reader.next_frame().unwrap_err().to_string();
-        let expected = format!("tracker, line {line}: more than 100000 people in frame 0");
+        let expected = format!("tracker, line {line}: more than 100000 pedestrians in frame 0");
         assert!(error.starts_with(&expected), "{error}");
     }
     let full = reader.next_frame().unwrap().unwrap();
@@ -168,14 +169,24 @@ fn written(rows: &[Observation], format: Format) -> String {
             for (scene, o) in rows.iter().enumerate() {
                 let [x, y] = o.position;
                 let (f, p) = (o.frame, o.pedestrian);
-                writeln!(text, "{{\"scene\":{{\"id\":{scene},\"p\":{p},\"s\":{f},\"e\":{f},\"fps\":2.5,\"tag\":[4,[]]}}}}").unwrap();
+                let span = format!(r#""p":{p},"s":{f},"e":{f}"#);
+                writeln!(
+                    text,
+                    r#"{{"scene":{{"id":{scene},{span},"fps":2.5,"tag":[4,[]]}}}}"#
+                )
+                .unwrap();
                 writeln!(
                     text,
                     "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":{x:?},\"y\":{y:?}}}}}"
                 )
                 .unwrap();
-                // a forecast of the same moment is no observation
-                writeln!(text, "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":0.5,\"y\":{x:?},\"prediction_number\":0,\"scene_id\":{scene}}}}}").unwrap();
+                // A forecast of the same frame, which is not an observation.
+                let place = format!(r#""f":{f},"p":{p},"x":0.5,"y":{x:?}"#);
+                writeln!(
+                    text,
+                    r#"{{"track":{{{place},"prediction_number":0,"scene_id":{scene}}}}}"#
+                )
+                .unwrap();
             }
         }
         Format::Obsmat => {

@@ -1,16 +1,16 @@
-//! From pixels to metres.
+//! Homographies: pixels to metres.
 
 use ddl_data::{Format, Homography, parse_recording};
 use proptest::prelude::*;
 
-/// Of a camera above a street, in the notation of `H.txt`.
+/// The matrix of a camera above a street, in the notation of `H.txt`.
 const STREET: &str = "\
    2.8128700e-02   2.0091900e-03  -4.6693600e+00
    8.0625700e-04   2.5195500e-02  -5.0608800e+00
    3.4555400e-04   9.2512200e-05   4.6255300e-01
 ";
 
-/// The places were computed in Python, row by row.
+/// The expected places were computed in Python, row by row.
 #[test]
 fn a_camera_above_a_street() {
     let ground: Homography = STREET.parse().unwrap();
@@ -28,7 +28,7 @@ fn a_camera_above_a_street() {
 }
 
 #[test]
-fn what_is_no_matrix_is_refused() {
+fn invalid_matrices_are_refused() {
     let cases = "
  => a homography has three rows of three numbers, found 0
 1 0 0/0 1 0 => a homography has three rows of three numbers, found 2
@@ -51,7 +51,7 @@ fn what_is_no_matrix_is_refused() {
 }
 
 #[test]
-fn the_horizon_is_nowhere() {
+fn pixels_on_the_horizon_have_no_place() {
     let tilted: Homography = "1 0 0\n0 1 0\n0 -0.01 1".parse().unwrap();
     assert_eq!(tilted.apply([0.0, 100.0]), None);
     let plain: Homography = "1 0 0\n0 1 0\n0 0 1\n".parse().unwrap();
@@ -65,7 +65,7 @@ fn the_horizon_is_nowhere() {
 
 proptest! {
     #[test]
-    fn multiples_are_the_same_map(
+    fn multiples_of_a_matrix_are_the_same_map(
         rows in prop::array::uniform3(prop::array::uniform3(-2.0..2.0_f64)),
         factor in prop_oneof![-9.0..-0.1_f64, 0.1..9.0_f64],
         pixel in prop::array::uniform2(-500.0..500.0_f64),

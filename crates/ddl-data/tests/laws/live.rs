@@ -1,4 +1,4 @@
-//! Tracks that are fed frame by frame: what is refused, and what is forgotten.
+//! Tracks fed frame by frame: refused frames, and forgotten pedestrians.
 
 use ddl_data::{Completion, LiveError, LiveTracks, PedestrianId};
 
@@ -17,14 +17,14 @@ fn errors_change_nothing() {
             position,
         };
         let twice = vec![(pedestrian, here); 2];
-        for (frame, people, error) in [
+        for (frame, pedestrians, error) in [
             (last, vec![], too_early(last)),
             (last - 1, vec![], too_early(last - 1)),
             (far, vec![], LiveError::FrameOutOfRange { frame: far }),
             (frame, twice, LiveError::Duplicate { pedestrian, frame }),
             (frame, vec![(pedestrian, position)], not_finite),
         ] {
-            assert_eq!(tracks.push(frame, people), Err(error));
+            assert_eq!(tracks.push(frame, pedestrians), Err(error));
             assert_eq!(tracks, before);
         }
     }
@@ -34,18 +34,18 @@ fn errors_change_nothing() {
     }
 }
 
-/// People come and go for 40,000 frames, more than four hours, each with an id of their own: who left is forgotten at once, with holes to fill a
-/// little later.
+/// For 40,000 frames, more than four hours, pedestrians come and go, each with its own id. A pedestrian that left is
+/// forgotten at once, or slightly later where holes are filled.
 #[test]
-fn nobody_is_remembered_who_left() {
+fn pedestrians_that_left_are_forgotten() {
     for (completion, most) in [(Completion::NONE, 10), (Completion::USUAL, 12)] {
         let mut tracks = LiveTracks::new().completing(completion);
         let mut windows = 0_usize;
         for frame in 0..40_000_i64 {
-            // ten at a time, each for ten frames
+            // Ten at a time, each for ten frames.
             let present = (0..10).map(|k| (frame - k) / 10 * 10 + k);
-            let people = present.map(|id| (PedestrianId(id), [frame as f64, id as f64]));
-            windows += usize::from(tracks.push(frame, people).unwrap().is_some());
+            let pedestrians = present.map(|id| (PedestrianId(id), [frame as f64, id as f64]));
+            windows += usize::from(tracks.push(frame, pedestrians).unwrap().is_some());
             let known = tracks.len();
             assert!((10..=most).contains(&known), "frame {frame}: {known}");
         }
@@ -55,9 +55,9 @@ fn nobody_is_remembered_who_left() {
     }
 }
 
-/// A frame far ahead by mistake, or a tracker that counts from 0 again.
+/// A frame far ahead by mistake, or a tracker that restarts at 0.
 #[test]
-fn what_was_cleared_starts_anew() {
+fn cleared_tracks_accept_any_frame() {
     let one = || [(PedestrianId(1), [0.0, 0.0])];
     let mut tracks = LiveTracks::new();
     tracks.push(1 << 52, one()).unwrap();
@@ -71,9 +71,9 @@ fn what_was_cleared_starts_anew() {
     assert!(tracks.push(7, one()).unwrap().is_some());
 }
 
-/// As far as frames go, and steps.
+/// The largest frame numbers and steps.
 #[test]
-fn at_the_ends_of_time() {
+fn extreme_frame_numbers_are_handled() {
     let step = 1 << 31;
     let mut tracks = LiveTracks::with_frame_step(step)
         .unwrap()
@@ -84,7 +84,7 @@ fn at_the_ends_of_time() {
         let window = tracks.push(frame, one).unwrap();
         assert_eq!(window.is_some(), frame == first + step || frame == last);
     }
-    // the velocity of these is no number
+    // The velocity of these positions is NaN.
     let mut tracks = LiveTracks::new().completing(Completion::USUAL);
     for (frame, x) in [(0, -1e308), (1, 1e308)] {
         assert_eq!(tracks.push(frame, [(PedestrianId(1), [x, 0.0])]), Ok(None));

@@ -1,4 +1,4 @@
-//! Pedestrians whom files and streams know by words.
+//! Pedestrians named by words in files and streams.
 
 use ddl_data::{Completion, Format, FrameReader, PedestrianId, PedestrianName, parse_recording};
 
@@ -28,7 +28,7 @@ fn pedestrians_may_be_words() {
         assert!((0..4).all(|i| window.named(&window.name(i)) == Some(i)));
         let completed = &recording.completed_windows(Completion::USUAL)[1];
         assert_eq!(completed.name(3), PedestrianName::Word("1e3".to_owned()));
-        // twice in a frame, and named so
+        // A duplicate is reported with its word.
         let twice = text.clone() + text.lines().last().unwrap();
         let read = parse_recording(twice.as_bytes(), "f", format);
         if format != Format::TrajNet {
@@ -38,7 +38,7 @@ fn pedestrians_may_be_words() {
                 "{told}"
             );
         }
-        // the stream reader gives the same names
+        // The stream reader returns the same names.
         let mut frames = FrameReader::new(text.as_bytes(), "tracker");
         let mut read = 0;
         while let Some(frame) = frames.next_frame().unwrap() {
@@ -55,7 +55,7 @@ fn pedestrians_may_be_words() {
 }
 
 #[test]
-fn a_number_of_a_stream_stays_one_when_words_come() {
+fn a_number_in_a_stream_stays_a_number_when_words_come() {
     let text = "frame,pedestrian,x,y\n0,17.0,0,0\n1,17.0,0,0\n2,17.0,0,0\n2,ab,5,5\n3,17.0,0,0\n3,ab,5,5\n";
     let mut frames = FrameReader::new(text.as_bytes(), "tracker");
     let mut first = Vec::new();

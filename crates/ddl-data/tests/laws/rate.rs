@@ -1,11 +1,11 @@
-//! Recordings of other rates.
+//! Recordings at other frame rates.
 
 use ddl_data::{Format, InSteps, Observation, PedestrianId, RateError, Recording, parse_recording};
 use proptest::prelude::*;
 
 use crate::readers::complaint;
 
-/// Two people who walk straight on, seen at some frames; every `spacing`-th where none is left out.
+/// Two pedestrians that walk straight on, seen at every `spacing`-th frame of the given ones.
 fn pedestrians(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
     let place = |id: i64, frame: i64| [0.05 * frame as f64 + id as f64, -0.02 * frame as f64];
     let seen = frames.flat_map(|frame| {
@@ -18,8 +18,9 @@ fn step_seconds(steps: &InSteps, rate: f64) -> f64 {
     steps.recording.frame_step() as f64 / rate / steps.parts as f64
 }
 
-/// Whole numbers of frames are left alone, others are counted in parts of a frame. By hand: 12 frames a second are 4.8
-/// a step, 4 a second 1.6, 1 a second 0.4; 25 seen every third frame are 10 that are not seen.
+/// Recordings whose step is a whole number of frames are left alone; others are counted in parts of a frame. By hand:
+/// 12 frames per second are 4.8 per step, 4 per second 1.6, 1 per second 0.4. At 25 per second, every third frame seen,
+/// the 10 frames of a step are not a multiple of 3.
 #[test]
 fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
     for (rate, spacing, parts, step, resampled) in [
@@ -43,7 +44,7 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
     }
 }
 
-/// Two of 40 differences are not whole steps where one frame is late, 5 %; four of them where two are.
+/// One late frame changes two of 40 differences, 5 %; two late frames change four.
 #[test]
 fn a_few_late_frames_are_left_alone() {
     let late = |late: &'static [i64]| {
@@ -56,7 +57,7 @@ fn a_few_late_frames_are_left_alone() {
 
 #[test]
 fn a_hole_stays_a_hole() {
-    // 24 frames a second, frames 30 to 59 missing: more than a second
+    // 24 frames per second, frames 30 to 59 missing: more than a second.
     let seen = (0..30).chain(60..100);
     let steps = pedestrians(seen, 1).in_steps(1.0 / 24.0).unwrap();
     let frames = steps.recording.frames();
@@ -66,7 +67,7 @@ fn a_hole_stays_a_hole() {
 }
 
 #[test]
-fn what_is_no_rate_is_refused() {
+fn invalid_rates_are_refused() {
     let recording = pedestrians(0..20, 1);
     for time in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12] {
         let error = recording.in_steps(time).unwrap_err();
@@ -83,7 +84,7 @@ fn what_is_no_rate_is_refused() {
 
 proptest! {
     #[test]
-    fn an_even_walk_stays_one(
+    fn uniform_motion_stays_uniform(
         rate in 1.0..60.0_f64,
         spacing in 1..4_i64,
         first in -1000..1000_i64,
@@ -113,16 +114,16 @@ proptest! {
     }
 }
 
-/// Milliseconds of a clock that trembles by one: no two observations are exactly 0.4 s apart.
+/// A millisecond clock that jitters by 1 ms: no two observations are exactly 0.4 s apart.
 #[test]
-fn a_clock_that_trembles_is_resampled() {
+fn a_jittering_clock_is_resampled() {
     let frames = (0..60_i64).map(|t| 40 * t + [0, 1, -1, 0, 1][(t % 5) as usize]);
     let steps = pedestrians(frames, 40).in_steps(0.001).unwrap();
     assert_eq!((steps.parts, steps.resampled), (1, true));
     let recording = &steps.recording;
     assert_eq!(recording.frame_step(), 400);
     let windows = recording.observed_windows();
-    assert!(windows.is_empty(), "2.4 s are no whole observation");
+    assert!(windows.is_empty(), "2.4 s are too short for an observation");
     for seen in recording.observations() {
         let [x, _] = seen.position;
         assert!((x - 0.05 * seen.frame as f64 - seen.pedestrian.0 as f64).abs() < 1e-9);
@@ -130,7 +131,7 @@ fn a_clock_that_trembles_is_resampled() {
     assert_eq!(recording.frames().len(), 6);
 }
 
-/// Somebody who walks 1.3 m/s, seen twice a second, every 12 frame numbers.
+/// A pedestrian at 1.3 m/s, seen twice per second, every 12 frame numbers.
 fn trajnet_at_2_fps(scenes: &str) -> String {
     let track = |t: u32| {
         let x = 0.65 * f64::from(t);
@@ -143,7 +144,7 @@ fn trajnet_at_2_fps(scenes: &str) -> String {
 }
 
 #[test]
-fn scenes_of_trajnet_say_how_fast_their_frames_follow() {
+fn scenes_of_trajnet_state_the_frame_rate() {
     let scene =
         |fps: &str| format!("{{\"scene\": {{\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 240{fps}}}}}\n");
     let read = |scenes: &str| {
@@ -159,7 +160,7 @@ fn scenes_of_trajnet_say_how_fast_their_frames_follow() {
         Some(2.0)
     );
 
-    // 24 frame numbers a second, 9.6 in 0.4 s
+    // 24 frame numbers per second, 9.6 in 0.4 s.
     let recording = read(&two);
     let frame_time = recording.frame_time_told().unwrap();
     assert!((frame_time - 1.0 / 24.0).abs() < 1e-12, "{frame_time}");
@@ -168,7 +169,7 @@ fn scenes_of_trajnet_say_how_fast_their_frames_follow() {
     let median = steps.recording.summary().median_speed.unwrap();
     assert!((median - 1.3).abs() < 1e-9, "{median}");
 
-    // the usual files, whose frames are 0.4 s apart whatever their numbers, are left as they are
+    // The usual files, with frames 0.4 s apart whatever their numbers, are left unchanged.
     let usual = read(&scene(r#", "fps": 2.5"#));
     let steps = usual.in_steps(usual.frame_time_told().unwrap()).unwrap();
     assert_eq!((steps.recording, steps.resampled), (usual, false));
@@ -181,7 +182,7 @@ fn scenes_that_disagree_about_the_rate_are_named() {
     let told = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
     assert!(
         told.starts_with(
-            "f, line 3: scene.fps is 25, but 2.5 on line 1; a file is of one recording"
+            "f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"
         ),
         "{told}"
     );

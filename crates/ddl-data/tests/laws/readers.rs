@@ -1,4 +1,4 @@
-//! Readers: every mistake in a file is named with its place.
+//! Readers: every mistake in a file is reported with its place.
 
 use ddl_data::{Convention, DataError, Format, Observation, PedestrianId, parse_recording};
 
@@ -54,9 +54,12 @@ fn good_files_are_read() {
         ),
         (
             Format::Obsmat,
-            "  0.0000000e+00   1.0000000e+00   1.5000000e+00   0.0000000e+00  -2.0000000e+00   1.6e+00   0.0e+00   1.9e-01\n  \
-             1.0000000e+01   1.0000000e+00   1.7500000e+00   0.0000000e+00  -2.0000000e+00   1.6e+00   0.0e+00   NaN\n  \
-             1.0000000e+01   3.0000000e+00   0.0000000e+00   0.0000000e+00   4.0000000e-02   1.6e+00   0.0e+00   1.9e-01\n",
+            "  0.0000000e+00   1.0000000e+00   1.5000000e+00   0.0000000e+00  \
+             -2.0000000e+00   1.6e+00   0.0e+00   1.9e-01\n  \
+             1.0000000e+01   1.0000000e+00   1.7500000e+00   0.0000000e+00  \
+             -2.0000000e+00   1.6e+00   0.0e+00   NaN\n  \
+             1.0000000e+01   3.0000000e+00   0.0000000e+00   0.0000000e+00   \
+             4.0000000e-02   1.6e+00   0.0e+00   1.9e-01\n",
         ),
     ] {
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
@@ -65,7 +68,8 @@ fn good_files_are_read() {
     }
 }
 
-/// Cases, one a line: a file, in which `\n` and `\t` stand for what they name, and how the complaint about it begins, behind an arrow.
+/// Checks cases, one per line: a file, in which `\n` and `\t` are escapes, an arrow, and the beginning of the error
+/// message.
 fn check(format: Format, cases: &str) {
     for case in cases.lines().filter(|case| !case.is_empty()) {
         let (text, expected) = case.split_once("=> ").unwrap();
@@ -137,8 +141,8 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
 [1, 2] => 1: the line must be one JSON object
 {"track": {"f": 0, " => 1: the line must be one JSON object
 {"track": {"f": 0, "p": 2, "x": NaN, "y": 3.0}} => 1: the line must be one JSON object (which has no NaN
-{"track": {"f": 0, "f": 1, "p": 1, "x": 0, "y": 0}} => 1: the line must be one JSON object (which has no NaN and no Infinity): track: duplicate field
-{"track": {"f": 0}, "track": {"f": 1}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
+{"track": {"f": 0, "f": 1}} => 1: the line must be one JSON object (which has no NaN and no Infinity): track: duplicate field
+{"track": {}, "track": {}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
 {"track": {"p": 2, "x": 1, "y": 3.0}} => 1: track.f is missing
 {"track": [1, 2, 3, 4]} => 1: track must be a JSON object, found [1, 2, 3, 4]
 {"scene": "crowded"} => 1: scene must be a JSON object, found "crowded"
@@ -148,9 +152,13 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
 {"track": {"f": 1, "p": 2, "x": "1", "y": 3.0}} => 1: track.x must be a finite number
 {"track": {"f": 1, "p": 2, "x": 1, "y": null}} => 1: track.y must be a finite number
 {"track": {"f": 0, "p": 1, "x": 1e300, "y": 0}} => 1: track.x must lie within 10000000 m
-{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.0}}\n{"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.5}} => 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]
 "#;
     check(Format::TrajNet, cases);
+    let row = |y| format!(r#"{{"track": {{"f": 0, "p": 1, "x": 2, "y": {y}}}}}"#);
+    let found = complaint(format!("{}\n{}\n", row("3"), row("3.5")), Format::TrajNet);
+    let expected =
+        "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]";
+    assert!(found.starts_with(expected), "{found}");
 }
 
 #[test]
@@ -187,7 +195,7 @@ fn the_most_common_difference_is_the_step() {
 }
 
 #[test]
-fn what_is_no_text_is_refused() {
+fn binary_files_are_refused() {
     for format in Format::ALL {
         let told = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
         assert!(
@@ -212,7 +220,7 @@ fn a_file_that_cannot_be_read_is_named() {
 }
 
 #[test]
-fn headers_as_others_write_them() {
+fn other_headers_are_read_or_explained() {
     let read = |header: &str| {
         let text = format!("{header}\n0,1,2.0,3.0\n");
         parse_recording(text.as_bytes(), "t", Format::Table)
@@ -224,17 +232,17 @@ fn headers_as_others_write_them() {
     );
     let cases = "
 observed_until,pedestrian,frame,x,y => this is a table of forecasts
-frame,id,x,y => rename it pedestrian
+frame,id,x,y => rename it to pedestrian
 time,pedestrian,x,y => count frames
 frame;pedestrian;x;y => commas
-frame,pedestrian,x,y,vx => ; leave it out
-frame,pedestrian,x,vx => missing yet: y
-frame,TrackID,x,y => rename it pedestrian
-frame,pedestrian,x [m],y [m] => rename it x
-frame_number,pedestrian,pos_x,pos_y => rename it frame
+frame,pedestrian,x,y,vx => ; remove it
+frame,pedestrian,x,vx => still missing: y
+frame,TrackID,x,y => rename it to pedestrian
+frame,pedestrian,x [m],y [m] => rename it to x
+frame_number,pedestrian,pos_x,pos_y => rename it to frame
 frame\tpedestrian\tx\ty => separate columns by commas
-[{\"frame\": 0}] => no table
-0,1,2.5,-3.0 => these are numbers; put the line frame,pedestrian,x,y above them
+[{\"frame\": 0}] => not a table
+0,1,2.5,-3.0 => found numbers; put the line frame,pedestrian,x,y above them
 ";
     for case in cases.trim().lines() {
         let (header, advice) = case.split_once(" => ").unwrap();
@@ -247,16 +255,16 @@ frame\tpedestrian\tx\ty => separate columns by commas
 }
 
 #[test]
-fn rows_as_others_write_them() {
+fn other_rows_are_read_or_explained() {
     let cases = r#"
 0.4,1,2.0,3.0 => line 2, field 1 => is it a time? Count frames
 0,1.5,2.0,3.0 => line 2, field 2 => must be a whole number
-0,,2.0,3.0 => line 2, field 2 => write no row
-0,1,"2,5",3.0 => line 2, field 3 => with a point
+0,,2.0,3.0 => line 2, field 2 => leave out the row
+0,1,"2,5",3.0 => line 2, field 3 => use a decimal point
 0,1,2,5,3,0 => line 2 => decimal point
 0,1,2.5,3.0, => line 2 => at the end of a row
 0;1;2.5;3.0 => line 2 => separated by commas
-0,1,,3.0 => line 2, field 3 => write no row
+0,1,,3.0 => line 2, field 3 => leave out the row
 "#;
     for case in cases.trim().lines() {
         let mut parts = case.split(" => ");

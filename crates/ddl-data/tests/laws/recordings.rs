@@ -1,4 +1,4 @@
-//! The real recordings, where they can be had.
+//! Loads the real recordings, where they are available.
 
 use ddl_data::{Convention, Dataset, locate};
 

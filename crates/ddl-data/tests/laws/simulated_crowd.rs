@@ -1,4 +1,4 @@
-//! Simulated crowds look like people: plausible speeds, nobody in a wall, groups that stay together.
+//! Simulated crowds are realistic: plausible speeds, no pedestrian in a wall, groups that stay together.
 
 use ddl_data::simulate::{Crowd, CrowdScene};
 use ddl_data::{Convention, Dataset, PedestrianId, Position, Recording, TIME_STEP};
@@ -9,14 +9,14 @@ fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Everybody's successive positions (m), 0.4 s apart.
+/// Successive positions of every pedestrian (m), 0.4 s apart.
 fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
     let recording = &crowd.recording;
     let positions = |id| recording.track(id).iter().map(|o| o.position).collect();
     recording.pedestrians().into_iter().map(positions).collect()
 }
 
-/// Everybody's speed between each two successive positions (m/s).
+/// Speed of every pedestrian between successive positions (m/s).
 fn speeds(crowd: &Crowd) -> Vec<f64> {
     let steps = |track: &Vec<Position>| {
         track
@@ -57,7 +57,7 @@ fn a_seed_gives_the_same_bytes_and_another_seed_others() {
 }
 
 #[test]
-fn speeds_are_those_of_people() {
+fn speeds_are_plausible() {
     for scene in CrowdScene::ALL {
         let speeds = speeds(&scene.simulate(SEED));
         let walking: Vec<_> = speeds.iter().copied().filter(|&v| v > 0.4).collect();
@@ -77,7 +77,7 @@ fn speeds_are_those_of_people() {
 }
 
 #[test]
-fn nobody_walks_through_a_wall_or_a_pillar_or_is_stuck() {
+fn no_pedestrian_crosses_an_obstacle_or_is_stuck() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         for track in tracks(&crowd) {
@@ -102,9 +102,9 @@ fn bodies_hardly_overlap() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         let (mut pairs, mut close) = (0, 0);
-        for people in scenes(&crowd) {
-            for (i, (_, a)) in people.iter().enumerate() {
-                let gaps = people[..i].iter().map(|(_, b)| distance(*a, *b));
+        for pedestrians in scenes(&crowd) {
+            for (i, (_, a)) in pedestrians.iter().enumerate() {
+                let gaps = pedestrians[..i].iter().map(|(_, b)| distance(*a, *b));
                 for gap in gaps {
                     assert!(gap > 0.3, "{scene}: two centres {gap} m apart");
                     pairs += 1;
@@ -120,13 +120,13 @@ fn bodies_hardly_overlap() {
 }
 
 #[test]
-fn pedestrians_enter_all_the_time_and_are_counted_as_they_do() {
+fn pedestrians_enter_continuously_and_are_numbered_in_order() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
         let (mut entered, mut last) = (Vec::new(), 0);
-        for people in scenes(&crowd) {
-            let newest = people.iter().map(|(id, _)| id.0).max().unwrap_or(last);
-            assert!(people.iter().all(|(id, _)| id.0 >= 1), "{scene}");
+        for pedestrians in scenes(&crowd) {
+            let newest = pedestrians.iter().map(|(id, _)| id.0).max().unwrap_or(last);
+            assert!(pedestrians.iter().all(|(id, _)| id.0 >= 1), "{scene}");
             entered.push(newest.max(last) - last);
             last = newest.max(last);
         }
@@ -144,9 +144,9 @@ fn groups_stay_together() {
         let crowd = scene.simulate(SEED);
         assert!(crowd.groups.len() > 10, "{scene}");
         let mut gaps = Vec::new();
-        for people in scenes(&crowd) {
+        for pedestrians in scenes(&crowd) {
             for group in &crowd.groups {
-                let members: Vec<_> = people
+                let members: Vec<_> = pedestrians
                     .iter()
                     .filter(|(id, _)| group.contains(id))
                     .map(|p| p.1)

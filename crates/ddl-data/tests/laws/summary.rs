@@ -1,8 +1,8 @@
-//! What a recording is said to hold, and what looks wrong with it.
+//! Summaries of recordings and their plausibility checks.
 
 use ddl_data::{Doubt, Observation, PedestrianId, Recording};
 
-/// Somebody who walks along x at so many metres a frame, for 100 frames.
+/// A pedestrian that walks along x at a speed in metres per frame, for 100 frames.
 fn walk(metres_a_frame: f64) -> Vec<Observation> {
     (0..100)
         .map(|t| Observation::new(t, PedestrianId(1), [metres_a_frame * t as f64, 0.0]))
@@ -14,28 +14,29 @@ fn doubts(seen: Vec<Observation>) -> Vec<Doubt> {
 }
 
 #[test]
-fn speeds_that_nobody_walks_at_are_doubted() {
-    // 1.3 m/s in steps of 0.4 s
+fn implausible_speeds_are_doubted() {
+    // 1.3 m/s in steps of 0.4 s.
     assert_eq!(doubts(walk(0.52)), []);
-    // the same seen by a camera of 25 frames a second, and in pixels
+    // The same walk at 25 frames per second, and in pixels.
     assert!(matches!(doubts(walk(0.052))[..], [Doubt::Slow { brisk }] if brisk < 0.14));
     assert!(matches!(doubts(walk(30.0))[..], [Doubt::Fast { median }] if median > 70.0));
-    // who stands is not doubted, however slowly the tracker trembles
+    // A standing pedestrian causes no doubt, even with the noise of a tracker.
     assert_eq!(doubts(walk(0.001)), []);
 }
 
 #[test]
 fn degrees_are_doubted() {
-    // a walk through a park in degrees of latitude
+    // A walk through a park in degrees of latitude.
     assert!(matches!(
         doubts(walk(5e-6))[..],
         [Doubt::Still { farthest }] if farthest < 1e-3
     ));
 }
 
-/// A camera of 25 frames a second whose tracker loses every tenth detection: the places of steps are gone with them.
+/// A camera at 25 frames per second whose tracker loses every tenth detection, and with them the positions at whole
+/// steps.
 #[test]
-fn detections_that_drop_out_are_told() {
+fn missing_detections_are_reported() {
     let seen: Vec<Observation> = (0..1000)
         .flat_map(|t| {
             [1, 2].map(|id| Observation::new(t, PedestrianId(id), [0.05 * t as f64, id as f64]))
@@ -53,7 +54,7 @@ fn detections_that_drop_out_are_told() {
 }
 
 #[test]
-fn a_track_that_jumps_is_named_with_its_frame() {
+fn a_track_that_jumps_is_reported_with_its_frame() {
     let mut seen = walk(0.5);
     for observation in &mut seen[40..] {
         observation.position[1] += 20.0;
@@ -74,7 +75,7 @@ fn a_track_that_jumps_is_named_with_its_frame() {
 }
 
 #[test]
-fn holes_and_what_can_be_learned_from_are_counted() {
+fn holes_and_training_samples_are_counted() {
     let mut seen = walk(0.5);
     seen.remove(50);
     let summary = Recording::new("yard", 1, seen).unwrap().summary();
@@ -88,7 +89,7 @@ fn holes_and_what_can_be_learned_from_are_counted() {
         (&PedestrianId(1).into(), 49)
     );
     assert!((hole.seconds - 0.8).abs() < 1e-12);
-    // 50 and 49 positions in a row: 31 and 30 windows of 20
+    // 50 and 49 positions in a row: 31 and 30 windows of 20.
     assert_eq!(summary.to_learn_from, 61);
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
     assert_eq!(few.summary().doubts(), [Doubt::NothingToLearnFrom]);

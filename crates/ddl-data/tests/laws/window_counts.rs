@@ -105,7 +105,7 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
     }
 }
 
-/// The first row of each file, looked up by hand: the coordinates are not swapped, or swapped, as the convention has it.
+/// The first row of each file, looked up by hand: x and y are swapped where the convention swaps them, and only there.
 #[test]
 fn coordinates_are_read_the_right_way_round() {
     for (convention, position) in [

@@ -24,7 +24,7 @@ fn recording() -> impl Strategy<Value = Vec<Observation>> {
         for (id, (start, length, missed)) in (0_i64..).zip(pedestrians) {
             for t in (0..length).filter(|t| !missed.contains(t)) {
                 let here = [t as f64, id as f64];
-                // A pedestrian who stands on the origin for a step: absent by the published rule.
+                // A pedestrian that stands on the origin for a step: absent under the published rule.
                 let place = if origin && t == 30 { [0.0, 0.0] } else { here };
                 rows.push(Observation::new((start + t) * 6, PedestrianId(id), place));
             }
@@ -34,7 +34,7 @@ fn recording() -> impl Strategy<Value = Vec<Observation>> {
     })
 }
 
-/// Who has 20 steps in a row from a frame on, straight from the definition.
+/// The pedestrians with 20 steps in a row from a frame on, directly by the definition.
 fn present(recording: &Recording, start: i64) -> Vec<PedestrianId> {
     let step = recording.frame_step();
     let here = |frame: i64, id| recording.at(frame).iter().any(|o| o.pedestrian == id);
@@ -109,7 +109,9 @@ proptest! {
     #[test]
     fn the_nearest_others_are_those_that_sorting_finds(
         grid in prop::collection::vec(prop::array::uniform2(0..6_u8), 1..40),
-        (count, unit, origin) in (0_usize..10, prop_oneof![Just(1.0), 0.1..0.2_f64], prop_oneof![Just(0.0), Just(5.8e6)]),
+        count in 0_usize..10,
+        unit in prop_oneof![Just(1.0), 0.1..0.2_f64],
+        origin in prop_oneof![Just(0.0), Just(5.8e6)],
     ) {
         let positions: Vec<Position> = grid.iter()
             .map(|cell| cell.map(|x| origin + unit * f64::from(x)))
@@ -150,7 +152,7 @@ fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
 }
 
 #[test]
-fn windows_refuse_what_is_no_window() {
+fn invalid_windows_are_refused() {
     let track = |length: usize| vec![[0.0, 0.0]; length];
     let mut spoiled = track(20);
     spoiled[11] = [0.0, f64::NAN];
@@ -186,7 +188,7 @@ fn windows_refuse_what_is_no_window() {
 }
 
 #[test]
-fn changing_positions_changes_those_alone() {
+fn changing_positions_changes_nothing_else() {
     let tracks = vec![
         (0..20).map(|t| [f64::from(t), 0.0]).collect(),
         vec![[5.0, 5.0]; 20],
@@ -242,7 +244,7 @@ fn rules_are_read_by_name() {
 }
 
 #[test]
-fn what_is_remembered_stays_with_its_pedestrian() {
+fn remembered_tracks_stay_with_their_pedestrian() {
     let tracks = (0..3).map(|i| vec![[f64::from(i), 0.0]; 20]).collect();
     let ids = (1..4).map(PedestrianId).collect();
     let remembered = |i: usize| Remembered {
@@ -262,7 +264,7 @@ fn what_is_remembered_stays_with_its_pedestrian() {
     let kept = remembering.keeping(|i| i != 1).unwrap();
     assert_eq!(kept.remembered(0), []);
     assert_eq!(kept.remembered(1), [remembered(2); 2]);
-    // It was the past.
+    // Reversal drops it, because it would lie in the future.
     assert_eq!(remembering.reversed(), window.reversed());
     assert_eq!(remembering.with_remembered(|_| Vec::new()), window);
 }

@@ -1,4 +1,4 @@
-//! Made-up hypotheses: a pedestrian, a goal, and a metric for each of 12 steps, as a network emits them.
+//! Synthetic hypotheses: a pedestrian, a goal, and a metric for each of 12 steps, as from a network.
 
 use ddl_dynamics::{
     Attractor, CholeskyMetric, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
@@ -16,8 +16,8 @@ pub(crate) struct MadeUpWalk<T, const D: usize> {
     pub(crate) flow: NaturalGradientFlow<T, D, MetricSchedule<T, D>>,
 }
 
-/// Pedestrians at about 1 m/s, 2 to 6 m from their goals in any direction, leaning to either side: about half of
-/// them arrive within the 4.8 s. The same in every precision.
+/// Pedestrians at about 1 m/s, 2 to 6 m from their goals in any direction, with deviations to either side. About half
+/// of them arrive within the 4.8 s. The draws are the same in every precision.
 pub(crate) fn drawn<T: Real, const D: usize>(count: usize, seed: u64) -> Vec<MadeUpWalk<T, D>> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut between = |low: f64, high: f64| rng.random_range(low..high);

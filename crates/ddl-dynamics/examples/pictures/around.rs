@@ -1,5 +1,5 @@
-//! Above, the way around the end of a wall: what falls is the distance in the chart, not the distance. Below, ways
-//! among pillars: what falls is the distance.
+//! Above: a path around the end of a wall, where the distance in the chart falls but not the distance in space. Below:
+//! paths among pillars, where the distance falls.
 
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, Chain, CholeskyMetric, DiffeomorphicFlow, DynamicsError, Flow,
@@ -9,15 +9,15 @@ use nalgebra::Vector2;
 
 use crate::drawing::{GOAL, INK, Plot, STABLE, Sheet};
 
-/// Out to the end of a wall, around it, and back on its other side, to a goal 1 m away (metres).
+/// A demonstrated path to the end of a wall, around it, and back on its other side, to a goal 1 m away (metres).
 const SHOWN: [[f64; 2]; 4] = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]];
 const WALL: [[f64; 2]; 4] = [[-4.0, 0.4], [2.5, 0.4], [2.5, 0.6], [-4.0, 0.6]];
-/// Centres of the pillars, their radius, and the distance from which on an approach is slowed (metres).
+/// Centres of the pillars, their radius, and the distance from which an approach is slowed (metres).
 const PILLARS: [[f64; 2]; 4] = [[1.5, 0.55], [2.7, -0.55], [3.6, 0.75], [4.3, -0.25]];
 const RADIUS: f64 = 0.35;
 const MARGIN: f64 = 0.5;
 
-/// 69.6 pixels a metre.
+/// 69.6 pixels per metre.
 const AROUND: Plot = Plot {
     frame: [[58.0, 84.0], [545.2, 334.56]],
     x: [-1.6, 5.4],
@@ -33,7 +33,7 @@ const AMONG: Plot = Plot {
 const SHOWN_WAY: &str = "stroke='#E3A9CB' stroke-width='7' stroke-dasharray='13 9'";
 const SOLID: &str = "fill='#8C8C8C'";
 
-/// The start and the position after each step, to the goal (metres).
+/// The start and the position after each step, up to the goal (metres).
 type Way = Vec<Vector2<f64>>;
 
 fn walked(flow: &impl Flow<f64, 2>, start: [f64; 2], dt: f64) -> Result<Way, DynamicsError> {
@@ -42,7 +42,7 @@ fn walked(flow: &impl Flow<f64, 2>, start: [f64; 2], dt: f64) -> Result<Way, Dyn
     Ok(path)
 }
 
-/// A flow, and the way of one in steps of 0.4 s, as in the published program.
+/// A flow, and a path that follows it in steps of 0.4 s, as in the published program.
 pub(crate) struct Followed<F> {
     pub(crate) flow: F,
     pub(crate) path: Way,
@@ -65,7 +65,7 @@ impl<F: Flow<f64, 2>> Followed<F> {
         images.map(|image| self.flow.attractor().potential(&image))
     }
 
-    /// Over the steps, what falls and the distance (metres), to the right of the plane.
+    /// Plots the potential and the distance (metres) over the steps, to the right of the plane.
     fn draw_falling(&self, sheet: &mut Sheet, heading: &str, plane: &Plot) {
         let [[_, top], [_, bottom]] = plane.frame;
         let chart = Plot {
@@ -89,7 +89,7 @@ pub(crate) fn behind_a_wall() -> Result<Followed<impl Flow<f64, 2>>, DynamicsErr
     Followed::new(flow, SHOWN[0])
 }
 
-/// One who would go straight to the goal at 1.2 m/s, were it not for the pillars.
+/// A pedestrian that would go straight to the goal at 1.2 m/s without the pillars.
 fn among_pillars() -> Result<Followed<impl Flow<f64, 2>>, DynamicsError> {
     let metric = CholeskyMetric::planar(1.1, 0.0, 1.1, PUBLISHED_SIGMA)?;
     let straight = NaturalGradientFlow::new(Attractor::new(Vector2::new(6.0, 0.0))?, metric);
@@ -98,7 +98,7 @@ fn among_pillars() -> Result<Followed<impl Flow<f64, 2>>, DynamicsError> {
     Followed::new(AvoidingFlow::new(straight, pillars, MARGIN)?, [0.0, 0.6])
 }
 
-/// The picture as the text of an SVG file; the same bytes each time.
+/// The picture as the text of an SVG file; deterministic.
 pub(crate) fn draw() -> Result<String, DynamicsError> {
     let legend = [
         (58.0, STABLE, "\u{25CF} steps of 0.4 s"),

@@ -1,5 +1,5 @@
-//! One flow, two integrators: near the goal, with the region in which no plain Euler step approaches it, and the
-//! distance to the goal over the steps.
+//! One flow with two integrators: the paths near the goal, the region where no plain Euler step approaches the goal,
+//! and the distance to the goal over the steps.
 
 use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, Euler, NaturalGradientFlow, PUBLISHED_SIGMA,
@@ -11,7 +11,7 @@ use crate::drawing::{GOAL, INK, Pixel, Plot, STABLE, Sheet};
 
 const TIME_STEP: f64 = 0.4;
 const STEPS: usize = 24;
-/// Vermilion of Okabe and Ito.
+/// The vermilion of Okabe and Ito.
 const EULER: &str = "#D55E00";
 const REGION: &str = "fill='#FBEBCB' stroke='#E69F00'";
 
@@ -29,7 +29,7 @@ const DISTANCES: Plot = Plot {
 };
 
 pub(crate) fn draw() -> Result<String, DynamicsError> {
-    // To a goal 4 m away at walking pace, 0.8 to 1.7 m/s, leaning to one side of the way.
+    // To a goal 4 m away at walking pace, 0.8 to 1.7 m/s, deviating to one side of the straight line.
     let goal = Vector2::new(4.0, 0.0);
     let metric = CholeskyMetric::planar(1.1, 0.4, 1.1, PUBLISHED_SIGMA)?;
     let flow = NaturalGradientFlow::new(Attractor::new(goal)?, metric);
@@ -47,7 +47,7 @@ pub(crate) fn draw() -> Result<String, DynamicsError> {
         ),
     ];
     let mut sheet = Sheet::new(398.0, "One flow, two integrators", &legend);
-    // On the side of the unit vector `u` a plain Euler step approaches the goal if `dt < 2 Phi u^T P u / |P u|^2`.
+    // In the direction of the unit vector `u` a plain Euler step approaches the goal if `dt < 2 Phi u^T P u / |P u|^2`.
     let outline = (0..=180).map(|index| {
         let u = Rotation2::new(f64::from(2 * index).to_radians()) * Vector2::x();
         let quotient = metric.apply(&u).norm_squared() / metric.quadratic_form(&u);
@@ -80,7 +80,7 @@ pub(crate) fn draw() -> Result<String, DynamicsError> {
     Ok(sheet.finish())
 }
 
-/// Steps of `Euler`: a thin line through rings, seen also where it coincides with a stable one.
+/// Steps of `Euler`: a thin line through rings, visible also where it coincides with a stable one.
 fn draw_euler(sheet: &mut Sheet, points: &[Pixel]) {
     sheet.line(points, &format!("stroke='{EULER}' stroke-width='1.2'"));
     sheet.circles(points, 5.4, &format!("stroke='{EULER}' stroke-width='1.7'"));

@@ -5,16 +5,16 @@ use nalgebra::Vector2;
 /// Pixels from the left, pixels from the top.
 pub(crate) type Pixel = [f64; 2];
 
-/// Blue and bluish green of Okabe and Ito.
+/// The blue and bluish green of Okabe and Ito.
 pub(crate) const STABLE: &str = "#0072B2";
 pub(crate) const GOAL: &str = "#009E73";
 pub(crate) const INK: &str = "#444444";
 
-/// A white sheet, so that the picture reads the same on light and dark pages.
+/// A white sheet, so that the picture looks the same on light and dark pages.
 pub(crate) struct Sheet(Vec<String>);
 
 impl Sheet {
-    /// `legend`: signs and names, each in its own colour from its place on.
+    /// `legend`: for each entry the horizontal place, the colour and the text.
     pub(crate) fn new(height: f64, title: &str, legend: &[(f64, &str, &str)]) -> Self {
         let mut sheet = Self(vec![format!(
             "<svg xmlns='http://www.w3.org/2000/svg' width='900' height='{height}' viewBox='0 0 900 {height}' \
@@ -42,7 +42,7 @@ impl Sheet {
         }
     }
 
-    /// A text whose `anchor` (`start`, `middle` or `end`) is there.
+    /// A text whose `anchor` (`start`, `middle` or `end`) is at this point.
     pub(crate) fn text(&mut self, [x, y]: Pixel, anchor: &str, colour: &str, text: &str) {
         let place = format!("x='{x:.2}' y='{y:.2}' dy='0.35em' text-anchor='{anchor}'");
         self.0
@@ -67,7 +67,7 @@ impl Sheet {
 pub(crate) struct Plot {
     /// Upper left and lower right corner (pixels).
     pub(crate) frame: [Pixel; 2],
-    /// What is at the left and the right end, and at the lower and the upper one.
+    /// Values at the left and right end, and at the lower and upper end.
     pub(crate) x: [f64; 2],
     pub(crate) y: [f64; 2],
     pub(crate) grid: [f64; 2],

@@ -1,4 +1,4 @@
-//! Diffeomorphisms one after the other.
+//! Composition of diffeomorphisms.
 
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 use super::{Diffeomorphism, LocalTranslation};
 use crate::real::Real;
 
-/// The composition `psi = psi_n o ... o psi_2 o psi_1` of local translations; the identity when there is none.
+/// The composition `psi = psi_n o ... o psi_2 o psi_1` of local translations; the identity if empty.
 ///
 /// ```text
 /// psi^-1 = psi_1^-1 o ... o psi_n^-1,     J = J_n ... J_2 J_1
 /// ```
 ///
-/// with `J_i` taken at the image under the layers before it. Reading a chain from a file checks every layer as its
-/// constructor does. The errors of the layers add up, each magnified by what the layers after it stretch.
+/// with `J_i` taken at the image under the layers before it. Deserialising a chain checks every layer as its
+/// constructor does. The errors of the layers add up, each magnified by the stretch of the layers after it.
 ///
 /// # Examples
 /// ```
@@ -49,8 +49,7 @@ impl<T: Real, const D: usize> Chain<T, D> {
         &self.layers
     }
 
-    /// The natural logarithm of a number below which `det J` is nowhere (no unit); the number itself may be too small
-    /// for `T`.
+    /// The natural logarithm of a lower bound of `det J` (no unit). The bound itself may be too small for `T`.
     pub fn log_determinant_lower_bound(&self) -> T {
         self.layers.iter().fold(T::zero(), |sum, layer| {
             sum + layer.determinant_lower_bound().ln()

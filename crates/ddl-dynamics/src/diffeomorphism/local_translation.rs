@@ -9,20 +9,20 @@ use crate::{
     real::Real,
 };
 
-/// Newton steps granted to the inverse before it turns to bisection; half a dozen is usual.
+/// Newton steps of the inverse before it switches to bisection; about six are usual.
 const NEWTON_STEPS: usize = 24;
 
 /// Bisections that take a bracket from 1 down to the rounding of an `f64`.
 const BISECTIONS: usize = 53;
 
-/// A translation by `v` at the centre `c`, fading to nothing at a few times `1 / rho` from it.
+/// A translation by `v` at the centre `c`, which fades out within a few times `1 / rho`.
 ///
 /// ```text
 /// psi(x) = x + k(x) v,     k(x) = exp(-rho^2 |x - c|^2)
 /// J(x) = I - 2 rho^2 k(x) v (x - c)^T,     det J = 1 - 2 rho^2 k(x) v^T (x - c)
 /// ```
 ///
-/// # When it is invertible, and why
+/// # Invertibility
 /// `psi - id` is Lipschitz with the constant `q = sqrt(2/e) rho |v|`, the [`contraction`](Self::contraction): the
 /// gradient of `k` is longest at `|x - c| = 1 / (sqrt(2) rho)`, where it is `sqrt(2/e) rho`. For `q < 1`
 ///
@@ -34,8 +34,8 @@ const BISECTIONS: usize = 53;
 /// is attained at `x = c + v / (sqrt(2) rho |v|)`. Here `q` is at most [`MAX_CONTRACTION`](Self::MAX_CONTRACTION).
 ///
 /// # Numerics
-/// The error of the inverse, carried back by `psi`, is a few `epsilon` times the largest of `|y|`, `|c|` and `|v|`. Jacobians
-/// are finite for every finite position. Where `k` underflows, `psi` is the identity to the last bit.
+/// The error of the inverse, measured in the image, is a few `epsilon` times the largest of `|y|`, `|c|` and `|v|`.
+/// Jacobians are finite for every finite position. Where `k` underflows, `psi` is exactly the identity.
 ///
 /// # References
 /// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally asymptotically stable nonlinear
@@ -94,7 +94,7 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
             translation,
         };
         let contraction = checked.contraction();
-        // Written so that a contraction that overflowed is refused as well.
+        // Written so that an overflowed (NaN or infinite) contraction is refused as well.
         if contraction <= T::rounded(Self::MAX_CONTRACTION) {
             Ok(checked)
         } else {
@@ -130,19 +130,19 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
         T::one() - self.contraction()
     }
 
-    /// `w = rho v` (no unit); not longer than `0.95 sqrt(e / 2)`, about 1.11.
+    /// `w = rho v` (no unit); its length is at most `0.95 sqrt(e / 2)`, about 1.11.
     fn scaled_translation(&self) -> SVector<T, D> {
         self.translation * self.rate
     }
 
-    /// `z = rho (x - c)`, so that the bump is `exp(-|z|^2)` (no unit). A component may be infinite, and is never NaN.
+    /// `z = rho (x - c)`, so that the bump is `exp(-|z|^2)` (no unit). Components may be infinite, but never NaN.
     fn scaled_offset(&self, position: &SVector<T, D>) -> SVector<T, D> {
         SVector::from_fn(|i, _| {
             let offset = position[i] - self.centre[i];
             if offset.is_finite() {
                 return offset * self.rate;
             }
-            // The offset of two finite numbers can overflow; half of it cannot.
+            // The difference of two finite numbers can overflow, but half of it cannot.
             let half = T::rounded(0.5);
             let scaled = (position[i] * half - self.centre[i] * half) * self.rate;
             scaled + scaled
@@ -151,7 +151,7 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
 
     fn jacobian_at(&self, scaled_offset: &SVector<T, D>, height: T) -> SMatrix<T, D, D> {
         if height.is_zero() {
-            // The offset may be infinite, and 0 times it NaN.
+            // The offset may be infinite, and 0 times infinity is NaN.
             return SMatrix::identity();
         }
         let gradient = scaled_offset * (height + height);
@@ -192,7 +192,7 @@ fn bump_height<T: Real, const D: usize>(scaled_offset: &SVector<T, D>) -> T {
 fn share<T: Real, const D: usize>(z: &SVector<T, D>, w: &SVector<T, D>, newton_steps: usize) -> T {
     let half = T::rounded(0.5);
     let (mut low, mut high) = (T::zero(), T::one());
-    // The first step of a fixed-point iteration: far from the centre there is no need for a second.
+    // The first step of a fixed-point iteration; far from the centre it is sufficient.
     let mut s = bump_height(z);
     if s.is_zero() {
         return s;
@@ -209,7 +209,7 @@ fn share<T: Real, const D: usize>(z: &SVector<T, D>, w: &SVector<T, D>, newton_s
         let slope = T::one() - (height + height) * offset.dot(w);
         let newton = s - h / slope;
         let inside = low <= newton && newton <= high;
-        // h v is the error in the image. Below the rounding of h, one last step is all there is.
+        // The error in the image is h v. Once h is below its own rounding error, one last step is enough.
         if h.abs() <= T::rounded(4.0) * T::EPSILON || high - low <= T::EPSILON {
             return if inside { newton } else { s };
         }
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn an_offset_that_overflows_is_felt_all_the_same() {
+    fn an_offset_that_overflows_still_has_an_effect() {
         // rho (x - c) = 5e-309 * 2 * 1.797...e308, although x - c alone is infinite.
         let (far, rate) = (f64::MAX, 5e-309);
         let map = LocalTranslation::new(Vector2::new(-far, 0.0), rate, Vector2::new(-1e308, 0.0))

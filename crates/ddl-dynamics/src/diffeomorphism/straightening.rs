@@ -12,17 +12,17 @@ use unbending::Unbending;
 
 const SAMPLES: usize = 64;
 
-/// Points, spaced as the samples are, by which a path is continued straight at each of its ends: an end that is fitted
-/// from one side only is left with a wrong direction.
+/// Number of points, at the spacing of the samples, by which a path is continued straight at each end. Without them an
+/// end is fitted from one side only and gets a wrong direction.
 const CONTINUATION: usize = 6;
 
-/// A continuation ends before it comes this near to another part of the path, in units of the distance of the samples.
+/// Smallest distance of a continuation from another part of the path, in units of the sample spacing.
 const CLEARANCE: f64 = 1.25;
 
-/// The share of the layers that follow the path while it unbends; the others remove what is left.
+/// Share of the layers that follow the path while it unbends; the others reduce the remaining residual.
 const FOLLOWING: f64 = 0.75;
 
-/// A chain that straightens a path, and how well: what [`Chain::straightening`] gives.
+/// A chain that straightens a path, with its residuals: the result of [`Chain::straightening`].
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Straightening<T, const D: usize> {
@@ -30,7 +30,7 @@ pub struct Straightening<T, const D: usize> {
     pub chain: Chain<T, D>,
     /// 64 points of the path, evenly spaced along it (metres).
     pub samples: Vec<SVector<T, D>>,
-    /// Where `psi` was to bring each of them: on a straight line, spaced as the samples are (metres).
+    /// The target of each sample: on a straight line, at the spacing of the samples (metres).
     pub targets: Vec<SVector<T, D>>,
     /// Mean of `|psi(sample) - target|` (metres).
     pub mean_residual: T,
@@ -39,32 +39,34 @@ pub struct Straightening<T, const D: usize> {
 }
 
 impl<T: Real, const D: usize> Chain<T, D> {
-    /// A chain of at most `layers` [local translations](LocalTranslation) that carries `path`, a
-    /// polygon from a start to a goal, onto a straight line of the same length.
+    /// Fits a chain of at most `layers` [local translations](LocalTranslation) that maps `path`, a polygon from a start
+    /// to a goal, to a straight line of the same length.
     ///
-    /// The distance of two points of the path along it becomes the distance of their images, so the flow that descends
-    /// `V(x) = |psi(x) - psi(p*)|` straight in the image follows the path.
+    /// The distance of two points along the path becomes the distance of their images. So a flow that descends `V(x) =
+    /// |psi(x) - psi(p*)|` on straight lines in the image follows the path.
     ///
-    /// # How
-    /// The path is unbent like a wire: all its turns are scaled by a factor that goes from 1 to 0 with the first three
-    /// quarters of the layers, no side changes its length, and each shape is placed over the one before it. Each layer
-    /// brings the images of the points nearer to the present shape: of all centres at such an image and 26 rates
-    /// between 0.3 and 40 per length of the path, each with the translation of least squares, shortened to a
-    /// [contraction](LocalTranslation::contraction) of at most 1/2, the one that lowers the sum of squared residuals
-    /// most is taken. At both ends the path is continued straight for a tenth of its length, or until it would meet
-    /// another part of itself.
-    /// # What is promised, and what is not
-    /// The chain is a diffeomorphism whatever the path. How straight the image is, is reported and not promised; a path
-    /// that crosses itself, or would while it unbends, cannot be straightened so. The same path gives the same chain.
+    /// # Method
+    /// The path is unbent like a wire. Over the first three quarters of the layers, all its turns are scaled by a
+    /// factor that goes from 1 to 0. The sides keep their lengths, and each shape is aligned to the previous one. Each
+    /// layer moves the images of the points nearer to the current shape. Its candidates are centred at these images,
+    /// with 26 rates between 0.3 and 40 per length of the path. The translation of each candidate is the least-squares
+    /// solution, shortened to a [contraction](LocalTranslation::contraction) of at most 1/2. The candidate that lowers
+    /// the sum of squared residuals most is taken. At both ends the path is continued straight for a tenth of its
+    /// length, or until it would meet another part of itself.
+    ///
+    /// # Guarantees and limits
+    /// The chain is a diffeomorphism for every path. The straightness of the image is reported, but not guaranteed: a
+    /// path that crosses itself, or would cross itself while it unbends, cannot be straightened in this way. The same
+    /// path gives the same chain.
     ///
     /// # Numerics
-    /// Found in `f64` for both number types, in units of the length of the path and from its start.
+    /// Computed in `f64` for both number types, relative to the start and in units of the length of the path.
     ///
     /// # Errors
-    /// - [`DynamicsError::NonFinite`]: which component of which point.
-    /// - [`DynamicsError::InvalidPathLength`]: fewer than two different points, or so far apart or so near that the
-    ///   parameters of the layers do not fit into `T`.
-    /// - [`DynamicsError::PathTurnsBack`]: the path turns by 180 degrees on the spot.
+    /// - [`DynamicsError::NonFinite`]: a component of a point, which the error names.
+    /// - [`DynamicsError::InvalidPathLength`]: fewer than two different points, or points so far apart or so close that
+    ///   the parameters of the layers do not fit into `T`.
+    /// - [`DynamicsError::PathTurnsBack`]: the path turns by 180 degrees at a point.
     ///
     /// # References
     /// N. Perrin, P. Schlehuber-Caissier, "Fast diffeomorphic matching to learn globally asymptotically stable
@@ -133,7 +135,7 @@ impl<T: Real, const D: usize> Straightening<T, D> {
             chain,
             samples,
             targets,
-            // Divided first: the sum may be too large where the mean is not.
+            // Divided first: the sum may overflow although the mean does not.
             mean_residual: residuals.iter().fold(T::zero(), |sum, r| sum + *r / count),
             largest_residual: residuals.iter().fold(T::zero(), |most, r| most.max(*r)),
         }
@@ -154,7 +156,7 @@ fn ensure_finite_path<T: Real, const D: usize>(
     Ok(())
 }
 
-/// Length of a path; infinite where it, or a difference of coordinates, is too large for `f64`.
+/// Length of a path; infinite if it or a difference of coordinates is too large for `f64`.
 fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
     let sides = path.windows(2).map(|pair| polar(&(pair[1] - pair[0])).0);
     let length = sides.fold(0.0, |sum: f64, side| sum + side);
@@ -165,7 +167,7 @@ fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
     }
 }
 
-/// Whether the layers of a path that starts at `start` fit into `T`: images stay within a few lengths of the path.
+/// Whether the layers of a path from `start` fit into `T`: images stay within a few path lengths.
 fn fits<T: Real, const D: usize>(start: &SVector<f64, D>, length: f64) -> bool {
     let reach = 16.0 * length + 16.0 * start.amax();
     length > 0.0 && T::rounded(reach).is_finite() && T::rounded(FASTEST_RATE / length).is_finite()
@@ -188,7 +190,7 @@ fn resampled<const D: usize>(path: &[SVector<f64, D>], length: f64) -> Vec<SVect
         }
         walked += side;
     }
-    // Rounding may leave the last samples before the end to be reached; they are at the end.
+    // Due to rounding, the last samples may not be reached before the end; they are set to the end.
     let end = (path[path.len() - 1] - start) / length;
     samples.resize(SAMPLES, end);
     samples

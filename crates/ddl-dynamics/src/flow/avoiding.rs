@@ -1,4 +1,4 @@
-//! Around obstacles and other pedestrians, without losing the goal.
+//! A flow that avoids obstacles and other pedestrians and still reaches the goal.
 
 use nalgebra::SVector;
 
@@ -15,40 +15,42 @@ use crate::{
 
 /// A [`NaturalGradientFlow`] that slows its approach to obstacles and slides along them.
 ///
-/// At the distance `gap` from the surface of a ball, with the unit vector `n` away from it, a pedestrian that comes nearer
-/// has the share `gap / margin` of its speed along `n` left:
+/// Let `gap` be the distance from the surface of a ball, and `n` the unit vector away from it. A pedestrian that
+/// approaches the ball keeps the share `gap / margin` of its speed along `n`:
 ///
 /// ```text
 /// P' = P - (1 - share) q q^T / (n^T q)     q = P n     share = min(1, gap / margin)    n^T v' = share n^T v
 /// ```
 ///
-/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other; a pedestrian who moves away from a ball
-/// is not slowed by it. With one ball near, the velocity is continuous.
+/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other. A pedestrian that moves away from a
+/// ball is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
-/// For balls that stand still (Lemma 6 and Theorem 7 of `docs/stability.md`):
-/// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite.
-/// - *No ball is entered*: each is either left or slowed, `|n^T v'| <= sqrt(2 share) lambda_max`.
+/// For balls that do not move (Lemma 6 and Theorem 7 of `docs/stability.md`):
+/// - *The distance to the goal still falls* everywhere outside the balls: `P' >= share P` is positive definite.
+/// - *No ball is entered*: the pedestrian moves away from each ball or is slowed, `|n^T v'| <= sqrt(2 share)
+///   lambda_max`.
 /// - *The goal is the only attractor*, if it is outside all balls, the balls do not touch, and the eigenvalues of `P`
-///   stay within `[m, M]`, `m > 0`. There is one more point of rest a ball, a saddle straight behind it. Balls that
-///   touch or overlap can form a dead end.
+///   stay within `[m, M]`, `m > 0`. Each ball has one more equilibrium, a saddle straight behind it. Balls that touch
+///   or overlap can form a dead end.
 ///
 /// In steps of finite length with [`StableEuler`](crate::StableEuler) the same holds, because
-/// [`longest_step`](Flow::longest_step) ends a step where half of the gap is used up along `n`.
+/// [`longest_step`](Flow::longest_step) ends a step where half of the gap along `n` is used up.
 ///
 /// # Numerics
-/// The decrease goes first. A pedestrian held up at a saddle still makes the smallest move to the goal that shows, and so
-/// gets into the ball, rounding by rounding. On a surface `epsilon lambda_max` of the approach is left, between several
-/// balls up to `sqrt(2 epsilon) lambda_max`. In `f64` neither shows; in `f32` allow some millimetres.
+/// The decrease has priority. A pedestrian at a saddle still makes the smallest move to the goal that changes the
+/// computed distance, and so enters the ball by rounding errors. On a surface, `epsilon lambda_max` of the approach
+/// remains, between several balls up to `sqrt(2 epsilon) lambda_max`. In `f64` both are negligible; in `f32` allow some
+/// millimetres.
 ///
 /// # Obstacles that move
-/// The decrease of the distance does not depend on the obstacles. Keeping clear does: give each step the obstacles as
-/// they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)), and a pedestrian who is clear of them there at
-/// the start of a step is clear of them at its end. One who is in the way of an obstacle is not moved aside.
+/// The decrease of the distance does not depend on the obstacles. To keep clear of moving obstacles, give each step the
+/// obstacles as they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)). A pedestrian that is clear of
+/// these at the start of a step is clear of them at its end. A pedestrian in the way of an obstacle is not moved aside.
 ///
 /// # References
-/// In the spirit of Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle avoidance"
-/// (Autonomous Robots 2012), who modulate the velocity by a matrix that is not symmetric.
+/// Similar to Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle avoidance" (Autonomous
+/// Robots 2012), which modulates the velocity by a matrix that is not symmetric.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AvoidingFlow<T, const D: usize, M, O> {
     flow: NaturalGradientFlow<T, D, M>,
@@ -64,7 +66,7 @@ where
 {
     /// `flow`, slowed within `margin` (metres) of the surfaces of `obstacles`.
     ///
-    /// With a margin of twice the speed times the time step, no step has to be cut short where one obstacle is near.
+    /// With a margin of twice the speed times the time step, no step is shortened if only one obstacle is near.
     ///
     /// # Errors
     /// [`DynamicsError::NotPositive`] unless the margin is positive and finite.
@@ -106,11 +108,11 @@ where
         let near = || {
             self.surfaces(state)
                 .filter(|(gap, _)| *gap < self.margin)
-                // On the surface and inside, as little is left as keeps P positive definite.
+                // On the surface and inside, the smallest share that keeps P positive definite.
                 .map(|(gap, normal)| ((gap / self.margin).max(T::EPSILON), normal))
         };
-        // Sliding along one ball may turn the pedestrian to another that it was leaving. Each round slows
-        // the approach to one more ball, or is the last.
+        // Sliding along one ball may turn the pedestrian towards another one. Each round slows the approach to one more
+        // ball, or is the last.
         for round in 0..near().count() {
             let mut slowed = false;
             for (share, normal) in near() {
@@ -138,7 +140,7 @@ where
             .filter_map(|(gap, normal)| {
                 let approach = -normal.dot(velocity);
                 let limits = gap > T::zero() && approach > T::zero();
-                // Too short for T is still a limit, and a time step is positive.
+                // A limit too small for `T` must still be positive.
                 limits.then(|| (gap / approach * T::rounded(0.5)).max(T::MIN_POSITIVE))
             })
             .reduce(T::min)

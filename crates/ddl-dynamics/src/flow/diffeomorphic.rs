@@ -1,4 +1,4 @@
-//! Around corners: the attractor seen through a diffeomorphism.
+//! A flow whose attractor is transformed by a diffeomorphism, for example around corners.
 
 use nalgebra::SVector;
 
@@ -13,7 +13,7 @@ use crate::{
     state::State,
 };
 
-/// Natural gradient descent on a potential bent by a diffeomorphism `psi`:
+/// Natural gradient descent on a potential transformed by a diffeomorphism `psi`:
 ///
 /// ```text
 /// V(p) = Phi(psi(p)) = |psi(p) - psi(p*)|        v = -P grad V = -P J^T u
@@ -21,17 +21,18 @@ use crate::{
 ///
 /// with `J` the Jacobian of `psi` at `p` and `u` the unit vector from `psi(p*)` to `psi(p)`.
 ///
-/// A positive-definite matrix alone never turns a pedestrian more than 90 degrees away from the straight line to its goal.
-/// Here it may turn further, because `V` falls and not the distance.
+/// A positive-definite matrix alone never turns a pedestrian by more than 90 degrees from the straight line to its
+/// goal. This flow can turn further, because `V` falls and not the distance.
 ///
 /// The metric may be given in space ([`new`](Self::new)), or in the coordinates of the chart
-/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`. With the identity for `P` the second goes along the lines that
-/// `psi` makes straight: along a path that was shown, if `psi` is its [straightening](crate::Chain::straightening).
+/// ([`in_chart`](Self::in_chart)): `v = -J^-1 P u`. With the identity for `P`, the second follows the lines that `psi`
+/// maps to straight lines. If `psi` is the [straightening](crate::Chain::straightening) of a demonstrated path, it
+/// follows that path.
 ///
 /// # What is guaranteed
-/// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`: the flow converges to
-/// it from everywhere (Theorem 5 of `docs/stability.md`). In the coordinates `y = psi(p)`, the [`chart`](Flow::chart),
-/// the flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
+/// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`. So the flow converges
+/// to the goal from everywhere (Theorem 5 of `docs/stability.md`). In the coordinates `y = psi(p)`, the
+/// [`chart`](Flow::chart), the flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
 /// [`StableEuler`](crate::StableEuler) takes its steps there: `V` falls in every step, for every `dt`.
 ///
 /// # References
@@ -61,15 +62,15 @@ where
     /// The flow to `goal` (metres) through `psi`, shaped by the metrics of `source`: `v = -P J^T u`.
     ///
     /// # Errors
-    /// [`DynamicsError::NonFinite`] when the goal or its image is not finite.
+    /// [`DynamicsError::NonFinite`] if the goal or its image is not finite.
     pub fn new(goal: SVector<T, D>, psi: Psi, source: M) -> Result<Self, DynamicsError> {
         Self::with_metric(goal, psi, source, Given::InSpace)
     }
 
-    /// The same with metrics in the coordinates of the chart: `v = -J^-1 P u`.
+    /// The same flow with metrics in the coordinates of the chart: `v = -J^-1 P u`.
     ///
     /// # Errors
-    /// [`DynamicsError::NonFinite`] when the goal or its image is not finite.
+    /// [`DynamicsError::NonFinite`] if the goal or its image is not finite.
     pub fn in_chart(goal: SVector<T, D>, psi: Psi, source: M) -> Result<Self, DynamicsError> {
         Self::with_metric(goal, psi, source, Given::InChart)
     }
@@ -112,7 +113,7 @@ where
         &self.goal
     }
 
-    /// The metric in the coordinates of the chart: `J P J^T` of a metric in space.
+    /// The metric in the coordinates of the chart; a metric `P` in space becomes `J P J^T`.
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
         match self.given {
@@ -121,7 +122,7 @@ where
         }
     }
 
-    /// The velocity in space, `-P J^T u` or `-J^-1 P u`; an error also where the Jacobian has no inverse in `T`.
+    /// The velocity in space, `-P J^T u` or `-J^-1 P u`; also an error if the Jacobian has no inverse in `T`.
     fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
         let (image, jacobian) = self.psi.apply_with_jacobian(&state.position);

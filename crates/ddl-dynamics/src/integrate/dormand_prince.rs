@@ -1,4 +1,4 @@
-//! Steps as exact as one asks for: adaptive, of fifth order.
+//! Adaptive integration of fifth order.
 
 use nalgebra::SVector;
 
@@ -11,7 +11,7 @@ use crate::{
     state::State,
 };
 
-/// The most by which a step grows or shrinks at a time.
+/// Largest and smallest factor between successive step lengths.
 const GROWTH: f64 = 5.0;
 const SHRINKAGE: f64 = 0.2;
 /// Inner steps tried in one time step; smooth flows need tens.
@@ -19,17 +19,18 @@ const INNER_STEPS: usize = 10_000;
 const SAFETY: f64 = 0.9;
 
 /// The Dormand-Prince pair of orders 5 and 4 with adaptive steps inside each time step: the path of the continuous
-/// flow, for offline use. An inner step is taken when its estimated error is at most the tolerance *and* the potential
+/// flow, for offline use. An inner step is accepted if its estimated error is at most the tolerance *and* the potential
 /// falls.
 ///
 /// # What is guaranteed
 /// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow.
-/// - *Error* estimated at no more than the tolerance in each inner step, for flows that depend smoothly on the state.
-/// - *At the goal*: who is nearer to it than the tolerance (in the [`chart`](Flow::chart), if there is one) is put on it.
+/// - *Error*: estimated at no more than the tolerance in each inner step, for flows that depend smoothly on the state.
+/// - *At the goal*: a position nearer to it than the tolerance (in the [`chart`](Flow::chart), if there is one) is set
+///   to it.
 /// - *Time to the goal*: that of the continuous flow, for a distance at most `Phi(0) / lambda_min`.
 ///
-/// Where even a step as short as the tolerance is refused (a metric that jumps), a [`StableEuler`] step of that length
-/// is taken. A state's `step` and `history` are those of the whole time step.
+/// Where even a step as short as the tolerance is rejected (a metric that jumps), a [`StableEuler`] step of that length
+/// is taken. The `step` and `history` of a state are those of the whole time step.
 ///
 /// # References
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).
@@ -56,8 +57,8 @@ impl<T: Real> DormandPrince<T> {
 
 impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
     /// # Errors
-    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] when ten thousand inner steps do
-    /// not cover the time step, or an inner step would have to be shorter than any number of `T`.
+    /// Those of the flow and of [`StableEuler::advance`]; [`DynamicsError::TooStiff`] if ten thousand inner steps do
+    /// not cover the time step, or if an inner step would be shorter than any number of `T`.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
@@ -80,7 +81,7 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
             }
             let velocity = flow.velocity(&here)?;
             ensure_finite("velocity", &velocity)?;
-            // The potential has a kink at the goal, which error estimates do not see: stay before it.
+            // The potential has a kink at the goal, which error estimates do not detect: stop before it.
             length = length
                 .min(left)
                 .min(time_to_closest(flow, &here.position, &velocity) * T::rounded(SAFETY));
@@ -126,8 +127,8 @@ fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     }
 }
 
-/// When a straight line along `velocity` is closest to the goal in the flow's chart (seconds); the largest number where
-/// it does not come closer.
+/// Time at which a straight line along `velocity` is closest to the goal in the flow's chart (seconds); the largest
+/// number if it does not come closer.
 fn time_to_closest<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     flow: &F,
     position: &SVector<T, D>,
@@ -152,7 +153,7 @@ fn growth<T: Real>(relative: T) -> T {
         return most;
     }
     let ideal = T::rounded(SAFETY) * relative.powf(T::rounded(-0.2));
-    // A stage that left the numbers gives NaN here: shrink.
+    // A stage that overflowed gives NaN here: shrink.
     if ideal >= least {
         ideal.min(most)
     } else {
@@ -160,7 +161,7 @@ fn growth<T: Real>(relative: T) -> T {
     }
 }
 
-/// Times of stages 2 to 6, in steps.
+/// Times of stages 2 to 6, in units of the step.
 const NODES: [f64; 5] = [0.2, 0.3, 0.8, 8.0 / 9.0, 1.0];
 /// Weights of the earlier velocities in stages 2 to 6, and in the result of order 5.
 #[rustfmt::skip]
@@ -183,7 +184,7 @@ const DIFFERENCE: [f64; 7] = [
     -1.0 / 40.0,
 ];
 
-/// Where a step of `length` seconds ends, and the largest component of the difference of the two orders (metres).
+/// The end of a step of `length` seconds, and the largest component of the difference of the two orders (metres).
 fn inner_step<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     flow: &F,
     state: &State<'_, T, D>,

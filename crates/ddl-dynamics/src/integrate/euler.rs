@@ -10,12 +10,12 @@ use crate::{
     state::State,
 };
 
-/// The plain Euler step `p' = p + dt v`: the published scheme, kept for parity.
+/// The plain Euler step `p' = p + dt v`: the published scheme, kept for reproduction.
 ///
 /// # What is guaranteed
-/// Not much: with `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a step exactly when
-/// `dt < 2 |e| u^T P u / |P u|^2` (Proposition 2 of `docs/stability.md`). On a distance this fails for every fixed `dt`
-/// close to the goal: the pedestrian hops to and fro over it. [`StableEuler`](super::StableEuler) keeps the guarantee.
+/// Little: with `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a step exactly when `dt <
+/// 2 |e| u^T P u / |P u|^2` (Proposition 2 of `docs/stability.md`). On a distance this fails for every fixed `dt` close
+/// to the goal: the pedestrian oscillates around it. [`StableEuler`](super::StableEuler) keeps the guarantee.
 ///
 /// # References
 /// Equation (2) of the paper, with a step of 0.4 s in the published program.

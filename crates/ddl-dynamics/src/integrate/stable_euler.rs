@@ -1,4 +1,4 @@
-//! Euler steps that never lose the guarantee.
+//! Euler steps that keep the stability guarantee.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -13,8 +13,8 @@ use crate::{
     state::State,
 };
 
-/// Within this many roundings of the goal, a step that aims at the closest point has arrived:
-/// what is left is the rounding of the step itself, not a distance.
+/// Within this many rounding errors of the goal, a step that aims at the closest point has arrived: the rest is the
+/// rounding of the step itself, not a distance.
 const ARRIVAL: f64 = 8.0;
 
 /// Euler steps that end, at the latest, at the point of the line of motion closest to the goal.
@@ -23,8 +23,8 @@ const ARRIVAL: f64 = 8.0;
 /// p' = p + min(dt, dt*) v        dt* = |e| u^T P u / |P u|^2
 /// ```
 ///
-/// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` in what
-/// follows). While `dt <= dt*` this is the plain Euler step, to the last bit; at the goal the pedestrian stays.
+/// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` below).
+/// While `dt <= dt*` this is exactly the plain Euler step; at the goal the pedestrian stays.
 ///
 /// # What is guaranteed
 /// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.
@@ -39,36 +39,35 @@ const ARRIVAL: f64 = 8.0;
 /// lowers it until it is 0, for every finite input. Where rounding could break the decrease,
 /// - a limited step that ends within `8 epsilon max(|p|, |p*|)` of the goal puts the pedestrian on the goal;
 /// - a decrease too small to be seen in `T`, or a computed velocity that does not approach the goal (see
-///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that shows in the
-///   distance, about `epsilon max(|p|, |p*|)`, doubled until it does.
+///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that changes the
+///   distance: about `epsilon max(|p|, |p*|)`, doubled until it does.
 ///
-/// So every computed rollout ends on the goal if it is run on for long enough. [`StableStep::limit`] tells which case a
-/// step was.
+/// So every computed rollout ends on the goal after enough steps. [`StableStep::limit`] tells which case applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct StableEuler;
 
-/// What decided the length of a [`StableEuler`] step.
+/// The limit of the length of a [`StableEuler`] step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum StepLimit {
     /// The time step: a plain Euler step.
     TimeStep,
-    /// The point of the line of motion closest to the goal, which may be the goal.
+    /// The point of the line of motion closest to the goal, possibly the goal itself.
     ClosestApproach,
-    /// The spacing of the numbers: the smallest move that shows in the distance.
+    /// The spacing of floating-point numbers: the smallest move that changes the distance.
     Resolution,
-    /// The pedestrian was at the goal already and did not move.
+    /// The pedestrian was at the goal and did not move.
     AtGoal,
 }
 
-/// A [`StableEuler`] step: where it ends, and what limited it.
+/// A [`StableEuler`] step: its end, and its limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StableStep<T, const D: usize> {
     /// The next position (metres).
     pub position: SVector<T, D>,
-    /// What decided the length of the step.
+    /// The limit of the length of the step.
     pub limit: StepLimit,
 }
 
@@ -76,8 +75,8 @@ impl StableEuler {
     /// One step from `position` (metres) with `velocity` (m/s) for at most `dt` (seconds).
     ///
     /// # Errors
-    /// [`DynamicsError::NotPositive`]; [`DynamicsError::NonFinite`] for a position or a velocity that is not finite;
-    /// [`DynamicsError::DistanceTooLarge`] when the distance to the goal overflows.
+    /// [`DynamicsError::NotPositive`] for the time step; [`DynamicsError::NonFinite`] for the position or the velocity;
+    /// [`DynamicsError::DistanceTooLarge`] if the distance to the goal overflows.
     pub fn advance<T: Real, const D: usize>(
         attractor: &Attractor<T, D>,
         position: &SVector<T, D>,
@@ -88,8 +87,8 @@ impl StableEuler {
     }
 }
 
-/// [`StableEuler::advance`] where a position is `settled` before its distance is measured: put into
-/// the numbers of another space and back, so that the decrease holds for what will be seen there.
+/// [`StableEuler::advance`] where a position is `settled` before its distance is measured: it is transformed to another
+/// space and back, so that the decrease holds for the values seen there.
 #[inline]
 fn descend<T: Real, const D: usize>(
     attractor: &Attractor<T, D>,
@@ -109,7 +108,7 @@ fn descend<T: Real, const D: usize>(
     if distance.is_zero() {
         return ended(*position, StepLimit::AtGoal);
     }
-    // Spacing of the numbers at the coarser of the two points; never 0, so that doubling works.
+    // Spacing of floating-point numbers at the coarser of the two points; never 0, so that doubling works.
     let resolution =
         (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
 
@@ -131,7 +130,7 @@ fn descend<T: Real, const D: usize>(
         }
     }
     // The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed distance, or the goal.
-    // Few doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
+    // There are few doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
     let mut length = resolution;
     loop {
         if length >= distance {
@@ -146,7 +145,7 @@ fn descend<T: Real, const D: usize>(
 }
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
-    /// For a flow with a [`chart`](Flow::chart) the step is taken in its coordinates.
+    /// For a flow with a [`chart`](Flow::chart) the step is taken in the coordinates of the chart.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
@@ -161,7 +160,7 @@ impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
             return Self::advance(flow.attractor(), &state.position, &velocity, dt)
                 .map(|step| step.position);
         };
-        // In the coordinates of the chart the flow is a natural gradient: the same step, and back.
+        // In the coordinates of the chart the flow is a natural gradient: take the step there and transform back.
         let image = psi.apply(&state.position);
         let velocity = -flow
             .metric(state)?

@@ -1,4 +1,4 @@
-//! One step of a certificate: its figures, and whether they keep the guarantee.
+//! One step of a certificate: its figures and their check.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -12,13 +12,13 @@ use crate::{attractor::Attractor, metric::CholeskyMetric, polar::polar, real::Re
 pub struct CertifiedStep<T> {
     /// `Phi`: the distance to the goal at the start of the step (metres).
     pub potential: T,
-    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s); 0 at the goal alone, where it is too small for
-    /// `T` the smallest normal number.
+    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s); 0 only at the goal. Where it is too small for
+    /// `T`, it is the smallest normal number.
     pub rate: T,
     /// The smallest eigenvalue of the step's metric (m/s; 1/s on a quadratic attractor).
     pub min_eigenvalue: T,
-    /// `1 - dt / dt_max`, with `dt_max = -2 Phi (d Phi / dt) / |v|^2` the bound below which a plain Euler step lowers
-    /// `Phi` (no unit). `None` at the goal, where every step is too long.
+    /// `1 - dt / dt_max`, where `dt_max = -2 Phi (d Phi / dt) / |v|^2` is the bound below which a plain Euler step
+    /// lowers `Phi` (no unit). `None` at the goal, where every step is too long.
     pub step_margin: Option<T>,
     /// Angle between the move and the direction to the goal (radians, 0 to pi); 0 without a move.
     pub angle: T,
@@ -33,15 +33,15 @@ impl<T: Real> CertifiedStep<T> {
         dt: T,
     ) -> Self {
         let (potential, away) = attractor.distance_and_direction(from);
-        // grad Phi is as long as the velocity would be with P = I: 1, or |e| when quadratic.
+        // grad Phi is as long as the velocity with P = I: 1, or |e| if quadratic.
         let (slope, _) = polar(&attractor.gradient(from));
         let mut descent = metric.quadratic_form(&away) * slope;
         if descent.is_zero() && !slope.is_zero() {
-            // Both factors are positive: their product is too small for T, and not 0.
+            // Both factors are positive, but their product may underflow.
             descent = T::MIN_POSITIVE;
         }
         let speed = polar(&metric.apply(&away)).0 * slope;
-        // Divided twice: the square of the speed could leave the range of the numbers.
+        // Divided twice: the square of the speed could overflow or underflow.
         let bound = potential * (descent / speed) / speed * T::rounded(2.0);
         let step_margin = Some(T::one() - dt / bound).filter(T::is_finite);
         let (_, heading) = polar(&(to - from));
@@ -57,7 +57,7 @@ impl<T: Real> CertifiedStep<T> {
     pub(super) fn check(&self, step: usize, after: T) -> Result<(), Violation> {
         let (before, rate) = (self.potential.as_f64(), self.rate.as_f64());
         let (min_eigenvalue, after) = (self.min_eigenvalue.as_f64(), after.as_f64());
-        // Written so that a NaN, which no certificate made here holds, breaks the guarantee too.
+        // Written so that NaN also breaks the guarantee; certificates made here hold no NaN.
         let (definite, descending) = (min_eigenvalue > 0.0, rate < 0.0);
         match (before == 0.0, after == 0.0) {
             _ if !definite => Err(Violation::NotPositiveDefinite {
@@ -77,8 +77,8 @@ impl<T: Real> CertifiedStep<T> {
     }
 }
 
-/// Angle between two unit vectors (radians); 0 when one of them is the zero vector. Kahan's form, accurate for small
-/// and for straight angles.
+/// Angle between two unit vectors (radians); 0 if one of them is the zero vector. Kahan's form is accurate for small
+/// angles and near 180 degrees.
 fn angle_between<T: Real, const D: usize>(a: &SVector<T, D>, b: &SVector<T, D>) -> T {
     let zero = SVector::<T, D>::zeros();
     if *a == zero || *b == zero {

@@ -1,4 +1,4 @@
-//! What a certificate says of the motion itself: how fast, how abrupt, how far off the straight way, and whether it arrived.
+//! Motion figures of a certificate: speed, change of speed, deviation from the straight line, and final distance.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -6,18 +6,18 @@ use serde::{Deserialize, Serialize};
 use super::Violation;
 use crate::{attractor::Attractor, motion_bounds::MotionBounds, real::Real};
 
-/// Share of a bound that rounding may add to it.
+/// Relative tolerance of a bound for rounding.
 const ROUNDING: f64 = 1e-9;
-/// Roundings of the coordinates that a position may be off.
+/// Tolerance of a position, in rounding errors of its coordinates.
 const ROUNDINGS: f64 = 16.0;
 
-/// A figure of a motion with the bound that it is under.
+/// A figure of a motion with its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bounded<T> {
-    /// What the motion reached.
+    /// The largest value of the motion.
     pub largest: T,
-    /// What it cannot exceed, whatever shaped it; the rounding of its positions included.
+    /// The bound for every metric; it includes the rounding of the positions.
     pub bound: T,
 }
 
@@ -28,13 +28,13 @@ impl<T: Real> Bounded<T> {
 }
 
 /// Figures of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. For a
-/// motion that minds obstacles, which may hold it up, `deviation` and `distance_left` have no bound.
+/// motion that avoids obstacles, which may delay it, `deviation` and `distance_left` have no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEvidence<T> {
     /// Speed of a step (m/s).
     pub speed: Bounded<T>,
-    /// Difference between the speeds of two steps in a row (m/s).
+    /// Difference between the speeds of successive steps (m/s).
     pub speed_change: Bounded<T>,
     /// Distance from the straight line between start and goal (m).
     #[serde(default = "Option::default", skip_serializing_if = "Option::is_none")]
@@ -45,8 +45,8 @@ pub struct MotionEvidence<T> {
 }
 
 impl<T: Real> MotionEvidence<T> {
-    /// The evidence of `path` (metres, finite; the start first), whose steps of `dt` seconds were shaped within `bounds`;
-    /// `alone` unless obstacles were minded.
+    /// The evidence of `path` (metres, finite; the start first), with steps of `dt` seconds within `bounds`. Set
+    /// `alone` unless obstacles were avoided.
     pub(super) fn new(
         path: &[SVector<T, 2>],
         attractor: &Attractor<T, 2>,
@@ -158,7 +158,8 @@ fn out_of_reach<T: Real>(
     (start - reach).max(T::zero())
 }
 
-/// The largest distance of a position from the line through the first one and the goal; from the goal where that is the first one.
+/// The largest distance of a position from the line through the first position and the goal. If both are equal, the
+/// largest distance from the goal.
 fn farthest_from_line<T: Real>(path: &[SVector<T, 2>], goal: &SVector<T, 2>) -> T {
     let Some(start) = path.first() else {
         return T::zero();
@@ -177,7 +178,7 @@ mod tests {
 
     use super::*;
 
-    /// What is said of a path to (4.8, 0) in 12 steps of 0.4 s, at most at 2.15 m/s.
+    /// The verdict on a path to (4.8, 0) in 12 steps of 0.4 s, with a speed of at most 2.15 m/s.
     fn said(place: impl Fn(f64) -> [f64; 2]) -> String {
         let path: Vec<Vector2<f64>> = (0..13).map(|t| place(f64::from(t)).into()).collect();
         let attractor = Attractor::new(Vector2::new(4.8, 0.0)).unwrap();
@@ -189,9 +190,9 @@ mod tests {
     }
 
     #[test]
-    fn each_figure_that_exceeds_its_bound_is_named() {
+    fn each_figure_that_exceeds_its_bound_is_reported() {
         assert_eq!(said(|t| [0.4 * t, 0.0]), "");
-        // Resting at the start, then on at a constant speed: a leap of 0.9 m, and 0 m/s before 2.1 m/s.
+        // At rest at the start, then at a constant speed: a jump of 0.9 m, and 0 m/s before 2.1 m/s.
         let late = |first: f64, leap: f64, pace: f64| {
             said(move |t| {
                 [

@@ -1,9 +1,9 @@
-//! What a certificate says of a rollout that broke the guarantee.
+//! Violations of the stability guarantee.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-/// The first step of a rollout that broke the guarantee.
+/// The first violation of the stability guarantee in a rollout.
 #[derive(Debug, Clone, PartialEq, Error, Serialize, Deserialize)]
 #[serde(tag = "violation", rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -19,12 +19,12 @@ pub enum Violation {
     },
     #[error("step {step} leaves the goal: {after} m away after it")]
     LeftGoal { step: usize, after: f64 },
-    /// The metric of the step is not positive definite; only a certificate read from elsewhere may say so.
+    /// The metric of the step is not positive definite; occurs only in certificates of other programs.
     #[error(
         "the metric of step {step} is not positive definite: smallest eigenvalue {min_eigenvalue}"
     )]
     NotPositiveDefinite { step: usize, min_eigenvalue: f64 },
-    /// The potential does not fall along the flow; only a certificate read from elsewhere may say so.
+    /// The potential does not fall along the flow; occurs only in certificates of other programs.
     #[error("the flow does not descend in step {step}: the distance changes at {rate} m/s")]
     NotDescending { step: usize, rate: f64 },
     #[error("the {figure} is {value}, more than its bound {bound}")]

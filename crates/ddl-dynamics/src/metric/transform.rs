@@ -1,4 +1,4 @@
-//! Metrics made from others: seen through a linear map, or slowed along one direction.
+//! Transformations of metrics: by a linear map, or slowed along one direction.
 
 use nalgebra::{SMatrix, SVector, Vector2};
 
@@ -10,17 +10,17 @@ use crate::{
 };
 
 impl<T: Real, const D: usize> CholeskyMetric<T, D> {
-    /// `J P J^T`: what becomes of `P` when space is mapped by a matrix `J` that can be inverted.
+    /// `J P J^T`: the transformation of `P` when space is mapped by an invertible matrix `J`.
     ///
     /// The result is positive definite: its smallest eigenvalue is at least `lambda_min(P) s_min(J)^2`.
     ///
     /// # Errors
-    /// - [`DynamicsError::SingularMap`] when `J` is not finite or has no inverse in `T`.
+    /// - [`DynamicsError::SingularMap`] if `J` is not finite or has no inverse in `T`.
     /// - [`DynamicsError::FactorTooLarge`] as for [`CholeskyMetric::new`].
     ///
     /// # Numerics
-    /// `P` is not formed: the triangular factor of `[J L, sqrt(sigma) J]` is found by rotations. The
-    /// result is `J P J^T (1 + epsilon)`, the last term in place of a `sigma`.
+    /// `P` is not formed: the triangular factor of `[J L, sqrt(sigma) J]` is computed by rotations. The result is `J P
+    /// J^T (1 + epsilon)`, where the last term replaces `sigma`.
     pub fn congruent(&self, map: &SMatrix<T, D, D>) -> Result<Self, DynamicsError> {
         // s_min(J)^2 >= 1 / |J^-1|^2 (Frobenius).
         let inverse = map.try_inverse();
@@ -35,8 +35,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
         Self::new(factor, remainder(self.sigma * shrinks))
     }
 
-    /// `P` with the velocity along `direction` scaled down to the part `share` of it, and the least
-    /// possible change otherwise.
+    /// `P` with the velocity along `direction` scaled by `share`, and the smallest possible change otherwise.
     ///
     /// With `n` along `direction` and `q = P n`,
     ///
@@ -49,13 +48,13 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     ///
     /// # Errors
     /// - [`DynamicsError::InvalidShare`] unless `0 < share <= 1`.
-    /// - [`DynamicsError::NoDirection`] when `direction` is zero, [`DynamicsError::NonFinite`] when it is not finite.
+    /// - [`DynamicsError::NoDirection`] if `direction` is zero, [`DynamicsError::NonFinite`] if it is not finite.
     ///
     /// # Numerics
     /// `P` is not formed: with `A = [L, sqrt(sigma) I]`, `P = A A^T` and `y = A^T n`, `P' = A' A'^T` for `A' = A (I - b
-    /// y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, whose triangular factor is found by rotations. A share below
-    /// `epsilon^2` times the condition number of `P` is not resolved. The result is `P' (1 + epsilon)`, the last term
-    /// in place of a `sigma`.
+    /// y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, whose triangular factor is computed by rotations. A share below
+    /// `epsilon^2` times the condition number of `P` is not resolved. The result is `P' (1 + epsilon)`, where the last
+    /// term replaces `sigma`.
     pub fn slowed_along(&self, direction: &SVector<T, D>, share: T) -> Result<Self, DynamicsError> {
         if !(share > T::zero() && share <= T::one()) {
             return Err(DynamicsError::InvalidShare(share.as_f64()));
@@ -77,7 +76,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     }
 }
 
-/// A `sigma` that is a rounding of the smallest eigenvalue: the factor holds the whole of `P`.
+/// A `sigma` at the rounding error of the smallest eigenvalue: the factor contains all of `P`.
 fn remainder<T: Real>(smallest: T) -> T {
     (smallest * T::EPSILON).max(T::MIN_POSITIVE)
 }
@@ -127,7 +126,7 @@ mod tests {
 
     #[test]
     fn a_rotation_by_subnormal_numbers_is_a_rotation() {
-        // A row of a few units of the smallest number there is: their hypotenuse has hardly a digit.
+        // Entries of a few units of the smallest positive number: their hypotenuse has hardly a digit.
         let tiny = f64::from_bits(3);
         let left = Matrix2::new(tiny, tiny, 3.0, 4.0);
         let right = Matrix2::new(f64::from_bits(65), 0.0, 12.0, 84.0);

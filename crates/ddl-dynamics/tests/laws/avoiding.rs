@@ -1,4 +1,4 @@
-//! Obstacles bend the way and never lose the goal.
+//! Obstacles change the path, but the goal is still reached.
 
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, CholeskyMetric, Flow, LyapunovCertificate, NaturalGradientFlow,
@@ -13,7 +13,7 @@ fn straight_to(goal: Vector2<f64>) -> NaturalGradientFlow<f64, 2, CholeskyMetric
     NaturalGradientFlow::straight(Attractor::new(goal).unwrap())
 }
 
-/// Balls along the way of the scene: two that keep their place, one on the goal, one on the start.
+/// Balls along the path of the scene: two that stay in place, one on the goal, one on the start.
 fn balls<T: Real, const D: usize>(scene: &SceneDraw) -> Vec<Ball<T, D>> {
     let (start, goal) = (scene.start::<T, D>(), *scene.attractor::<T, D>().goal());
     let (aside, span) = (scene.direction::<T, D>(), (start - goal).norm());
@@ -26,9 +26,9 @@ fn balls<T: Real, const D: usize>(scene: &SceneDraw) -> Vec<Ball<T, D>> {
         .collect()
 }
 
-/// Whatever the obstacles, wherever the pedestrian starts, however long the step: the certificate holds. And a pedestrian outside the
-/// balls stays outside, up to rounding: where rounding has led it onto a surface, epsilon of its speed is left of its
-/// approach, which shows at a million metres a second.
+/// The certificate holds for all obstacles, starts and time steps. A pedestrian outside the balls stays outside, up to
+/// rounding: on a surface that it reached by rounding, epsilon of its speed remains as approach, which is visible at a
+/// million metres per second.
 fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
     scene: &SceneDraw,
 ) -> TestCaseResult {
@@ -68,8 +68,8 @@ fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
 }
 for_every_space!(the_distance_falls_and_no_ball_is_entered, any_scene);
 
-/// Pillars 2 cm apart at the least, none on the goal at the origin, a pedestrian outside them, a metric of a
-/// condition up to 20 and a margin.
+/// Pillars at least 2 cm apart, none of them on the goal at the origin, a pedestrian outside them, a metric with a
+/// condition number up to 20, and a margin.
 fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>, f64)> {
     let place = || (-6.0..6.0_f64, -6.0..6.0_f64).prop_map(|(x, y)| Vector2::new(x, y));
     let factor = (-0.7..0.0_f64, 0.0..std::f64::consts::PI);
@@ -104,7 +104,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn everybody_arrives((pillars, start, metric, margin) in park()) {
+    fn every_pedestrian_arrives((pillars, start, metric, margin) in park()) {
         let origin = Attractor::new(Vector2::zeros()).unwrap();
         let pedestrian = NaturalGradientFlow::new(origin, metric);
         let flow = AvoidingFlow::new(pedestrian, pillars.clone(), margin).unwrap();
@@ -115,8 +115,8 @@ proptest! {
         prop_assert!(path[20_000].norm() < 1e-9, "{} m off", path[20_000].norm());
     }
 
-    /// However many pillars are near, beside any of them: each is left, or approached at
-    /// `sqrt(2 share) lambda_max` at most.
+    /// For any number of pillars nearby and beside any of them: the pedestrian moves away, or approaches at `sqrt(2
+    /// share) lambda_max` at most.
     #[test]
     fn each_approach_is_slowed(
         (pillars, _, metric, margin) in park(),
@@ -140,7 +140,7 @@ proptest! {
 }
 
 #[test]
-fn an_offset_that_overflows_is_no_obstacle() {
+fn an_offset_that_overflows_is_handled() {
     let far = Ball::new(Vector2::new(-f64::MAX, 0.0), 1.0).unwrap();
     let pedestrian = straight_to(Vector2::new(0.9 * f64::MAX, 0.0));
     let flow = AvoidingFlow::new(pedestrian, [far], 1.0).unwrap();
@@ -157,7 +157,7 @@ fn the_velocity_is_continuous() {
     let pedestrian = NaturalGradientFlow::new(attractor, metric);
     let pillar = Ball::new(Vector2::new(0.0, 0.0), 1.0).unwrap();
     let flow = AvoidingFlow::new(pedestrian, [pillar], 1.0).unwrap();
-    // A circle around the pillar, in small steps: no jump anywhere, also not where share is small.
+    // A circle around the pillar, in small steps: no jump anywhere, also where share is small.
     for gap in [1e-6, 0.3, 0.999] {
         let velocity = |k: u32| {
             let angle = f64::from(k) * std::f64::consts::TAU / 20_000.0;
@@ -169,10 +169,10 @@ fn the_velocity_is_continuous() {
     }
 }
 
-/// Exactly behind the pillar as seen from the goal: the saddle, where a pedestrian comes to rest; a hair
-/// beside it, everybody gets around.
+/// Exactly behind the pillar as seen from the goal is the saddle, where a pedestrian comes to rest; slightly beside it,
+/// every pedestrian passes.
 #[test]
-fn the_saddle_is_the_only_other_rest() {
+fn the_saddle_is_the_only_other_equilibrium() {
     let pedestrian = straight_to(Vector2::new(4.0, 0.0));
     let pillar = Ball::new(Vector2::new(2.0, 0.0), 0.5).unwrap();
     let flow = AvoidingFlow::new(pedestrian, [pillar], 0.5).unwrap();
@@ -183,9 +183,9 @@ fn the_saddle_is_the_only_other_rest() {
     assert_eq!(free[400], Vector2::new(4.0, 0.0));
 }
 
-/// A pillar that is there in the first steps only: the pedestrian waits, then goes straight.
+/// A pillar that exists only in the first steps: the pedestrian waits, then goes straight.
 #[test]
-fn obstacles_come_and_go_by_the_step() {
+fn obstacles_may_change_with_the_step() {
     let pedestrian = straight_to(Vector2::new(4.0, 0.0));
     let pillar = Ball::new(Vector2::new(1.5, 0.0), 0.5).unwrap();
     let schedule = ObstacleSchedule::new([vec![vec![pillar]; 10], vec![vec![]]].concat());
@@ -196,7 +196,7 @@ fn obstacles_come_and_go_by_the_step() {
 }
 
 #[test]
-fn what_cannot_be_an_obstacle_is_refused() {
+fn invalid_obstacles_are_refused() {
     let centre = Vector2::new(0.0, 0.0);
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = Ball::new(centre, radius).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! Certificates: true for every stable rollout, and exact about the step that breaks one.
+//! Certificates: they hold for every stable rollout, and name the step that breaks one.
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
@@ -25,8 +25,8 @@ fn stable_path<T: Real, const D: usize>(
     (path, scene.metrics(), scene.attractor())
 }
 
-/// The certificate of every `StableEuler` rollout holds; its figures are within their bounds and
-/// its rate is that of the formed matrix.
+/// The certificate of every `StableEuler` rollout holds; its figures are within their bounds, and its rate agrees with
+/// the formed matrix.
 fn holds_for_every_stable_rollout<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (path, metrics, attractor) = stable_path::<T, D>(scene);
     let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
@@ -50,7 +50,7 @@ for_every_space!(holds_for_every_stable_rollout, any_scene);
 
 fn names_a_planted_violation<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (mut path, metrics, attractor) = stable_path::<T, D>(scene);
-    // The time step, random itself, picks the place.
+    // The random time step selects the place.
     let planted = (scene.dt::<T>().as_f64() * 1e6) as usize % METRICS;
     let before = attractor.potential(&path[planted]);
     let mut away = attractor.gradient(&path[planted]);
@@ -82,7 +82,7 @@ fn holds_on_a_quadratic_attractor<T: Real, const D: usize>(scene: &SceneDraw) ->
 }
 for_every_space!(holds_on_a_quadratic_attractor, any_scene);
 
-/// P = [1 1; 1 2] and e = (0.3, -0.4): the figures of a step, worked out by hand.
+/// P = [1 1; 1 2] and e = (0.3, -0.4): the figures of a step, computed by hand.
 fn by_hand() -> LyapunovCertificate<f64> {
     let attractor = Attractor::new(Vector2::new(10.0, 20.0)).unwrap();
     let metric = CholeskyMetric::planar(1.0, 1.0, 1.0, 1e-16).unwrap();
@@ -119,7 +119,7 @@ fn figures_by_hand() {
 }
 
 #[test]
-fn a_certificate_from_elsewhere_is_judged_by_its_figures() {
+fn a_deserialised_certificate_is_checked() {
     let text = serde_json::to_string(&by_hand()).unwrap();
     let read = |text: &str| serde_json::from_str::<LyapunovCertificate<f64>>(text).unwrap();
     assert_eq!(read(&text), by_hand());
@@ -170,7 +170,7 @@ fn positions_and_metrics_must_belong_together() {
 
 #[test]
 fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
-    // At 1 m/s in steps of 0.5 s from 1.25 m: 0.75, 0.25, then to and fro over the goal for ever.
+    // At 1 m/s in steps of 0.5 s from 1.25 m: 0.75, 0.25, then to and fro across the goal.
     let attractor = Attractor::new(Vector1::new(0.0)).unwrap();
     let flow = NaturalGradientFlow::straight(attractor);
     let path = rollout(&flow, &Euler, Vector1::new(1.25), 0.5, 6).unwrap();

@@ -1,4 +1,4 @@
-//! The goal is reached, in a number of steps known beforehand.
+//! The goal is reached within a proved number of steps.
 
 use ddl_dynamics::{Attractor, NaturalGradientFlow, Real, StableEuler, rollout};
 use nalgebra::SVector;
@@ -15,7 +15,7 @@ fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(
 ) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let (start, metric) = (scene.start::<T, D>(), scene.metrics::<T, D>()[0]);
-    // A step time of a few seconds at least, so that a kilometre is not a million steps.
+    // A time step of at least a few seconds, so that a kilometre is not a million steps.
     let dt = scene.dt::<T>().max(T::rounded(2.0));
     let distance = attractor.potential(&start).as_f64();
     let tolerance =
@@ -41,7 +41,7 @@ for_every_space!(
     well_conditioned_scene
 );
 
-/// Straight to the goal at 1 m/s: on the goal itself after `Phi(0) / dt` steps, rounded up, and one.
+/// Straight to the goal at 1 m/s: exactly on the goal after `Phi(0) / dt` steps, rounded up, plus one.
 fn the_gradient_flow_arrives_exactly<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let start = scene.start::<T, D>();
@@ -56,8 +56,8 @@ for_every_space!(the_gradient_flow_arrives_exactly, any_scene);
 
 #[test]
 fn every_rollout_ends_on_the_goal_even_when_nearly_singular() {
-    // Eigenvalues 1e-8 and about 1: the flow alone would need years; rounding decides, and the
-    // strict decrease brings the pedestrian home all the same.
+    // Eigenvalues 1e-8 and about 1: the continuous flow would need years. Rounding dominates, and the strict decrease
+    // still brings the pedestrian to the goal.
     let attractor = Attractor::new(SVector::<f32, 2>::new(0.25, -0.5)).unwrap();
     let metric = ddl_dynamics::CholeskyMetric::planar(1.0, 0.0, 0.0, 1e-8).unwrap();
     let flow = NaturalGradientFlow::new(attractor, metric);

@@ -1,4 +1,4 @@
-//! Flows seen through a diffeomorphism: around corners, and stable all the same.
+//! Flows transformed by a diffeomorphism: they turn around corners and stay stable.
 
 use ddl_dynamics::{
     Chain, CholeskyMetric, DiffeomorphicFlow, DormandPrince, Flow, Integrator, LyapunovCertificate,
@@ -25,7 +25,7 @@ fn flows<T: Real, const D: usize>((maps, scene): &(MapDraw, SceneDraw)) -> [Bent
     ]
 }
 
-/// For every map, metric, start and time step: `V`, as computed, falls in every step, or the pedestrian is on the goal.
+/// For every map, metric, start and time step: the computed `V` falls in every step, or the pedestrian is on the goal.
 fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
     draw: &(MapDraw, SceneDraw),
 ) -> TestCaseResult {
@@ -43,7 +43,7 @@ fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
 }
 for_every_space!(the_certificate_holds_in_the_chart, any_bent_scene);
 
-/// `J v = -P u` in the chart, with the metric that the flow says it has there, and `u^T P u > 0`.
+/// `J v = -P u` in the chart, with the metric that the flow has there, and `u^T P u > 0`.
 fn velocity_and_metric_agree<T: Real, const D: usize>(
     draw: &(MapDraw, SceneDraw),
 ) -> TestCaseResult {
@@ -55,7 +55,7 @@ fn velocity_and_metric_agree<T: Real, const D: usize>(
             let u = flow.attractor().gradient(&image);
             let metric = flow.metric(&state).unwrap();
             let seen = jacobian * flow.velocity(&state).unwrap();
-            // Neither way loses more digits than forming J P J^T and going through J^-1 and back.
+            // Neither side loses more digits than forming J P J^T and applying J^-1 and J.
             let stretch = jacobian.norm() * (T::one() + jacobian.try_inverse().unwrap().norm());
             let given = draw.1.metrics::<T, D>()[0].eigenvalue_range().largest;
             let scale =

@@ -1,4 +1,4 @@
-//! Diffeomorphisms: one-to-one, onto, and as smooth as their Jacobians say.
+//! Diffeomorphisms: one-to-one, onto, and consistent with their Jacobians.
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{Chain, Diffeomorphism, DynamicsError, LocalTranslation, Real};
@@ -14,7 +14,7 @@ fn double<T: Real, const D: usize>(vector: &SVector<T, D>) -> SVector<f64, D> {
     vector.map(Real::as_f64)
 }
 
-/// A matrix in `f64` and of dynamic size, which is what nalgebra decomposes in any dimension.
+/// A matrix in `f64` and of dynamic size, which nalgebra can decompose in any dimension.
 fn general<T: Real, const D: usize>(matrix: &SMatrix<T, D, D>) -> DMatrix<f64> {
     DMatrix::from_fn(D, D, |row, column| matrix[(row, column)].as_f64())
 }
@@ -38,8 +38,8 @@ fn stretch<T: Real, const D: usize>(map: &Chain<T, D>, position: &SVector<T, D>)
     (values.max(), 1.0 / values.min())
 }
 
-/// `psi^-1(psi(x)) = x` and `psi(psi^-1(y)) = y`, to 1e-9 m in `f64` (positions within 200 m), and
-/// in both types to some hundred roundings times what the map itself magnifies.
+/// `psi^-1(psi(x)) = x` and `psi(psi^-1(y)) = y`, to 1e-9 m in `f64` (positions within 200 m). In both types also to
+/// some hundred rounding errors times the magnification of the map.
 fn the_inverse_undoes_the_map<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     for chain in chains::<T, D>(draw) {
         for position in draw.positions::<T, D>() {
@@ -63,15 +63,15 @@ fn the_inverse_undoes_the_map<T: Real, const D: usize>(draw: &MapDraw) -> TestCa
 }
 for_every_space!(the_inverse_undoes_the_map, any_maps);
 
-/// A single translation is undone to a few roundings, with no allowance for what it magnifies:
-/// every finite parameter and position.
+/// A single translation is inverted to a few rounding errors, without allowance for its magnification, for every finite
+/// parameter and position.
 fn a_translation_is_undone_to_rounding<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     for map in draw.translations::<T, D>() {
         for image in draw.positions::<T, D>() {
             let back = map.apply(&map.inverse(&image));
             let size =
                 image.amax().max(map.centre().amax()).as_f64() + map.translation().amax().as_f64();
-            // The smallest number is for what is lost below the normal ones.
+            // The smallest number covers the loss below the normal numbers.
             let tolerance = 64.0 * T::EPSILON.as_f64() * size
                 + 8.0 * f64::MIN_POSITIVE.max((T::MIN_POSITIVE * T::EPSILON).as_f64());
             if size < T::MAX.as_f64() / 16.0 {
@@ -104,7 +104,7 @@ fn the_jacobian_is_the_derivative<T: Real, const D: usize>(draw: &MapDraw) -> Te
                 let error = (difference - exact.column(column)).norm();
                 prop_assert!(error <= 1e-6 * (1.0 + exact.norm()), "{error}");
             }
-            // In T, rounding of the positions between layers counts, times how fast J changes.
+            // In T, the rounding of the positions between layers is multiplied by the rate of change of J.
             let rounding = 1e5 * T::EPSILON.as_f64() * (1.0 + exact.norm()).powi(2);
             prop_assert!((jacobian - exact).norm() <= rounding);
         }
@@ -113,8 +113,8 @@ fn the_jacobian_is_the_derivative<T: Real, const D: usize>(draw: &MapDraw) -> Te
 }
 for_every_space!(the_jacobian_is_the_derivative, any_maps);
 
-/// `det J` is positive and not below the bound that each map states; the singular values of a
-/// translation are within `[1 - q, 1 + q]`.
+/// `det J` is positive and not below the stated bound of each map; the singular values of a translation are within `[1
+/// - q, 1 + q]`.
 fn space_is_never_folded<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     for chain in chains::<T, D>(draw) {
         for position in draw.positions::<T, D>() {
@@ -170,13 +170,13 @@ proptest! {
         let back: Chain<f64, 3> = serde_json::from_str(&text).unwrap();
         prop_assert_eq!(&serde_json::from_str::<Chain<f32, 2>>(&short).unwrap(), &narrow);
         prop_assert_eq!(&back, &wide);
-        // Equality takes 0 and -0 for the same.
+        // Equality does not distinguish 0 and -0.
         prop_assert_eq!(serde_json::to_string(&back).unwrap(), text);
     }
 }
 
 #[test]
-fn what_cannot_be_inverted_is_refused() {
+fn maps_that_are_not_invertible_are_refused() {
     let new = |x: f64, rate: f64, v: f64| {
         LocalTranslation::new(Vector2::new(0.0, x), rate, Vector2::new(v, 0.0))
     };

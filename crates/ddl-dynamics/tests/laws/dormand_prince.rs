@@ -25,7 +25,7 @@ fn arrives_within_the_finite_time_bound<T: Real, const D: usize>(
     }
     let flow = NaturalGradientFlow::new(attractor, metric);
     let bound = distance / metric.eigenvalue_range().smallest;
-    // A percent more, for the steps' errors.
+    // One percent more, for the errors of the steps.
     let dt = bound * T::rounded(1.01) / T::rounded(8.0);
     let path = rollout(&flow, &precise, start, dt, 8).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
@@ -65,7 +65,7 @@ fn follows_the_matrix_exponential<T: Real, const D: usize>(scene: &SceneDraw) ->
 }
 for_every_space!(follows_the_matrix_exponential, well_conditioned_scene);
 
-fn falls_or_says_why_not<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
+fn decreases_or_reports_stiffness<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (attractor, start) = (scene.attractor::<T, D>(), scene.start::<T, D>());
     let size = start.amax().max(attractor.goal().amax()).max(T::one());
     let coarse = DormandPrince::new(size * T::rounded(1e-2)).unwrap();
@@ -83,7 +83,7 @@ fn falls_or_says_why_not<T: Real, const D: usize>(scene: &SceneDraw) -> TestCase
     }
     Ok(())
 }
-for_every_space!(falls_or_says_why_not, any_scene);
+for_every_space!(decreases_or_reports_stiffness, any_scene);
 
 #[test]
 fn agrees_with_ten_thousand_stable_steps() {
@@ -105,7 +105,7 @@ fn agrees_with_ten_thousand_stable_steps() {
 }
 
 #[test]
-fn a_tolerance_has_to_be_one() {
+fn an_invalid_tolerance_is_refused() {
     for tolerance in [0.0, -1e-9, f64::NAN, f64::INFINITY] {
         let error = DormandPrince::new(tolerance).unwrap_err();
         assert!(error.to_string().starts_with("the tolerance is"));

@@ -1,4 +1,4 @@
-//! Random scenes, drawn as `f64` in three dimensions and cut down to the space under test.
+//! Random scenes, drawn as `f64` in three dimensions and reduced to the space under test.
 
 use ddl_dynamics::{
     Attractor, CholeskyMetric, EigenvalueRange, MetricSchedule, NaturalGradientFlow,
@@ -25,7 +25,7 @@ pub(crate) struct SceneDraw {
     direction: [f64; 3],
 }
 
-/// A number of either sign: anything up to `largest`, zero, or of any magnitude down to 1e-12.
+/// A number of either sign: any up to `largest`, zero, or of any magnitude down to 1e-12.
 fn signed(largest: f64) -> impl Strategy<Value = f64> {
     prop_oneof![
         4 => -largest..=largest,
@@ -61,7 +61,7 @@ fn scene_with(metric: impl Strategy<Value = MetricDraw>) -> impl Strategy<Value 
         })
 }
 
-/// Factors up to 1e3, singular and wildly stretched ones among them.
+/// Factors up to 1e3, including singular and extremely ill-conditioned ones.
 pub(crate) fn any_scene() -> impl Strategy<Value = SceneDraw> {
     scene_with(metric_draw(1e3))
 }
@@ -98,7 +98,7 @@ pub(crate) fn wild() -> impl Strategy<Value = f64> + Copy {
 }
 
 pub(crate) fn vector<T: Real, const D: usize>(draw: &[f64; 3]) -> SVector<T, D> {
-    // A draw too large for f32 becomes its largest number, so that it stays finite.
+    // A draw too large for f32 becomes its largest number and stays finite.
     SVector::from_fn(|i, _| {
         let largest = T::MAX.as_f64();
         T::rounded(draw[i].clamp(-largest, largest))
@@ -151,13 +151,14 @@ fn metric<T: Real, const D: usize>((entries, sigma): &MetricDraw) -> CholeskyMet
     CholeskyMetric::new(factor, T::rounded(*sigma)).unwrap()
 }
 
-/// Sine of the largest angle between a flow and the direction to its goal (Wielandt's form of the Kantorovich inequality),
-/// and the least factor by which a step to the closest point of the line of motion shrinks the distance.
+/// Sine of the largest angle between a flow and the direction to its goal (Wielandt's form of the Kantorovich
+/// inequality), and the smallest factor by which a step to the closest point of the line of motion reduces the
+/// distance.
 pub(crate) fn deviation_sine<T: Real>(range: EigenvalueRange<T>) -> T {
     (range.largest - range.smallest) / (range.largest + range.smallest)
 }
 
-/// `P = L L^T + sigma I` in `f64` by nalgebra's matrix product: independent of the crate's way.
+/// `P = L L^T + sigma I` in `f64` by nalgebra's matrix product, independent of the implementation.
 pub(crate) fn formed<T: Real, const D: usize>(metric: &CholeskyMetric<T, D>) -> SMatrix<f64, D, D> {
     let factor = metric.factor().map(Real::as_f64);
     factor * factor.transpose() + SMatrix::identity() * metric.sigma().as_f64()

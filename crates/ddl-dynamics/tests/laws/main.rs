@@ -1,4 +1,4 @@
-//! The laws of the crate, each in `f32` and `f64` and in one, two and three dimensions.
+//! Properties of the crate, each in `f32` and `f64` and in one, two and three dimensions.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(

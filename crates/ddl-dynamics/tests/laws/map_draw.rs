@@ -1,4 +1,4 @@
-//! Random diffeomorphisms and paths, drawn as `f64` in three dimensions and cut down to the space under test.
+//! Random diffeomorphisms and paths, drawn as `f64` in three dimensions and reduced to the space under test.
 
 use ddl_dynamics::{Chain, LocalTranslation, Real};
 use nalgebra::SVector;
@@ -78,7 +78,7 @@ impl MapDraw {
     }
 }
 
-/// A few points, some of them wild, some the same, some on a line.
+/// A few points; some are extreme, some equal, some on a line.
 #[derive(Debug, Clone)]
 pub(crate) struct PolygonDraw(Vec<[f64; 3]>);
 

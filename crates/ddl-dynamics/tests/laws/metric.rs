@@ -1,4 +1,4 @@
-//! `P` is symmetric and positive definite, applied as if it were formed.
+//! `P` is symmetric and positive definite, and applied like the formed matrix.
 
 use ddl_dynamics::{CholeskyMetric, Real};
 use nalgebra::DMatrix;
@@ -21,7 +21,7 @@ fn applied_as_formed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResu
         prop_assert!((metric.to_matrix().map(Real::as_f64) - p).norm() <= tolerance);
         let form = metric.quadratic_form(&u).as_f64();
         prop_assert!((form - u64.dot(&(p * u64))).abs() <= tolerance);
-        // As computed: `P = P^T` to the last bit, and `u^T P u >= sigma` up to one rounding of `|u|^2`.
+        // As computed: `P = P^T` exactly, and `u^T P u >= sigma` up to one rounding of `|u|^2`.
         prop_assert_eq!(metric.to_matrix(), metric.to_matrix().transpose());
         prop_assert!(form > 0.0);
         prop_assert!(form >= metric.sigma().as_f64() * (1.0 - 8.0 * T::EPSILON.as_f64()));
@@ -56,8 +56,8 @@ for_every_space!(eigenvalues_agree_and_enclose, any_scene);
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
-    /// In the plane the closed form keeps all digits, however close to singular: the product of the
-    /// eigenvalues is `(a c)^2` and their sum `a^2 + b^2 + c^2` when sigma is nothing.
+    /// In the plane the closed form keeps all digits, even close to singular: with a negligible sigma, the product of
+    /// the eigenvalues is `(a c)^2` and their sum `a^2 + b^2 + c^2`.
     #[test]
     fn planar_eigenvalues_keep_their_digits(
         a in -8.0..=3.0_f64,

@@ -1,4 +1,4 @@
-//! Motions within bounds: never faster, nearer at every step, never past the goal, and there with the last one.
+//! Motions within bounds: limited speed, nearer to the goal at every step, never past it, and on it with the last step.
 
 use ddl_dynamics::{
     ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds,
@@ -9,8 +9,8 @@ use proptest::{prelude::*, test_runner::TestCaseResult};
 
 use crate::draw::{METRICS, SceneDraw, any_scene, deviation_sine, formed};
 
-/// Top speed relative to what the goal asks for, share of the metric, seconds a step, own velocity in top speeds, and whether metrics are in
-/// m/s.
+/// Top speed relative to the required speed, share of the metric, seconds per step, own velocity in top speeds, and
+/// whether metrics are in m/s.
 type BoundsDraw = (f64, f64, f64, [f64; 2], bool);
 
 fn any_bounds() -> impl Strategy<Value = BoundsDraw> {
@@ -20,7 +20,7 @@ fn any_bounds() -> impl Strategy<Value = BoundsDraw> {
     (spare, share, 0.01..2.0_f64, velocity, any::<bool>())
 }
 
-/// A path with its goal and bounds, and what its certificate says; `None` where the numbers make no bounds.
+/// A path with its goal and bounds, and its certificate; `None` if the numbers are not valid bounds.
 type Within<T> = (
     Vec<Vector2<T>>,
     Attractor<T, 2>,
@@ -70,7 +70,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
             "step {k}: {speed} m/s over {top}"
         );
         let (d, after) = ((goal - from).norm(), (goal - to).norm());
-        // the angle of Kantorovich, and never past the goal
+        // The angle of Kantorovich, and never past the goal.
         let range = bounds.eigenvalues(T::rounded(d), METRICS - k, T::rounded(dt));
         let sine = deviation_sine(range).as_f64();
         let [slow, fast] = [range.smallest, range.largest].map(Real::as_f64);
@@ -109,7 +109,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
     Ok(())
 }
 
-/// The shaped metric lies within the bounds, keeps its axes, and is the metric itself where that lies within.
+/// The shaped metric lies within the bounds and keeps its axes; a metric within the bounds is unchanged.
 fn shaped_within<T: Real>(scene: &SceneDraw, distance: f64, left: usize) -> TestCaseResult {
     let (distance, dt) = (T::rounded(distance), T::rounded(0.4));
     let towards = Vector2::new(distance, T::zero());
@@ -131,7 +131,7 @@ fn shaped_within<T: Real>(scene: &SceneDraw, distance: f64, left: usize) -> Test
             let change = (formed(&shaped) - formed(&metric)).norm();
             prop_assert!(change <= 1e-4 * before.largest.as_f64(), "{change}");
         }
-        // the same eigenvectors: the matrices commute
+        // The same eigenvectors: the matrices commute.
         let (a, b) = (formed(&shaped), formed(&metric));
         let commutator = (a * b - b * a).norm();
         prop_assert!(commutator <= 1e-4 * a.norm() * b.norm(), "{commutator}");
@@ -163,10 +163,10 @@ proptest! {
     }
 }
 
-/// Worked by hand: 4.8 m in 12 steps of 0.4 s are 1 m/s. P = diag(9, 0.04) becomes diag(2, 0.25); with no share and the own velocity (1, 1) m/s
-/// it is the metric of the flow (1, 0.5) if half of that velocity is left: [1 0.5; 0.5 1.5]. As a departure, Q = 2.25 I asks for 1.25 arriving
-/// speeds more than the neutral motion, which for somebody who walks at the arriving velocity is I: out of bounds, 2. Q = I asks for nothing, and
-/// Q = 0.5 I for half of it.
+/// By hand: 4.8 m in 12 steps of 0.4 s are 1 m/s. P = diag(9, 0.04) becomes diag(2, 0.25). With share 0 and the own
+/// velocity (1, 1) m/s, half of which remains, it is the metric of the flow (1, 0.5): [1 0.5; 0.5 1.5]. Relative to the
+/// neutral motion, which is I for a pedestrian at the arriving velocity, Q = 2.25 I asks for 1.25 arriving speeds more:
+/// out of bounds, 2. Q = I asks for no change, and Q = 0.5 I for half the speed.
 #[test]
 fn shaped_by_hand() {
     let (done, left, dt) = (0, 12, 0.4);
@@ -197,9 +197,9 @@ fn shaped_by_hand() {
     }
 }
 
-/// A goal that is out of reach is headed for at the top speed, and the certificate tells how far it is.
+/// A goal out of reach is approached at the top speed, and the certificate states the remaining distance.
 #[test]
-fn out_of_reach() {
+fn a_goal_out_of_reach_is_reported() {
     let attractor = Attractor::new(Vector2::new(20.0_f64, 0.0)).unwrap();
     let metrics = vec![CholeskyMetric::planar(5.0, 3.0, 1.0, 1e-8).unwrap(); 12];
     let bounds = MotionBounds::new(2.0, Vector2::zeros(), 1.0).unwrap();

@@ -1,4 +1,4 @@
-//! `StableEuler` lowers the distance to the goal at every step, whatever it is given.
+//! `StableEuler` lowers the distance to the goal at every step, for every input.
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
@@ -46,8 +46,8 @@ fn no_finite_input_breaks_it<T: Real, const D: usize>(scene: &SceneDraw) -> Test
 }
 for_every_space!(no_finite_input_breaks_it, wild_scene);
 
-/// The step is the Euler step to the last bit where the time step decides; it is never longer than
-/// the Euler step (but for the smallest move); and `Phi' <= Phi - h u^T P u / 2`.
+/// Where the time step is the limit, the step is exactly the Euler step. It is never longer than the Euler step (except
+/// the smallest move), and `Phi' <= Phi - h u^T P u / 2`.
 fn step_is_as_long_as_proved<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let (start, dt) = (scene.start::<T, D>(), scene.dt::<T>());
@@ -66,7 +66,7 @@ fn step_is_as_long_as_proved<T: Real, const D: usize>(scene: &SceneDraw) -> Test
                 prop_assert_eq!(step.position, euler);
             }
             StepLimit::ClosestApproach => {
-                // The foot of the perpendicular: what is left is at right angles to the velocity.
+                // The foot of the perpendicular: the remaining offset is at right angles to the velocity.
                 let left = attractor.offset(&step.position);
                 let along = left.dot(&velocity).abs();
                 prop_assert!(along <= (noise + noise) * velocity.norm());
@@ -107,7 +107,7 @@ fn a_limited_step_by_hand() {
 
 #[test]
 fn a_step_below_the_spacing_of_f32_still_shows() {
-    // 1e-8 m/s for 0.4 s at 1 m: 4e-9 m, which 1.0_f32 does not notice. Plain Euler stands still.
+    // 1e-8 m/s for 0.4 s at 1 m are 4e-9 m, too small to change 1.0_f32. Plain Euler does not move.
     let attractor = Attractor::new(Vector2::<f32>::zeros()).unwrap();
     let metric = CholeskyMetric::planar(0.0, 0.0, 0.0, 1e-8).unwrap();
     let flow = NaturalGradientFlow::new(attractor, metric);
@@ -117,7 +117,7 @@ fn a_step_below_the_spacing_of_f32_still_shows() {
     let step = StableEuler::advance(&attractor, &start, &velocity, 0.4).unwrap();
     assert_eq!(step.limit, StepLimit::Resolution);
     assert_eq!(step.position, Vector2::new(1.0 - f32::EPSILON, 0.0));
-    // One spacing from the goal: there is nothing in between.
+    // One spacing from the goal: there are no numbers in between.
     let near = Attractor::new(Vector2::new(1.0_f32.next_down(), 0.0)).unwrap();
     let step = StableEuler::advance(&near, &start, &velocity, 0.4).unwrap();
     assert_eq!(
@@ -127,7 +127,7 @@ fn a_step_below_the_spacing_of_f32_still_shows() {
 }
 
 #[test]
-fn what_is_not_finite_is_an_error() {
+fn values_that_are_not_finite_are_refused() {
     let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
     let at = Vector2::new(1.0, 0.0);
     let message = |position: Vector2<f64>, velocity: Vector2<f64>, dt| {
@@ -144,7 +144,7 @@ fn what_is_not_finite_is_an_error() {
 }
 
 #[test]
-fn the_failing_step_of_a_rollout_is_named() {
+fn the_failing_step_of_a_rollout_is_reported() {
     let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
     let source = |state: &State<'_, f64, 2>| {
         let a = if state.step == 3 { f64::NAN } else { 1.0 };
@@ -160,7 +160,7 @@ fn the_failing_step_of_a_rollout_is_named() {
 }
 
 #[test]
-fn a_flow_sees_step_time_and_history() {
+fn a_flow_receives_step_time_and_history() {
     let attractor = Attractor::new(SVector::<f64, 1>::new(0.0)).unwrap();
     let source = |state: &State<'_, f64, 1>| {
         assert_eq!(state.history.len(), state.step + 1);

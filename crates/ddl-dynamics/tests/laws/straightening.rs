@@ -1,4 +1,4 @@
-//! Straightening: paths with corners and turns become straight lines, and can be walked.
+//! Straightening: paths with corners and turns become straight lines, and the flow follows them.
 
 use ddl_dynamics::{
     Chain, CholeskyMetric, DiffeomorphicFlow, Diffeomorphism, DynamicsError, LyapunovCertificate,
@@ -19,7 +19,7 @@ fn polygon<const N: usize>(corners: [[f64; 2]; N]) -> Vec<Vector2<f64>> {
     corners.map(Vector2::from).to_vec()
 }
 
-/// Out along a wall, around its end, and back on the other side, with legs so far apart (m).
+/// Out along a wall, around its end, and back on the other side; the legs are `apart` metres apart.
 fn hairpin(apart: f64) -> Vec<Vector2<f64>> {
     polygon([[0.0, 0.0], [3.0, 0.0], [3.0, apart], [0.0, apart]])
 }
@@ -37,10 +37,11 @@ fn distance<const D: usize>(point: &SVector<f64, D>, path: &[SVector<f64, D>]) -
     path.windows(2).map(to_side).fold(f64::INFINITY, f64::min)
 }
 
-/// The way of the flow that goes straight to the goal as the map sees it, in steps of 1 cm.
+/// The path of the flow that goes straight to the goal in the chart, in steps of 1 cm.
 struct Descent<const D: usize> {
     positions: Vec<SVector<f64, D>>,
-    /// Angle between the first step and the path, and the largest one between a step and the direction to the goal (degrees).
+    /// Angle between the first step and the path, and the largest angle between a step and the direction to the goal
+    /// (degrees).
     departure: f64,
     widest: f64,
     missed: f64,
@@ -54,7 +55,7 @@ fn descended<const D: usize>(
     let (goal, step) = (path[path.len() - 1], 0.01);
     let identity = CholeskyMetric::identity();
     let flow = DiffeomorphicFlow::in_chart(goal, psi.clone(), identity).unwrap();
-    // V falls at the rate 1, so this many steps are enough; the last ones lead onto the goal itself.
+    // V falls at the rate 1, so this many steps are enough; the last ones end exactly on the goal.
     let steps = (flow.potential(&start) / step).floor() as usize;
     let positions = rollout(&flow, &StableEuler, start, step, steps).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &positions, step).unwrap();
@@ -72,8 +73,8 @@ fn descended<const D: usize>(
     }
 }
 
-/// The figures of a path: straightened to less than 0.3 % of its length on the mean and 1.5 % at
-/// the most; departed from along the path; and walked within 1 % of its length to the goal.
+/// The figures of a path: straightened to a mean residual below 0.3 % of its length and a largest one below 1.5 %. The
+/// flow starts along the path and follows it within 1 % of its length to the goal.
 fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Descent<D> {
     let Straightening {
         chain,
@@ -90,7 +91,7 @@ fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Descent<
     assert!(chain.layers().len() <= LAYERS);
     assert!(mean_residual < 0.003 * whole, "{mean_residual}");
     assert!(largest_residual < 0.015 * whole, "{largest_residual}");
-    // The targets are a straight line, as long as the path up to the corners that the samples cut.
+    // The targets are a straight line, as long as the path minus the corners cut by the samples.
     let line = targets[63] - targets[0];
     assert!((line.norm() / whole - 1.0).abs() < 0.03);
     for (sample, target) in samples.iter().zip(&targets) {
@@ -118,8 +119,8 @@ fn corner_hairpin_curves_and_arc_become_straight_and_are_walked() {
     }));
 }
 
-/// The goal is 1 m away behind a wall: the way to it begins, and goes on for metres, away from it.
-/// No positive-definite matrix alone turns a velocity by more than 90 degrees. From beside the path too it is reached.
+/// The goal is 1 m away behind a wall: the path begins away from it and continues so for metres. A positive-definite
+/// matrix alone never turns a velocity by more than 90 degrees. The goal is also reached from beside the path.
 #[test]
 fn around_the_end_of_a_wall_and_back() {
     let path = hairpin(1.0);
@@ -164,7 +165,7 @@ fn a_straight_path_needs_no_layer() {
 }
 
 #[test]
-fn what_is_no_path_is_refused() {
+fn invalid_paths_are_refused() {
     let refused = |path: &[[f64; 2]]| {
         let path: Vec<_> = path.iter().copied().map(Vector2::from).collect();
         Chain::straightening(&path, 10).unwrap_err()
@@ -178,7 +179,7 @@ fn what_is_no_path_is_refused() {
         length(2, f64::INFINITY)
     );
     assert_eq!(refused(&[[0.0, 0.0], [5e-324, 0.0]]), length(2, 5e-324));
-    // 16 times the distance of the start overflows `f64`; the path itself does not.
+    // 16 times the distance of the start overflows `f64`, but the path itself does not.
     let far = refused(&[[2e307, 0.0], [2e307, 1e300]]);
     assert_eq!(far, length(2, 1e300));
     let infinite = refused(&[[0.0, 0.0], [0.0, f64::INFINITY]]).to_string();

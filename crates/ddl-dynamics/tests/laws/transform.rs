@@ -1,4 +1,4 @@
-//! Metrics made from others stay positive definite and do what they say.
+//! Transformed metrics stay positive definite and have the stated properties.
 
 use ddl_dynamics::{CholeskyMetric, DynamicsError, Real};
 use nalgebra::{DMatrix, Matrix2, SMatrix, Vector2};
@@ -41,12 +41,12 @@ fn slowed_along_a_direction_and_no_more<T: Real, const D: usize>(
 }
 for_every_space!(slowed_along_a_direction_and_no_more, any_scene);
 
-/// `J P J^T` as formed, for maps with a known range of singular values.
+/// `J P J^T` agrees with the formed matrix, for maps with a known range of singular values.
 fn seen_through_a_map<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let Some(u) = scene.unit::<T, D>() else {
         return Ok(());
     };
-    // A reflection, then a shear: singular values between 0.3 and 3.3 or so.
+    // A reflection, then a shear: singular values between about 0.3 and 3.3.
     let mut map = SMatrix::identity() - u * u.transpose() * T::rounded(2.0);
     map[(D - 1, 0)] += T::rounded(0.5);
     let wide = map.map(Real::as_f64);
@@ -95,7 +95,7 @@ fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(
 for_every_space!(no_finite_input_breaks_a_transform, wild_scene);
 
 #[test]
-fn what_cannot_be_done_is_an_error() {
+fn invalid_transforms_are_refused() {
     let metric = CholeskyMetric::<f64, 2>::identity();
     let axis = Vector2::new(1.0, 0.0);
     for share in [0.0, -1.0, 1.5, f64::NAN] {
@@ -114,7 +114,7 @@ fn what_cannot_be_done_is_an_error() {
 
 #[test]
 fn the_smallest_metric_there_is_can_be_slowed() {
-    // The reciprocal of sigma is not a number of f32.
+    // The reciprocal of sigma overflows f32.
     let metric = CholeskyMetric::planar(0.0, 0.0, 0.0, 1e-40_f32).unwrap();
     let slowed = metric.slowed_along(&Vector2::new(1.0, 0.0), 0.5).unwrap();
     assert!(slowed.eigenvalue_range().smallest > 0.0);

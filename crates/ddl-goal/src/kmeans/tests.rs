@@ -1,5 +1,5 @@
-//! k-means against its laws and against scikit-learn.
-#![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
+//! Properties of k-means, and comparison with scikit-learn.
+#![expect(clippy::float_cmp, reason = "the results are exact")]
 
 use super::{Clustering, KMeans};
 use crate::points::squared_distance;
@@ -29,7 +29,7 @@ fn single(clusters: usize, tolerance: f64, max_iterations: usize) -> KMeans {
 }
 
 fn points() -> impl Strategy<Value = Vec<[f64; 2]>> {
-    // Coarse numbers now and then: equal points and ties.
+    // Occasionally coarse numbers: equal points and ties.
     let coordinate = prop_oneof![-10.0..10.0_f64, (-3..3_i32).prop_map(f64::from)];
     prop::collection::vec(prop::array::uniform2(coordinate), 1..120)
 }
@@ -52,7 +52,7 @@ fn as_good_as_scikit_learn() {
             let fitted = KMeans::new(set.clusters, restarts).fit(&set.points, seed);
             fitted.unwrap().inertia
         };
-        // Fit by fit, with the same ten restarts.
+        // Run by run, with the same ten restarts.
         let seeds = set.inertia_of_seeds.len();
         let ours: f64 = (0..seeds as u64).map(|seed| inertia(10, seed)).sum();
         let theirs: f64 = set.inertia_of_seeds.iter().sum();
@@ -60,7 +60,7 @@ fn as_good_as_scikit_learn() {
             ours <= theirs * 1.02,
             "{name}: {ours} against {theirs} of {seeds}"
         );
-        // The best of all: ten fits of ten restarts there, one of a hundred here.
+        // The best of all: ten runs of ten restarts in scikit-learn, one of a hundred here.
         let (found, best) = (inertia(100, 0), set.inertia);
         assert!(found <= best * 1.02, "{name}: {found} against {best}");
     }
@@ -85,7 +85,7 @@ fn fewer_distinct_points_than_clusters_repeat_centres() {
 }
 
 #[test]
-fn a_point_out_of_range_is_named() {
+fn a_point_out_of_range_is_reported() {
     for bad in [f64::NAN, f64::INFINITY, 1e200, 1e150] {
         let error = KMeans::new(1, 1)
             .fit(&[[0.0, 0.0], [0.0, bad]], 0)
@@ -137,10 +137,10 @@ proptest! {
         }
     }
 
-    /// A run ends at the first iteration in which the centres together move by no more than the tolerance says: the squared distances are summed,
-    /// and divided by the mean of the variances of the two coordinates.
+    /// A run ends at the first iteration in which the centres move by at most the tolerance: the sum of their squared
+    /// movements, divided by the mean variance of the two coordinates.
     #[test]
-    fn a_run_ends_where_the_tolerance_says(
+    fn a_run_ends_at_the_tolerance(
         points in prop::collection::vec(prop::array::uniform2(-10.0..10.0_f64), 60..120),
         clusters in 2..8_usize,
         tolerance in prop_oneof![0.0..0.03_f64, 0.03..1.0_f64],

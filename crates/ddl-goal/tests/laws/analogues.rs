@@ -1,6 +1,6 @@
-//! The estimator in the heading frame against its definition (docs/goals.md, "Analogues in the pedestrian's own frame"), written down in numpy
-//! outside this project: `reference/analogues.json` has a library of eight, and what of it two pedestrians get: one who walks and turns, and one
-//! with steps below 0.2 m.
+//! The estimator in the heading frame, against its definition (docs/goals.md, "Analogues in the pedestrian's own
+//! frame") evaluated in numpy outside this project. `reference/analogues.json` has a library of eight tracks and the
+//! results for two pedestrians: one that walks and turns, and one with steps below 0.2 m.
 
 use ddl_goal::{GoalEstimator, GoalEstimatorParams};
 use serde::Deserialize;
@@ -20,7 +20,7 @@ struct Definition {
 struct DefinedPedestrian {
     track: Coefficients,
     analogues: Vec<Analogue>,
-    /// Places of the second analogue's track, carried over, by step.
+    /// Positions of the second analogue's track after the transfer, by step.
     carried: Vec<(usize, [f64; 2])>,
 }
 
@@ -48,7 +48,7 @@ fn of_six(library: &[Coefficients], clusters: usize) -> GoalEstimator {
 }
 
 #[test]
-fn distances_weights_and_ends_are_those_of_the_definition() {
+fn distances_weights_and_endpoints_agree_with_the_definition() {
     let reference = reference();
     let estimator = of_six(&reference.library, 6);
     for pedestrian in reference.pedestrians {
@@ -59,7 +59,7 @@ fn distances_weights_and_ends_are_those_of_the_definition() {
             let expert = set.experts()[k];
             let found = (expert.index, expert.mirrored);
             assert_eq!(found, (analogue.index, analogue.mirrored));
-            // compared in f32
+            // The estimator compares in `f32`.
             assert!((expert.distance - analogue.distance).abs() < 1e-7);
             assert!((set.weights()[k] - analogue.weight).abs() < 1e-5);
             assert!(distance(set.goals()[k], analogue.end) < 1e-8, "{set:?}");
@@ -103,7 +103,7 @@ fn equal_analogues_weigh_the_same() {
     let params = GoalEstimatorParams::default().clusters(3);
     let library = [3.0, 0.0, -3.0].map(turned).to_vec();
     let set = estimator(params, library).estimate(&turned(0.0)).unwrap();
-    // each is there with its mirror image
+    // Each is present with its mirror image.
     for weight in set.weights() {
         assert!((weight - 1.0 / 3.0).abs() < 1e-12, "{set:?}");
     }

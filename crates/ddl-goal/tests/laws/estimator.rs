@@ -1,4 +1,4 @@
-//! The estimator on synthetic pedestrians: what it may read, what it depends on, what it returns.
+//! The estimator on synthetic pedestrians: what it reads, what it depends on, what it returns.
 
 use ddl_goal::{
     ExpertLibrary, GoalError, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan, TrackError,
@@ -55,7 +55,7 @@ proptest! {
     }
 
     #[test]
-    fn always_as_many_goals_as_asked_with_weights_that_sum_to_1(
+    fn the_number_of_goals_is_the_requested_one_and_weights_sum_to_1(
         speed in prop_oneof![Just(0.0), 0.0..1.6_f64], heading in -3.0..3.0_f64,
         clusters in 1..40_usize,
     ) {
@@ -79,7 +79,8 @@ proptest! {
     fn goals_move_with_the_pedestrian(
         speed in 0.0..1.6_f64, heading in -3.0..3.0_f64, by in prop::array::uniform2(-8_i32..8),
     ) {
-        // Whole steps of 1/8 m move coordinates on a grid of 1/1024 m without rounding: the velocities keep every bit.
+        // Whole steps of 1/8 m move coordinates on a grid of 1/1024 m without rounding, so the velocities keep every
+        // bit.
         let grid = |v: f64| (v * 1024.0).round() / 1024.0;
         let track: Positions = walk(speed, heading, 0.0).iter().map(|p| p.map(grid)).collect();
         let by = by.map(|v| f64::from(v) / 8.0);
@@ -118,7 +119,8 @@ fn a_pedestrian_finds_itself_and_goals_near_where_it_goes() {
         let estimator = estimator(params);
         let track = estimator.library().tracks()[237].clone();
         let goals = estimator.estimate(&track).unwrap();
-        // In its own frame a pedestrian is like itself, and like whoever walks the same way elsewhere or mirrored.
+        // In its own frame a pedestrian resembles itself, and every pedestrian that walks the same way elsewhere or
+        // mirrored.
         let mut itself = goals.experts().iter().take_while(|e| e.distance == 0.0);
         assert!(itself.any(|e| (e.index, e.mirrored) == (237, false)));
         let nearest = goals.goals()[goals.nearest(track[19])];
@@ -128,7 +130,7 @@ fn a_pedestrian_finds_itself_and_goals_near_where_it_goes() {
 }
 
 #[test]
-fn alone_or_in_a_batch_on_any_number_of_threads() {
+fn results_do_not_depend_on_batches_or_threads() {
     let track = |i: u32| walk(0.05 * f64::from(i), 0.2 * f64::from(i), 0.01);
     let tracks: Vec<Positions> = (0..30).map(track).collect();
     for params in both_frames() {
@@ -170,9 +172,9 @@ fn the_seed_decides_in_the_frame_of_the_world_only() {
     assert!(world.iter().all(|set| set.experts() == world[0].experts()));
 }
 
-/// A rounding error may change the order of two equally near experts, or a tie of k-means, for a pedestrian here and there.
+/// A rounding error may change the order of two equally near experts, or a tie of k-means, for a few pedestrians.
 #[test]
-fn a_rounding_error_moves_goals_by_as_much() {
+fn rounding_errors_move_goals_only_slightly() {
     for params in both_frames() {
         let estimator = estimator(params);
         let mut moved = 0;
@@ -192,7 +194,7 @@ fn a_rounding_error_moves_goals_by_as_much() {
 }
 
 #[test]
-fn bad_input_is_refused_by_name() {
+fn invalid_input_is_reported() {
     let params = GoalEstimatorParams::published().experts(401);
     let library_of = ExpertLibrary::new(library(), 0.4).unwrap();
     let error = GoalEstimator::new(params.check().unwrap(), library_of).unwrap_err();
@@ -201,7 +203,7 @@ fn bad_input_is_refused_by_name() {
 
     let estimator = estimator(GoalEstimatorParams::default());
     let track = walk(1.0, 0.0, 0.0);
-    // In its own frame a pedestrian makes do with fewer.
+    // The heading frame accepts fewer tracks.
     let all = GoalEstimatorParams::default().experts(1_000);
     let goals = tracks::estimator(all, library()).estimate(&track);
     assert_eq!(goals.unwrap().goals().len(), 20);

@@ -1,4 +1,4 @@
-//! A pedestrian's own frame: what turning, moving and mirroring the scene does to it.
+//! The heading frame under rotation, translation and mirroring of the scene.
 
 use ddl_goal::{HeadingFrame, TrackError};
 use proptest::prelude::*;
@@ -26,7 +26,7 @@ fn motion() -> impl Strategy<Value = SceneMotion> {
         .prop_map(|(angle, by)| SceneMotion { angle, by })
 }
 
-/// 8 positions of somebody whose steps are up to 0.8 m long.
+/// 8 positions of a pedestrian with steps of up to 0.8 m.
 fn observed() -> impl Strategy<Value = Positions> {
     let step = prop::array::uniform2(-0.8..0.8_f64);
     let scale = prop_oneof![Just(1.0), Just(0.05)];
@@ -40,7 +40,7 @@ fn observed() -> impl Strategy<Value = Positions> {
     })
 }
 
-/// Whether the heading is far enough from the place where none exists.
+/// Whether the heading is well defined.
 fn has_heading(track: &[[f64; 2]]) -> bool {
     let (last, before, first) = (track[7], track[6], track[0]);
     let step = distance(last, before);
@@ -53,7 +53,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    fn there_and_back(track in observed(), point in prop::array::uniform2(-1e3..1e3_f64)) {
+    fn transforms_are_inverse(track in observed(), point in prop::array::uniform2(-1e3..1e3_f64)) {
         let frame = HeadingFrame::new(&track)?;
         prop_assert!(distance(frame.to_world(frame.to_frame(point)), point) < 1e-12 * 1e3);
         prop_assert!(distance(frame.to_frame(frame.to_world(point)), point) < 1e-12 * 1e3);
@@ -63,7 +63,7 @@ proptest! {
     }
 
     #[test]
-    fn whoever_steps_out_heads_where_the_last_step_led(track in observed()) {
+    fn a_long_last_step_is_the_heading(track in observed()) {
         prop_assume!(distance(track[6], track[7]) > 0.2);
         let frame = HeadingFrame::new(&track)?;
         let [ahead, left] = frame.to_frame(track[6]);
@@ -94,17 +94,17 @@ proptest! {
 }
 
 #[test]
-fn who_stands_keeps_the_axes_of_the_world() {
+fn a_standing_pedestrian_has_the_axes_of_the_world() {
     let frame = HeadingFrame::new(&[[5.0, 6.0]; 8]).unwrap();
     assert_eq!((frame.origin(), frame.heading()), ([5.0, 6.0], [1.0, 0.0]));
-    // Who stopped still faces where it walked.
+    // A pedestrian that stopped still faces its last walking direction.
     let mut stopped: Positions = (0..7).map(|i| [0.0, 0.1 * f64::from(i)]).collect();
     stopped.push(stopped[6]);
     assert_eq!(HeadingFrame::new(&stopped).unwrap().heading(), [0.0, 1.0]);
 }
 
 #[test]
-fn bad_positions_are_refused_by_name() {
+fn invalid_positions_are_reported() {
     let refused = |positions: &[[f64; 2]]| HeadingFrame::new(positions).unwrap_err();
     let (found, needed) = (1, 2);
     assert_eq!(

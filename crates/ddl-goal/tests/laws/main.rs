@@ -1,9 +1,9 @@
-//! The goals of a pedestrian: laws, and numbers computed outside this project.
+//! Goals: properties, and comparison with numbers computed outside this project.
 #![allow(
     clippy::unwrap_used,
     clippy::float_cmp,
     clippy::print_stdout,
-    reason = "a test may panic, claims exact values, and says what it measured"
+    reason = "a test may panic, compare exact values, and print its measurements"
 )]
 
 mod analogues;

@@ -1,4 +1,4 @@
-//! Goals that stand for given ends.
+//! Goals from given endpoints.
 
 use ddl_goal::{GoalError, GoalSet, HeadingFrame};
 use proptest::prelude::*;
@@ -36,7 +36,7 @@ proptest! {
             let distance = mean_distance(&set, &ends, &weights);
             last = distance;
         }
-        prop_assert!(last < 1e-9, "as many goals as ends, and yet {} away", last);
+        prop_assert!(last < 1e-9, "one goal per endpoint, but {} m away", last);
     }
 
     #[test]
@@ -69,7 +69,7 @@ fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
 }
 
 #[test]
-fn what_cannot_be_chosen_from_is_named() {
+fn invalid_endpoints_are_reported() {
     let of = |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::of_ends(
         &frame(),
         ends,
@@ -80,13 +80,13 @@ fn what_cannot_be_chosen_from_is_named() {
         other => panic!("{other:?}"),
     };
     let end = [[1.0, 1.0]];
-    assert!(of(&[], &[], 3).contains("0 ends"));
-    assert!(of(&end, &[0.5, 0.5], 3).contains("1 ends with 2 weights"));
+    assert!(of(&[], &[], 3).contains("0 endpoints"));
+    assert!(of(&end, &[0.5, 0.5], 3).contains("1 endpoints with 2 weights"));
     assert!(of(&end, &[1.0], 0).contains("0 goals"));
     assert!(of(&end, &[0.0], 3).contains("not all 0"));
     assert!(of(&[end[0], end[0]], &[-1.0, 2.0], 3).contains("not negative"));
     assert!(of(&end, &[f64::NAN], 3).contains("NaN"));
     assert!(of(&end, &[f64::INFINITY], 3).contains("inf"));
-    assert!(of(&[[f64::NAN, 0.0]], &[1.0], 3).contains("end 0"));
-    assert!(of(&[[1e300, 0.0]], &[1.0], 3).contains("end 0"));
+    assert!(of(&[[f64::NAN, 0.0]], &[1.0], 3).contains("endpoint 0"));
+    assert!(of(&[[1e300, 0.0]], &[1.0], 3).contains("endpoint 0"));
 }

@@ -1,4 +1,4 @@
-//! The published estimator on the real recordings, against what its own code returned.
+//! The published estimator on the real recordings, against the results of its own code.
 
 use std::collections::BTreeMap;
 
@@ -44,8 +44,8 @@ fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEst
     estimator(params, tracks.collect())
 }
 
-/// The published library lacks up to 256 random pedestrians of the last, incomplete batch and a few windows at the ends of
-/// recordings. So a published distance is one of ours, at its own rank or a few ranks further on, never before.
+/// The published library lacks up to 256 random pedestrians of the last, incomplete batch, and a few windows at the
+/// ends of recordings. So a published distance is one of ours, at the same rank or a few ranks later, never before.
 #[test]
 fn expert_distances_are_the_published_ones() {
     const FURTHER: usize = 8;
@@ -70,7 +70,7 @@ fn expert_distances_are_the_published_ones() {
             let track = &windows[&(pedestrian.start_frame, pedestrian.pedestrian)];
             let goals = estimator.estimate(track).unwrap();
             for (&rank, expected) in &pedestrian.distance_rank {
-                // The published distances are formed in f32 from values near 10 m²/s².
+                // The published distances are computed in `f32` from values near 10 m²/s².
                 let agrees = |expert: &Expert| (expert.distance - expected).abs() < 3e-6;
                 let ranks = &goals.experts()[rank - 1..rank + FURTHER];
                 assert!(
@@ -90,7 +90,7 @@ fn expert_distances_are_the_published_ones() {
             same_rank > 120,
             "{fold}: only {same_rank} of 200 distances have their own rank"
         );
-        // k-means draws other random numbers: single goals differ, their mean quality does not.
+        // k-means draws other random numbers: single goals differ, but not their mean quality.
         assert!(
             (error - published_error).abs() < 0.04,
             "{fold}: {error} m, {published_error} m"
@@ -121,9 +121,9 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
     );
 }
 
-/// The library and the pedestrians are of recordings that meet in no street: students, and shoppers elsewhere.
+/// The library and the pedestrians are from recordings of different streets: students, and shoppers elsewhere.
 #[test]
-fn in_their_own_frame_pedestrians_of_one_street_tell_about_those_of_another() {
+fn the_heading_frame_transfers_between_streets() {
     let Some(dataset) = recordings() else {
         return;
     };

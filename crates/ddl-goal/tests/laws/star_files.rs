@@ -1,4 +1,4 @@
-//! The real recordings, and goals measured on them.
+//! The real recordings, and goal errors on them.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ pub(crate) fn dataset() -> Result<Dataset, DataError> {
     Dataset::load(Convention::Star, &locate(Convention::Star, None)?)
 }
 
-/// The 20 positions (m) of a pedestrian from a start frame on.
+/// The 20 positions (m) of pedestrians, by start frame and pedestrian.
 pub(crate) type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
 
 pub(crate) fn tracks_of<'a>(windows: impl IntoIterator<Item = &'a Window>) -> StarWindows {
@@ -20,7 +20,7 @@ pub(crate) fn tracks_of<'a>(windows: impl IntoIterator<Item = &'a Window>) -> St
     windows.into_iter().flat_map(each).collect()
 }
 
-/// Distance from the goal nearest the true end to it (m).
+/// Distance from the true endpoint to the nearest goal (m).
 pub(crate) fn goal_error(goals: &GoalSet, track: &[[f64; 2]]) -> f64 {
     let goal = goals.goals()[goals.nearest(track[19])];
     (goal[0] - track[19][0]).hypot(goal[1] - track[19][1])

@@ -1,10 +1,10 @@
-//! What the tests share: tracks of pedestrians who walk evenly.
+//! Synthetic tracks for the tests.
 
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
 
 pub(crate) type Positions = Vec<[f64; 2]>;
 
-/// 20 positions (m), 0.4 s apart, of somebody who turns by `turn` (rad) at each step.
+/// 20 positions (m), 0.4 s apart, of a pedestrian that turns by `turn` (rad) at each step.
 pub(crate) fn walk(speed: f64, heading: f64, turn: f64) -> Positions {
     let mut position = [3.0 * heading, -speed];
     (0..20)

@@ -5,7 +5,7 @@ use ddl_data::{PedestrianId, Position};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-pub type People = Vec<(PedestrianId, Position)>;
+pub type Pedestrians = Vec<(PedestrianId, Position)>;
 
 pub struct Crowd {
     rng: ChaCha8Rng,
@@ -22,13 +22,13 @@ struct Pedestrian {
 }
 
 impl Crowd {
-    pub fn new(seed: u64, people: usize) -> Self {
+    pub fn new(seed: u64, count: usize) -> Self {
         let mut crowd = Self {
             rng: ChaCha8Rng::seed_from_u64(seed),
             next_id: 0,
             pedestrians: Vec::new(),
         };
-        for _ in 0..people {
+        for _ in 0..count {
             let mut pedestrian = crowd.pedestrian();
             pedestrian.steps_left = 1 + (crowd.random() * 40.0) as usize;
             crowd.pedestrians.push(pedestrian);
@@ -36,7 +36,7 @@ impl Crowd {
         crowd
     }
 
-    /// In 0..1.
+    /// A random number in 0..1.
     pub fn random(&mut self) -> f64 {
         self.rng.random()
     }
@@ -55,8 +55,8 @@ impl Crowd {
         }
     }
 
-    /// Everybody a step of 0.4 s later.
-    pub fn step(&mut self) -> People {
+    /// All pedestrians one step of 0.4 s later.
+    pub fn step(&mut self) -> Pedestrians {
         for index in 0..self.pedestrians.len() {
             let turn = 0.1 * (self.random() - 0.5);
             let pedestrian = &mut self.pedestrians[index];
@@ -68,8 +68,8 @@ impl Crowd {
                 self.pedestrians[index] = self.pedestrian();
             }
         }
-        let people = self.pedestrians.iter();
-        people
+        self.pedestrians
+            .iter()
             .map(|pedestrian| (PedestrianId(pedestrian.id), pedestrian.position))
             .collect()
     }

@@ -1,4 +1,4 @@
-//! A full memory: never above its capacity, and the newest stay.
+//! A full memory: never above its capacity, and it keeps the newest tracks.
 
 use crate::{crowd::Crowd, memory_of, queries};
 use ddl_data::{OBSERVED, PedestrianId, Position};
@@ -12,9 +12,9 @@ proptest! {
     fn the_capacity_is_never_exceeded(frames in crate::crowds(), capacity in 1..200_usize) {
         let mut memory = SceneMemory::new(crate::step_of(&frames), capacity).unwrap();
         let mut whole = SceneMemory::new(crate::step_of(&frames), 20_000).unwrap();
-        for (frame, people) in &frames {
-            memory.observe(*frame, people.clone()).unwrap();
-            whole.observe(*frame, people.clone()).unwrap();
+        for (frame, pedestrians) in &frames {
+            memory.observe(*frame, pedestrians.clone()).unwrap();
+            whole.observe(*frame, pedestrians.clone()).unwrap();
             prop_assert!(memory.stretches() <= capacity);
         }
         if whole.stretches() <= capacity {
@@ -30,8 +30,8 @@ proptest! {
 
 fn walk(memory: &mut SceneMemory, first: i64, y: f64) {
     for t in 0..20 {
-        let people = [(PedestrianId(first), [0.5 * t as f64, y])];
-        memory.observe(first + t, people).unwrap();
+        let pedestrians = [(PedestrianId(first), [0.5 * t as f64, y])];
+        memory.observe(first + t, pedestrians).unwrap();
     }
 }
 
@@ -39,9 +39,9 @@ fn observed(y: f64) -> [Position; OBSERVED] {
     std::array::from_fn(|t| [0.5 * t as f64, y])
 }
 
-/// Many take one way and one takes another: of the many the oldest go, and the one stays.
+/// Many take one path and one pedestrian takes another: of the many the oldest are removed, and the one stays.
 #[test]
-fn what_newer_tracks_repeat_goes_first_and_of_it_the_oldest() {
+fn repeated_tracks_are_removed_first_oldest_first() {
     let mut memory = SceneMemory::new(1, 64).unwrap();
     walk(&mut memory, 0, 100.0);
     for pedestrian in 1..200 {
@@ -59,9 +59,9 @@ fn what_newer_tracks_repeat_goes_first_and_of_it_the_oldest() {
     assert_eq!(memory.recall(&observed(100.0), None, 12).len(), 1);
 }
 
-/// Everybody takes a way of their own.
+/// Every pedestrian takes a different path.
 #[test]
-fn where_nothing_is_repeated_the_oldest_go() {
+fn without_repetition_the_oldest_tracks_are_removed() {
     let mut memory = SceneMemory::new(1, 64).unwrap();
     for pedestrian in 0..100 {
         walk(&mut memory, 100 * pedestrian, 10.0 * pedestrian as f64);
@@ -76,9 +76,9 @@ fn where_nothing_is_repeated_the_oldest_go() {
     assert_eq!(held.len(), memory.stretches());
 }
 
-/// 60 stand for ten minutes, with a tracker that trembles by some centimetres; one of them goes away at last.
+/// 60 pedestrians stand for ten minutes, with tracker noise of some centimetres; one of them leaves at the end.
 #[test]
-fn who_stands_does_not_push_out_who_passed() {
+fn standing_pedestrians_do_not_displace_passing_ones() {
     let mut memory = SceneMemory::new(1, 2_500).unwrap();
     for pedestrian in 0..900 {
         walk(
@@ -112,7 +112,7 @@ fn who_stands_does_not_push_out_who_passed() {
 }
 
 #[test]
-fn who_roams_for_hours_does_not_fill_a_memory() {
+fn a_pedestrian_walking_about_for_hours_does_not_fill_a_memory() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
     walk(&mut memory, -100, 3.0);
     for frame in 0..20_000 {
@@ -136,9 +136,9 @@ fn who_roams_for_hours_does_not_fill_a_memory() {
     assert_eq!(summary.extent, Some([[0.0, 0.0], [9_999.5, 3.0]]));
 }
 
-/// As many running tracks as there are people, who all stay.
+/// As many running tracks as pedestrians, and all pedestrians stay.
 #[test]
-fn where_all_are_there_the_longest_track_gives_way() {
+fn if_all_tracks_are_running_the_longest_is_shortened() {
     let mut crowd = Crowd::new(4, 30);
     let still = crowd.step();
     let mut memory = SceneMemory::new(1, 100).unwrap();

@@ -1,4 +1,4 @@
-//! A file gives back what was written, or is refused.
+//! A file restores the written memory, or is refused.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ fn read(path: &Path, bytes: &[u8]) -> Result<SceneMemory, String> {
     SceneMemory::read(path).map_err(|error| error.to_string())
 }
 
-/// The content with a first line that fits, as somebody would who edits it.
+/// The content with a matching first line, as after a careful edit.
 fn signed(content: &[u8]) -> Vec<u8> {
     use sha2::Digest as _;
     let digest = sha2::Sha256::digest(content);
@@ -42,11 +42,11 @@ proptest! {
         for (id, observed) in queries(&frames) {
             prop_assert_eq!(read.recall(&observed, Some(id), 12), memory.recall(&observed, Some(id), 12));
         }
-        // and both go on alike
+        // Both continue identically.
         let last = frames[frames.len() - 1].0;
-        for (frame, people) in &frames {
-            memory.observe(last + 1 + frame, people.clone()).unwrap();
-            read.observe(last + 1 + frame, people.clone()).unwrap();
+        for (frame, pedestrians) in &frames {
+            memory.observe(last + 1 + frame, pedestrians.clone()).unwrap();
+            read.observe(last + 1 + frame, pedestrians.clone()).unwrap();
         }
         prop_assert_eq!(&read, &memory);
         memory.interrupt();
@@ -61,7 +61,7 @@ proptest! {
         prop_assert!(read(&path, &signed(&bytes)).is_err());
     }
 
-    /// Numbers of the content replaced where the digest fits: an error, or a memory that works.
+    /// Numbers of the content are replaced and the digest is updated: an error, or a memory that works.
     #[test]
     fn edited_files_do_no_harm(
         at in any::<prop::sample::Index>(),
@@ -81,8 +81,8 @@ proptest! {
         let end = content[start..].find(|c| !is_digit(c)).map_or(content.len(), |length| start + length);
         let edited = [&content[..start], number, &content[end..]].concat();
         if let Ok(mut memory) = read(&path, &signed(edited.as_bytes())) {
-            for (frame, people) in &frames {
-                let _ = memory.observe(1_000 + frame, people.clone());
+            for (frame, pedestrians) in &frames {
+                let _ = memory.observe(1_000 + frame, pedestrians.clone());
                 prop_assert!(memory.stretches() <= memory.capacity());
             }
             for (id, observed) in queries(&frames) {
@@ -101,9 +101,9 @@ fn damaged_files_are_refused() {
     let whole = std::fs::read(&path).unwrap();
     for length in 0..whole.len() {
         let error = read(&path, &whole[..length]).unwrap_err();
-        let says = "gate.memory is not a scene memory";
+        let says = "gate.memory is not a readable scene memory";
         assert!(
-            error.contains(says) && error.contains("Put back a copy"),
+            error.contains(says) && error.contains("Restore a copy"),
             "{error}"
         );
         if length >= HEAD {
@@ -131,7 +131,7 @@ fn damaged_files_are_refused() {
     ));
 }
 
-/// What the digest does not tell, because whoever edited the file made it anew.
+/// Invalid content that the digest does not reveal, because it was computed again after the edit.
 #[test]
 fn impossible_memories_are_refused() {
     let (_folder, path) = folder();

@@ -1,4 +1,4 @@
-//! Nothing that was not observed yet is in an answer.
+//! Answers never contain unobserved data.
 
 use crate::{Frames, frames, memory_of, queries, step_of};
 use ddl_data::{PedestrianId, Remembered, WINDOW};
@@ -7,8 +7,8 @@ use ddl_memory::SceneMemory;
 /// The same frames with other positions from an index on.
 fn with_noise_from(frames: &Frames, from: usize) -> Frames {
     let mut noisy = frames.clone();
-    for (index, (frame, people)) in noisy.iter_mut().enumerate().skip(from) {
-        for (id, position) in people {
+    for (index, (frame, pedestrians)) in noisy.iter_mut().enumerate().skip(from) {
+        for (id, position) in pedestrians {
             let noise = ((*frame * 31 + id.0 * 17) % 23) as f64 - 11.0 + index as f64 * 0.01;
             *position = [position[0] + noise, noise];
         }
@@ -23,8 +23,8 @@ fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<Remembered>> {
         .collect()
 }
 
-/// Whether what a memory answers after the frames before `end` depends on a later one, or shows one. `fed` makes the
-/// memory that answers then.
+/// Whether the answer of a memory after the frames before `end` depends on a later frame or shows one. `fed` creates
+/// the memory that answers.
 fn sees_the_future(
     fed: impl Fn(&Frames, usize) -> SceneMemory,
     frames: &Frames,
@@ -35,12 +35,12 @@ fn sees_the_future(
     let was_seen = |person: PedestrianId, track: &[[f64; 2]; WINDOW]| {
         now.windows(WINDOW).any(|window| {
             let mut pairs = window.iter().zip(track);
-            pairs.all(|((_, people), position)| people.contains(&(person, *position)))
+            pairs.all(|((_, pedestrians), position)| pedestrians.contains(&(person, *position)))
         })
     };
     let examples = found.iter().flatten();
-    let mut people = now.iter().flat_map(|(_, people)| people);
-    let mut ids: Vec<PedestrianId> = people.by_ref().map(|(id, _)| *id).collect();
+    let mut pedestrians = now.iter().flat_map(|(_, pedestrians)| pedestrians);
+    let mut ids: Vec<PedestrianId> = pedestrians.by_ref().map(|(id, _)| *id).collect();
     ids.sort_unstable();
     ids.dedup();
     let mut tracks = examples.map(|example| &example.track);
@@ -55,12 +55,12 @@ fn a_memory_does_not_see_the_future() {
         let frames = frames(seed, 12, 90, 5);
         let mut grown = memory_of(&frames[..25].to_vec(), 500);
         for end in (30..85).step_by(5) {
-            for (frame, people) in &frames[end - 5..end] {
-                grown.observe(*frame, people.clone()).unwrap();
+            for (frame, pedestrians) in &frames[end - 5..end] {
+                grown.observe(*frame, pedestrians.clone()).unwrap();
             }
             let honest = |frames: &Frames, end: usize| memory_of(&frames[..end].to_vec(), 500);
             assert!(!sees_the_future(honest, &frames, end), "seed {seed}, {end}");
-            // a memory that is one frame (0.4 s) ahead
+            // A memory that is one frame (0.4 s) ahead.
             let ahead = |frames: &Frames, end: usize| memory_of(&frames[..=end].to_vec(), 500);
             noticed += usize::from(sees_the_future(ahead, &frames, end));
             let recalled = answers(&honest(&frames, end), &frames[..end].to_vec());
@@ -70,9 +70,9 @@ fn a_memory_does_not_see_the_future() {
     }
     assert!(
         noticed > 60,
-        "of 88 memories that are ahead {noticed} were noticed"
+        "{noticed} of 88 memories that are ahead were detected"
     );
-    assert!(examples > 1_000, "{examples} examples looked at");
+    assert!(examples > 1_000, "only {examples} examples");
 }
 
 #[test]
@@ -82,8 +82,8 @@ fn what_comes_later_does_not_change_a_clone() {
     let mut memory = memory_of(&now, 300);
     let before = memory.clone();
     let answered = answers(&before, &now);
-    for (frame, people) in &later[70..] {
-        memory.observe(*frame, people.clone()).unwrap();
+    for (frame, pedestrians) in &later[70..] {
+        memory.observe(*frame, pedestrians.clone()).unwrap();
     }
     assert_eq!(answers(&before, &now), answered);
     assert_ne!(answers(&memory, &now), answered);

@@ -1,4 +1,4 @@
-//! What a scene memory must satisfy whatever it sees.
+//! Properties of a scene memory for arbitrary crowds.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 #[path = "../crowd/mod.rs"]
@@ -10,21 +10,21 @@ mod future;
 mod recall;
 mod refused;
 
-use crowd::{Crowd, People};
+use crowd::{Crowd, Pedestrians};
 use ddl_data::{OBSERVED, PedestrianId, Position};
 use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 
-/// Frames and who was where in them.
-type Frames = Vec<(i64, People)>;
+/// Frames with the pedestrians and positions in them.
+type Frames = Vec<(i64, Pedestrians)>;
 
-/// A crowd of which some are missed now and then, and whose ids are used again.
-fn frames(seed: u64, people: usize, steps: usize, frame_step: i64) -> Frames {
-    let mut crowd = Crowd::new(seed, people);
+/// A crowd in which some pedestrians are missed occasionally, and ids are used again.
+fn frames(seed: u64, pedestrians: usize, steps: usize, frame_step: i64) -> Frames {
+    let mut crowd = Crowd::new(seed, pedestrians);
     let mut frame = |step: usize| {
         let mut seen = crowd.step();
         for (id, _) in &mut seen {
-            id.0 %= 3 * people as i64;
+            id.0 %= 3 * pedestrians as i64;
         }
         seen.retain(|_| crowd.random() > 0.02);
         (step as i64 * frame_step, seen)
@@ -34,7 +34,7 @@ fn frames(seed: u64, people: usize, steps: usize, frame_step: i64) -> Frames {
 
 fn crowds() -> impl Strategy<Value = Frames> {
     let sizes = (any::<u64>(), 1..12_usize, 1..120_usize, 1..12_i64);
-    sizes.prop_map(|(seed, people, steps, step)| frames(seed, people, steps, step))
+    sizes.prop_map(|(seed, pedestrians, steps, step)| frames(seed, pedestrians, steps, step))
 }
 
 fn step_of(frames: &Frames) -> i64 {
@@ -43,22 +43,27 @@ fn step_of(frames: &Frames) -> i64 {
 
 fn memory_of(frames: &Frames, capacity: usize) -> SceneMemory {
     let mut memory = SceneMemory::new(step_of(frames), capacity).unwrap();
-    for (frame, people) in frames {
-        memory.observe(*frame, people.clone()).unwrap();
+    for (frame, pedestrians) in frames {
+        memory.observe(*frame, pedestrians.clone()).unwrap();
     }
     memory
 }
 
-/// Where those of the last frame were at the last 8, as the memory is asked.
+/// The last 8 positions of the pedestrians in the last frame, as queries.
 fn queries(frames: &Frames) -> Vec<(PedestrianId, [Position; OBSERVED])> {
     let last = &frames[frames.len().saturating_sub(OBSERVED)..];
-    let place = |people: &People, id| people.iter().find(|seen| seen.0 == id).map(|seen| seen.1);
+    let place = |pedestrians: &Pedestrians, id| {
+        pedestrians
+            .iter()
+            .find(|seen| seen.0 == id)
+            .map(|seen| seen.1)
+    };
     let query = |&(id, _): &(PedestrianId, Position)| {
         let observed: Option<Vec<Position>> =
             last.iter().map(|(_, seen)| place(seen, id)).collect();
         Some((id, observed?.try_into().ok()?))
     };
-    last.last().map_or(Vec::new(), |(_, people)| {
-        people.iter().filter_map(query).collect()
+    last.last().map_or(Vec::new(), |(_, pedestrians)| {
+        pedestrians.iter().filter_map(query).collect()
     })
 }

@@ -1,4 +1,4 @@
-//! A recall against all stretches looked at one by one, and what must not change it.
+//! Recall against a search through all stretches, and changes that must not affect it.
 
 use std::collections::BTreeMap;
 
@@ -9,13 +9,13 @@ use proptest::prelude::*;
 
 type Stretch = [Position; WINDOW];
 
-/// Every pedestrian's stretches, by id and the frame of the first sight; and whether the track runs on.
+/// The stretches of every pedestrian, by id and frame of the first observation; and whether the track is running.
 fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
     let (step, now) = (step_of(frames), frames[frames.len() - 1].0);
     let mut tracks: BTreeMap<(PedestrianId, i64), BTreeMap<i64, Position>> = BTreeMap::new();
     let mut current: BTreeMap<PedestrianId, (i64, i64)> = BTreeMap::new();
-    for (frame, people) in frames {
-        for (id, position) in people {
+    for (frame, pedestrians) in frames {
+        for (id, position) in pedestrians {
             let (first, last) = current.entry(*id).or_insert((*frame, *frame));
             if frame - *last > LONGEST_ABSENCE * step {
                 *first = *frame;
@@ -51,7 +51,7 @@ fn distance(a: &[Position], b: &[Position]) -> f64 {
         + squared(between(velocity(a, 0), velocity(b, 0)), 0.6)
 }
 
-/// The least distance of each pedestrian but `own`, in order, below the farthest.
+/// The smallest distance of each pedestrian except `own`, in order, below the limit.
 fn reference(
     frames: &Frames,
     observed: &[Position; OBSERVED],
@@ -82,7 +82,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn a_recall_is_what_all_stretches_give(frames in crate::crowds(), count in 0..20_usize) {
+    fn a_recall_agrees_with_a_search_through_all_stretches(frames in crate::crowds(), count in 0..20_usize) {
         let memory = memory_of(&frames, SceneMemory::DEFAULT_CAPACITY);
         let all: Vec<Stretch> = stretches(&frames).into_iter().flat_map(|track| track.2).collect();
         prop_assert_eq!(memory.stretches(), all.len());
@@ -104,15 +104,15 @@ proptest! {
     fn the_order_of_people_does_not_matter(frames in crate::crowds(), seed in any::<u64>()) {
         let memory = memory_of(&frames, 100);
         let mut shuffled = frames.clone();
-        for (frame, people) in &mut shuffled {
-            people.sort_by_key(|(id, _)| (id.0 as u64 + *frame as u64).wrapping_mul(seed | 1));
+        for (frame, pedestrians) in &mut shuffled {
+            pedestrians.sort_by_key(|(id, _)| (id.0 as u64 + *frame as u64).wrapping_mul(seed | 1));
         }
         prop_assert_eq!(memory_of(&shuffled, 100), memory);
     }
 
-    /// Coordinates of UTM, of which an `f32` would know half a metre; and an origin that was wrong at first.
+    /// UTM coordinates, of which an `f32` resolves only half a metre; and an origin that is corrected later.
     #[test]
-    fn far_from_the_origin_nothing_is_lost(
+    fn recall_is_exact_far_from_the_origin(
         mut frames in crate::crowds(),
         far in (-9.9e6..9.9e6, -9.9e6..9.9e6),
     ) {
@@ -120,7 +120,7 @@ proptest! {
         frames[0].1.push((first, [0.0; 2]));
         let memory = memory_of(&frames, 1_000);
         let mut moved = frames.clone();
-        for (_, position) in moved.iter_mut().flat_map(|(_, people)| people).filter(|seen| seen.0 != first) {
+        for (_, position) in moved.iter_mut().flat_map(|(_, pedestrians)| pedestrians).filter(|seen| seen.0 != first) {
             *position = [position[0] + far.0, position[1] + far.1];
         }
         let there = memory_of(&moved, 1_000);
@@ -131,15 +131,15 @@ proptest! {
     }
 }
 
-/// Five who walk alike: two ended, one of them with the id of the one who asks.
+/// Five pedestrians that walk alike: two tracks have ended, one of them with the id of the query.
 #[test]
 fn only_the_running_track_is_left_out() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
     let at = |t: i64| [0.5 * t as f64, 0.0];
     for (first, ids) in [(0, [4, 3].as_slice()), (100, &[3, 1, 2])] {
         for t in 0..22 {
-            let people = ids.iter().map(|&id| (PedestrianId(id), at(t)));
-            memory.observe(first + t, people).unwrap();
+            let pedestrians = ids.iter().map(|&id| (PedestrianId(id), at(t)));
+            memory.observe(first + t, pedestrians).unwrap();
         }
     }
     let observed: [Position; OBSERVED] = std::array::from_fn(|t| at(t as i64 + 1));
@@ -154,7 +154,7 @@ fn only_the_running_track_is_left_out() {
     assert!(unlike.is_empty());
 }
 
-/// A tracker whose origin is corrected while somebody walks: before and after, as exact as anywhere.
+/// A tracker whose origin is corrected while a pedestrian walks: the accuracy is the same before and after.
 #[test]
 fn a_jump_of_the_tracker_costs_no_precision() {
     for far in [40.0, 5e3, 9.9e6] {
@@ -179,14 +179,14 @@ fn a_jump_of_the_tracker_costs_no_precision() {
     }
 }
 
-/// Two who walked a millimetre to the left and to the right of the one who asks.
+/// Two pedestrians that walked a millimetre to the left and to the right of the query.
 #[test]
 fn ties_go_by_age() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
     for (first, id, y) in [(0, 9, 0.001), (100, 2, -0.001)] {
         for t in 0..20 {
-            let people = [(PedestrianId(id), [0.5 * t as f64, y])];
-            memory.observe(first + t, people).unwrap();
+            let pedestrians = [(PedestrianId(id), [0.5 * t as f64, y])];
+            memory.observe(first + t, pedestrians).unwrap();
         }
     }
     let observed = std::array::from_fn(|t| [0.5 * t as f64, 0.0]);
@@ -198,14 +198,14 @@ fn ties_go_by_age() {
     assert_eq!((sides(1), sides(2)), (vec![true], vec![true, false]));
 }
 
-/// A camera of ten frames a step: of a track the positions a step apart count, and a hole begins another run.
+/// A camera with ten frames per step: a track uses the positions one step apart, and a hole begins another run.
 #[test]
 fn frames_between_steps_give_no_stretches() {
     let mut memory = SceneMemory::new(10, 1_000).unwrap();
     let mut seen = |frames: std::ops::Range<i64>| {
         for frame in frames {
-            let people = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
-            memory.observe(frame, people).unwrap();
+            let pedestrians = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
+            memory.observe(frame, pedestrians).unwrap();
         }
         memory.stretches()
     };
@@ -213,7 +213,7 @@ fn frames_between_steps_give_no_stretches() {
     assert_eq!([seen(214..304), seen(304..404), seen(404..405)], [2, 2, 3]);
     assert_eq!(memory.summary().pedestrians, 1);
     assert!((memory.summary().seconds - 16.04).abs() < 1e-9);
-    // Every third frame: none of them are a step apart.
+    // Every third frame: no two are one step apart.
     let mut memory = SceneMemory::new(10, 1_000).unwrap();
     for frame in (0..600).step_by(3) {
         memory
@@ -227,7 +227,7 @@ fn frames_between_steps_give_no_stretches() {
     );
 }
 
-/// The held positions of everybody, each once, a hole left out; those without a stretch not at all.
+/// The positions of all pedestrians, each once, without holes; pedestrians without a stretch are left out.
 #[test]
 fn tracks_are_the_positions_held() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();

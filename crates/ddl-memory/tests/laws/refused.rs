@@ -1,4 +1,4 @@
-//! What is refused leaves the memory as it was.
+//! Refused input leaves the memory unchanged.
 
 use ddl_data::{LiveError, LiveTracks, PedestrianId};
 use ddl_memory::{MemoryError, SceneMemory};
@@ -11,7 +11,7 @@ fn errors_change_nothing() {
         memory.observe(last, [(id, here)]).unwrap();
         let before = memory.clone();
         let other = (PedestrianId(1), here);
-        for (frame, people, problem) in [
+        for (frame, pedestrians, problem) in [
             (last, vec![], "comes after frame"),
             (last - 1, vec![other], "interrupt the memory"),
             (i64::MIN, vec![other], "not below 2^53"),
@@ -28,7 +28,7 @@ fn errors_change_nothing() {
                 "not finite",
             ),
         ] {
-            let error = memory.observe(frame, people).unwrap_err().to_string();
+            let error = memory.observe(frame, pedestrians).unwrap_err().to_string();
             assert!(error.contains(problem), "{error}");
             assert_eq!(memory, before);
         }
@@ -39,7 +39,7 @@ fn errors_change_nothing() {
 
 /// A live forecast must not fail because of the memory.
 #[test]
-fn what_live_tracks_take_is_taken() {
+fn input_of_live_tracks_is_accepted() {
     let mut memory = SceneMemory::new(1, 200).unwrap();
     let mut tracks = LiveTracks::new();
     let far = [1.1e7, -1e16, f64::MAX, f64::MIN];
@@ -48,14 +48,14 @@ fn what_live_tracks_take_is_taken() {
             30 | 60.. => far[frame as usize % 4],
             _ => 0.4 * frame as f64,
         };
-        let people = [
+        let pedestrians = [
             (PedestrianId(1), [x, 0.0]),
             (PedestrianId(2), [0.0, frame as f64]),
         ];
-        tracks.push(frame, people).unwrap();
-        memory.observe(frame, people).unwrap();
+        tracks.push(frame, pedestrians).unwrap();
+        memory.observe(frame, pedestrians).unwrap();
     }
-    // Of the first pedestrian frames 0 to 29 and 31 to 59.
+    // Frames 0 to 29 and 31 to 59 of the first pedestrian.
     assert_eq!(memory.summary().extent, Some([[0.0, 0.0], [23.6, 99.0]]));
     let observed = std::array::from_fn(|t| [0.4 * t as f64, 0.0]);
     assert!(memory.recall(&observed, None, 2)[0].distance < 1e-9);

@@ -1,4 +1,4 @@
-//! The expert library of a run whose goals come from it alone.
+//! The expert library of a run without proposed goals.
 
 use ddl::{DeviceChoice, GoalModel, GoalRecipe};
 
@@ -6,7 +6,7 @@ use super::smallest;
 use super::sound::Sound;
 use crate::drawn_model;
 
-/// Edits of a sound file.
+/// Edits of a valid file.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound<()> = Sound::new("experts.safetensors", |path| {

@@ -6,7 +6,7 @@ use tempfile::TempDir;
 use super::{names_file, smallest, with_file};
 use crate::outside_bytes::edits::Choices;
 
-/// Bytes as they are, or edits of a sound file, as the first byte says.
+/// The bytes themselves, or edits of a valid file; the first byte decides.
 pub fn read_run_config(bytes: &[u8]) {
     thread_local! {
         static SOUND: (String, TempDir) = (
@@ -32,7 +32,8 @@ pub fn read_run_config(bytes: &[u8]) {
                     config.goals.check(),
                     config.training.check(),
                 );
-                let written = serde_json::to_string(&config).expect("what was read can be written");
+                let written =
+                    serde_json::to_string(&config).expect("a valid configuration can be written");
                 let again = with_file(&path, written.as_bytes(), |_| run.config());
                 assert_eq!(again.ok(), Some(config));
             }
@@ -40,7 +41,7 @@ pub fn read_run_config(bytes: &[u8]) {
     });
 }
 
-/// Bytes as they are.
+/// The bytes themselves.
 pub fn read_metrics(bytes: &[u8]) {
     thread_local! {
         static FOLDER: TempDir = tempfile::tempdir().expect("a folder can be made");

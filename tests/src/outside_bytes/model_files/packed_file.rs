@@ -7,7 +7,7 @@ use sha2::{Digest as _, Sha256};
 use super::smallest;
 use crate::outside_bytes::edits::Choices;
 
-/// Tensors of a file that no network is made of.
+/// Number of tensors of a file that no network is created from.
 const FEW: usize = 4;
 
 pub(super) struct PackedFile {
@@ -34,7 +34,8 @@ impl PackedFile {
         Self::of(config, tensors)
     }
 
-    /// With few tensors, for readers that make no networks: edits then hit the rest of the header more often, most of which is names of tensors.
+    /// Keeps few tensors, for readers that create no networks: edits then hit the rest of the header more often,
+    /// because most of the header is names of tensors.
     pub(super) fn of_few_tensors(&self) -> Self {
         Self::of(self.config.clone(), self.tensors[..FEW].to_vec())
     }
@@ -47,7 +48,7 @@ impl PackedFile {
         }
     }
 
-    /// A file as the bytes say, and whether it is the sound one without edits.
+    /// An edited file, and whether it is the valid one without edits.
     pub(super) fn edited(&self, bytes: &[u8]) -> (Vec<u8>, bool) {
         let mut choices = Choices::new(bytes);
         let way = choices.byte() % 4;
@@ -76,7 +77,7 @@ fn forge(tensors: &mut Vec<HalfTensor>, choices: &mut Choices<'_>) {
         0 => drop(tensors.remove(index)),
         1 => {
             let mut twin = tensors[index].clone();
-            // The writer of such files takes each name once.
+            // The writer of such files accepts each name once.
             while tensors.iter().any(|tensor| tensor.name == twin.name) {
                 twin.name.push('x');
             }
@@ -100,7 +101,7 @@ fn forge(tensors: &mut Vec<HalfTensor>, choices: &mut Choices<'_>) {
     }
 }
 
-/// The file of a configuration and tensors, with their digest: the layout that `ddl pack` writes.
+/// The file of a configuration and tensors, with their digest, in the layout of `ddl pack`.
 fn packed(config: &str, tensors: &[HalfTensor]) -> Vec<u8> {
     let mut by_name: Vec<_> = tensors.iter().collect();
     by_name.sort_by(|one, other| one.name.cmp(&other.name));
@@ -110,7 +111,7 @@ fn packed(config: &str, tensors: &[HalfTensor]) -> Vec<u8> {
         hasher.update(bytes);
     };
     part(config.as_bytes());
-    // no training motions
+    // No training motions.
     part(b"");
     for tensor in by_name {
         part(tensor.name.as_bytes());

@@ -8,7 +8,7 @@ use tempfile::TempDir;
 use super::packed_file::PackedFile;
 use super::{names_file, with_file};
 
-/// The sound files, and where edits of them are read.
+/// The valid files, and the path for edits of them.
 struct Sound {
     /// Without the tensors that only its networks need.
     small: PackedFile,
@@ -30,7 +30,7 @@ impl Sound {
     }
 }
 
-/// The first byte says whether the networks are made as well, which takes most of the time: one in four does.
+/// The first byte chooses whether the networks are created as well, which takes most of the time: in one of four cases.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound = Sound::make();
@@ -51,7 +51,7 @@ fn read_config(sound: &Sound, bytes: &[u8]) {
     let (file, is_sound) = sound.small.edited(bytes);
     let read = with_file(&sound.path, &file, |path| ModelSource::at(path).config());
     if let Err(error) = read {
-        assert!(!is_sound, "a sound file: {error}");
+        assert!(!is_sound, "a valid file: {error}");
         names_file(&error, "packed.safetensors");
     }
 }
@@ -66,7 +66,7 @@ fn read_whole(sound: &Sound, bytes: &[u8]) {
             assert!(config.star.check().is_ok() && config.goals.check().is_ok());
         }
         Err(error) => {
-            assert!(!is_sound, "a sound file: {error}");
+            assert!(!is_sound, "a valid file: {error}");
             names_file(&error, "packed.safetensors");
         }
     }

@@ -1,4 +1,4 @@
-//! The smallest networks there are: what is fuzzed is the reading.
+//! The smallest possible networks, because only the reading is fuzzed.
 
 use ddl::network::{MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig};
 use ddl::{RunConfig, Variant};
@@ -41,10 +41,10 @@ pub(super) fn config() -> RunConfig {
 }
 
 pub(super) fn network(config: &RunConfig) -> MotionNetwork {
-    MotionNetwork::new(config.star.clone(), 1).expect("a sound configuration")
+    MotionNetwork::new(config.star.clone(), 1).expect("a valid configuration")
 }
 
 pub(super) fn proposal(config: &RunConfig) -> ProposalNetwork {
     let recipe = config.goals.proposal.clone().expect("goals are proposed");
-    ProposalNetwork::new(recipe.network, 1).expect("a sound configuration")
+    ProposalNetwork::new(recipe.network, 1).expect("a valid configuration")
 }

@@ -1,4 +1,4 @@
-//! A sound file of numbers with their SHA-256 in its header, and edits of it that are read.
+//! A valid file of numbers with their SHA-256 in its header, and edits of it.
 
 use std::path::{Path, PathBuf};
 
@@ -13,13 +13,13 @@ pub(super) struct Sound<T> {
     pub(super) with: T,
     pub(super) path: PathBuf,
     whole: Vec<u8>,
-    /// As earlier versions wrote it, without the SHA-256 of its numbers: what lies behind that check is reached too.
+    /// In the layout of earlier versions, without the SHA-256 of its numbers: this tests the code behind that check.
     without: Vec<u8>,
     _folder: TempDir,
 }
 
 impl<T> Sound<T> {
-    /// The file of this name that `make` writes into a folder of its own.
+    /// The file of this name that `make` writes to a new folder.
     pub(super) fn new(name: &str, make: impl FnOnce(&Path) -> T) -> Self {
         let folder = tempfile::tempdir().expect("a folder can be made");
         let path = folder.path().join(name);
@@ -34,7 +34,8 @@ impl<T> Sound<T> {
         }
     }
 
-    /// Reads edits of the file in one of its layouts, as the first byte says; at most one byte edits nothing. An error names the file.
+    /// Reads edits of the file in one of its layouts, chosen by the first byte; with at most one byte nothing is
+    /// edited. An error must name the file.
     pub(super) fn read<R, E: std::fmt::Display>(
         &self,
         bytes: &[u8],
@@ -47,7 +48,7 @@ impl<T> Sound<T> {
         };
         let outcome = with_file(&self.path, &file, |path| read(&self.with, path));
         if let Err(error) = &outcome {
-            assert!(bytes.len() > 1, "a sound file: {error}");
+            assert!(bytes.len() > 1, "a valid file: {error}");
             names_file(error, &self.path.display().to_string());
         }
         outcome
@@ -55,11 +56,11 @@ impl<T> Sound<T> {
 }
 
 fn without_digest(file: &[u8]) -> Vec<u8> {
-    let (mut header, numbers) = safetensors_file::parts(file).expect("a sound file");
+    let (mut header, numbers) = safetensors_file::parts(file).expect("a valid file");
     let origin = &mut header["__metadata__"]["origin"];
     let facts = origin.as_str().map(serde_json::from_str::<Value>);
-    let mut facts = facts.expect("a sound origin").expect("a sound origin");
-    let all = facts.as_object_mut().expect("a sound origin");
+    let mut facts = facts.expect("a valid origin").expect("a valid origin");
+    let all = facts.as_object_mut().expect("a valid origin");
     assert!(
         all.remove("numbers.sha256").is_some(),
         "the file has a digest"

@@ -1,4 +1,4 @@
-//! The state of a training under way.
+//! The state of an unfinished training.
 
 use std::cell::RefCell;
 
@@ -27,12 +27,12 @@ fn training() -> Result<(Trainer, Origin), Box<dyn std::error::Error>> {
     Ok((trainer, config.network_origin()))
 }
 
-/// Edits of a sound file.
+/// Edits of a valid file.
 pub fn read(bytes: &[u8]) {
-    // libtorch's tensors stay on their thread.
+    // Tensors of libtorch stay on their thread.
     thread_local! {
         static SOUND: Sound<(RefCell<Trainer>, Origin)> = Sound::new("optimizer.safetensors", |path| {
-            let (mut trainer, origin) = training().expect("the training can be begun");
+            let (mut trainer, origin) = training().expect("the training can be started");
             trainer.save(&origin, path).expect("its state can be written");
             (RefCell::new(trainer), origin)
         });

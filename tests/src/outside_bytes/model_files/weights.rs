@@ -5,7 +5,7 @@ use ddl::network::weights::{Origin, Weights, load_weights, save_weights};
 use super::smallest;
 use super::sound::Sound;
 
-/// Edits of a sound file.
+/// Edits of a valid file.
 pub fn read(bytes: &[u8]) {
     thread_local! {
         static SOUND: Sound<(Weights, Origin)> = Sound::new("model.safetensors", |path| {

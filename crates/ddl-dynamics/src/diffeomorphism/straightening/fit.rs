@@ -1,4 +1,4 @@
-//! The next local translation of a chain that brings points to their targets.
+//! Fit of the next local translation of a chain.
 
 use nalgebra::SVector;
 
@@ -8,10 +8,10 @@ const RATES: usize = 26;
 const SLOWEST_RATE: f64 = 0.3;
 pub(super) const FASTEST_RATE: f64 = 40.0;
 
-/// No layer squeezes space by more than half, although the map would allow for more.
+/// Largest contraction of a layer; the map would allow more.
 const CONTRACTION: f64 = 0.5;
 
-/// A translation shorter than this share of the length of the path is not worth a layer.
+/// A translation shorter than this share of the path length is omitted.
 const NEGLIGIBLE: f64 = 1e-12;
 
 /// A local translation in units of the length of the path.
@@ -26,7 +26,7 @@ pub(super) struct Fit<const D: usize> {
 }
 
 impl<const D: usize> Fit<D> {
-    /// The translation that lowers the sum of squared distances from images to `targets` most.
+    /// The translation that reduces the sum of squared distances from images to `targets` most.
     pub(super) fn best(&self, targets: &[SVector<f64, D>]) -> Option<Bump<D>> {
         let residuals: Vec<_> = targets
             .iter()

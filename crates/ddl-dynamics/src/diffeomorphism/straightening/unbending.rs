@@ -1,17 +1,17 @@
-//! A curve that straightens little by little, without stretching.
+//! A curve that straightens gradually without stretching.
 
 use nalgebra::{DMatrix, SMatrix, SVD, SVector};
 
 use crate::polar::polar;
 
-/// Two directions this close to opposite have no plane to turn in (radians, roughly).
+/// Two directions this close to opposite define no plane of rotation (approximately radians).
 const OPPOSITE: f64 = 1e-6;
 
-/// Iterations of the singular value decomposition granted per dimension; a handful is usual.
+/// Iterations of the singular value decomposition allowed per dimension; a few are usual.
 const ITERATIONS_PER_DIMENSION: usize = 1000;
 
-/// A polygon kept as the length of each side, and where the next side points in the frame carried along without twist
-/// (Bishop's frame). With all turns scaled by the same factor it unbends like a wire.
+/// A polygon, stored as the length of each side and the direction of the next side in the frame transported without
+/// twist (Bishop's frame). Scaling all turns by the same factor unbends it like a wire.
 pub(super) struct Unbending<const D: usize> {
     lengths: Vec<f64>,
     first: SVector<f64, D>,
@@ -23,7 +23,7 @@ impl<const D: usize> Unbending<D> {
     /// The sides and turns of the polygon through `points`.
     ///
     /// # Errors
-    /// The index of the first point at which the polygon turns by 180 degrees, or stays.
+    /// The index of the first point at which the polygon turns by 180 degrees or repeats a point.
     pub(super) fn new(points: &[SVector<f64, D>]) -> Result<Self, usize> {
         let sides: Vec<_> = points
             .windows(2)
@@ -49,8 +49,8 @@ impl<const D: usize> Unbending<D> {
         })
     }
 
-    /// The polygon with every turn scaled by `bend`, placed over `over` as closely as a rotation
-    /// and a translation can (in the sense of least squares).
+    /// The polygon with every turn scaled by `bend`, aligned to `over` by a rotation and a translation (in the sense of
+    /// least squares).
     pub(super) fn placed(&self, bend: f64, over: &[SVector<f64, D>]) -> Vec<SVector<f64, D>> {
         let mut frame = SMatrix::<f64, D, D>::identity();
         let mut end = self.first * self.lengths[0];
@@ -97,7 +97,8 @@ fn rotation<const D: usize>(
 /// The rotation `R` that maximises `tr(R^T M)` (Kabsch): `U diag(1, .., 1, ±1) V^T` of the singular
 /// value decomposition of `M`, the sign such that `det R = 1`.
 fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
-    // What is too small to count may be so small that the decomposition divides by its square: no number would come out.
+    // Entries too small to matter are set to 0: the decomposition would divide by their squares, which underflow, and
+    // return NaN.
     let counts = f64::EPSILON * f64::EPSILON * matrix.amax();
     let general = DMatrix::from_fn(D, D, |row, column| {
         let entry = matrix[(row, column)];
@@ -114,12 +115,13 @@ fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64,
         u.iter().chain(v_t).all(|entry| entry.is_finite())
     };
     let factors = decomposition.and_then(|svd| svd.u.zip(svd.v_t));
-    // Not seen to fail since what is too small is left out. Unturned is a place as good as any, only further to go.
+    // Not observed since negligible entries are set to 0. The identity is a valid rotation, only farther from the
+    // optimum.
     let Some((mut u, v_t)) = factors.filter(finite) else {
         return SMatrix::identity();
     };
     if (&u * &v_t).determinant() < 0.0 {
-        // Ordered: the last one belongs to the smallest singular value.
+        // The singular values are sorted; the last one is the smallest.
         u.column_mut(D - 1).neg_mut();
     }
     let product = u * v_t;
@@ -150,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn half_a_right_angle() {
+    fn half_unbending_halves_a_right_angle() {
         // Sides along x and y: half unbent, the angle between them is 45 degrees.
         let corner = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]].map(Vector2::from);
         let placed = Unbending::new(&corner).unwrap().placed(0.5, &corner);
@@ -168,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn entries_too_small_to_square_do_no_harm() {
+    fn entries_too_small_to_square_are_handled() {
         for tiny in [2.68e-163, 1e-200, 5e-324] {
             let mut covariance = SMatrix::<f64, 3, 3>::zeros();
             covariance[(2, 2)] = 0.09;
