@@ -40,9 +40,9 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
     write_atomically(path, &file)
 }
 
-/// The library of a run of this origin, with as many tracks as its configuration says.
+/// Loads the library of a run of this origin. The configuration of the run gives its number of `tracks`.
 pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<ExpertLibrary, DdlError> {
-    // Nothing more is read, and no room made, than the library of the run takes.
+    // Reads and allocates at most the size of the run's library.
     let most = (tracks as u64)
         .saturating_mul(TRACK_BYTES as u64)
         .saturating_add(HEADER_BYTES);
@@ -52,13 +52,12 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         .read_to_end(&mut bytes)
         .map_err(|error| DdlError::io(path, error))?;
     if bytes.len() as u64 > most {
-        let problem =
-            format!("is longer than {most} bytes, which is all that {tracks} tracks take");
+        let problem = format!("is longer than {most} bytes, the size of {tracks} tracks");
         return Err(DdlError::run(path, problem));
     }
     let broken = |error: safetensors::SafeTensorError| {
         let problem = format!(
-            "is not a whole safetensors file ({error}); delete it and run the same training again"
+            "is not a complete safetensors file ({error}); delete it and run the same training again"
         );
         DdlError::run(path, problem)
     };
@@ -68,8 +67,8 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         return Err(DdlError::run(
             path,
             format!(
-                "belongs to another run than the config.json beside it: its {difference}; put back the file, or \
-             the config.json, that it was made with"
+                "belongs to another run than the config.json beside it: its {difference}; restore the file or the \
+                 config.json that it was made with"
             ),
         ));
     }
@@ -94,7 +93,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
     ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| unusable(&error, path))
 }
 
-/// The error about a library of the right shape that goals cannot be retrieved from: tracks that nobody can have walked, or too few.
+/// The error for a library of the right shape that is unusable: impossible tracks, or too few tracks.
 pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
     DdlError::run(path, format!("cannot be used: {error}; {MEND}"))
 }
@@ -103,7 +102,7 @@ pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
 mod tests {
     use super::*;
 
-    /// A library of two pedestrians, read from a file without the SHA-256 that would tell of any change.
+    /// A library of two tracks, read from a file without the SHA-256 that would reveal the change.
     fn read(change: impl FnOnce(&mut [f64])) -> Result<ExpertLibrary, DdlError> {
         let mut numbers: Vec<f64> = (0..2 * WINDOW * 2).map(|i| 0.25 * i as f64).collect();
         change(&mut numbers);
@@ -120,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_library_that_nobody_can_have_walked_is_named() {
+    fn a_library_of_impossible_tracks_is_refused() {
         assert_eq!(read(|_| ()).unwrap().len(), 2);
         for (number, part) in [
             (f64::NAN, "position 3 is (NaN"),
