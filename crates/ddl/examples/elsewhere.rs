@@ -1,6 +1,7 @@
 //! The built-in models on recordings of places that no model was trained on: `elsewhere FOLDER=FPS ... > docs/elsewhere.md`.
 //!
-//! Folders hold csv files (frame, pedestrian, x, y in metres). Baselines, intervals, certificates, coverage and familiarity stand beside the errors.
+//! Folders hold csv files (frame, pedestrian, x, y in metres). The tables show errors, baselines, intervals,
+//! certificates, coverage and familiarity.
 
 #![expect(clippy::print_stdout, reason = "a program that prints a page")]
 
@@ -16,10 +17,10 @@ use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster, Protocol, Remem
 use places::{Part, Place};
 use std::error::Error;
 
-/// Pedestrian-windows of a folder, about: evenly spread where there are more.
+/// About this many pedestrian-windows of each folder are used, evenly spread.
 const PEDESTRIANS: usize = 3000;
 const CHUNK: usize = 64;
-/// Who is faster than this (m/s) runs or rides.
+/// Pedestrians above this speed (m/s) count as runners or cyclists.
 const FAST: f64 = 3.0;
 const SEED: u64 = 0;
 
@@ -222,7 +223,7 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
     Ok(())
 }
 
-/// The same windows with a memory of their recording until then, as a camera has it that has watched from the start.
+/// Forecasts the same windows with a memory of their recording, as of a camera that has watched it from the start.
 fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<(), Box<dyn Error>> {
     let dataset = Dataset::own(place.recordings.clone())?;
     let goals = model.goal_model();
@@ -289,7 +290,7 @@ fn print_change(
     Ok(())
 }
 
-/// minADE of those who were observed to be faster than 3 m/s on average, and of straight lines to the same goals, with their number.
+/// minADE of pedestrians observed above 3 m/s on average, that of straight lines to the same goals, and their number.
 fn runners(
     windows: &[Window],
     ours: &[Forecast],
@@ -322,7 +323,7 @@ fn mean_speed(observed: &[Position]) -> f64 {
     steps.sum::<f64>() / ((OBSERVED - 1) as f64 * TIME_STEP)
 }
 
-/// The interval of the ratio, in words; none where there are too few blocks.
+/// The interval of the ratio, in words; empty for too few blocks.
 fn interval(
     ours: &[BlockErrors],
     lines: &[BlockErrors],

@@ -82,7 +82,7 @@ pub(crate) struct Walked<'a> {
     pub(crate) gait: Gait,
     pub(crate) window: &'a Window,
     pub(crate) hypotheses: usize,
-    /// `[N][K][12]`: what the network itself walked, metres; empty where it had no part in it.
+    /// `[N][K][12]`: the path of the network's own rollout, metres; empty where the network is not used.
     pub(crate) rolled_out: Vec<Position>,
     /// `[N][K][12]`: (a, b, c) of the factor of P; `None` without a flow.
     pub(crate) factors: Option<Vec<[f64; 3]>>,

@@ -245,7 +245,8 @@ mod tests {
             let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
             let share = motions.familiarity(&track, 0.4);
             prop_assert!(share > 0.0 && share <= 1.0);
-            let at = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)]).collect::<Vec<_>>();
+            let position = |speed: f64, t: i32| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)];
+            let at = |speed: f64| (0..8).map(|t| position(speed, t)).collect::<Vec<_>>();
             let step = (motions.familiarity(&at(speed), 0.4) - motions.familiarity(&at(speed + 1e-3), 0.4)).abs();
             prop_assert!(step < 0.05, "{step}");
         }
