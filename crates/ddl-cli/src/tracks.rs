@@ -144,8 +144,8 @@ impl Observed {
         let holes = all.iter().filter(|made_up| made_up.filled > 0).count();
         if late + holes > 0 {
             tell(format_args!(
-                "note: of {} forecasts {late} are of pedestrians observed at fewer than {OBSERVED} time steps, and {holes} \
-             over filled holes (columns padded and filled); --whole leaves them out",
+                "note: of {} forecasts {late} are of pedestrians observed at fewer than {OBSERVED} time steps, and \
+                 {holes} over filled holes (columns padded and filled); --whole leaves them out",
                 all.len()
             ));
         }

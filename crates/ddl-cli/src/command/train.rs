@@ -216,8 +216,8 @@ impl Train {
                 "some recordings are"
             };
             tell(format_args!(
-                "note: the ends of these recordings hold too few windows for validation: {whole} kept for validation as a \
-             whole (--validation-recordings {})",
+                "note: the ends of these recordings hold too few windows for validation: {whole} kept for \
+                 validation as a whole (--validation-recordings {})",
                 part.recordings.join(",")
             ));
         }
