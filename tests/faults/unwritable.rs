@@ -35,7 +35,7 @@ fn a_read_only_directory_is_named() {
     };
     let before = folder_contents::read(&fixed);
     for command in outputs("fixed") {
-        place.fails(&command, &["fixed", "choose a place"]);
+        place.fails(&command, &["fixed", "choose a writable place"]);
     }
     // a model there is read as anywhere, and measured again without writing
     let _ = place.ok("forecast --model run tracks.csv");

@@ -66,7 +66,10 @@ fn where_nothing_may_be_written_is_named() {
     let Some(_mounted) = Mount::read_only(&place.at("fixed")) else {
         return;
     };
-    place.fails(&format!("{train} fixed/new"), &["fixed", "choose a place"]);
+    place.fails(
+        &format!("{train} fixed/new"),
+        &["fixed", "choose a writable place"],
+    );
 }
 
 #[test]

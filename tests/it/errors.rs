@@ -29,10 +29,7 @@ fn the_file_that_is_read_is_not_written_over() {
     let place = Place::with_model();
     for command in ["forecast", "view", "goals"] {
         let line = format!("{command} tracks.csv --output ./tracks.csv");
-        place.fails(
-            &line,
-            &["tracks.csv", "the file that is read", "name another"],
-        );
+        place.fails(&line, &["tracks.csv", "the input file", "give another"]);
     }
 }
 
@@ -78,7 +75,7 @@ fn what_a_run_does_not_hold_is_said() {
     let published = "evaluate --model last --protocol published --test-pedestrians 20";
     place.fails(
         published,
-        &["`published`", "train it anew without --last-epoch-only"],
+        &["`published`", "train it again without --last-epoch-only"],
     );
     // what needs no choice is measured
     let _ = place.ok("evaluate --model last --protocol fair --test-pedestrians 20 --threads 1");
@@ -101,7 +98,7 @@ fn what_needs_libtorch_says_how_to_get_it() {
         ("evaluate --model run --device cuda", "CUDA"),
         ("goals tracks.csv --device cuda", "CUDA"),
     ] {
-        let needs = format!("{what} needs libtorch, which this program is built without");
+        let needs = format!("{what} needs libtorch, and this program is built without it");
         let build = "cargo build --release -p ddl-cli --features torch";
         place.fails(line, &[&needs, "`cargo xtask setup`", build]);
     }
@@ -136,14 +133,20 @@ fn tracks_that_cannot_be_forecast_are_refused() {
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_people(7));
     let whole = format!("{FORECAST} --whole");
-    place.fails(&whole, &["tracks.csv", "8 steps", "10 frames"]);
+    place.fails(
+        &whole,
+        &["tracks.csv", "8 consecutive time steps", "10 frames"],
+    );
     place.write_tracks("tracks.csv", &own_tracks::three_people(1));
-    place.fails(FORECAST, &["tracks.csv", "two steps", "--fps"]);
+    place.fails(
+        FORECAST,
+        &["tracks.csv", "2 consecutive time steps", "--fps"],
+    );
     place.all_fail(&[
         "forecast --model run . => . is a folder",
         "forecast --model run . => ddl data .",
         "data - => ddl forecast -",
-        "data - => name a file",
+        "data - => give a file",
         "view - => a file of tracks",
         "view nowhere.csv => cannot read nowhere.csv",
     ]);

@@ -105,9 +105,9 @@ fn mistakes_with_own_recordings_say_what_to_do() {
         "windows --data mine --fold attic => it has lobby, yard",
         "evaluate --data star --fold attic => add --convention own",
         "windows --data star --fold attic => add --convention own",
-        "evaluate --data mine --window-rule complete => leave --window-rule out",
+        "evaluate --data mine --window-rule complete => leave out --window-rule",
         "forecast short.csv --region 0.5,0.50 => 0.5 twice",
-        "evaluate --model hotel --convention own --data short.csv => 20 steps in a row",
+        "evaluate --model hotel --convention own --data short.csv => 20 consecutive time steps",
     ]);
 }
 

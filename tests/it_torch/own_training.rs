@@ -102,7 +102,7 @@ fn what_it_learned_from_is_no_test(place: &Place) {
     place.write("other/yard.csv", cut);
     place.fails(
         &evaluate("other"),
-        &["called \"yard\" as well", "another name"],
+        &["the same name \"yard\"", "rename the file"],
     );
 }
 
@@ -152,7 +152,7 @@ fn training_and_evaluation_measure_alike() {
     assert!(words.contains("training "), "{words}");
     // Another part than its own would hold what it has learned from.
     let other = "evaluate --model run --data clips --validation --validation-recordings clip0";
-    place.fails(other, &["leave --validation-recordings out"]);
+    place.fails(other, &["leave out --validation-recordings"]);
 }
 
 #[test]
@@ -192,15 +192,15 @@ fn a_training_begins_with_another_models_weights() {
     for (options, words) in [
         (
             "--feed-forward-width 16",
-            "star.feed_forward_width is 32, not 16 as asked for",
+            "star.feed_forward_width is 32, not 16 as requested",
         ),
         (
             "--variant no-goal-shift",
-            "star.frame is goal, not world as asked for",
+            "star.frame is goal, not world as requested",
         ),
         (
             "--recipe published",
-            "star.feed_forward_width is 32, not 2048 as asked for",
+            "star.feed_forward_width is 32, not 2048 as requested",
         ),
     ] {
         let line = format!("train --data clips --from hotel {options} --out new {SMALL}");
@@ -250,7 +250,7 @@ fn an_empty_validation_part_is_no_result() {
     let _ = place.ok(&format!("{train} --patience 0"));
     for command in ["evaluate --validation", "goals --measure validation"] {
         let line = format!("{command} --model run --data clips --threads 1");
-        place.fails(&line, &["--validation 0.4", "20 steps in a row"]);
+        place.fails(&line, &["--validation 0.4", "20 consecutive time steps"]);
     }
     place.write_tracks("short.csv", &own_tracks::three_people(12));
     place.fails("train --data short.csv --out new", &["no training windows"]);
@@ -276,7 +276,7 @@ fn a_run_remembers_rate_and_homography() {
     place.remove("film/H.txt");
     let measure = "evaluate --model run --data film --validation --threads 1";
     let measured = place.run(&format!("{measure} --protocol single"));
-    let note = "note: 3 recordings: the numbers are read as in the run's training (--fps 23.98 and its homography); give --fps";
+    let note = "note: 3 recordings: the units are those of the run's training (--fps 23.98 and its homography); give --fps";
     assert!(measured.stderr.contains(note), "{measured:?}");
     let _ = measured.succeeds();
     // with another rate these are other recordings than those it was trained on

@@ -233,7 +233,7 @@ impl Units {
         };
         let step = live_step_of(&self.remembered);
         let step = step.with_context(|| format!("the run was trained with {rate}"))?;
-        Ok(step.map(|step| (step, format!("as in the run's training, {rate}"))))
+        Ok(step.map(|step| (step, format!("as in the run's training ({rate})"))))
     }
 }
 

@@ -17,7 +17,7 @@ pub(crate) fn require(path: &Path, least_numbers: u64) -> Result<(), DdlError> {
     }
     let problem = format!(
         "is {} bytes long, too short for the network of the config.json beside it, which has more than {least_numbers} \
-         weights; restore the matching file or config.json, or delete this file and run the same `ddl train` command \
+         weights; restore the matching file or config.json, or delete it and run the same `ddl train` command \
          again",
         file.len()
     );

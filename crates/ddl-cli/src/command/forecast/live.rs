@@ -206,7 +206,8 @@ impl Tracking {
         };
         let (step, reason) = self.step(frame.number - first.number, rate)?;
         tell(format_args!(
-            "note: {step} frame numbers are taken as 0.4 s, {reason}; give --fps or --frame-step if this is wrong"
+            "note: frame numbers are assumed to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step if this \
+             is wrong"
         ));
         let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
         let tracks = self.tracks.insert(tracks);
