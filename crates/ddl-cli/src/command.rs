@@ -85,14 +85,14 @@ impl Machine {
 
 /// The precision of the network.
 #[derive(Debug, Args)]
-pub(crate) struct Exactness {
+pub(crate) struct PrecisionOption {
     /// Precision of the network's feed-forward blocks: f32, or bf16 (8 significant bits, sums in f32). bf16 is faster
     /// on processors with AVX-512 BF16 and slower on others; it needs the CPU
     #[arg(long, default_value = "f32")]
     precision: Precision,
 }
 
-impl Exactness {
+impl PrecisionOption {
     pub(crate) fn precision(&self) -> Precision {
         if !self.precision.is_native() {
             tell(format_args!(

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 /// Signals in such quick succession are one request. A job manager may signal all processes of a job, and the parent
 /// passes the signal on to this one.
-const TOGETHER: Duration = Duration::from_millis(300);
+const ONE_REQUEST: Duration = Duration::from_millis(300);
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt(Arc<AtomicUsize>);
@@ -29,7 +29,7 @@ impl Interrupt {
         let mut before: Option<Instant> = None;
         ctrlc::set_handler(move || {
             let now = Instant::now();
-            if before.is_some_and(|before| now - before < TOGETHER) {
+            if before.is_some_and(|before| now - before < ONE_REQUEST) {
                 return;
             }
             before = Some(now);

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Extensions of recordings; other files in a folder are ignored.
 const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
 /// Number of unreadable files that are reported individually.
-const MOST_TOLD: usize = 10;
+const MOST_REPORTED: usize = 10;
 
 /// The recordings in these folders, by name, and the files among `paths`.
 pub(crate) fn files(paths: &[PathBuf], units: &Units) -> anyhow::Result<Vec<PathBuf>> {
@@ -99,11 +99,11 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
     if errors.len() < 2 {
         return errors.pop().map_or(Ok(()), Err);
     }
-    for error in errors.iter().take(MOST_TOLD) {
+    for error in errors.iter().take(MOST_REPORTED) {
         tell(format_args!("error: {}", telling::words(error)));
     }
-    let told = if errors.len() > MOST_TOLD {
-        format!("; the first {MOST_TOLD} are listed above")
+    let told = if errors.len() > MOST_REPORTED {
+        format!("; the first {MOST_REPORTED} are listed above")
     } else {
         String::new()
     };

@@ -17,7 +17,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Pedestrians that are forecast between two checks for Ctrl-C.
-const TOGETHER: usize = 64;
+const BATCH: usize = 64;
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
 #[derive(Debug)]
@@ -70,7 +70,7 @@ impl Manner {
             let mut pedestrians = 0;
             let enough = |window: &Window| {
                 pedestrians += window.len();
-                pedestrians >= TOGETHER
+                pedestrians >= BATCH
             };
             let count = rest
                 .iter()

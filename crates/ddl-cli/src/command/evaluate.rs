@@ -1,6 +1,6 @@
 mod forecasts;
 
-use super::{Exactness, KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
+use super::{KeepClear, Machine, PrecisionOption, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -55,7 +55,7 @@ pub(crate) struct Evaluate {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
-    exactness: Exactness,
+    exactness: PrecisionOption,
     #[command(flatten)]
     reporting: Reporting,
 }

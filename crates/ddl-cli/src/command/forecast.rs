@@ -3,7 +3,7 @@ mod kept_memory;
 mod live;
 mod table;
 
-use super::{Exactness, KeepClear, Machine, ModelChoice};
+use super::{KeepClear, Machine, ModelChoice, PrecisionOption};
 use crate::clock::{Clock, FrameNumber};
 use crate::output::{ensure_not_input, write_output};
 use crate::telling::tell;
@@ -70,7 +70,7 @@ pub(crate) struct Forecast {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
-    exactness: Exactness,
+    exactness: PrecisionOption,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -153,7 +153,7 @@ impl Train {
                 "--last-epoch-only discards the best epoch: add --patience 0 to use the last epoch as the model"
             );
         }
-        let from = self.begin_with(&dataset, &fold, &part)?;
+        let from = self.starting_model(&dataset, &fold, &part)?;
         let goals = self.goal_recipe(from.is_some())?;
         let (star, training) = self.recipe(from.is_some());
         let request = TrainingRequest {
@@ -226,7 +226,7 @@ impl Train {
 
     /// The model to start from: the named one, or for few own recordings the built-in one if it has the requested
     /// sizes.
-    fn begin_with(
+    fn starting_model(
         &self,
         dataset: &Dataset,
         fold: &str,

@@ -230,7 +230,7 @@ def evaluate(
 
 
 def _of_forecaster(model: Forecaster, protocols: Sequence[str], data: Folder, progress: Progress | bool | None) -> Results:
-    with _Told(progress, "pedestrians") as told:
+    with _Progress(progress, "pedestrians") as told:
         return Results(_core.evaluate_model(model._core, data, list(protocols), told.update))
 
 
@@ -240,7 +240,7 @@ def _measured(
     watching = protocol.startswith("online")
     seen = {one.name: _Seen(Recording._of(one)) for one in tests.recordings()} if watching else {}
     made = []
-    with _Told(progress, title) as told:
+    with _Progress(progress, title) as told:
         for index in range(len(tests)):
             window = tests.observed(index)
             earlier = (seen[window["recording"]].until(window["frame"]),) if watching else ()
@@ -285,7 +285,7 @@ class _Seen:
         return {name: values[:rows].copy() for name, values in self._columns.items()}
 
 
-class _Told:
+class _Progress:
     """Progress for a function or a tqdm bar, or none."""
 
     def __init__(self, progress: Progress | bool | None, title: str) -> None:
@@ -305,7 +305,7 @@ class _Told:
             self._bar.total = total
             self._bar.update(done - self._bar.n)
 
-    def __enter__(self) -> _Told:
+    def __enter__(self) -> _Progress:
         return self
 
     def __exit__(self, *_: object) -> None:

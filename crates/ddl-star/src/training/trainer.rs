@@ -52,8 +52,8 @@ impl Trainer {
         windows: Vec<Window>,
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
-        let lessons = windows.into_iter().filter(Window::has_future).collect();
-        Self::of(network, lessons, None, config)
+        let with_future = windows.into_iter().filter(Window::has_future).collect();
+        Self::of(network, with_future, None, config)
     }
 
     /// Prepares training of `network` on `windows`, with `goals` instead of the true endpoints.

@@ -18,7 +18,7 @@ use ddl_report::{Moment, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-const PEDESTRIANS_A_REPORT: usize = 128;
+const PEDESTRIANS_PER_REPORT: usize = 128;
 /// Protocols that show the windows alone.
 const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
 /// Protocols that also show the recording before the last observed frame of a window.
@@ -100,15 +100,15 @@ pub fn evaluate(
     } else {
         test.windows.clone()
     };
-    let honest = measuring.honest(&ALONE, &windows)?;
-    rows.extend(honest.rows);
+    let results = measuring.without_future(&ALONE, &windows)?;
+    rows.extend(results.rows);
     if asked(&WATCHING) {
         let windows = remembering(Remembering::Online)?;
-        rows.extend(measuring.honest(&WATCHING, &windows)?.rows);
+        rows.extend(measuring.without_future(&WATCHING, &windows)?.rows);
     }
     Ok(Evaluation {
         rows,
-        moments: honest.moments,
+        moments: results.moments,
     })
 }
 
@@ -148,7 +148,11 @@ struct Measuring<'a, O> {
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     /// Evaluates protocols that show the same input: they share one set of forecasts.
-    fn honest(&mut self, of: &[Protocol], windows: &[Window]) -> Result<Evaluation, DdlError> {
+    fn without_future(
+        &mut self,
+        of: &[Protocol],
+        windows: &[Window],
+    ) -> Result<Evaluation, DdlError> {
         let protocols: Vec<Protocol> = of.iter().copied().filter(|p| self.asked(*p)).collect();
         let Some(&first) = protocols.first() else {
             return Ok(Evaluation::default());
@@ -308,7 +312,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 .iter()
                 .position(|window| {
                     pedestrians += window.len();
-                    pedestrians >= PEDESTRIANS_A_REPORT
+                    pedestrians >= PEDESTRIANS_PER_REPORT
                 })
                 .map_or(rest.len(), |last| last + 1);
             let some = of(&protocol.visible(&rest[..count]))?;

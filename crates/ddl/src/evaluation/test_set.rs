@@ -41,7 +41,7 @@ impl TestSet {
         let own = dataset.convention() == Convention::Own;
         match on {
             EvaluationSplit::Test if own => return Self::of_own(goals, dataset, pedestrians),
-            EvaluationSplit::Validation if own && !knows_some(goals, dataset) => {
+            EvaluationSplit::Validation if own && !was_trained_on_some(goals, dataset) => {
                 return Self::own_validation(goals, dataset, whole, pedestrians);
             }
             _ => {}
@@ -325,7 +325,7 @@ impl TestSet {
 }
 
 /// Whether the model was trained or validated on one of these recordings, or on one of the same name.
-fn knows_some(goals: &GoalModel, dataset: &Dataset) -> bool {
+fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
     let learned = &goals.config().data.recordings;
     let digests: BTreeSet<&String> = learned.values().collect();
     dataset.recordings().iter().any(|recording| {

@@ -13,7 +13,7 @@ use std::path::Path;
 const TRACKS: &str = "tracks";
 /// Bytes of a track: 20 positions of two f64.
 const TRACK_BYTES: usize = WINDOW * 2 * 8;
-const MEND: &str = "copy it again, or delete it and run the same training again";
+const REMEDY: &str = "copy it again, or delete it and run the same training again";
 const HEADER_BYTES: u64 = 1 << 20;
 
 pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
@@ -77,10 +77,10 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         .map_err(|error| DdlError::run(path, error.to_string()))?;
     let view = file
         .tensor(TRACKS)
-        .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {MEND}")))?;
+        .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {REMEDY}")))?;
     if view.dtype() != Dtype::F64 || view.shape() != [tracks, WINDOW, 2] {
         let problem = format!(
-            "has {:?} {:?} for `{TRACKS}`, expected {tracks} f64 tracks of {WINDOW} positions; {MEND}",
+            "has {:?} {:?} for `{TRACKS}`, expected {tracks} f64 tracks of {WINDOW} positions; {REMEDY}",
             view.dtype(),
             view.shape()
         );
@@ -95,7 +95,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
 
 /// The error for a library of the right shape that is unusable: impossible tracks, or too few tracks.
 pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
-    DdlError::run(path, format!("cannot be used: {error}; {MEND}"))
+    DdlError::run(path, format!("cannot be used: {error}; {REMEDY}"))
 }
 
 #[cfg(test)]
@@ -127,7 +127,7 @@ mod tests {
         ] {
             let error = read(|numbers| numbers[6] = number).unwrap_err().to_string();
             assert!(error.contains("experts.safetensors"), "{error}");
-            assert!(error.contains(part) && error.contains(MEND), "{error}");
+            assert!(error.contains(part) && error.contains(REMEDY), "{error}");
         }
     }
 }

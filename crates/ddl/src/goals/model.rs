@@ -274,16 +274,16 @@ impl GoalModel {
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let sets = match &self.origin {
             GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows)?,
-            GoalOrigin::Proposed(network) => self.standing_for_ends(&**network, None, windows)?,
+            GoalOrigin::Proposed(network) => self.representatives(&**network, None, windows)?,
             GoalOrigin::Both(network, estimator, share) => {
-                self.standing_for_ends(&**network, Some((estimator, *share)), windows)?
+                self.representatives(&**network, Some((estimator, *share)), windows)?
             }
         };
-        Ok(self.plausible(windows, sets))
+        Ok(self.within_reach(windows, sets))
     }
 
     /// Pulls goals beyond reach back within it, and flattens the weights where the observed motion is unfamiliar.
-    fn plausible(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
+    fn within_reach(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
         let time_step = self.config.star.time_step;
         let of_window = |(window, sets)| {
             let sets = reach::within(window, sets, time_step).into_iter();
@@ -313,14 +313,14 @@ impl GoalModel {
         match self.proposal_network() {
             None => self.goals(windows),
             Some(network) => {
-                let sets = self.standing_for_ends(network, None, windows)?;
-                Ok(self.plausible(windows, sets))
+                let sets = self.representatives(network, None, windows)?;
+                Ok(self.within_reach(windows, sets))
             }
         }
     }
 
     /// Goals that represent the endpoints of the network, and the retrieved goals where they have a share.
-    fn standing_for_ends(
+    fn representatives(
         &self,
         network: &dyn ProposeEnds,
         retrieval: Option<(&GoalEstimator, f64)>,
@@ -380,7 +380,10 @@ impl GoalModel {
     /// The goals of pedestrians in training: the proposed goal nearest the true endpoint, or the true endpoint without
     /// a proposal network. Retrieved goals are left out, because the library holds the training pedestrians themselves
     /// (`docs/goals.md`, training).
-    pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
+    pub(crate) fn training_goals(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
         if self.proposal_network().is_none() {
             let ends = |window: &Window| (0..window.len()).map(|i| end(window, i)).collect();

@@ -5,7 +5,7 @@ const SHARE: f64 = 0.2;
 /// The ends are too short for validation if they hold a smaller share of all pedestrian-windows than this.
 const LEAST_AT_THE_ENDS: f64 = 0.05;
 /// One in this many recordings is kept whole.
-const RECORDINGS_A_WHOLE_ONE: usize = 5;
+const WHOLE_EVERY: usize = 5;
 
 /// The part of recordings that is kept out of training for validation.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -43,7 +43,7 @@ impl ValidationPart {
         if recordings.len() < 2 {
             return ends;
         }
-        let count = recordings.len().div_ceil(RECORDINGS_A_WHOLE_ONE);
+        let count = recordings.len().div_ceil(WHOLE_EVERY);
         let in_the_middle_of = |part: usize| (2 * part + 1) * recordings.len() / (2 * count);
         Self {
             share: 0.0,

@@ -211,8 +211,8 @@ fn trainer(
         Objective::NextStep => Trainer::new(network, windows, training)?,
         Objective::Walk => {
             let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
-            let lessons = goals.lessons(&with_future)?;
-            Trainer::towards(network, with_future, lessons, training)?
+            let training_goals = goals.training_goals(&with_future)?;
+            Trainer::towards(network, with_future, training_goals, training)?
         }
     })
 }

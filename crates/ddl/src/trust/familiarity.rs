@@ -16,9 +16,9 @@ const PARTS: usize = 100;
 /// Consecutive motions that are held out, or not: neighbours in the library show the same pedestrian.
 const BLOCK: usize = 100;
 /// One block in this many is held out.
-const APART: usize = 5;
+const HELD_OUT_EVERY: usize = 5;
 /// Excess of speed (m/s) over the fastest training motions that reduces familiarity by a factor e.
-const FASTER: f64 = 1.0;
+const EXCESS_SPEED: f64 = 1.0;
 /// Lower bound, so that familiarity is never 0.
 const LEAST: f64 = 1e-9;
 /// Below this familiarity the user is warned: fewer than one in a hundred training motions are as unusual.
@@ -26,7 +26,7 @@ pub const UNFAMILIAR: f64 = 0.01;
 
 /// Speeds (m/s) and lengths (m) below which logarithms carry little information.
 const SPEED: f64 = 0.1;
-const TREMBLE: f64 = 0.005;
+const LENGTH: f64 = 0.005;
 
 /// The statistics of the training motions that familiarity needs, without tracks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ impl TrainingMotions {
         }
         let (mut learned, mut apart) = (Vec::new(), Vec::new());
         for (block, motions) in all.chunks(BLOCK).enumerate() {
-            let to = if block % APART == APART - 1 {
+            let to = if block % HELD_OUT_EVERY == HELD_OUT_EVERY - 1 {
                 &mut apart
             } else {
                 &mut learned
@@ -125,7 +125,7 @@ impl TrainingMotions {
             let below = ((above - 1) as f64 + part) / PARTS as f64;
             (1.0 - below) * (1.0 - tail) + tail
         };
-        let faster = (mean_speed(&features) - self.fastest).max(0.0) / FASTER;
+        let faster = (mean_speed(&features) - self.fastest).max(0.0) / EXCESS_SPEED;
         (share * (-faster).exp()).clamp(LEAST, 1.0)
     }
 
@@ -162,7 +162,7 @@ fn features(observed: &[Position], time_step: f64) -> Option<SVector<f64, FEATUR
     let straight = speed(way(first, last), steps.len()) / (mean + SPEED);
     let features = SVector::from([
         (mean + SPEED).ln(),
-        (tremble + TREMBLE).ln(),
+        (tremble + LENGTH).ln(),
         relative(speed(*steps.last()?, 1), mean),
         relative(after, before),
         straight,
