@@ -234,7 +234,7 @@ fn rate_and_homography_of_a_run_are_used() {
     assert!(told.stderr.contains(note), "{told:?}");
     let text = told.succeeds();
     let total = text.lines().last().unwrap();
-    assert!(total.starts_with("in all: 3 recordings, "), "{text}");
+    assert!(total.starts_with("total: 3 recordings, "), "{text}");
     assert!(
         total.contains(" pedestrians, ") && total.ends_with(" hours"),
         "{text}"

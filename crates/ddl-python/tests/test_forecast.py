@@ -40,8 +40,8 @@ def test_unobserved_pedestrians_are_nan_and_do_not_change_others(forecaster, cro
     assert np.isnan(forecast.paths[~forecast.valid]).all() and np.isnan(forecast.familiarity[2])
     assert np.array_equal(forecast.paths[forecast.valid], alone.paths)
     assert np.isnan(forecast.regions(0.9)[2]).all()
-    nobody = forecaster.forecast(np.empty((0, 8, 2)))
-    assert len(nobody) == 0 and nobody.paths.shape == (0, 20, 12, 2)
+    empty = forecaster.forecast(np.empty((0, 8, 2)))
+    assert len(empty) == 0 and empty.paths.shape == (0, 20, 12, 2)
 
 
 def test_neighbours_influence_the_forecast_and_are_not_forecast(forecaster, crossing):
@@ -240,11 +240,11 @@ def test_calls_of_several_threads_take_turns(forecaster, crossing, tmp_path):
 
 def test_an_empty_scene_has_all_fields(forecaster, crossing):
     absent = np.full((2, 8, 2), np.nan)
-    some, nobody = forecaster.forecast(crossing[:2], certificates=True), forecaster.forecast(absent, certificates=True)
-    assert nobody.paths.shape == (2, 20, 12, 2) and np.isnan(nobody.regions(0.9)).all()
+    some, empty = forecaster.forecast(crossing[:2], certificates=True), forecaster.forecast(absent, certificates=True)
+    assert empty.paths.shape == (2, 20, 12, 2) and np.isnan(empty.regions(0.9)).all()
     for name in ("paths", "weights", "goals", "certified", "spread", "familiarity"):
-        assert getattr(some, name).shape == getattr(nobody, name).shape, name
-    assert some.certificates.potentials.shape == nobody.certificates.potentials.shape
+        assert getattr(some, name).shape == getattr(empty, name).shape, name
+    assert some.certificates.potentials.shape == empty.certificates.potentials.shape
     assert baselines.angular_noise(absent).paths.shape == (2, 20, 12, 2) and baselines.constant_velocity(absent).goals is None
 
 

@@ -1,7 +1,6 @@
 //! The built-in models on recordings of places that no model was trained on: `elsewhere FOLDER=FPS ... > docs/elsewhere.md`.
 //!
-//! Folders hold csv files (frame, pedestrian, x, y in metres). The tables show errors, baselines, intervals,
-//! certificates, coverage and familiarity.
+//! Folders hold csv files (frame, pedestrian, x, y in metres). Baselines, intervals, certificates, coverage and familiarity stand beside the errors.
 
 #![expect(clippy::print_stdout, reason = "a program that prints a page")]
 
@@ -17,10 +16,10 @@ use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster, Protocol, Remem
 use places::{Part, Place};
 use std::error::Error;
 
-/// About this many pedestrian-windows of each folder are used, evenly spread.
+/// Pedestrian-windows of a folder, about: evenly spread where there are more.
 const PEDESTRIANS: usize = 3000;
 const CHUNK: usize = 64;
-/// Pedestrians above this speed (m/s) count as runners or cyclists.
+/// Who is faster than this (m/s) runs or rides.
 const FAST: f64 = 3.0;
 const SEED: u64 = 0;
 
@@ -223,7 +222,7 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
     Ok(())
 }
 
-/// Forecasts the same windows with a memory of their recording, as of a camera that has watched it from the start.
+/// The same windows with a memory of their recording until then, as a camera has it that has watched from the start.
 fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<(), Box<dyn Error>> {
     let dataset = Dataset::own(place.recordings.clone())?;
     let goals = model.goal_model();
@@ -290,7 +289,7 @@ fn print_change(
     Ok(())
 }
 
-/// minADE of pedestrians observed above 3 m/s on average, that of straight lines to the same goals, and their number.
+/// minADE of those who were observed to be faster than 3 m/s on average, and of straight lines to the same goals, with their number.
 fn runners(
     windows: &[Window],
     ours: &[Forecast],
@@ -323,7 +322,7 @@ fn mean_speed(observed: &[Position]) -> f64 {
     steps.sum::<f64>() / ((OBSERVED - 1) as f64 * TIME_STEP)
 }
 
-/// The interval of the ratio, in words; empty for too few blocks.
+/// The interval of the ratio, in words; none where there are too few blocks.
 fn interval(
     ours: &[BlockErrors],
     lines: &[BlockErrors],

@@ -1,13 +1,13 @@
-//! The regions of the built-in models over the time of recordings, fixed and adaptive: `regions STAR_FOLDER [FOLDER=FPS
-//! ...] > docs/regions.md`. It also draws `docs/regions.svg`.
+//! The regions of the built-in models over the time of recordings, as they come and as they follow what is seen:
+//! `regions STAR_FOLDER [FOLDER=FPS ...] > docs/regions.md`. It also draws `docs/regions.svg`.
 //!
 //! The folder of the convention `star` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The
-//! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. The constants were
-//! chosen on these folders and on the two recordings that no fold tests.
+//! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on the
+//! two recordings that no fold tests, the constants were chosen.
 
 #![expect(clippy::print_stdout, reason = "a program that prints a page")]
 
-#[allow(dead_code, reason = "only whole recordings are needed")]
+#[allow(dead_code, reason = "whole recordings alone are needed")]
 mod places;
 
 use ddl::data::{Convention, Dataset, OBSERVED, Position, Recording, TIME_STEP, Window};
@@ -21,17 +21,17 @@ use std::path::Path;
 
 /// Levels of regions; reliability is measured over all of them.
 const LEVELS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// Indices of the levels that have columns.
+/// Of these the ones that have columns.
 const HALF: usize = 4;
 const MOST: usize = 8;
 /// Windows forecast at a time.
 const CHUNK: usize = 64;
-/// Length (minutes) of the sliding window of shares, and the time between two of its values.
+/// Minutes before a moment whose forecasts make its share, and between two moments.
 const SLIDING: f64 = 1.0;
 const APART: f64 = 1.0 / 12.0;
-/// Shorter recordings (minutes) are left out: they end before regions adapt.
+/// Shorter recordings (minutes) end before there is much to follow.
 const SHORTEST: f64 = 0.8;
-/// A recording with fewer forecasts is left out.
+/// Forecasts of fewer pedestrians make no share of a recording.
 const FEWEST: usize = 1000;
 
 const HEAD: &str = "# Regions that follow a place
@@ -59,15 +59,15 @@ quarter. *reliability*: over the levels 10, 20, ... 90 % and the whole recording
 ICRA 2026) prints a mean reliability of this kind, of densities and levels of its own. Shares in per cent.
 ";
 
-/// Coverage of the regions of the forecasts from one moment.
+/// What regions held, of the forecasts of one moment.
 struct Moment {
     minutes: f64,
     people: usize,
-    /// Number of observed future positions of the pedestrians.
+    /// Steps at which somebody forecast was seen.
     seen: usize,
-    /// Number of these inside the regions, fixed and adaptive, for each level.
+    /// Of these inside the regions, and sums of radii (m): fixed and adaptive, level by level.
     held: [[usize; LEVELS.len()]; 2],
-    /// Sums of radii (m) for the levels `HALF` and `MOST`.
+    /// Of the levels `HALF` and `MOST`.
     radii: [[f64; 2]; 2],
 }
 
@@ -184,7 +184,7 @@ impl Watched {
         &self.moments[from..]
     }
 
-    /// Coverage over the minute before each moment: pairs of minutes and share.
+    /// Share of the minute before each moment: minutes and share.
     fn sliding(&self, kind: usize, level: usize) -> Vec<[f64; 2]> {
         let moments = (SLIDING / 3.0 / APART) as usize..=(self.minutes() / APART) as usize;
         let until = |minutes: f64| {
@@ -201,7 +201,7 @@ impl Watched {
             .collect()
     }
 
-    /// Smallest and largest share of a minute after the first quarter.
+    /// Least and largest share of a minute after the first quarter.
     fn range(&self, kind: usize, level: usize) -> Option<[f64; 2]> {
         let from = (0.25 * self.minutes()).max(SLIDING);
         let sliding = self.sliding(kind, level).into_iter();
@@ -246,7 +246,7 @@ fn radius(moments: &[Moment], kind: usize, which: usize) -> f64 {
     sum / people as f64
 }
 
-/// 1 minus the mean, and minus the largest, of the differences between coverage and level.
+/// 1 less the mean, and less the largest, of the differences between the share held and the level.
 fn reliability(moments: &[Moment], kind: usize) -> [f64; 2] {
     let off = LEVELS.iter().enumerate();
     let off = off.map(|(at, level)| (share(moments, kind, at) - level).abs());

@@ -131,7 +131,7 @@ impl std::fmt::Display for Total {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "in all: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
+            "total: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
             self.recordings,
             many(self.pedestrians, "pedestrian", "pedestrians"),
             many(

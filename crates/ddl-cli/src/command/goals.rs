@@ -161,7 +161,7 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
 fn words(evaluation: &GoalEvaluation) -> String {
     let mut lines = vec![
         format!(
-            "fold {}, {} goals a pedestrian, {}",
+            "fold {}, {} goals per pedestrian, {}",
             evaluation.fold, evaluation.clusters, evaluation.goals
         ),
         evaluation.windows.clone(),

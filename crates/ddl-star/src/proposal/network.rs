@@ -282,8 +282,8 @@ impl TorchProposals {
         let hidden = present.eq(0.0).unsqueeze(-1);
         let scores = scores.masked_fill(&hidden, f64::NEG_INFINITY);
         // The additional entry of score 0.
-        let nobody = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.torch()));
-        let attention = Tensor::cat(&[scores, nobody], 2)
+        let empty = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.torch()));
+        let attention = Tensor::cat(&[scores, empty], 2)
             .softmax(2, None::<Kind>)
             .narrow(2, 0, slots);
         (attention.unsqueeze(-1) * value)
