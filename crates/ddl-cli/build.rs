@@ -1,4 +1,4 @@
-//! Bakes in which commit the program is built from, for results to name.
+//! Records the commit that the program is built from, for the results.
 
 use std::path::Path;
 use std::process::Command;
@@ -7,17 +7,17 @@ fn main() {
     println!("cargo::rustc-env=DDL_BUILT_FROM={}", commit());
 }
 
-/// The commit of the checkout, shortened as results name it; `unknown` where there is no checkout or no git.
+/// The commit of the checkout, shortened as in the results; `unknown` without a checkout or git.
 fn commit() -> String {
     let unknown = || "unknown".to_owned();
-    // A package that was unpacked inside of some other checkout is not of that checkout.
+    // A package that was unpacked inside another checkout does not belong to that checkout.
     let in_workspace = Path::new("../../crates/ddl-cli/build.rs").is_file();
     let folder = git(&["rev-parse", "--absolute-git-dir"]).filter(|_| in_workspace);
     let Some(folder) = folder else {
         println!("cargo::rerun-if-changed=build.rs");
         return unknown();
     };
-    // Written at every commit, checkout and merge.
+    // Git writes this file at every commit, checkout and merge.
     let log = Path::new(&folder).join("logs/HEAD");
     let moves = if log.is_file() {
         log
@@ -25,7 +25,7 @@ fn commit() -> String {
         Path::new(&folder).join("HEAD")
     };
     println!("cargo::rerun-if-changed={}", moves.display());
-    // Whatever is edited makes it another program than the commit's.
+    // An edit makes the program differ from the commit.
     println!("cargo::rerun-if-changed=../../crates");
     git(&[
         "describe",

@@ -35,7 +35,7 @@ fn a_read_only_directory_is_reported() {
     };
     let before = folder_contents::read(&fixed);
     for command in outputs("fixed") {
-        place.fails(&command, &["fixed", "choose a place"]);
+        place.fails(&command, &["fixed", "choose a writable place"]);
     }
     // A model in such a folder can be read, and evaluated with an output elsewhere.
     let _ = place.ok("forecast --model run tracks.csv");

@@ -66,7 +66,10 @@ fn a_read_only_folder_is_reported() {
     let Some(_mounted) = Mount::read_only(&place.at("fixed")) else {
         return;
     };
-    place.fails(&format!("{train} fixed/new"), &["fixed", "choose a place"]);
+    place.fails(
+        &format!("{train} fixed/new"),
+        &["fixed", "choose a writable place"],
+    );
 }
 
 #[test]

@@ -29,10 +29,7 @@ fn the_input_file_is_not_overwritten() {
     let place = Place::with_model();
     for command in ["forecast", "view", "goals"] {
         let line = format!("{command} tracks.csv --output ./tracks.csv");
-        place.fails(
-            &line,
-            &["tracks.csv", "the file that is read", "name another"],
-        );
+        place.fails(&line, &["tracks.csv", "the input file", "give another"]);
     }
 }
 
@@ -78,7 +75,7 @@ fn missing_parts_of_a_run_are_reported() {
     let published = "evaluate --model last --protocol published --test-pedestrians 20";
     place.fails(
         published,
-        &["`published`", "train it anew without --last-epoch-only"],
+        &["`published`", "train it again without --last-epoch-only"],
     );
     // Protocols without this choice can be evaluated.
     let _ = place.ok("evaluate --model last --protocol fair --test-pedestrians 20 --threads 1");
@@ -101,7 +98,7 @@ fn commands_that_need_libtorch_explain_how_to_get_it() {
         ("evaluate --model run --device cuda", "CUDA"),
         ("goals tracks.csv --device cuda", "CUDA"),
     ] {
-        let needs = format!("{what} needs libtorch, which this program is built without");
+        let needs = format!("{what} needs libtorch, and this program is built without it");
         let build = "cargo build --release -p ddl-cli --features torch";
         place.fails(line, &[&needs, "`cargo xtask setup`", build]);
     }
@@ -136,14 +133,20 @@ fn tracks_that_cannot_be_forecast_are_refused() {
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(7));
     let whole = format!("{FORECAST} --whole");
-    place.fails(&whole, &["tracks.csv", "8 steps", "10 frames"]);
+    place.fails(
+        &whole,
+        &["tracks.csv", "8 consecutive time steps", "10 frames"],
+    );
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(1));
-    place.fails(FORECAST, &["tracks.csv", "two steps", "--fps"]);
+    place.fails(
+        FORECAST,
+        &["tracks.csv", "2 consecutive time steps", "--fps"],
+    );
     place.all_fail(&[
         "forecast --model run . => . is a folder",
         "forecast --model run . => ddl data .",
         "data - => ddl forecast -",
-        "data - => name a file",
+        "data - => give a file",
         "view - => a file of tracks",
         "view nowhere.csv => cannot read nowhere.csv",
     ]);

@@ -11,21 +11,21 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl forecast_csv",
         &[
-            "pavement, frame 9: 3 people, 20 hypotheses each\n",
-            "pedestrian 3, now at (4.90, -0.30) m, seen at 4 of 8 steps",
-            "nearer at every step",
+            "pavement, frame 9: 3 pedestrians, 20 hypotheses each\n",
+            "pedestrian 3, now at (4.90, -0.30) m, observed at 4 of 8 time steps",
+            "closer at every step",
             "all 60 certificates hold\n",
         ],
     ),
     (
         "ddl forecast_csv mine.csv",
-        &["mine.csv, frame 80: 3 people"],
+        &["mine.csv, frame 80: 3 pedestrians"],
     ),
     (
         "ddl live hotel.safetensors mine.csv",
         &[
-            "frame 60: 3 seen, nobody for 8 frames yet",
-            "nearer to its goal at every step",
+            "frame 60: 3 pedestrians, none observed at 8 steps yet",
+            "closer to its goal at every step",
         ],
     ),
     (

@@ -277,7 +277,9 @@ fn regions_are_written_as_radii_and_as_discs() {
     assert_eq!(of_table, of_lines);
     let refused = place.run("forecast --model run tracks.csv --region 1.5");
     assert!(
-        refused.stderr.contains("a region has a probability of"),
+        refused
+            .stderr
+            .contains("the probability of a region must be"),
         "{refused:?}"
     );
 }

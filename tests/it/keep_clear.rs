@@ -92,9 +92,9 @@ fn the_program_keeps_clear_and_reports_it() {
     let mut names = free.rows().iter().map(|row| &row.conditions.forecaster);
     assert!(!names.any(|name| name.contains("minding")));
     place.all_refused(&[
-        "forecast tracks.csv --keep-clear=0 => is not allowed",
-        "forecast tracks.csv --keep-clear=-1 => is not allowed",
-        "forecast tracks.csv --keep-clear=inf => is not allowed",
+        "forecast tracks.csv --keep-clear=0 => is out of range",
+        "forecast tracks.csv --keep-clear=-1 => is out of range",
+        "forecast tracks.csv --keep-clear=inf => is out of range",
         "forecast tracks.csv --keep-clear=wide => must be a number",
     ]);
 }

@@ -161,7 +161,7 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     }
     // The memory would overwrite the forecasts.
     let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
-    assert!(same.fails().contains("name one file"));
+    assert!(same.fails().contains("name the same file"));
     let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
     assert!(before == after);
     place.all_fail(&[
@@ -232,7 +232,7 @@ fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     let first = at_work(&place);
     let second = place.run_on("", &format!("{LINE} {KEPT}")).fails();
     assert!(
-        second.contains("another process writes this file"),
+        second.contains("another process, or a watch of this process"),
         "{second}"
     );
     #[cfg(unix)]

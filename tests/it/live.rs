@@ -235,9 +235,9 @@ fn implausible_input_is_reported_once() {
     for options in ["", "--certificate --one"] {
         let line = format!("{line} --whole {options}");
         let finished = place.run_on(&own_tracks::csv(&rows), &line);
-        let unlike = "motions are unlike those that the model was trained on";
+        let unlike = "motions are unlike the training motions";
         assert_eq!(finished.stderr.matches(unlike).count(), 1, "{finished:?}");
-        let whose = "that of pedestrian 4 observed until frame 150";
+        let whose = "first that of pedestrian 4 observed until frame 150";
         assert!(finished.stderr.contains(whose), "{finished:?}");
     }
 }

@@ -106,9 +106,9 @@ fn errors_with_own_recordings_give_advice() {
         "windows --data mine --fold attic => it has lobby, yard",
         "evaluate --data star --fold attic => add --convention own",
         "windows --data star --fold attic => add --convention own",
-        "evaluate --data mine --window-rule complete => leave --window-rule out",
+        "evaluate --data mine --window-rule complete => leave out --window-rule",
         "forecast short.csv --region 0.5,0.50 => 0.5 twice",
-        "evaluate --model hotel --convention own --data short.csv => 20 steps in a row",
+        "evaluate --model hotel --convention own --data short.csv => 20 consecutive time steps",
     ]);
 }
 

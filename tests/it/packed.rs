@@ -101,7 +101,7 @@ fn unsupported_uses_of_a_packed_model_are_reported() {
     drawn_model::write(config, &crowd::windows(20, 10), &place.at("retrieved"));
     place.all_fail(&[
         "evaluate --model packed --protocol published => no expert library",
-        "evaluate --model zara1 --convention simulated => cannot be measured on `simulated`",
+        "evaluate --model zara1 --convention simulated => cannot be evaluated on `simulated`",
         "evaluate --fold plaza --convention simulated => star",
         "evaluate --fold corridor => zara1",
         "pack --model retrieved --out new => --goals proposed",

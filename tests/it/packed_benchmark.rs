@@ -99,7 +99,7 @@ fn an_unfinished_benchmark_is_refused_and_nothing_replaced() {
     place.write("univ-full-1/run/report.json", older);
     place.fails(PACK, &["univ-full-1", PACKED]);
     place.remove("univ-full-1/run/report.json");
-    place.fails(PACK, &["is the benchmark finished?"]);
+    place.fails(PACK, &["finish the benchmark first"]);
     place.remove("plan.json");
     place.fails(PACK, &["`ddl benchmark` makes"]);
 }

@@ -44,7 +44,7 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
         !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame))
     });
     let (lines, told) = forecast(&rows, "--certificate --last");
-    let note = "of 3 forecasts 1 are of people seen for less than 8 steps, and 1 over holes";
+    let note = "of 3 forecasts 1 are of pedestrians observed at fewer than 8 time steps, and 1 over filled holes";
     assert!(told.contains(note), "{told}");
     let found: Vec<_> = lines.iter().map(made_up).collect();
     assert_eq!(found, [[90, 1, 0, 0], [90, 2, 4, 0], [90, 3, 0, 2]]);
@@ -59,7 +59,8 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
     );
     // Pedestrians that have just appeared are counted.
     rows.push((90, 4, 3.0, 1.0));
-    let missing = "1 of the 4 people at frame 90 were seen at too few of the last 8 steps";
+    let missing =
+        "1 of the 4 pedestrians at frame 90 were observed at too few of the last 8 time steps";
     let told = forecast(&rows, "--last").1;
     assert!(told.contains(missing), "{told}");
 }
@@ -70,7 +71,7 @@ fn a_rate_without_whole_steps_is_resampled_and_reported() {
         .map(|frame| (frame, 1, 0.05 * frame as f64, 1.0))
         .collect();
     let (lines, told) = forecast(&rows, "--fps 24 --last");
-    assert!(told.contains("0.4 s are 9.6 frames"), "{told}");
+    assert!(told.contains("0.4 s is 9.6 frames"), "{told}");
     assert_eq!(made_up(&lines[0]), [72, 1, 0, 0]);
     let frames: Vec<f64> = serde_json::from_value(lines[0]["frames"].clone()).unwrap();
     assert!((frames[0] - 81.6).abs() < 1e-9 && (frames[11] - 187.2).abs() < 1e-9);
@@ -154,13 +155,14 @@ fn the_rate_of_scenes_is_used() {
     for (line, told, same_as) in [
         (
             "two.ndjson",
-            "note: the file's scenes give 2 frames a second, and its frame numbers rise by 10: read as --fps 20\n",
+            "note: the file's scenes give 2 frames per second, but its frame numbers increase by 10: read as --fps \
+             20\n",
             "plain.ndjson --fps 20",
         ),
         (
             "two.ndjson --fps 25",
-            "note: read as --fps 25, although the file's scenes give 2 frames a second, and its frame numbers rise by \
-             10 (--fps 20)\n",
+            "note: read as --fps 25, although the file's scenes give 2 frames per second, but its frame numbers \
+             increase by 10 (--fps 20)\n",
             "plain.ndjson --fps 25",
         ),
         ("usual.ndjson", "", "plain.ndjson"),
@@ -183,8 +185,8 @@ fn files_and_options_override_the_rate_of_a_run() {
     let rows = own_tracks::three_pedestrians(40);
     place.write("two.ndjson", SCENE.to_owned() + &ndjson(&rows));
     place.write_tracks("plain.csv", &rows);
-    let note = "note: the numbers are read as in the run's training (--fps 50); give --fps, --dt, --frame-step or \
-                --homography to read them differently\n";
+    let note = "note: the units are those of the run's training (--fps 50); give --fps, --dt, --frame-step or \
+                --homography if this is wrong\n";
     let run = |line: &str| place.run(&format!("{line} --model run --threads 1"));
     for command in ["forecast", "goals", "view --no-open -o page.html"] {
         let told = run(&format!("{command} plain.csv --last"));
@@ -209,7 +211,7 @@ fn files_and_options_override_the_rate_of_a_run() {
         (
             "two.ndjson",
             "",
-            "8 apart in 0.4 s, by the fps of the scenes, 2",
+            "8 apart in 0.4 s, from the fps of the scenes, 2",
         ),
         ("plain.csv", "--fps 25", ""),
     ] {
@@ -227,12 +229,12 @@ fn rate_and_homography_of_a_run_are_used() {
     own_tracks::write_film(&place);
     let units = "--fps 23.98 --homography film/H.txt";
     let told = place.run(&format!("data film {units}"));
-    let note = "note: 3 recordings: 0.4 s are 9.592 frames: positions are taken";
+    let note = "note: 3 recordings: 0.4 s is 9.592 frames: positions are interpolated";
     assert_eq!(told.stderr.matches("9.592").count(), 1, "{told:?}");
     assert!(told.stderr.contains(note), "{told:?}");
     let text = told.succeeds();
     let total = text.lines().last().unwrap();
-    assert!(total.starts_with("in all: 3 recordings, "), "{text}");
+    assert!(total.starts_with("total: 3 recordings, "), "{text}");
     assert!(
         total.contains(" pedestrians, ") && total.ends_with(" hours"),
         "{text}"
@@ -246,8 +248,8 @@ fn rate_and_homography_of_a_run_are_used() {
         ..TrackUnits::default()
     });
     drawn_model::write(config, &crowd::windows(60, 10), &place.at("film-run"));
-    let remembered = "note: the numbers are read as in the run's training (--fps 23.98 and its homography); give \
-                      --fps, --dt, --frame-step or --homography to read them differently\n";
+    let remembered = "note: the units are those of the run's training (--fps 23.98 and its homography); give --fps, \
+                      --dt, --frame-step or --homography if this is wrong\n";
     let forecast = "forecast film/hall.csv --model film-run --last --threads 1";
     let finished = place.run(forecast);
     assert!(finished.stderr.contains(remembered), "{finished:?}");
@@ -255,7 +257,7 @@ fn rate_and_homography_of_a_run_are_used() {
     assert!(!said.stderr.contains("training"), "{said:?}");
     assert_eq!(finished.succeeds(), said.succeeds());
     let live = place.run_on(&place.text("film/hall.csv"), "forecast - --model film-run");
-    let message = "the run was trained with --fps 23.98: 0.4 s are 9.592 frames";
+    let message = "the run was trained with --fps 23.98: 0.4 s is 9.592 frames";
     assert_eq!(live.code, Some(1), "{live:?}");
     assert!(live.stderr.contains(message), "{live:?}");
 }

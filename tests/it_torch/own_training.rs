@@ -104,7 +104,7 @@ fn training_recordings_are_refused_as_test_data(place: &Place) {
     place.write("other/yard.csv", cut);
     place.fails(
         &evaluate("other"),
-        &["called \"yard\" as well", "another name"],
+        &["the same name \"yard\"", "rename the file"],
     );
 }
 
@@ -154,7 +154,7 @@ fn training_and_evaluation_report_the_same_errors() {
     assert!(words.contains("training "), "{words}");
     // Another validation part would contain training data.
     let other = "evaluate --model run --data clips --validation --validation-recordings clip0";
-    place.fails(other, &["leave --validation-recordings out"]);
+    place.fails(other, &["leave out --validation-recordings"]);
 }
 
 #[test]
@@ -194,15 +194,15 @@ fn a_training_starts_with_the_weights_of_another_model() {
     for (options, words) in [
         (
             "--feed-forward-width 16",
-            "star.feed_forward_width is 32, not 16 as asked for",
+            "star.feed_forward_width is 32, not 16 as requested",
         ),
         (
             "--variant no-goal-shift",
-            "star.frame is goal, not world as asked for",
+            "star.frame is goal, not world as requested",
         ),
         (
             "--recipe published",
-            "star.feed_forward_width is 32, not 2048 as asked for",
+            "star.feed_forward_width is 32, not 2048 as requested",
         ),
     ] {
         let line = format!("train --data clips --from hotel {options} --out new {SMALL}");
@@ -252,7 +252,7 @@ fn an_empty_validation_part_is_an_error() {
     let _ = place.ok(&format!("{train} --patience 0"));
     for command in ["evaluate --validation", "goals --measure validation"] {
         let line = format!("{command} --model run --data clips --threads 1");
-        place.fails(&line, &["--validation 0.4", "20 steps in a row"]);
+        place.fails(&line, &["--validation 0.4", "20 consecutive time steps"]);
     }
     place.write_tracks("short.csv", &own_tracks::three_pedestrians(12));
     place.fails("train --data short.csv --out new", &["no training windows"]);
@@ -278,7 +278,7 @@ fn a_run_remembers_rate_and_homography() {
     place.remove("film/H.txt");
     let measure = "evaluate --model run --data film --validation --threads 1";
     let measured = place.run(&format!("{measure} --protocol single"));
-    let note = "note: 3 recordings: the numbers are read as in the run's training (--fps 23.98 and its homography); \
+    let note = "note: 3 recordings: the units are those of the run's training (--fps 23.98 and its homography); \
                 give --fps";
     assert!(measured.stderr.contains(note), "{measured:?}");
     let _ = measured.succeeds();

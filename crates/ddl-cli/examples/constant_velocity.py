@@ -1,10 +1,10 @@
-"""Forecasts that everybody goes on as in the last observed step.
+"""Forecasts with the velocity of the last observed step.
 
     ddl windows --convention star --fold zara1 --output windows.jsonl
     python3 constant_velocity.py windows.jsonl forecasts.jsonl
     ddl evaluate --forecasts forecasts.jsonl --convention star --fold zara1
 
-Put your own model in the place of `forecast`.
+Replace `forecast` with your own model.
 """
 
 import json
@@ -22,6 +22,6 @@ with open(sys.argv[1]) as windows, open(sys.argv[2], "w") as forecasts:
     for line in windows:
         pedestrian = json.loads(line)
         answer = {key: pedestrian[key] for key in ("recording", "observed_until", "pedestrian")}
-        # Several hypotheses, of equal weight or each with its "weight", may stand here: best of 20.
+        # Several hypotheses are possible, with a "weight" each or of equal weight: the best of 20 counts.
         answer["hypotheses"] = [{"positions": forecast(pedestrian["observed"])}]
         forecasts.write(json.dumps(answer) + "\n")

@@ -1,4 +1,4 @@
-//! How frames are numbered where recordings count them in finer parts than the tracks did.
+//! Frame numbers of tracks whose recordings count frames in finer parts.
 
 use ddl::data::Doubt;
 use serde::Serialize;
@@ -8,7 +8,7 @@ pub(crate) struct Clock {
     parts: i64,
 }
 
-/// A frame as the tracks number it; between two frames where these do not meet the steps of 0.4 s.
+/// A frame number of the tracks; a fraction where a step of 0.4 s ends between two frames.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub(crate) enum FrameNumber {
@@ -53,7 +53,7 @@ impl Clock {
 }
 
 impl FrameNumber {
-    /// To four decimals at most, as tables and messages have it.
+    /// Rounded to four decimals for tables and messages.
     pub(crate) fn rounded(self) -> Self {
         match self {
             Self::Whole(frame) => Self::Whole(frame),

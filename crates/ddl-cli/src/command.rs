@@ -1,4 +1,4 @@
-//! The commands, one a file, and the options they share.
+//! The commands, one in each file, and the options they share.
 
 pub(crate) mod baselines;
 pub(crate) mod benchmark;
@@ -30,14 +30,14 @@ use ddl::{
 };
 use std::path::{Path, PathBuf};
 
-/// Seed of the simulated crowds: one data set for everybody.
+/// Seed of the simulated crowds, the same for all users.
 const SIMULATION_SEED: u64 = 1;
 
-/// A model by name, the program's own where none is named.
+/// A model by name, or the default built-in model.
 #[derive(Debug, Args)]
 pub(crate) struct ModelChoice {
-    /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model by the scene it was trained without:
-    /// eth, hotel, univ, zara1 or zara2 [default: hotel, the built-in one that was trained on the most pedestrians]
+    /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model, named after the scene it was
+    /// trained without: eth, hotel, univ, zara1 or zara2 [default: hotel, the one trained on the most pedestrians]
     #[arg(long)]
     model: Option<PathBuf>,
 }
@@ -54,45 +54,45 @@ impl ModelChoice {
         Ddl::open(&self.source(), device)
     }
 
-    /// What goals come from alone: a run's may be there before its network is trained.
+    /// Loads only the goals, which exist before the network of a run is trained.
     pub(crate) fn load_goals(&self, device: DeviceChoice) -> Result<GoalModel, DdlError> {
         GoalModel::open(&self.source(), device)
     }
 }
 
-/// Where to compute and how to tell progress.
+/// The device, the threads and the display of progress.
 #[derive(Debug, Args)]
 pub(crate) struct Machine {
     /// Device: auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
     pub(crate) device: DeviceChoice,
-    /// Threads for the network's kernels and goal search [default: all cores; of forecast, view and goals 1: too little to share]
+    /// Threads for the network and goal search [default: all cores; 1 for forecast, view and goals]
     #[arg(long, value_parser = at_least_one)]
     threads: Option<usize>,
 }
 
 impl Machine {
-    /// Opens the device and sets the threads, before anything else touches libtorch.
+    /// Opens the device and sets the threads. Call it before libtorch is used.
     pub(crate) fn prepare(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads)
     }
 
-    /// The same for a few small tensors: a second thread would only wait.
+    /// The same for small amounts of work, which a second thread would not speed up.
     pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads.or(Some(1)))
     }
 }
 
-/// How exactly the network computes.
+/// The precision of the network.
 #[derive(Debug, Args)]
-pub(crate) struct Exactness {
-    /// Products in the network's feed-forward blocks: f32, or bf16 (8 significant bits, sums in f32), which is faster on
-    /// processors with AVX-512 BF16 and slower on others; on the CPU only
+pub(crate) struct PrecisionOption {
+    /// Precision of the network's feed-forward blocks: f32, or bf16 (8 significant bits, sums in f32). bf16 is faster
+    /// on processors with AVX-512 BF16 and slower on others; it needs the CPU
     #[arg(long, default_value = "f32")]
     precision: Precision,
 }
 
-impl Exactness {
+impl PrecisionOption {
     pub(crate) fn precision(&self) -> Precision {
         if !self.precision.is_native() {
             tell(format_args!(
@@ -104,14 +104,14 @@ impl Exactness {
     }
 }
 
-/// Whether pedestrians mind each other.
+/// Whether pedestrians keep a clearance from each other.
 #[derive(Debug, Args)]
 pub(crate) struct KeepClear {
-    /// Let pedestrians mind each other within so many metres, from centre to centre, such as 0.4
+    /// Let pedestrians keep this distance from each other, in metres between centres, such as 0.4
     ///
-    /// Each hypothesis is walked again among the others, who go as they would most likely go alone:
-    /// near somebody it slows down and slides along. The distance to the goal still falls at every
-    /// step. The distance from each other is not guaranteed: both move, and nobody is moved aside.
+    /// Each hypothesis is computed again among the most likely paths of the other pedestrians. Near another pedestrian
+    /// it slows down and slides past. The distance to the goal still falls at every step. The clearance is not
+    /// guaranteed, because both pedestrians move and neither steps aside.
     #[arg(
         long,
         value_name = "METRES",
@@ -133,30 +133,30 @@ impl KeepClear {
 fn clearance(text: &str) -> Result<Clearance, String> {
     let metres: f64 = text
         .parse()
-        .map_err(|error| format!("must be a number ({error})"))?;
+        .map_err(|error| format!("must be a number: {error}"))?;
     Clearance::new(metres).map_err(|error| error.to_string())
 }
 
-/// What the help of commands that tell no progress says of the option, which every command that reports takes.
-pub(crate) const NO_PROGRESS: &str = "Has no effect: this command shows no progress, but programs may give all commands the same options";
+/// Help of the option in commands without progress. Every command that reports takes the option.
+pub(crate) const NO_PROGRESS: &str = "Has no effect: this command shows no progress, but programs can give all commands the same options";
 
-/// How progress is told, and whether results are for programs: options of every command that has either.
+/// The form of progress and results: options of every command with one of them.
 #[derive(Debug, Args)]
 pub(crate) struct Telling {
-    /// Progress of what takes long: a bar on a terminal, elsewhere a line every half a minute (auto), a JSON object a line (json), or none
+    /// Progress: auto (a bar on a terminal, else a line every 30 s), json (one JSON object per line), or none
     #[arg(long, value_enum, default_value = "auto")]
     pub(crate) progress: ProgressMode,
-    /// Results on standard output as JSON, for programs
+    /// Print results as JSON on standard output
     #[arg(long)]
     pub(crate) json: bool,
 }
 
-/// How results are printed, and progress told.
+/// How results and progress are printed.
 #[derive(Debug, Args)]
 pub(crate) struct Reporting {
     #[command(flatten)]
     pub(crate) telling: Telling,
-    /// Commit to be named in results: that of the checkout it was built from
+    /// Commit to name in results [default: the one that the program was built from]
     #[arg(long, env = "DDL_COMMIT", default_value = env!("DDL_BUILT_FROM"), hide = true)]
     pub(crate) commit: String,
 }
@@ -166,7 +166,7 @@ impl Reporting {
         if self.telling.json {
             output::print(&(report.to_json()? + "\n"))
         } else if self.telling.progress == ProgressMode::Json {
-            // standard output has lines of progress
+            // standard output holds lines of progress
             Ok(())
         } else {
             output::print(&result_lines::lines(report, rest))
@@ -174,10 +174,11 @@ impl Reporting {
     }
 }
 
-/// Where recordings are, and what the numbers of own ones mean.
+/// Where the recordings are, and the units of own recordings.
 #[derive(Debug, Args)]
 pub(crate) struct RecordingsAt {
-    /// Folder of the recordings; of own ones any files of tracks, or one such file [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
+    /// Recordings: a folder; of own recordings also a single file of tracks [default: `$DDL_DATASETS`, then
+    /// `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
     #[command(flatten)]
@@ -197,7 +198,7 @@ impl RecordingsAt {
         data + &self.units.as_options()
     }
 
-    /// The convention of what lies there, where none is asked for: that of the model, or own recordings where a place is named that does not hold
+    /// The requested convention or, by default, that of the model; own recordings where `--data` names a place without
     /// the model's files.
     fn convention(&self, asked: Option<Convention>, of_model: Convention) -> Convention {
         asked.unwrap_or_else(|| convention_of(self.data.as_deref(), of_model))
@@ -207,7 +208,7 @@ impl RecordingsAt {
         dataset(convention, self.data.as_deref(), &self.units)
     }
 
-    /// The same for a model: own recordings are read as its own ones were, as far as nothing else is said.
+    /// The recordings for a model. Own recordings are read with the units of its training unless options differ.
     fn dataset_for(&self, run: &RunConfig, convention: Convention) -> anyhow::Result<Dataset> {
         if convention != Convention::Own {
             return self.dataset(convention);
@@ -220,7 +221,8 @@ impl RecordingsAt {
     }
 }
 
-/// The convention of what lies in a folder, or in the usual one: that of the model where one of its files is there, else own recordings.
+/// The convention of a folder (`None`: the default folder): that of the model if one of its files is there, else own
+/// recordings.
 fn convention_of(data: Option<&Path>, of_model: Convention) -> Convention {
     let Some(data) = data else { return of_model };
     let holds_some = |folder: &Path| of_model.file_names().any(|f| folder.join(f).is_file());
@@ -247,8 +249,8 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
     }
     if units.are_given() {
         bail!(
-            "--fps, --dt, --frame-step and --homography say what your own recordings mean (--convention own); those of {convention} are \
-             known"
+            "--fps, --dt, --frame-step and --homography describe your own recordings (--convention own); those of \
+             {convention} have fixed units"
         );
     }
     if convention == Convention::Simulated {
@@ -266,6 +268,6 @@ pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {
     match text.parse() {
         Ok(0) => Err("must be at least 1".to_owned()),
         Ok(number) => Ok(number),
-        Err(error) => Err(format!("must be a whole number, at least 1 ({error})")),
+        Err(error) => Err(format!("must be a whole number of at least 1: {error}")),
     }
 }

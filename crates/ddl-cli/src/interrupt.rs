@@ -1,24 +1,25 @@
-//! Ctrl-C as a wish to stop that the work looks at between two steps.
+//! Ctrl-C as a request to stop, which the work checks between two steps.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Signals that follow each other so quickly are one wish: who ends all processes of a job at once signals this one and the one that
-/// started it, which passes it on.
-const TOGETHER: Duration = Duration::from_millis(300);
+/// Signals in such quick succession are one request. A job manager may signal all processes of a job, and the parent
+/// passes the signal on to this one.
+const ONE_REQUEST: Duration = Duration::from_millis(300);
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Interrupt(Arc<AtomicUsize>);
 
 impl Interrupt {
-    /// Catches Ctrl-C (SIGINT) and SIGTERM from now on; a second one ends the program at once.
+    /// Catches Ctrl-C (SIGINT) and SIGTERM; a second signal ends the program at once.
     pub(crate) fn catch() -> anyhow::Result<Self> {
         Self::catch_until(2, |_| {})
     }
 
-    /// Catches Ctrl-C (SIGINT) and SIGTERM from now on, and hears the number of each; the `last` ends the program at once.
+    /// Catches Ctrl-C (SIGINT) and SIGTERM, and calls back with the number of each request; request `last` ends the
+    /// program at once.
     pub(crate) fn catch_until(
         last: usize,
         hear: impl Fn(usize) + Send + 'static,
@@ -28,7 +29,7 @@ impl Interrupt {
         let mut before: Option<Instant> = None;
         ctrlc::set_handler(move || {
             let now = Instant::now();
-            if before.is_some_and(|before| now - before < TOGETHER) {
+            if before.is_some_and(|before| now - before < ONE_REQUEST) {
                 return;
             }
             before = Some(now);
@@ -41,7 +42,7 @@ impl Interrupt {
         Ok(interrupt)
     }
 
-    /// One more wish to stop; how many there are.
+    /// Adds a request to stop, and returns their number.
     pub(crate) fn wish(&self) -> usize {
         self.0.fetch_add(1, Ordering::SeqCst) + 1
     }

@@ -1,5 +1,5 @@
-//! The program `ddl` as a library, for programs that bring it along: argument parsing and glue; the work is done by the
-//! crate `ddl`.
+//! The program `ddl` as a library, for programs that embed it. It parses arguments and prints; the crate `ddl` does the
+//! work.
 
 mod clock;
 mod command;
@@ -15,8 +15,8 @@ mod units;
 use clap::{CommandFactory as _, Parser, Subcommand};
 use std::ffi::OsString;
 
-/// Forecasts of walking people that converge to their goals.
-// It fits a screen of 24 lines of 80 columns, which a test measures.
+/// Forecasts of pedestrians, along stable paths to their goals.
+// A test checks that the help fits a screen of 24 lines of 80 columns.
 #[derive(Debug, Parser)]
 #[command(
     name = "ddl",
@@ -52,8 +52,8 @@ enum Command {
     Man(command::generated::Man),
 }
 
-/// Runs the program `ddl` with `arguments`, of which the first is the program's name, and returns its exit code: 0 done,
-/// 1 failed, 130 interrupted.
+/// Runs the program `ddl` with `arguments`, starting with the name of the program. Returns its exit code: 0 success, 1
+/// failure, 130 interrupted.
 ///
 /// Writes to the process's standard output and standard error. Arguments that cannot be parsed end the process with
 /// exit code 2, `--help` and `--version` with 0.
@@ -76,15 +76,15 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
     };
     match result {
         Ok(()) => 0,
-        // as in `ddl info | head -1`
+        // for example `ddl info | head -1`
         Err(error) if telling::reader_has_gone(&error) => 0,
         Err(error) => {
             let interrupted = matches!(
                 error.downcast_ref::<ddl::DdlError>(),
                 Some(ddl::DdlError::Interrupted)
             );
-            let who = if interrupted { "ddl" } else { "error" };
-            telling::tell(format_args!("{who}: {}", telling::words(&error)));
+            let source = if interrupted { "ddl" } else { "error" };
+            telling::tell(format_args!("{source}: {}", telling::words(&error)));
             if interrupted { 130 } else { 1 }
         }
     }

@@ -1,15 +1,15 @@
-//! Where output goes: standard output, or a file that is replaced as a whole.
+//! Output to standard output, or to a file that is replaced as a whole.
 
 use anyhow::Context as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Refuses to write over a file that is read: recordings are not to be had again.
+/// Refuses to overwrite the input file: recordings cannot be recovered.
 pub(crate) fn ensure_not_input(output: Option<&Path>, input: &Path) -> anyhow::Result<()> {
     let place = |path: &Path| path.canonicalize().ok();
     match output.and_then(place) {
         Some(file) if file.is_file() && Some(&file) == place(input).as_ref() => anyhow::bail!(
-            "{} is the file that is read: it would be lost; name another one to be written",
+            "{} is the input file and would be lost; give another output file",
             input.display()
         ),
         _ => Ok(()),
@@ -19,7 +19,7 @@ pub(crate) fn ensure_not_input(output: Option<&Path>, input: &Path) -> anyhow::R
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {
-        // A device or a pipe is written to, not replaced.
+        // A device or a pipe cannot be replaced.
         Some(path) if path.exists() && !path.is_file() => std::fs::write(path, text)
             .with_context(|| format!("cannot write to {}", path.display())),
         Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
@@ -34,21 +34,21 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
         .context("cannot write to standard output")
 }
 
-/// A coordinate as tables write it: to 0.1 mm.
+/// A coordinate in tables, rounded to 0.1 mm.
 pub(crate) fn table_metres(metres: f64) -> f64 {
     // no `-0`
     (1e4 * metres).round() / 1e4 + 0.0
 }
 
-/// A share as tables write it: to 3 significant digits.
+/// A share in tables, rounded to 3 significant digits.
 pub(crate) fn table_share(share: f64) -> f64 {
-    // what is written so is a number
+    // a formatted number parses
     format!("{share:.2e}").parse().unwrap_or(share)
 }
 
 pub(crate) fn shell_word(path: &Path) -> String {
     let path = path.display().to_string();
-    // A path with a zero byte, which has no quoted form, is none that a file system has.
+    // No file system has a path with a zero byte, the only one without a quoted form.
     shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into)
 }
 

@@ -1,4 +1,4 @@
-//! Progress for people (a bar on the terminal, a line now and then elsewhere) or for programs (a JSON object a line).
+//! Progress as a bar on a terminal, as a line at intervals elsewhere, or as JSON lines for programs.
 
 use crate::telling::tell;
 use clap::ValueEnum;
@@ -9,15 +9,15 @@ use std::cell::Cell;
 use std::io::{IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
-/// How often somebody who reads a log is told how far the work has come: what takes less time is quiet.
+/// Interval of the lines in a log; shorter work prints none.
 pub(crate) const LINE_EVERY: Duration = Duration::from_secs(30);
 
-/// How progress is told.
+/// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ProgressMode {
-    /// A bar when standard error is a terminal, otherwise a line there every half a minute.
+    /// A bar if standard error is a terminal, otherwise a line there every 30 s.
     Auto,
-    /// One JSON object a line on standard output.
+    /// One JSON object per line on standard output.
     Json,
     /// Nothing.
     None,
@@ -28,7 +28,7 @@ pub(crate) struct Progress {
     stage: &'static str,
     mode: ProgressMode,
     bar: ProgressBar,
-    /// When the last line was told, where there is no bar.
+    /// The time of the last line, where there is no bar.
     told: Cell<Instant>,
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct ProgressLine<'a> {
 impl ProgressLine<'_> {
     pub(crate) fn print(&self) {
         if let Ok(line) = serde_json::to_string(self) {
-            // a reader that went away must not stop the work
+            // a closed output must not stop the work
             let _ = writeln!(std::io::stdout(), "{line}");
         }
     }
@@ -60,7 +60,7 @@ impl Progress {
         let style = ProgressStyle::with_template(
             "{prefix:>9} [{bar:32}] {pos}/{len} {elapsed} (left {eta}) {msg}",
         );
-        // the template is a constant, so the default style is never needed
+        // the template is a valid constant, so the default is never used
         bar.set_style(
             style
                 .unwrap_or_else(|_| ProgressStyle::default_bar())

@@ -1,4 +1,4 @@
-//! A user's own recordings: one file each, in a folder or named one by one.
+//! A user's own recordings: one per file, in folders or named individually.
 
 use crate::telling::{self, tell};
 use crate::units::{InSteps, Units};
@@ -6,12 +6,12 @@ use anyhow::{Context as _, bail};
 use ddl::data::Doubt;
 use std::path::{Path, PathBuf};
 
-/// What files of recordings are called; others in a folder are not looked at.
+/// Extensions of recordings; other files in a folder are ignored.
 const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
-/// So many files that cannot be read are named; the rest would push them off the screen.
-const MOST_TOLD: usize = 10;
+/// Number of unreadable files that are reported individually.
+const MOST_REPORTED: usize = 10;
 
-/// The files of recordings in these folders, by name, and the files named themselves.
+/// The recordings in these folders, by name, and the files among `paths`.
 pub(crate) fn files(paths: &[PathBuf], units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for path in paths {
@@ -40,7 +40,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     }
     if files.is_empty() {
         bail!(
-            "{} holds no recordings: files that end in .csv, .txt or .ndjson; folders within it are not read",
+            "{} holds no recordings: it needs files that end in .csv, .txt or .ndjson (subfolders are not read)",
             folder.display()
         );
     }
@@ -54,7 +54,7 @@ pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSte
     Ok(read.into_iter().map(|(_, in_steps)| in_steps).collect())
 }
 
-/// What is to be told of recordings, by name: what holds for several is told once.
+/// Prints messages about recordings; a message about several is printed once.
 fn tell_grouped<'a>(kind: &str, of: impl IntoIterator<Item = (&'a str, String)>) {
     let mut told: Vec<(String, Vec<&str>)> = Vec::new();
     for (name, words) in of {
@@ -94,23 +94,23 @@ pub(crate) fn read_each<'f>(
     (read, errors)
 }
 
-/// Tells why some of `files` could not be read, together, so that they can be mended together.
+/// Reports all files that could not be read together.
 pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::Result<()> {
     if errors.len() < 2 {
         return errors.pop().map_or(Ok(()), Err);
     }
-    for error in errors.iter().take(MOST_TOLD) {
+    for error in errors.iter().take(MOST_REPORTED) {
         tell(format_args!("error: {}", telling::words(error)));
     }
-    let told = if errors.len() > MOST_TOLD {
-        format!("; the first {MOST_TOLD} are named above")
+    let told = if errors.len() > MOST_REPORTED {
+        format!("; the first {MOST_REPORTED} are listed above")
     } else {
         String::new()
     };
     bail!("{} of {files} files cannot be read{told}", errors.len());
 }
 
-/// Says what looks wrong with speeds: what is learned from wrong units, or measured with them, means nothing.
+/// Warns of suspicious speeds: with wrong units, training and evaluation are meaningless.
 pub(crate) fn warn_of_doubts(read: &[InSteps]) {
     let doubtful = read.iter().filter_map(|of| {
         let doubt = of.recording.speed_doubt()?;

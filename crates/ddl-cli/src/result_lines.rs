@@ -8,10 +8,11 @@ const VELOCITY: &str = "constant velocity (last step)";
 /// A pedestrian counts once in every window.
 const PEDESTRIAN_WINDOWS: &str = "pedestrian-windows";
 
-/// One line a result, under what it has in common with others; `rest` says where everything else is.
+/// One line for each result, under the conditions it shares with others; `rest` tells where to find the remaining
+/// metrics.
 pub(crate) fn lines(report: &Report, rest: &str) -> String {
     let mut text = String::new();
-    // a `String` takes everything
+    // writing to a `String` cannot fail
     let _ = write_lines(&mut text, report, rest);
     text
 }
@@ -49,7 +50,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
             out,
             "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}"
         )?;
-        // of all rows: they were measured together
+        // the same for all rows: they were evaluated together
         if let Some(subset) = &first.conditions.test_subset {
             writeln!(out, "{subset}")?;
         }
@@ -78,7 +79,8 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
     writeln!(out, "\n{rest}")
 }
 
-/// A line a recording, where several were measured together: the first forecaster, and what it is to beat.
+/// One line for each recording, if several were evaluated together: errors of the first forecaster and of constant
+/// velocity.
 fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRow>) -> Result {
     let recordings = first.by_recording();
     if recordings.len() < 2 {

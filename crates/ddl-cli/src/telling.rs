@@ -1,10 +1,10 @@
-//! What is told to people, on standard error.
+//! Messages for users on standard error.
 
 use std::fmt::Arguments;
 use std::io::{Error, ErrorKind, Write as _, stderr};
 use std::time::Duration;
 
-/// Writes a line to standard error. Where nobody reads it, the work goes on: `eprintln!` would panic.
+/// Writes a line to standard error. A closed standard error is ignored; `eprintln!` would panic.
 pub(crate) fn tell(line: Arguments<'_>) {
     let _ = writeln!(stderr(), "{line}");
 }
@@ -18,12 +18,13 @@ pub(crate) fn human(duration: Duration) -> String {
     }
 }
 
-/// Whether a write failed because its reader has gone, as in `ddl info | head -1`.
+/// Whether a write failed because the reader has closed the output, as in `ddl info | head -1`.
 pub(crate) fn reader_has_gone(error: &anyhow::Error) -> bool {
     kinds(error).any(|kind| kind == ErrorKind::BrokenPipe)
 }
 
-/// An error and its causes, each said once, as some errors already say their cause themselves, and what to do about a full disk and the like.
+/// An error and its causes, each printed once (some errors already include their cause), with advice on a full disk and
+/// similar faults.
 pub(crate) fn words(error: &anyhow::Error) -> String {
     let mut message = String::new();
     for cause in error.chain().map(ToString::to_string) {
@@ -43,8 +44,8 @@ fn advice(error: &anyhow::Error) -> Option<&'static str> {
         ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge => {
             Some("make room and run the same command again")
         }
-        ErrorKind::ReadOnlyFilesystem => Some("choose a place that may be written to"),
-        ErrorKind::PermissionDenied => Some("ask for the right to it, or choose another place"),
+        ErrorKind::ReadOnlyFilesystem => Some("choose a writable place"),
+        ErrorKind::PermissionDenied => Some("get permission, or choose another place"),
         _ => None,
     })
 }
@@ -60,7 +61,7 @@ mod tests {
     use anyhow::Context as _;
 
     #[test]
-    fn the_cause_is_found_behind_what_was_said_of_it() {
+    fn the_cause_is_found_behind_its_context() {
         let error = |kind: ErrorKind| {
             let failed: Result<(), Error> = Err(kind.into());
             failed.context("cannot write to a file").unwrap_err()

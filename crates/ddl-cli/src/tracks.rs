@@ -9,24 +9,26 @@ use ddl::data::{Completion, Doubt, MadeUp, OBSERVED, Observation, Recording, Win
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
-/// Which tracks to read, and what their numbers mean. A command that needs them requires `file`.
+/// The tracks to read, and their units. A command that needs them requires `file`.
 #[derive(Debug, Args)]
 pub(crate) struct Tracks {
-    /// csv with the header frame,pedestrian,x,y: metres, rows of a pedestrian 0.4 s apart unless --fps or --dt says otherwise
+    /// Tracks: csv with the header frame,pedestrian,x,y in metres; the rows of a pedestrian are 0.4 s apart unless
+    /// --fps or --dt is given
     ///
-    /// Or TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, told by extension and first lines. `ddl forecast -` reads a tracker's lines as
-    /// they come.
+    /// Also TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, recognised by extension and first
+    /// lines. `ddl forecast -` reads the lines of a live tracker.
     #[arg(value_name = "TRACKS")]
     file: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) units: Units,
-    /// Only who was seen at each of the last 8 steps
+    /// Only pedestrians observed at each of the last 8 time steps
     ///
-    /// Otherwise who was seen at 2 of them or more is forecast too: holes of up to 2 steps are filled on a straight line, and what begins late is
-    /// padded at the mean velocity seen. The columns `padded` and `filled` count such positions.
+    /// By default, pedestrians observed at 2 or more of them are forecast too. Holes of up to 2 steps are filled on a
+    /// straight line; positions before the first observation are padded at the mean observed velocity. The columns
+    /// `padded` and `filled` count such positions.
     #[arg(long, requires = "file")]
     whole: bool,
-    /// Only the last frame that can be forecast from, instead of every one
+    /// Only the last frame with a forecast, instead of every frame
     #[arg(long, requires = "file")]
     last: bool,
 }
@@ -43,7 +45,7 @@ pub(crate) struct Observed {
     pub(crate) recording: Recording,
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
-    /// What looks wrong with them: wrong units or a wrong rate give forecasts that look confident and mean nothing.
+    /// A fault that the speeds suggest: wrong units or a wrong rate give meaningless forecasts.
     pub(crate) doubt: Option<Doubt>,
     whole: bool,
 }
@@ -72,13 +74,13 @@ impl Tracks {
     pub(crate) fn live_units(&self, run: &RunConfig) -> anyhow::Result<Units> {
         if self.last {
             bail!(
-                "--last has no meaning for tracks that have no end yet: every frame of standard input is forecast from as it comes"
+                "--last does not apply to live tracks: every frame of standard input is forecast as it arrives"
             );
         }
         Ok(self.units.or_those_of(run))
     }
 
-    /// Windows of 8 observed steps, one a frame that has anybody to forecast, for a run.
+    /// Windows of 8 observed steps, one for each frame with pedestrians to forecast, for a run.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<Observed> {
         let InSteps {
             recording,
@@ -92,20 +94,22 @@ impl Tracks {
         let mut windows = recording.completed_windows(self.completion());
         if windows.is_empty() {
             bail!(
-                "{}: nobody was seen {} (a step of 0.4 s is taken to be {}); give --fps where frame numbers are not 0.4 s apart, or --frame-step",
+                "{}: no pedestrian was observed {} (a step of 0.4 s is taken as {}); give --fps or --frame-step if \
+                 frame numbers are not 0.4 s apart",
                 self.file().display(),
                 if self.whole {
-                    "at 8 steps in a row, 3.2 s"
+                    "at 8 consecutive time steps, 3.2 s"
                 } else {
-                    "at two steps in a row"
+                    "at 2 consecutive time steps"
                 },
                 frames(clock.number(recording.frame_step()))
             );
         }
-        // Who looks at a terminal may be trying the tracks for the first time; scripts are left in peace.
+        // Show the note only on a terminal, where the user may be trying the tracks for the first time.
         if guessed && std::io::stderr().is_terminal() {
             tell(format_args!(
-                "note: a step of 0.4 s is taken to be {}, the most common difference of two rows; give --fps, --dt or --frame-step to read them differently",
+                "note: a step of 0.4 s is taken as {}, the most common difference of two rows; give --fps, --dt or \
+                 --frame-step if this is wrong",
                 frames(clock.number(recording.frame_step()))
             ));
         }
@@ -130,7 +134,7 @@ impl Tracks {
 }
 
 impl Observed {
-    /// Says so where observations were not whole: a forecast from two positions looks like any other.
+    /// Notes incomplete observations: a forecast from two positions looks like any other.
     pub(crate) fn tell_what_is_made_up(&self) {
         let windows = self.windows.iter();
         let all: Vec<MadeUp> = windows
@@ -140,8 +144,8 @@ impl Observed {
         let holes = all.iter().filter(|made_up| made_up.filled > 0).count();
         if late + holes > 0 {
             tell(format_args!(
-                "note: of {} forecasts {late} are of people seen for less than {OBSERVED} steps, and {holes} over holes that were filled (columns \
-                 padded and filled); --whole leaves them out",
+                "note: of {} forecasts {late} are of pedestrians observed at fewer than {OBSERVED} time steps, and \
+                 {holes} over filled holes (columns padded and filled); --whole leaves them out",
                 all.len()
             ));
         }
@@ -161,7 +165,8 @@ impl Observed {
         if missing > 0 {
             let frame = self.clock.number(last);
             tell(format_args!(
-                "note: {missing} of the {present} people at frame {frame} were seen at too few of the last {OBSERVED} steps and are not forecast"
+                "note: {missing} of the {present} pedestrians at frame {frame} were observed at too few of the last \
+             {OBSERVED} time steps and are not forecast"
             ));
         }
     }

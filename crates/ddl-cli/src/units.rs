@@ -1,4 +1,4 @@
-//! What the numbers of tracks mean: how fast frames follow each other, and where a pixel is.
+//! The units of tracks: the frame rate, and the homography of pixels.
 
 use crate::clock::Clock;
 use crate::output::shell_word;
@@ -8,24 +8,25 @@ use ddl::data::{Format, Homography, Recording, TIME_STEP, parse_recording, whole
 use ddl::{RunConfig, TrackUnits};
 use std::path::{Path, PathBuf};
 
-/// What frame numbers and positions mean: as options say it, then the file itself, then the run.
+/// The units of frame numbers and positions: from options, else from the file, else from the run.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Units {
-    /// Frame numbers count so many a second, such as 25: steps of 0.4 s are found, and resampled where they are no whole number of frames [default: the
-    /// rate that scenes of TrajNet++ files give, then that of the run's training]
+    /// Frame numbers per second, such as 25: positions are resampled if 0.4 s is no whole number of frames [default:
+    /// the rate in TrajNet++ files, else that of the run's training]
     #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive, allow_negative_numbers = true)]
     fps: Option<f64>,
-    /// Seconds from one frame number to the next, such as 0.1
-    #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    /// Seconds between consecutive frame numbers, such as 0.1
+    #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS")]
+    #[arg(value_parser = positive, allow_negative_numbers = true)]
     dt: Option<f64>,
     /// Frame numbers in 0.4 s [default: the most common difference between two rows]
     #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31), allow_negative_numbers = true)]
     frame_step: Option<i64>,
-    /// Positions are pixels: a file of three lines of three numbers, the homography from pixels to metres; `none` where they are metres [default: that of
-    /// the run's training, if it had one]
+    /// Positions are in pixels: file with the homography to metres, three lines of three numbers; `none` for metres
+    /// [default: that of the run's training, if any]
     #[arg(long, value_name = "FILE")]
     homography: Option<PathBuf>,
-    /// What a run remembers.
+    /// The units of the run's training.
     #[arg(skip)]
     remembered: TrackUnits,
 }
@@ -36,15 +37,15 @@ pub(crate) struct InSteps {
     pub(crate) clock: Clock,
     /// Whether the frame rate was neither given nor in the file.
     pub(crate) guessed: bool,
-    /// What was found out about its rate, for [`tell_notes`](crate::recordings::tell_notes).
+    /// Notes on its rate, for [`tell_notes`](crate::recordings::tell_notes).
     pub(crate) notes: Vec<String>,
 }
 
-/// Rates are one where they differ by no more than this share.
+/// Rates with a smaller relative difference count as equal.
 const SAME: f64 = 0.005;
 
 impl Units {
-    /// The same; what neither options nor files say is as a run on own recordings was told in training.
+    /// These units; those that neither options nor files give are taken from the training of a run on own recordings.
     pub(crate) fn or_those_of(&self, run: &RunConfig) -> Self {
         Self {
             remembered: run.units.unwrap_or_default(),
@@ -80,7 +81,7 @@ impl Units {
         rate.unwrap_or_default() + &homography.unwrap_or_default()
     }
 
-    /// Whether this file is the homography, which may lie beside recordings.
+    /// Whether this file is the homography, which may be in the folder of the recordings.
     pub(crate) fn are_from(&self, file: &Path) -> bool {
         let place = |path: &Path| path.canonicalize().ok();
         let homography = self.homography.as_deref().and_then(place);
@@ -92,7 +93,8 @@ impl Units {
             || self.remembered.homography.is_some_and(says)
     }
 
-    /// The recording in the file, in metres and steps of 0.4 s, in the format that the file looks like. It is read once, so that it may be a pipe.
+    /// Reads the recording in the file, in metres and steps of 0.4 s. The format is recognised. The file is read once,
+    /// so that it may be a pipe.
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<InSteps> {
         let recording = self.in_metres(file)?;
         let told = recording.frame_time_told();
@@ -123,11 +125,11 @@ impl Units {
             .with_context(|| file.display().to_string())?;
         if steps.resampled {
             let reason = match whole_frame_step(frame_time) {
-                Some(step) => format!("frames do not lie {step} apart, which are 0.4 s"),
-                None => format!("0.4 s are {} frames", rounded(TIME_STEP / frame_time)),
+                Some(step) => format!("frames are not {step} apart, which is 0.4 s"),
+                None => format!("0.4 s is {} frames", rounded(TIME_STEP / frame_time)),
             };
             notes.push(format!(
-                "{reason}: positions are taken on straight lines between frames, every 0.4 s back from the last one"
+                "{reason}: positions are interpolated linearly, every 0.4 s back from the last frame"
             ));
         }
         Ok(InSteps {
@@ -138,7 +140,7 @@ impl Units {
         })
     }
 
-    /// What is to be said of a rate that the file itself says, where it is another than the one given, remembered or guessed.
+    /// A note if the rate in the file differs from the one given, remembered or guessed.
     fn note_of_rate(&self, recording: &Recording) -> Option<String> {
         let (rate, told) = (recording.rate()?, recording.frame_time_told()?);
         let apart = recording.frame_step();
@@ -152,7 +154,7 @@ impl Units {
         let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
         let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
         let scenes = format!(
-            "the file's scenes give {rate} frames a second, and its frame numbers rise by {apart}"
+            "the file's scenes give {rate} frames per second, but its frame numbers increase by {apart}"
         );
         let of_file = format!("--fps {}", rounded(1.0 / told));
         match rate_option(&given) {
@@ -162,7 +164,7 @@ impl Units {
         }
     }
 
-    /// What is to be said of what the run remembers, where it is taken; `rate`: whether no file says its rate.
+    /// A note about units taken from the run; `rate`: whether no file gives its rate.
     pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
         let rate = if rate && !self.rate().say_the_rate() {
             rate_option(&self.remembered)
@@ -176,7 +178,8 @@ impl Units {
         let taken: Vec<String> = taken.collect();
         (!taken.is_empty()).then(|| {
             format!(
-                "the numbers are read as in the run's training ({}); give --fps, --dt, --frame-step or --homography to read them differently",
+                "the units are those of the run's training ({}); give --fps, --dt, --frame-step or --homography if \
+                 this is wrong",
                 taken.join(" and ")
             )
         })
@@ -184,11 +187,11 @@ impl Units {
 
     fn in_metres(&self, file: &Path) -> anyhow::Result<Recording> {
         if file.as_os_str() == "-" {
-            bail!("standard input is read by `ddl forecast -` alone; name a file of tracks");
+            bail!("only `ddl forecast -` reads standard input; give a file of tracks");
         }
         if file.is_dir() {
             bail!(
-                "{} is a folder; name one of its files of tracks (`ddl data {0}` tells of each)",
+                "{} is a folder; give one of its files of tracks (`ddl data {0}` summarises each)",
                 file.display()
             );
         }
@@ -218,12 +221,12 @@ impl Units {
         Ok(Some(homography))
     }
 
-    /// Frame numbers in a step of live tracks, as far as options give them.
+    /// Frame numbers in a step of live tracks, if options give them.
     pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
         live_step_of(&self.rate())
     }
 
-    /// The same as the run remembers it, and that in words.
+    /// The same from the run, with its description.
     pub(crate) fn remembered_live_frame_step(&self) -> anyhow::Result<Option<(i64, String)>> {
         let Some(rate) = rate_option(&self.remembered) else {
             return Ok(None);
@@ -248,12 +251,12 @@ fn live_step_of(rate: &TrackUnits) -> anyhow::Result<Option<i64>> {
     }
 }
 
-/// Frame numbers in a step of live tracks, given the seconds from one to the next.
+/// Frame numbers in a step of live tracks, from the seconds between consecutive ones.
 pub(crate) fn live_step(frame_time: f64) -> anyhow::Result<i64> {
     let Some(step) = whole_frame_step(frame_time) else {
         bail!(
-            "0.4 s are {} frames: live tracks are not resampled; give a rate of which 0.4 s are a whole number of frames, or \
-             count frames in finer parts",
+            "0.4 s is {} frames, but live tracks are not resampled; give a rate for which 0.4 s is a whole number of \
+             frames, or count frames in finer parts",
             rounded(TIME_STEP / frame_time)
         );
     };
@@ -267,7 +270,7 @@ fn rounded(number: f64) -> f64 {
 fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text
         .parse()
-        .map_err(|error| format!("must be a number ({error})"))?;
+        .map_err(|error| format!("must be a number: {error}"))?;
     if number.is_finite() && number > 0.0 {
         Ok(number)
     } else {

@@ -1,5 +1,5 @@
-//! The program starts, and refuses what it cannot do. That this test exists also makes `cargo test
-//! --workspace` build the program, which the tests of the workspace run.
+//! Tests that the program starts and refuses impossible arguments. This test also makes `cargo test --workspace` build
+//! the program, which the tests of the workspace run.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -30,7 +30,7 @@ fn options_of_the_network_do_not_go_with_forecasts_of_another_program() {
 
 #[cfg(not(feature = "torch"))]
 #[test]
-fn without_libtorch_a_benchmark_says_where_to_get_it() {
+fn without_libtorch_a_benchmark_tells_how_to_get_it() {
     let folder = tempfile::tempdir().unwrap();
     let output = Command::new(env!("CARGO_BIN_EXE_ddl"))
         .args(["benchmark", "--convention", "simulated"])
@@ -40,7 +40,7 @@ fn without_libtorch_a_benchmark_says_where_to_get_it() {
     let complaint = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{complaint}");
     let said = complaint
-        .starts_with("error: training needs libtorch, which this program is built without");
+        .starts_with("error: training needs libtorch, and this program is built without it");
     assert!(said && complaint.lines().count() == 1, "{complaint}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -1,10 +1,10 @@
-"""Soft-DTW beside the packages that Python users know: the same numbers, and the time of each on one core.
+"""Soft-DTW compared with other Python packages: agreement of the values, and processor time on one core.
 
     pip install ddl-forecast tslearn aeon
     taskset -c 0 python soft_dtw.py
 
-Prints a table. Medians of processor time over repeated calls; every package has computed once before, so that nothing is compiled in
-between.
+Prints a table. Times are medians of processor time over repeated calls. Every package has computed once before, so that
+compilation does not count.
 """
 
 import platform

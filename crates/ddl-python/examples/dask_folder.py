@@ -1,9 +1,9 @@
-"""Forecasts of a folder of recordings by Dask, on the cores of one machine or on a cluster.
+"""Forecasts of a folder of recordings with Dask, on one machine or on a cluster.
 
     pip install ddl-forecast pandas "dask[distributed]"
     python dask_folder.py FOLDER OUT [SCHEDULER]
 
-A task a file. Dask gives the tasks of a worker that died to another one; a result is a file that is there whole or not at all.
+One task for each file. Dask repeats the tasks of a worker that died; a result file is either complete or missing.
 """
 
 import os
@@ -17,7 +17,7 @@ import ddl_forecast as ddl
 
 
 def forecast_folder(client: Client, folder: Path, out: Path, model: str = "hotel") -> list[str]:
-    """Every csv of a folder. Worker processes load the model once each, from its name."""
+    """Forecast every csv file of a folder. Each worker process loads the model once, from its name."""
     out.mkdir(exist_ok=True, parents=True)
     files = sorted(str(path) for path in folder.glob("*.csv"))
     tasks = client.map(forecast_file, files, out=str(out), forecaster=ddl.Forecaster(model), pure=False)
@@ -29,7 +29,7 @@ def main() -> None:
     if scheduler:
         client = Client(scheduler[0])
     else:
-        # a process a core, and a thread of the forecaster in each
+        # one process per core, with one thread of the forecaster in each
         os.environ["RAYON_NUM_THREADS"] = "1"
         client = Client(LocalCluster(n_workers=os.cpu_count(), threads_per_worker=1))
     with client:

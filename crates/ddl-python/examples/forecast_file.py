@@ -1,4 +1,4 @@
-"""The forecasts of one recording: what an engine runs many of."""
+"""The forecasts of one recording: the task that the examples for Dask and Ray run many times."""
 
 import os
 from pathlib import Path
@@ -9,7 +9,7 @@ import ddl_forecast as ddl
 
 
 def forecast_file(path: str, out: str, forecaster: ddl.Forecaster) -> str:
-    """The forecasts of one recording as a csv table, with all digits."""
+    """Write the forecasts of one recording as a csv table, with all digits."""
     tracks = pd.read_csv(path, float_precision="round_trip")
     columns = forecaster.forecast_table(tracks.frame, tracks.pedestrian, tracks.x, tracks.y)
     made = Path(out) / Path(path).name

@@ -1,4 +1,4 @@
-"""A small torch model, trained and measured on the folds of the benchmark.
+"""A small torch model, trained and evaluated on the folds of the benchmark.
 
     pip install ddl-forecast torch
     python own_model_torch.py [simulated|star] [EPOCHS]
@@ -33,7 +33,7 @@ def trained(convention: str, fold: str, epochs: int) -> torch.nn.Module:
 
 
 class Forecaster:
-    """What `evaluate` calls: it is given the observed positions and never the future."""
+    """The function that `evaluate` calls with the observed positions, without the future."""
 
     def __init__(self, net: torch.nn.Module) -> None:
         self.net = net

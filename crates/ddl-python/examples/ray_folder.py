@@ -1,4 +1,4 @@
-"""Forecasts of a folder of recordings by Ray.
+"""Forecasts of a folder of recordings with Ray.
 
     pip install ddl-forecast pandas ray
     python ray_folder.py FOLDER OUT

@@ -1,12 +1,12 @@
-"""Many cameras in one process: tracks in, forecasts out, over Zenoh.
+"""Many cameras in one process over Zenoh: it receives tracks and publishes forecasts.
 
     pip install ddl-forecast eclipse-zenoh
     python zenoh_cameras.py [--model hotel] [--memory FOLDER] [--connect tcp/HOST:7447] [--listen tcp/HOST:7447]
 
-A tracker puts a frame of camera NAME on the key `tracks/NAME`, as JSON: {"frame": 12, "fps": 2.5, "ids": [1, 2], "xy": [[0.1, 2.0],
-[3.4, 1.0]]} (metres). The answer comes on `forecasts/NAME`: {"frame": 12, "ids": [...], "paths": [n][20][12][2], "weights": [n][20]},
-with empty lists while nobody was seen long enough, or {"frame": 12, "error": "..."}. Each camera has a watch of its own; frames of one
-camera must come in order.
+A tracker publishes each frame of camera NAME on the key `tracks/NAME` as JSON, positions in metres:
+{"frame": 12, "fps": 2.5, "ids": [1, 2], "xy": [[0.1, 2.0], [3.4, 1.0]]}. The answer is published on `forecasts/NAME`:
+{"frame": 12, "ids": [...], "paths": [n][20][12][2], "weights": [n][20]}, with empty lists until a pedestrian has been
+observed long enough, or {"frame": 12, "error": "..."}. The frames of a camera must arrive in order.
 """
 
 import argparse
@@ -21,7 +21,7 @@ import ddl_forecast as ddl
 
 
 class Cameras:
-    """A watch for each camera, by name."""
+    """Live forecasts of each camera, by name."""
 
     def __init__(self, model: str, memory: Path | None) -> None:
         self.forecaster = ddl.Forecaster(model)
@@ -29,7 +29,7 @@ class Cameras:
         self.watches: dict[str, ddl.Live] = {}
 
     def answer(self, name: str, payload: bytes) -> dict[str, object]:
-        """What is forecast from one frame of a camera, or what is wrong with it."""
+        """The forecast from one frame of a camera, or its error."""
         frame: object = None
         try:
             seen = json.loads(payload)

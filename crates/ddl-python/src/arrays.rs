@@ -1,4 +1,4 @@
-//! Between numpy arrays and positions.
+//! Conversion between numpy arrays and positions.
 
 use ddl::data::{COORDINATE_LIMIT, HORIZON, Position};
 use numpy::ndarray::IntoDimension;
@@ -9,7 +9,7 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// An array of this shape out of a vector, which it takes over.
+/// An array of this shape that takes over the memory of a vector.
 pub(crate) fn array<T: Element>(
     py: Python<'_>,
     flat: Vec<T>,
@@ -24,21 +24,17 @@ pub(crate) fn numbers(positions: Vec<Position>) -> Vec<f64> {
     positions.into_flattened()
 }
 
-/// The numbers of an array that lies in one piece, as the Python side hands it over.
+/// The numbers of a contiguous array from the Python side.
 pub(crate) fn flat<'a, T: Element, D: numpy::ndarray::Dimension>(
     name: &str,
     array: &'a PyReadonlyArray<'_, T, D>,
 ) -> PyResult<&'a [T]> {
-    // A slice is also had of an array in Fortran order, with its numbers in another order.
+    // `as_slice` also accepts arrays in Fortran order, whose numbers are in another order.
     let slice = array.as_slice().ok().filter(|_| array.is_c_contiguous());
-    slice.ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "{name} must lie in memory in one piece, in C order"
-        ))
-    })
+    slice.ok_or_else(|| PyValueError::new_err(format!("{name} must be contiguous in C order")))
 }
 
-/// `(n, steps, 2)`: n tracks of that many positions (metres), all finite; with `nan`, NaN stands for a position that was not seen.
+/// `(n, steps, 2)`: n tracks of `steps` finite positions (metres); with `nan`, NaN marks a missing observation.
 pub(crate) fn tracks(
     name: &str,
     array: &PyReadonlyArray3<'_, f64>,
@@ -48,7 +44,8 @@ pub(crate) fn tracks(
     let shape = array.shape();
     if shape[1..] != [steps, 2] {
         return Err(PyValueError::new_err(format!(
-            "{name} must have the shape (n, {steps}, 2): n pedestrians, {steps} positions 0.4 s apart, x and y in metres; found {shape:?}"
+            "{name} must have the shape (n, {steps}, 2): n pedestrians, {steps} positions 0.4 s apart, x and y in \
+             metres; found {shape:?}"
         )));
     }
     let positions = flat(name, array)?.as_chunks::<2>().0;
@@ -58,7 +55,7 @@ pub(crate) fn tracks(
         if !unseen && !position.iter().all(fine) {
             let [i, t] = [index / steps, index % steps];
             let rule = if nan {
-                "NaN in both where the pedestrian was not seen"
+                "NaN in both if the pedestrian was not observed"
             } else {
                 "no NaN"
             };
@@ -89,7 +86,7 @@ pub(crate) fn points(name: &str, array: &PyReadonlyArray2<'_, f64>) -> PyResult<
     Ok(points.to_vec())
 }
 
-/// Hypotheses `(n, k, 12, 2)` with weights `(n, k)`, or 1/k each, and goals `(n, k, 2)` if there are any.
+/// Hypotheses `(n, k, 12, 2)` with weights `(n, k)` (default 1/k each) and optional goals `(n, k, 2)`.
 pub(crate) fn forecast(
     paths: &PyReadonlyArray<'_, f64, numpy::ndarray::Ix4>,
     weights: Option<&PyReadonlyArray2<'_, f64>>,
@@ -98,7 +95,8 @@ pub(crate) fn forecast(
     let shape = paths.shape();
     if shape[2..] != [HORIZON, 2] {
         return Err(PyValueError::new_err(format!(
-            "paths must have the shape (n, k, 12, 2): n pedestrians, k hypotheses, 12 positions 0.4 s apart, x and y in metres; found {shape:?}"
+            "paths must have the shape (n, k, 12, 2): n pedestrians, k hypotheses, 12 positions 0.4 s apart, x and y \
+             in metres; found {shape:?}"
         )));
     }
     let [n, k] = [shape[0], shape[1]];
@@ -131,5 +129,5 @@ pub(crate) fn forecast(
         .map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
-/// Numbers of an array of any kind that Python code handed over as float64.
+/// Paths from Python code, which has converted them to float64.
 pub(crate) type Paths<'py> = PyReadonlyArray<'py, f64, numpy::ndarray::Ix4>;

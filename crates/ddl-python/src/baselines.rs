@@ -1,4 +1,4 @@
-//! Forecasts that need no training.
+//! Baselines: forecasts that need no training.
 
 use crate::errors::of_any;
 use crate::forecasts::{EmptyFields, Forecasted, parts};
@@ -14,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// A baseline of that name, on the first `asked` pedestrians.
+/// The forecast of the baseline of that name for the first `asked` pedestrians.
 #[pyfunction]
 #[pyo3(signature = (name, past, asked, seed, goals))]
 pub(crate) fn baseline<'py>(
@@ -55,7 +55,7 @@ pub(crate) fn baseline<'py>(
     parts(py, &scene, forecast.as_ref(), empty)
 }
 
-/// The goals `(n, k, 2)` of those in the window, equally likely.
+/// The goals `(n, k, 2)` of the pedestrians in the window, equally likely.
 fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<GivenGoals> {
     let goals = goals.ok_or_else(|| PyValueError::new_err("goals are missing"))?;
     let shape = goals.shape();

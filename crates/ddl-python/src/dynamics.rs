@@ -12,7 +12,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Positions of one call, all paths together: a GB and a half.
+/// Limit of the positions of one call, for all paths together: 1.6 GB.
 const MOST_POSITIONS: usize = 100_000_000;
 
 /// Without obstacles this is the free flow.
@@ -23,7 +23,8 @@ pub(crate) struct Flow(Avoiding);
 
 #[pymethods]
 impl Flow {
-    /// `metrics` `(steps, 2, 2)`, symmetric and positive definite; the last one counts on. `obstacles` `(m, 3)`: x, y and radius.
+    /// `metrics` `(steps, 2, 2)`, symmetric and positive definite; further steps use the last one. `obstacles` `(m,
+    /// 3)`: x, y and radius.
     #[new]
     #[pyo3(signature = (goal, metrics, obstacles, margin))]
     fn new(
@@ -61,7 +62,7 @@ impl Flow {
         array(py, velocities.into_flattened(), shape)
     }
 
-    /// `(n, steps + 1, 2)`, the start first, by steps whose distance to the goal falls.
+    /// `(n, steps + 1, 2)`, with the start first; the distance to the goal falls at each step.
     fn rollout(
         &self,
         py: Python<'_>,
@@ -83,7 +84,7 @@ impl Flow {
         array(py, numbers, [starts.len(), steps + 1, 2])
     }
 
-    /// The evidence about a path `(steps + 1, 2)`.
+    /// The certificate of a path `(steps + 1, 2)`.
     fn certificate<'py>(
         &self,
         py: Python<'py>,
@@ -124,7 +125,8 @@ fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f6
     // NaN is not positive
     if !(symmetric && smallest > 0.0) {
         return Err(PyValueError::new_err(format!(
-            "P[{step}] is [[{xx}, {xy}], [{yx}, {yy}]]: it must be symmetric with positive eigenvalues, so that v = -P grad Phi descends"
+            "P[{step}] is [[{xx}, {xy}], [{yx}, {yy}]]: it must be symmetric with positive eigenvalues, so that \
+             v = -P grad Phi descends"
         )));
     }
     let sigma = 0.5 * smallest;
@@ -132,7 +134,7 @@ fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f6
     let factor = rest.cholesky().map(|of| of.l());
     let factor = factor.ok_or_else(|| {
         PyValueError::new_err(format!(
-            "P[{step}] is too near a matrix with an eigenvalue of 0"
+            "P[{step}] is too close to a matrix with an eigenvalue of 0"
         ))
     })?;
     CholeskyMetric::new(factor, sigma).map_err(wrong)

@@ -1,4 +1,4 @@
-//! Errors of the crates as Python's own exceptions.
+//! Conversion of the crates' errors to Python exceptions.
 
 use pyo3::PyErr;
 use pyo3::exceptions::{
@@ -8,8 +8,8 @@ use pyo3::exceptions::{
 use std::error::Error;
 use std::io::ErrorKind;
 
-/// An error of input or output as the `OSError` of its kind, every other one as a `ValueError`; the message says what is wrong, where,
-/// and what to do.
+/// An error of input or output becomes the `OSError` of its kind, every other error a `ValueError` with the same
+/// message.
 pub(crate) fn raised(error: impl Into<ddl::DdlError>) -> PyErr {
     let error = error.into();
     if matches!(error, ddl::DdlError::Interrupted) {
@@ -21,7 +21,7 @@ pub(crate) fn raised(error: impl Into<ddl::DdlError>) -> PyErr {
     of_any(&error)
 }
 
-/// The same for errors that are not errors of the facade.
+/// The same for errors from outside the facade.
 pub(crate) fn of_any(error: &(dyn Error + 'static)) -> PyErr {
     let mut cause = Some(error);
     while let Some(one) = cause {

@@ -1,4 +1,4 @@
-//! The benchmark, for models of one's own: windows without their futures out, forecasts in, scores out.
+//! The benchmark for custom models: windows without their futures, the forecasts for them, and their scores.
 
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{of_any, raised};
@@ -96,7 +96,7 @@ fn window_parts<'py>(py: Python<'py>, window: &Window, parts: i64) -> PyResult<B
     Ok(dict)
 }
 
-/// The test windows of a fold. Their futures stay in here.
+/// The test windows of a fold. Their futures are not exposed to Python.
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct TestSet {
     convention: Convention,
@@ -141,7 +141,7 @@ impl TestSet {
         self.windows.len()
     }
 
-    /// The recordings tested on.
+    /// The recordings of the test windows.
     fn recordings(&self) -> Vec<Recording> {
         self.recordings.clone()
     }
@@ -167,7 +167,7 @@ impl TestSet {
         let made = forecast(&paths, weights.as_ref(), goals.as_ref())?;
         if made.pedestrians() != pedestrians {
             return Err(PyValueError::new_err(format!(
-                "{} pedestrians were forecast where {pedestrians} were given",
+                "{} pedestrians were forecast, but {pedestrians} were given",
                 made.pedestrians()
             )));
         }
@@ -175,7 +175,7 @@ impl TestSet {
         admitted.map(drop).map_err(|error| of_any(&error))
     }
 
-    /// The scores of a forecast a window under a protocol, as a JSON object.
+    /// The scores under a protocol of the forecasts, one for each window, as a JSON object.
     fn score(
         &self,
         py: Python<'_>,
@@ -212,7 +212,7 @@ impl TestSet {
     }
 }
 
-/// The rows of the model on its own fold, as JSON objects; `progress(done, total)` is called as pedestrians are forecast.
+/// The rows of the model on its own fold, as JSON objects; calls `progress(done, total)`, in pedestrians.
 #[pyfunction]
 pub(crate) fn evaluate_model(
     py: Python<'_>,

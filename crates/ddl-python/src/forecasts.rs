@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::path::PathBuf;
 
-/// A forecast, with the evidence of its certificates where that was asked for.
+/// A forecast, with the evidence of its certificates if requested.
 #[derive(Debug)]
 pub(crate) enum Forecasted {
     Plain(Forecast),
@@ -28,11 +28,11 @@ impl Forecasted {
     }
 }
 
-/// Which fields the result for an empty window has: those that the same forecaster gives for other windows.
+/// The optional fields in the result for an empty window, the same as the forecaster gives for other windows.
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(
     clippy::struct_excessive_bools,
-    reason = "each says whether one field is there"
+    reason = "each tells whether one field is present"
 )]
 pub(crate) struct EmptyFields {
     pub(crate) hypotheses: usize,
@@ -42,7 +42,7 @@ pub(crate) struct EmptyFields {
     pub(crate) certificates: bool,
 }
 
-/// A forecast of the pedestrians asked for; NaN for those who could not be forecast.
+/// A forecast of the requested pedestrians; NaN for those that cannot be forecast.
 ///
 /// Keys and shapes are those of the fields of `Forecast` in `_forecast.py`.
 pub(crate) fn parts<'py>(
@@ -125,7 +125,7 @@ pub(crate) fn parts<'py>(
     Ok(dict)
 }
 
-/// What was forecast from, and how much of it was made up.
+/// The observation that the forecast is made from, and the number of made-up positions.
 fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
@@ -144,7 +144,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
     dict.set_item("made_up", array(py, made_up.collect(), [n, 2])?)
 }
 
-/// The same, with who was forecast from which frame on; `parts` of a frame are counted as one.
+/// The same with pedestrians, frames and recording; `parts` frames of the window are one frame of the file.
 pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,
@@ -164,7 +164,7 @@ pub(crate) fn named_parts<'py>(
     Ok(dict)
 }
 
-/// A frame as the tracks number it: whole, or between two frames where these do not meet the steps of 0.4 s.
+/// A frame number of the tracks; a fraction where a step of 0.4 s ends between two frames.
 pub(crate) fn frame_number(py: Python<'_>, frame: i64, parts: i64) -> PyResult<Py<PyAny>> {
     if frame % parts == 0 {
         Ok((frame / parts).into_pyobject(py)?.into_any().unbind())
@@ -174,7 +174,7 @@ pub(crate) fn frame_number(py: Python<'_>, frame: i64, parts: i64) -> PyResult<P
     }
 }
 
-/// The pedestrians of a window: numbers, or words where the recording has words.
+/// The ids of the pedestrians of a window: numbers, or words if the recording has words.
 pub(crate) fn names<'py>(py: Python<'py>, window: &Window) -> PyResult<Bound<'py, PyList>> {
     let list = PyList::empty(py);
     for i in 0..window.len() {
@@ -223,7 +223,7 @@ fn json(table: &RegionTable) -> PyResult<String> {
     serde_json::to_string(table).map_err(|error| of_any(&error))
 }
 
-/// Radii `(n, k, 12)` of the discs about the hypotheses in the region of a level; NaN where there is no disc.
+/// Radii `(n, k, 12)` of the discs around the hypotheses in the region of a level; NaN where there is no disc.
 #[pyfunction]
 pub(crate) fn region_radii<'py>(
     py: Python<'py>,
@@ -236,7 +236,7 @@ pub(crate) fn region_radii<'py>(
     let [low, high] = table.range();
     if !(low..=high).contains(&level) {
         return Err(PyValueError::new_err(format!(
-            "level must be a probability of {low} to {high}, found {level}"
+            "level must be a probability from {low} to {high}; found {level}"
         )));
     }
     let [n, k] = [weights.shape()[0], weights.shape()[1]];
@@ -264,7 +264,7 @@ pub(crate) fn region_radii<'py>(
     array(py, radii, [n, k, HORIZON])
 }
 
-/// Writes forecasts as JSON lines, which `ddl evaluate --forecasts` reads.
+/// Writes forecasts as JSON lines for `ddl evaluate --forecasts`.
 #[pyfunction]
 pub(crate) fn write_forecasts(
     path: PathBuf,

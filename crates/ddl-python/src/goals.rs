@@ -1,4 +1,4 @@
-//! Goals from similar tracks of the user's own.
+//! Goals from the user's own tracks.
 
 use crate::arrays::{array, numbers, tracks};
 use crate::errors::of_any;

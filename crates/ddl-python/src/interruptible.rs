@@ -1,4 +1,4 @@
-//! Runs work on a thread pool without holding the GIL. Ctrl-C ends the call; a forked child gets a pool of its own.
+//! Runs work on a thread pool without holding the GIL. Ctrl-C ends the call; a forked child gets its own pool.
 
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -13,14 +13,14 @@ use std::time::Duration;
 const PAUSE: Duration = Duration::from_millis(50);
 
 struct Pool {
-    /// The threads of a pool are not there in a forked child, which makes its own.
+    /// The threads of a pool do not exist in a forked child, which makes its own.
     process: u32,
     count: usize,
     threads: Arc<ThreadPool>,
 }
 
-/// Which pool computes. A rayon worker that waits for part of its work runs other jobs of its pool meanwhile. Live frames have a pool of
-/// their own, so that they do not wait for a long call of another thread.
+/// The pool to compute on. A rayon worker that waits for part of its work runs other jobs of its pool meanwhile. Live
+/// frames have their own pool, so that they do not wait for a long call of another thread.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum User {
     Calls,
@@ -29,7 +29,7 @@ pub(crate) enum User {
 
 static POOLS: [Mutex<Option<Pool>>; 2] = [Mutex::new(None), Mutex::new(None)];
 
-/// Tells the work that its call was interrupted.
+/// Signals to the work that its call was interrupted.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Stop(Arc<AtomicBool>);
 
@@ -39,8 +39,8 @@ impl Stop {
     }
 }
 
-/// Runs the work on the pool for calls, without the GIL. Ctrl-C ends the call within 50 ms. The work sees that in its argument and should
-/// end then.
+/// Runs the work on the pool for calls, without the GIL. Ctrl-C ends the call within 50 ms. The work should check its
+/// argument and stop.
 pub(crate) fn run<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
@@ -56,7 +56,7 @@ pub(crate) fn run_live<T: Send + 'static>(
     run_on(User::Live, py, work, |_| Ok(()))
 }
 
-/// The same; `tell` is called with the GIL every 50 ms, and may end the call by an exception.
+/// The same with progress; `tell` is called with the GIL every 50 ms, and may end the call by an exception.
 pub(crate) fn run_telling<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
@@ -93,13 +93,15 @@ fn run_on<T: Send + 'static>(
                 }
             }
             Err(RecvTimeoutError::Disconnected) => {
-                return Err(PyRuntimeError::new_err("a thread of ddl_forecast has gone"));
+                return Err(PyRuntimeError::new_err(
+                    "a thread of ddl_forecast has ended unexpectedly",
+                ));
             }
         }
     }
 }
 
-/// The pool of this process; with another number of threads, a new one.
+/// The pool of this process, replaced if the number of threads has changed.
 fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     let mut held = POOLS[user as usize]
         .lock()
@@ -112,7 +114,7 @@ fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
     {
         return Ok(Arc::clone(&held.threads));
     }
-    // 0: as many as the processor has, or as the environment variable RAYON_NUM_THREADS says
+    // 0: the number of cores, or the environment variable RAYON_NUM_THREADS.
     let threads = wanted.unwrap_or(0);
     let built = ThreadPoolBuilder::new().num_threads(threads).build();
     let pool = Arc::new(built.map_err(|error| PyRuntimeError::new_err(error.to_string()))?);
@@ -122,13 +124,13 @@ fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
         threads: Arc::clone(&pool),
     });
     if let Some(old) = old.filter(|old| old.process != process) {
-        // Its threads are those of the parent: there is nothing to join.
+        // Its threads exist only in the parent: there is nothing to join.
         std::mem::forget(old);
     }
     Ok(pool)
 }
 
-/// Waits without the GIL until `attempt` gives something; Ctrl-C ends the wait.
+/// Waits without the GIL until `attempt` returns a value; Ctrl-C ends the wait.
 pub(crate) fn wait_for<T>(py: Python<'_>, mut attempt: impl FnMut() -> Option<T>) -> PyResult<T> {
     loop {
         if let Some(found) = attempt() {

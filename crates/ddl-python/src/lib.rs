@@ -1,5 +1,5 @@
-//! The private module `_core` of the Python package `ddl_forecast`: arrays in, arrays out. What users see, and its documentation, is in
-//! `python/ddl_forecast`; what every function takes and gives is in `_core.pyi`.
+//! The private module `_core` of the Python package `ddl_forecast`: arrays in, arrays out. The public API and its
+//! documentation are in `python/ddl_forecast`; the signatures of this module are in `_core.pyi`.
 
 #![allow(
     missing_docs,

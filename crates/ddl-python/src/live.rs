@@ -1,4 +1,4 @@
-//! Forecasts of a place that is watched, frame by frame.
+//! Live forecasts of a watched place.
 
 use crate::arrays::points;
 use crate::errors::raised;
@@ -20,7 +20,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct Live(Slot);
 
-/// Empty while a call uses the watch. No lock is held during a forecast, so a worker thread never waits for a lock that it holds itself.
+/// Empty while a call uses the watch. No lock is held during a forecast, so a worker thread never waits for its own
+/// lock.
 type Slot = Arc<Mutex<Option<Box<Watching>>>>;
 
 struct Watching {
@@ -29,7 +30,8 @@ struct Watching {
     certificates: bool,
 }
 
-/// What a frame gave: a forecast, if anybody could be forecast, and why the memory could not be written, if it could not.
+/// The answer to a frame: a forecast if there are pedestrians to forecast, and an error if the memory could not be
+/// written.
 type Answer = (Option<(Window, Forecasted)>, Option<String>);
 
 impl Watching {
@@ -49,13 +51,13 @@ impl Watching {
         if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
             && file.is_due()
         {
-            // The frame has been taken: its forecast must not be lost to a full disk.
+            // The frame has been observed: a full disk must not lose its forecast.
             unwritten = file.write(place).err().map(|error| error.to_string());
         }
         Ok((forecast, unwritten))
     }
 
-    /// Writes the memory; where that works, lets go of its file.
+    /// Writes the memory; on success, closes its file.
     fn close(&mut self) -> Result<Option<String>, DdlError> {
         self.live.end_trial();
         let told = match (&mut self.file, self.live.place()) {
@@ -67,14 +69,14 @@ impl Watching {
     }
 }
 
-/// Exclusive use of a watch. Dropping it returns the watch, also after a panic and after an interrupted call.
+/// Exclusive use of a watch. Dropping it returns the watch, also after a panic or an interrupted call.
 struct Turn {
     slot: Slot,
     watching: Option<Box<Watching>>,
 }
 
 impl Turn {
-    /// Waits for the watch, behind other calls.
+    /// Waits for the watch, after other calls.
     fn take(py: Python<'_>, slot: &Slot) -> PyResult<Self> {
         let watching = wait_for(py, || held(slot).take())?;
         Ok(Self {
@@ -83,7 +85,7 @@ impl Turn {
         })
     }
 
-    /// `None` never happens: the watch is there until this is dropped.
+    /// Never `None`: the watch is present until this is dropped.
     fn watching(&mut self) -> Option<&mut Watching> {
         self.watching.as_deref_mut()
     }
@@ -117,8 +119,8 @@ impl Live {
         };
         let step = step.ok_or_else(|| {
             PyValueError::new_err(format!(
-                "fps is {fps}: it must be the frames in a second, of which 0.4 s are a whole number, such as 2.5, 5, 10, 12.5 or 25; live \
-                 tracks are not resampled"
+            "fps is {fps}: it must be the frames per second, and 0.4 s must be a whole number of frames, as for 2.5, \
+             5, 10, 12.5 or 25; live tracks are not resampled"
             ))
         })?;
         let live = LiveForecaster::with_frame_step(Arc::clone(&model.0), step).map_err(raised)?;
@@ -144,7 +146,7 @@ impl Live {
         Ok(Self(Arc::new(Mutex::new(Some(Box::new(watching))))))
     }
 
-    /// A forecast, or nothing while nobody has been seen often enough; and why the memory could not be written, if it could not.
+    /// A forecast (`None` without pedestrians to forecast), and an error if the memory could not be written.
     fn observe<'py>(
         &self,
         py: Python<'py>,
@@ -174,7 +176,7 @@ impl Live {
         Ok((parts.transpose()?, unwritten))
     }
 
-    /// Forgets who is there; the memory stays.
+    /// Forgets all tracks; the memory is kept.
     fn clear(&self, py: Python<'_>) -> PyResult<()> {
         let mut turn = Turn::take(py, &self.0)?;
         if let Some(watching) = turn.watching() {
@@ -183,14 +185,14 @@ impl Live {
         Ok(())
     }
 
-    /// Earlier stretches that are remembered; 0 without a memory.
+    /// Number of remembered stretches; 0 without a memory.
     fn remembered(&self, py: Python<'_>) -> PyResult<usize> {
         let mut turn = Turn::take(py, &self.0)?;
         let memory = turn.watching().and_then(|watching| watching.live.memory());
         Ok(memory.map_or(0, SceneMemory::stretches))
     }
 
-    /// Why the memory that was given is not used, if it is not.
+    /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
         let refused = turn
@@ -199,7 +201,7 @@ impl Live {
         Ok(refused.map(ToString::to_string))
     }
 
-    /// Writes the memory and lets go of its file; what is to be told, if anything.
+    /// Writes the memory and closes its file; returns a warning, if any.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
         let told = run_live(py, move |_| {

@@ -1,4 +1,4 @@
-//! Every metric of the evaluation, on arrays.
+//! The metrics of the evaluation, on arrays.
 
 use crate::arrays::{Paths, array, forecast, tracks};
 use crate::errors::of_any;
@@ -14,7 +14,8 @@ use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A scene with its true future; without a past, who moves how is unknown, and each stands where its future begins.
+/// A scene with its true future. Without a past, the motion is unknown, and each pedestrian stands at the start of its
+/// future.
 fn window(
     start_frame: i64,
     truth: &PyReadonlyArray3<'_, f64>,
@@ -30,7 +31,7 @@ fn window(
     };
     if pasts.len() != truth.len() {
         return Err(PyValueError::new_err(format!(
-            "past is of {} pedestrians, truth of {}",
+            "past has {} pedestrians, truth has {}",
             pasts.len(),
             truth.len()
         )));
@@ -108,7 +109,7 @@ pub(crate) fn mahalanobis(
     })
 }
 
-/// Mean distances between two hypotheses, of the paths `(n,)` and of the ends `(n,)`, metres.
+/// Mean distances between two hypotheses, of paths `(n,)` and of endpoints `(n,)`, metres.
 #[pyfunction]
 pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let forecast = forecast(&paths, None, None)?;
@@ -125,7 +126,8 @@ pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<P
     Ok((array(py, paths, [n])?, array(py, ends, [n])?))
 }
 
-/// Whether each of `(n, t, 2)` tracks comes nearer than two radii to another, `(n,)`, and the nearest that it comes to any, metres.
+/// Whether each of `(n, t, 2)` tracks comes within two radii of another, `(n,)`, and its smallest distance to any
+/// other, metres.
 #[pyfunction]
 pub(crate) fn collisions(
     py: Python<'_>,
@@ -134,7 +136,7 @@ pub(crate) fn collisions(
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let steps = paths.shape()[1];
     if steps == 0 {
-        return Err(PyValueError::new_err("paths have no step"));
+        return Err(PyValueError::new_err("paths have no steps"));
     }
     let tracks = tracks("paths", &paths, steps, false)?;
     let all: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
@@ -152,7 +154,7 @@ pub(crate) fn collisions(
     Ok((array(py, collides, [n])?, array(py, nearest, [n])?))
 }
 
-/// All scores of some scenes together, as a JSON object.
+/// All scores of several scenes together, as a JSON object.
 #[pyfunction]
 pub(crate) fn scores(
     py: Python<'_>,
@@ -165,7 +167,7 @@ pub(crate) fn scores(
     let lengths = [truth.len(), past.len(), weights.len(), goals.len()];
     if lengths.iter().any(|length| *length != paths.len()) {
         return Err(PyValueError::new_err(
-            "paths, truth, past, weights and goals must be of as many scenes",
+            "paths, truth, past, weights and goals must have the same number of scenes",
         ));
     }
     let (mut windows, mut forecasts) = (Vec::new(), Vec::new());
@@ -181,6 +183,6 @@ pub(crate) fn scores(
 
 fn several<T>(all: impl Iterator<Item = Option<T>>) -> PyResult<Vec<T>> {
     all.collect::<Option<_>>().ok_or_else(|| {
-        PyValueError::new_err("paths have one hypothesis; this metric is of several")
+        PyValueError::new_err("paths have one hypothesis, but this metric needs several")
     })
 }

@@ -16,8 +16,8 @@ use pyo3::types::PyDict;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Pedestrians that are forecast from one look for Ctrl-C to the next.
-const TOGETHER: usize = 64;
+/// Pedestrians that are forecast between two checks for Ctrl-C.
+const BATCH: usize = 64;
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
 #[derive(Debug)]
@@ -35,8 +35,8 @@ impl Manner {
         let all = model.goal_model().clusters();
         if samples != 1 && samples != all {
             return Err(PyValueError::new_err(format!(
-                "samples must be {all}, all hypotheses of the model, or 1, its one forecast; found {samples}. Weights and regions are those \
-                 of all {all}: for fewer, take the heaviest of them"
+                "samples must be {all} (all hypotheses of the model) or 1 (its central forecast); found {samples}. \
+             Weights and regions belong to all {all}; for fewer, select those with the largest weights"
             )));
         }
         Ok(Self {
@@ -57,7 +57,7 @@ impl Manner {
         })
     }
 
-    /// A forecast for each window, in batches of pedestrians; stops between batches when the caller was interrupted.
+    /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
     fn forecast_until(
         self,
         model: &Ddl,
@@ -70,7 +70,7 @@ impl Manner {
             let mut pedestrians = 0;
             let enough = |window: &Window| {
                 pedestrians += window.len();
-                pedestrians >= TOGETHER
+                pedestrians >= BATCH
             };
             let count = rest
                 .iter()
@@ -84,11 +84,11 @@ impl Manner {
 
 #[pymethods]
 impl Model {
-    /// The built-in model of that name, or what lies at that path.
+    /// The built-in model of that name, or the model at that path.
     #[staticmethod]
     fn open(py: Python<'_>, name: PathBuf, clearance: Option<f64>) -> PyResult<Self> {
         let opened = run(py, move |_| {
-            // A folder of that name does not stand in the way of a built-in model: `./hotel` names it.
+            // A built-in model takes precedence over a folder of that name, which is `./hotel`.
             let builtin = name.to_str().and_then(|name| name.parse().ok());
             let source = builtin.map_or_else(|| ModelSource::at(&name), ModelSource::Builtin);
             let model = Ddl::open(&source, DeviceChoice::Cpu)?;
@@ -122,7 +122,7 @@ impl Model {
         self.0.parameter_count() + self.0.goal_model().parameter_count()
     }
 
-    /// A forecast for each scene; of `past[i]` the first `asked[i]` pedestrians are forecast.
+    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`.
     #[pyo3(signature = (past, asked, samples, whole, certificates))]
     fn forecast<'py>(
         &self,
@@ -154,7 +154,7 @@ impl Model {
         scenes.iter().map(of_scene).collect()
     }
 
-    /// A forecast for each frame of the recording that has anybody to forecast, or for the last of them.
+    /// Forecasts each frame of the recording with pedestrians to forecast, or only the last of them.
     fn forecast_recording<'py>(
         &self,
         py: Python<'py>,
@@ -176,7 +176,7 @@ impl Model {
             .collect()
     }
 
-    /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for those who cannot be forecast.
+    /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
     fn goals(
         &self,
         py: Python<'_>,
@@ -203,12 +203,12 @@ impl Model {
         Ok((goals, array(py, weights, [asked, k])?))
     }
 
-    /// A page with a player of moments of the recording.
+    /// A page that plays moments of the recording.
     fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<String> {
         let windows = recording.observed(false);
         if windows.is_empty() {
             return Err(PyValueError::new_err(
-                "nobody in the recording was seen at two steps in a row; is fps right?",
+                "no pedestrian in the recording was observed at 2 consecutive time steps; check fps",
             ));
         }
         let player = RecordingPlayer::new(&self.0, &recording.tracks, &windows, most.max(1));

@@ -1,4 +1,4 @@
-//! What was observed in a scene, as a window to forecast from.
+//! The observation of a scene, as a window to forecast from.
 
 use crate::arrays::tracks;
 use ddl::data::{Completion, LiveTracks, OBSERVED, PedestrianId, Window};
@@ -6,17 +6,18 @@ use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// The pedestrians of a scene who can be forecast, and where each of them stands in the array of the user.
+/// The pedestrians of a scene that can be forecast, and their positions in the user's array.
 #[derive(Debug, Clone)]
 pub(crate) struct Observed {
     /// `None` when no pedestrian can be forecast.
     pub(crate) window: Option<Window>,
-    /// Index in the window of each pedestrian asked for; `None` for one who cannot be forecast.
+    /// Index in the window of each requested pedestrian; `None` for one that cannot be forecast.
     pub(crate) rows: Vec<Option<usize>>,
 }
 
 impl Observed {
-    /// Of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their neighbours.
+    /// The observation of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their
+    /// neighbours.
     pub(crate) fn new(
         past: &PyReadonlyArray3<'_, f64>,
         asked: usize,
@@ -43,7 +44,7 @@ impl Observed {
         Ok(Self { window, rows })
     }
 
-    /// Everybody of a window, in its order.
+    /// All pedestrians of a window, in its order.
     pub(crate) fn of_window(window: Window) -> Self {
         let rows = (0..window.len()).map(Some).collect();
         let window = Some(window);
@@ -51,7 +52,7 @@ impl Observed {
     }
 }
 
-/// Holes are filled and late beginnings padded, as the program does, unless only whole observations count.
+/// Fills holes and pads late beginnings, as the program does, unless only whole observations count.
 pub(crate) fn completion(whole: bool) -> Completion {
     if whole {
         Completion::NONE

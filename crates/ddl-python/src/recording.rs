@@ -19,11 +19,11 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(crate) struct Recording {
     pub(crate) tracks: Arc<Tracks>,
-    /// Its frames count so many parts of a frame of the file, where 0.4 s are no whole number of frames.
+    /// Number of its frames in a frame of the file; above 1 if 0.4 s is no whole number of frames.
     pub(crate) parts: i64,
 }
 
-/// How fast frames follow each other, as far as the user says.
+/// The frame rate, if the user gives it.
 #[derive(Debug, Clone, Copy)]
 struct Rate {
     fps: Option<f64>,
@@ -34,7 +34,7 @@ impl Rate {
     fn of(self, tracks: Tracks) -> PyResult<Recording> {
         if self.fps.is_some() && self.frame_step.is_some() {
             return Err(PyValueError::new_err(
-                "give fps or frame_step, not both: fps counts frames a second, frame_step frames in 0.4 s",
+                "give fps or frame_step, not both: fps counts frames per second, frame_step frames in 0.4 s",
             ));
         }
         if let Some(step) = self.frame_step {
@@ -47,7 +47,7 @@ impl Rate {
             && !(fps.is_finite() && fps > 0.0)
         {
             return Err(PyValueError::new_err(format!(
-                "fps must be a finite number above 0, the frames in a second; found {fps}"
+                "fps must be a finite number above 0, the frames per second; found {fps}"
             )));
         }
         let Some(frame_time) = self.fps.map(f64::recip).or(tracks.frame_time_told()) else {
@@ -69,7 +69,7 @@ impl Recording {
         Self { tracks, parts: 1 }
     }
 
-    /// Windows of 8 observed steps, one a frame that has anybody to forecast.
+    /// Windows of 8 observed steps, one for each frame with pedestrians to forecast.
     pub(crate) fn observed(&self, whole: bool) -> Vec<Window> {
         self.tracks.completed_windows(completion(whole))
     }
@@ -92,7 +92,7 @@ impl Recording {
         let lengths = [frame.len(), id.len(), x.len(), y.len()];
         if lengths.iter().any(|length| *length != lengths[0]) {
             return Err(PyValueError::new_err(format!(
-                "frame, id, x and y must be of one length; found {lengths:?} rows"
+                "frame, id, x and y must have one length; found {lengths:?} rows"
             )));
         }
         let [frame, id] = [frame.as_array(), id.as_array()];
@@ -102,8 +102,8 @@ impl Recording {
             for (column, value) in [("x", x[row]), ("y", y[row])] {
                 if !value.is_finite() {
                     return Err(PyValueError::new_err(format!(
-                        "row {row}, column {column}: {value} is not a finite number in metres; where a pedestrian was not seen, \
-                         leave the row out"
+                        "row {row}, column {column}: {value} is not a finite number in metres; leave out rows in which \
+                         a pedestrian was not observed"
                     )));
                 }
             }
@@ -166,7 +166,8 @@ impl Recording {
     fn write(&self, path: PathBuf, format: &str) -> PyResult<()> {
         if self.parts != 1 {
             return Err(PyValueError::new_err(
-                "the positions were resampled to steps of 0.4 s, which lie between frames: write the recording as it was read, without fps",
+                "the positions were resampled to steps of 0.4 s between the frames; to write the recording, read it \
+                 without fps",
             ));
         }
         let bytes = write_recording(&self.tracks, format_named(format)?).map_err(raised)?;
@@ -197,7 +198,8 @@ impl Recording {
         )
     }
 
-    /// Frame, id, x and y of every position, in order of frames; frames as the file numbers them, ids as a list where some are words.
+    /// Frame, id, x and y of every position, in order of frames; frames as in the file, ids as a list if some are
+    /// words.
     fn columns(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
         let all = self.tracks.observations();
         let n = all.len();
@@ -229,7 +231,7 @@ impl Recording {
         Ok((frame, id, axis(0)?, axis(1)?))
     }
 
-    /// What looks wrong with the speeds, in words.
+    /// A fault that the speeds suggest, in words.
     fn doubt(&self) -> Option<String> {
         Some(self.tracks.speed_doubt()?.to_string())
     }

@@ -1,4 +1,4 @@
-//! Soft-DTW of numpy arrays of any length and of up to 128 components a step.
+//! Soft-DTW of numpy arrays of any length, with up to 128 components.
 
 use crate::arrays::array;
 use crate::errors::of_any;
@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// Evaluates `$body` with `$D` the number of components that are computed with: those asked for, or the next larger one there is, where
-/// the others are 0 in every step and change no distance.
+/// Evaluates `$body` with `$D` the compiled number of components: the requested number or the next larger one.
+/// Additional components are 0 in every step and do not change distances.
 macro_rules! in_dimension {
     ($components:expr, $D:ident => $body:expr) => {
         match $components {
@@ -29,7 +29,7 @@ macro_rules! in_dimension {
                 const $D: usize = 8;
                 $body
             }
-            // Each of these numbers is compiled once more: steps of many components are rare.
+            // Each number is compiled separately, and many components are rare.
             9..=128 => {
                 const $D: usize = 128;
                 $body
@@ -41,7 +41,7 @@ macro_rules! in_dimension {
     };
 }
 
-/// A sequence: an array `(steps, components)`, or `(steps,)` of single numbers; taken as it is where it is of float64 and in one piece.
+/// A sequence: an array `(steps, components)`, or `(steps,)` of single numbers. Contiguous float64 is not copied.
 fn sequence<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyArray2<'py, f64>> {
     if let Ok(array) = object.cast::<PyArray2<f64>>()
         && array.is_c_contiguous()
@@ -62,7 +62,7 @@ fn sequence<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyA
     Ok(array.readonly())
 }
 
-/// The steps of a sequence with `D` components, the last of which may be added as 0.
+/// The steps of a sequence with `D` components; 0 is added for missing components.
 fn steps<'a, const D: usize>(
     array: &'a PyReadonlyArray2<'_, f64>,
     components: usize,
@@ -71,7 +71,7 @@ fn steps<'a, const D: usize>(
     let shape = array.shape();
     if shape[1] != components {
         return Err(PyValueError::new_err(format!(
-            "{name} has {} components a step where {components} are expected; all sequences must have as many",
+            "{name} has {} components per step, but {components} are expected; all sequences must have the same number",
             shape[1]
         )));
     }
@@ -104,12 +104,12 @@ fn distance(gamma: f64, cost: &str, band: Option<usize>) -> PyResult<SoftDtw> {
     })
 }
 
-/// Cells of a gradient, of 24 bytes each: 12 GB.
+/// Limit of the cells of a gradient; at 24 bytes each, 12 GB.
 const MOST_CELLS: usize = 500_000_000;
-/// Cells from which on the lock is left to other threads.
+/// Number of cells above which the GIL is released.
 const LONG: usize = 20_000;
 
-/// Computes without Python's lock where that takes longer than to leave it.
+/// Computes without the GIL if the work takes longer than releasing it.
 fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() -> T) -> T {
     if cells < LONG {
         work()
@@ -127,9 +127,9 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// gamma
 ///     Smoothing, in the unit of the cost; 0 is hard DTW.
 /// cost
-///     "squared_euclidean" or "euclidean", of two steps.
+///     "squared_euclidean" or "euclidean" distance of two steps.
 /// band
-///     Steps that the two may be apart; None for all.
+///     Largest difference of the indices of matched steps; None for no limit.
 /// normalised
 ///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 ///
@@ -162,7 +162,7 @@ pub(crate) fn value(
     })
 }
 
-/// Soft-DTW, and its gradient (n, components) by `x`; parameters and errors as for `value`.
+/// Soft-DTW, and its gradient (n, components) with respect to `x`; see `value`.
 #[pyfunction]
 #[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", band = None, normalised = false))]
 pub(crate) fn value_and_gradient(
@@ -183,8 +183,8 @@ pub(crate) fn value_and_gradient(
         let (x, y) = (&*x, &*y);
         if x.len().saturating_mul(y.len()) > MOST_CELLS {
             return Err(PyValueError::new_err(format!(
-                "a gradient of {} x {} steps needs more memory than is asked for here ({MOST_CELLS} cells of 24 bytes); give a band, or take \
-                 fewer steps",
+                "a gradient of {} x {} steps exceeds the memory limit ({MOST_CELLS} cells of 24 bytes); give a band, \
+                 or use fewer steps",
                 x.len(),
                 y.len()
             )));
@@ -207,7 +207,7 @@ pub(crate) fn value_and_gradient(
     })
 }
 
-/// A search index whose number of components is known when the program runs.
+/// A search index with a number of components that is known at run time.
 trait Search: Send + Sync {
     fn nearest(
         &self,
@@ -217,7 +217,7 @@ trait Search: Send + Sync {
     fn len(&self) -> usize;
 }
 
-/// Index, and place in it, of each neighbour with its distance; a list a query.
+/// Index and position in it of each neighbour, with its distance; one list for each query.
 type Found = Result<Vec<Vec<WindowNeighbour>>, String>;
 
 impl<const D: usize> Search for Arc<Index<D>> {
@@ -297,7 +297,7 @@ fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<u
     Ok(first.shape()[1])
 }
 
-/// Searches without Python's lock; Ctrl-C ends the call.
+/// Searches without the GIL; Ctrl-C ends the call.
 fn search(
     py: Python<'_>,
     index: &dyn Search,
@@ -399,7 +399,7 @@ impl SlidingIndex {
         self.index.len()
     }
 
-    /// For every window of the track `query`: tracks `(w, n)`, offsets `(w, n)` and distances `(w, n)` of the nearest windows.
+    /// Tracks, offsets and distances, `(w, n)` each, of the windows nearest to each of the w windows of the track `query`.
     fn nearest(
         &self,
         py: Python<'_>,

@@ -1,4 +1,4 @@
-"""What tests share: a simulated crowd, and real recordings where they are there."""
+"""Shared fixtures: a simulated crowd, and real recordings if available."""
 
 import os
 import subprocess
@@ -18,7 +18,7 @@ def forecaster() -> ddl.Forecaster:
 
 @pytest.fixture(scope="session")
 def crossing() -> np.ndarray:
-    """(25, 8, 2) pedestrians who walk in all directions."""
+    """(25, 8, 2) pedestrians in all directions."""
     rng = np.random.default_rng(7)
     starts = rng.uniform(-8, 8, (25, 1, 2))
     angles, speeds = rng.uniform(0, 2 * np.pi, 25), rng.uniform(0.4, 1.8, 25)
@@ -45,12 +45,12 @@ def tracks(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="session")
 def recordings() -> Path:
-    """The folder of the STAR recordings; where they must be there, their absence is an error."""
+    """The folder of the STAR recordings; in CI their absence is an error."""
     folder = os.environ.get("DDL_DATASETS")
     if folder is None:
         if os.environ.get("CI"):
-            pytest.fail("DDL_DATASETS does not say where the recordings are")
-        pytest.skip("DDL_DATASETS does not say where the recordings are")
+            pytest.fail("set DDL_DATASETS to the folder of the recordings")
+        pytest.skip("set DDL_DATASETS to the folder of the recordings")
     return Path(folder)
 
 

@@ -1,4 +1,4 @@
-"""Every example: of the docstrings, of the guide's pages, and the notebook."""
+"""Runs every example: docstrings, pages of the guide, and the notebook."""
 
 import doctest
 import importlib

@@ -1,4 +1,4 @@
-"""Models of one's own on the benchmark."""
+"""Custom models on the benchmark."""
 
 import json
 
@@ -29,7 +29,7 @@ def test_scores_are_those_of_the_program(recordings, program, tmp_path):
 
 
 def test_nothing_of_the_future_reaches_a_model(recordings):
-    """Under `online` the rows until the last observed frame are seen, and not one more."""
+    """Under `online` a model gets the rows up to the last observed frame, and no later ones."""
     calls = []
 
     def watching(past, seen):
@@ -57,7 +57,7 @@ def test_windows_of_a_fold_and_of_a_recording(tracks):
     assert own and own[0].recording == "plaza" and len(own[0].ids) == len(own[0].past)
 
 
-def test_all_manners_of_predictions_and_wrong_ones():
+def test_all_forms_of_predictions_and_wrong_ones():
     def weighted(past):
         return np.repeat(constant_velocity(past), 2, axis=1), np.tile([0.75, 0.25], (len(past), 1))
 
@@ -87,7 +87,7 @@ def test_a_forecaster_on_its_fold(recordings):
     assert rows[0]["scores"]["min_ade"] < 0.25 and told
 
 
-def test_arrays_that_a_model_uses_again_change_nothing():
+def test_a_model_may_reuse_its_arrays():
     out = np.empty((500, 1, 12, 2))
 
     def reusing(past):
@@ -98,7 +98,7 @@ def test_arrays_that_a_model_uses_again_change_nothing():
     assert scores[0] == scores[1]
 
 
-def test_wrong_arguments_are_found_at_once_and_models_are_told_apart():
+def test_wrong_arguments_are_refused_at_once_and_models_are_distinguished():
     calls = []
 
     def model(past):

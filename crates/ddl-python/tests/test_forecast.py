@@ -30,7 +30,7 @@ def test_shapes_and_laws(forecaster, crossing):
     assert one.paths.shape == (25, 1, 12, 2) and (one.weights == 1).all()
 
 
-def test_who_was_not_seen_is_nan_and_changes_nobody(forecaster, crossing):
+def test_unobserved_pedestrians_are_nan_and_do_not_change_others(forecaster, crossing):
     alone = forecaster.forecast(crossing[:3])
     absent = np.full((1, 8, 2), np.nan)
     gone = crossing[3:4].copy()
@@ -40,11 +40,11 @@ def test_who_was_not_seen_is_nan_and_changes_nobody(forecaster, crossing):
     assert np.isnan(forecast.paths[~forecast.valid]).all() and np.isnan(forecast.familiarity[2])
     assert np.array_equal(forecast.paths[forecast.valid], alone.paths)
     assert np.isnan(forecast.regions(0.9)[2]).all()
-    nobody = forecaster.forecast(np.empty((0, 8, 2)))
-    assert len(nobody) == 0 and nobody.paths.shape == (0, 20, 12, 2)
+    empty = forecaster.forecast(np.empty((0, 8, 2)))
+    assert len(empty) == 0 and empty.paths.shape == (0, 20, 12, 2)
 
 
-def test_neighbours_are_minded_and_not_forecast(forecaster, crossing):
+def test_neighbours_influence_the_forecast_and_are_not_forecast(forecaster, crossing):
     both = forecaster.forecast(crossing[:5])
     first = forecaster.forecast(crossing[:2], neighbours=crossing[2:5])
     assert np.array_equal(first.paths, both.paths[:2])
@@ -170,8 +170,8 @@ def test_live_has_the_bits_of_the_recording(forecaster, tracks, tmp_path):
             ddl.Live(forecaster, fps=2.5 * recording.frame_step, memory=memory)
 
 
-def test_live_refuses_what_is_wrong_and_goes_on(forecaster):
-    with pytest.raises(ValueError, match=r"0\.4 s are a whole number"):
+def test_live_refuses_wrong_frames_and_continues(forecaster):
+    with pytest.raises(ValueError, match=r"0\.4 s must be a whole number"):
         ddl.Live(forecaster, fps=24)
     live = ddl.Live(forecaster, fps=2.5)
     for frame in range(7):
@@ -206,7 +206,7 @@ def test_numbers_and_words_are_different_pedestrians(forecaster):
     assert len(ddl.Live(forecaster, fps=2.5).observe(0, [], []) or []) == 0
 
 
-def test_words_of_those_who_have_gone_are_forgotten(forecaster, monkeypatch):
+def test_words_of_absent_pedestrians_are_forgotten(forecaster, monkeypatch):
     monkeypatch.setattr("ddl_forecast._live.MOST_WORDS", 20)
     live = ddl.Live(forecaster, fps=2.5)
     for frame in range(60):
@@ -215,7 +215,7 @@ def test_words_of_those_who_have_gone_are_forgotten(forecaster, monkeypatch):
 
 
 def test_calls_of_several_threads_take_turns(forecaster, crossing, tmp_path):
-    """Also with a close in between, and with as many threads as there are."""
+    """Also with a close in between, and with as many threads as cores."""
     live = ddl.Live(forecaster, fps=2.5, memory=tmp_path / "turns.memory")
     turn = itertools.count()
     failed = []
@@ -224,7 +224,7 @@ def test_calls_of_several_threads_take_turns(forecaster, crossing, tmp_path):
         for _ in range(15):
             try:
                 live.observe(next(turn), list(range(25)), crossing[:, 0] + 0.01)
-            except ValueError as error:  # another thread was faster with a later frame
+            except ValueError as error:  # another thread has pushed a later frame
                 if "after" not in str(error):
                     failed.append(error)
             assert live.remembered >= 0
@@ -238,13 +238,13 @@ def test_calls_of_several_threads_take_turns(forecaster, crossing, tmp_path):
     assert not failed and not any(thread.is_alive() for thread in threads)
 
 
-def test_a_scene_of_nobody_has_all_fields(forecaster, crossing):
+def test_an_empty_scene_has_all_fields(forecaster, crossing):
     absent = np.full((2, 8, 2), np.nan)
-    some, nobody = forecaster.forecast(crossing[:2], certificates=True), forecaster.forecast(absent, certificates=True)
-    assert nobody.paths.shape == (2, 20, 12, 2) and np.isnan(nobody.regions(0.9)).all()
+    some, empty = forecaster.forecast(crossing[:2], certificates=True), forecaster.forecast(absent, certificates=True)
+    assert empty.paths.shape == (2, 20, 12, 2) and np.isnan(empty.regions(0.9)).all()
     for name in ("paths", "weights", "goals", "certified", "spread", "familiarity"):
-        assert getattr(some, name).shape == getattr(nobody, name).shape, name
-    assert some.certificates.potentials.shape == nobody.certificates.potentials.shape
+        assert getattr(some, name).shape == getattr(empty, name).shape, name
+    assert some.certificates.potentials.shape == empty.certificates.potentials.shape
     assert baselines.angular_noise(absent).paths.shape == (2, 20, 12, 2) and baselines.constant_velocity(absent).goals is None
 
 
@@ -259,7 +259,7 @@ def test_forecasts_are_written_for_the_program(forecaster, tracks, tmp_path):
     assert len((tmp_path / "made.jsonl").read_text().splitlines()) == len(lines)
 
 
-def test_a_folder_named_like_a_builtin_model_is_not_in_the_way(tmp_path, monkeypatch, crossing):
+def test_a_builtin_model_takes_precedence_over_a_folder(tmp_path, monkeypatch, crossing):
     (tmp_path / "hotel").mkdir()
     monkeypatch.chdir(tmp_path)
     assert pickle.loads(pickle.dumps(ddl.Forecaster())).forecast(crossing).valid.all()
@@ -280,8 +280,8 @@ def test_goals_and_baselines(forecaster, crossing):
         assert of(crossing).paths.shape == (25, 1, 12, 2)
 
 
-def test_what_looks_wrong_is_warned_of(forecaster, crossing, tracks, tmp_path):
-    """Pixels, a wrong rate, motions that no pedestrian makes: never without a word."""
+def test_suspicious_input_gives_a_warning(forecaster, crossing, tracks, tmp_path):
+    """Pixels, a wrong rate, and impossible motions each give a warning."""
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         forecaster.forecast_recording(ddl.read(tracks), last=True)
@@ -291,9 +291,9 @@ def test_what_looks_wrong_is_warned_of(forecaster, crossing, tracks, tmp_path):
         for call in (forecaster.forecast_recording, forecaster.show):
             with pytest.warns(ddl.DoubtWarning, match=r"recording: |unlike"):
                 call(recording)
-    with pytest.warns(ddl.DoubtWarning, match="positions metres"):
+    with pytest.warns(ddl.DoubtWarning, match="positions are in metres"):
         forecaster.forecast(crossing * 50)
-    with pytest.warns(ddl.DoubtWarning, match="told once") as told, ddl.Live(forecaster, fps=2.5) as live:
+    with pytest.warns(ddl.DoubtWarning, match="appears once") as told, ddl.Live(forecaster, fps=2.5) as live:
         for frame in range(12):
             live.observe(frame, [1], [[50.0 * frame, 0.0]])
     assert len(told) == 1

@@ -1,4 +1,4 @@
-"""How the package behaves: lock, threads, interruption, memory, forks, the console script, the import."""
+"""Behaviour of the package: GIL, threads, interruption, memory, forks, console script, import time."""
 
 import os
 import signal
@@ -90,7 +90,7 @@ def test_ctrl_c_ends_a_long_call():
 
 
 def test_a_forked_child_computes(forecaster, crossing):
-    """Everything that uses several threads, which a forked child does not have."""
+    """A forked child does not inherit threads, so everything that uses several threads is tested."""
     truth = np.repeat(crossing[None, :, -1:], 2, axis=0)[:, :, 0][:, :, None] + np.zeros((2, 25, 12, 2))
     paths = [truth[0][:, None], truth[1][:, None]]
 
@@ -119,7 +119,7 @@ def test_a_forked_child_computes(forecaster, crossing):
 
 
 def test_ctrl_c_while_a_frame_is_forecast_closes_the_watch():
-    """The memory is written by a `with` that an interrupt leaves, also on one thread."""
+    """An interrupted `with` block writes the memory, also on one thread."""
     script = """
 import signal, sys, time, os, threading
 import numpy as np

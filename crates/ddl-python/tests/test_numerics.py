@@ -7,7 +7,7 @@ from ddl_forecast import dynamics, goals, metrics, soft_dtw
 
 
 def plain(x, y, gamma):
-    """The recursion as it is written down."""
+    """The recursion as in its definition."""
     costs = ((x[:, None] - y[None]) ** 2).sum(-1)
     table = np.full((len(x) + 1, len(y) + 1), np.inf)
     table[0, 0] = 0
@@ -77,13 +77,13 @@ def test_goals_of_similar_tracks():
     estimator = goals.GoalEstimator(experts, similar=30, goals=2)
     ends, weights = estimator.estimate(bent[None, :8])
     assert len(estimator) == 90 and np.allclose(weights.sum(axis=1), 1)
-    # similar tracks vote with their mirror images too
+    # mirror images of similar tracks count as well
     assert np.linalg.norm(np.abs(ends[0]) - bent[-1], axis=1).max() < 1.5
     with pytest.raises(ValueError, match="20"):
         goals.GoalEstimator(experts[:, :19])
 
 
-def test_flows_come_nearer_and_keep_clear():
+def test_flows_approach_the_goal_and_avoid_obstacles():
     P = np.array([[1.3, 0.4], [0.4, 0.7]])
     flow = dynamics.Flow([6, 0], P)
     start = np.array([0.0, 1.0])

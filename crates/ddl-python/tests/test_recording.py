@@ -10,7 +10,7 @@ from ddl_forecast._recording import FORMATS
 
 
 @pytest.mark.parametrize("format", FORMATS)
-def test_what_is_written_is_read(format, tmp_path, tracks):
+def test_a_written_recording_is_read_back(format, tmp_path, tracks):
     recording = ddl.read(tracks)
     path = tmp_path / ("tracks.txt" if format in ("social-gan", "obsmat") else "tracks.ndjson" if format == "trajnet" else "tracks.csv")
     recording.write(path, format=format)
@@ -50,7 +50,7 @@ def test_windows_of_a_resampled_recording_have_its_frames():
     assert np.allclose(window.past[0, -1, 0], window.frame / 24)
 
 
-def test_what_is_wrong_is_named(tmp_path):
+def test_an_error_names_the_fault(tmp_path):
     good = {"frame": [0, 1], "id": [1, 1], "x": [0.0, 0.5], "y": [0.0, 0.0]}
     for change, words in [
         ({"x": [0.0, np.nan]}, "row 1, column x"),

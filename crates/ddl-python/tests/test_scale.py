@@ -1,4 +1,4 @@
-"""Many recordings by Dask, many cameras by Zenoh and MQTT: the examples, in processes of their own."""
+"""Many recordings with Dask, many cameras with Zenoh and MQTT: runs the examples in separate processes."""
 
 import json
 import os
@@ -58,7 +58,7 @@ def test_dask_gives_the_bits_of_one_process_though_a_worker_dies(folder, tmp_pat
 
 
 def slow_forecast(path, out, forecaster):
-    """Long enough to be killed in the middle."""
+    """Takes long enough to be killed in the middle."""
     from forecast_file import forecast_file
 
     Path(out).mkdir(exist_ok=True)

@@ -1,22 +1,22 @@
-//! Where the network computes, and opening CUDA on a machine that has it.
+//! The device that the network computes on, and opening CUDA where it is available.
 
 use crate::StarError;
 use ddl_network::DeviceChoice;
 use std::sync::OnceLock;
 
-/// The libtorch that this crate is built for.
+/// The libtorch version that this crate is built for.
 pub const LIBTORCH_VERSION: &str = "2.11.0";
 
-/// A device that was opened and is there.
+/// A device that has been opened and is available.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ComputeDevice(tch::Device);
 
 impl ComputeDevice {
-    /// Opens the device. Call it before anything else touches libtorch: CUDA registers itself only
-    /// when its library is loaded before the first tensor is made.
+    /// Opens the device. Call it before any other use of libtorch: CUDA registers itself only if its library is loaded
+    /// before the first tensor is made.
     ///
     /// # Errors
-    /// [`StarError::Device`] when CUDA is asked for and cannot be had.
+    /// [`StarError::Device`] when CUDA is requested and unavailable.
     pub fn open(choice: DeviceChoice) -> Result<Self, StarError> {
         match choice {
             DeviceChoice::Cpu => Ok(Self(tch::Device::Cpu)),
@@ -37,7 +37,7 @@ impl ComputeDevice {
         }
     }
 
-    /// The device as libtorch names it.
+    /// The device in libtorch's type.
     #[must_use]
     pub fn torch(self) -> tch::Device {
         self.0
@@ -49,7 +49,7 @@ pub fn set_threads(threads: usize) {
     tch::set_num_threads(i32::try_from(threads.max(1)).unwrap_or(i32::MAX));
 }
 
-/// One thread for tensor operations until it is dropped: small tensors are not worth sharing.
+/// Limits tensor operations to one thread until it is dropped: small tensors do not gain from more threads.
 #[derive(Debug)]
 pub(crate) struct OneThread(i32);
 

@@ -1,26 +1,26 @@
-//! What can go wrong in this crate.
+//! Errors of this crate.
 
 use ddl_network::NetworkError;
 
-/// Errors of `ddl-star`. Messages say what is wrong, where, and what to do.
+/// Errors of `ddl-star`. A message states the fault, its place and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StarError {
-    /// A configuration, shape, weight or file that no implementation of the networks takes.
+    /// An invalid configuration, shape, weight or file, as every implementation of the networks reports it.
     #[error(transparent)]
     Network(#[from] NetworkError),
-    /// The device asked for cannot be had.
+    /// The requested device is unavailable.
     #[error("device {device}: {problem}")]
     Device {
-        /// The device asked for.
+        /// The requested device.
         device: String,
-        /// Why it cannot be used, and what to do.
+        /// The reason and the remedy.
         problem: String,
     },
-    /// The loss or its gradient is no longer a number.
+    /// The loss or its gradient is not finite.
     #[error(
         "epoch {epoch}, batch {batch}: the {quantity} is {value}; the last good checkpoint is kept; \
-         lower the learning rate or look at the windows of that batch ({windows})"
+         lower the learning rate or check the windows of that batch ({windows})"
     )]
     NonFinite {
         /// Epoch, counted from 1.
@@ -29,15 +29,15 @@ pub enum StarError {
         batch: usize,
         /// "loss" or "gradient norm".
         quantity: &'static str,
-        /// The value met.
+        /// The value of that quantity.
         value: f64,
         /// First window of the batch, as recording@frame.
         windows: String,
     },
-    /// The loss of the proposal network or its gradient is no longer a number.
+    /// The loss of the proposal network or its gradient is not finite.
     #[error(
         "step {step} of the proposal network: the {quantity} is {value}; the last good checkpoint is \
-         kept; lower the learning rate or look at the pedestrians of that batch (the first is number \
+         kept; lower the learning rate or check the pedestrians of that batch (the first is number \
          {example} of the {}examples, counted from 0)",
         if *reversed { "reversed " } else { "" }
     )]
@@ -46,16 +46,17 @@ pub enum StarError {
         step: u64,
         /// "loss" or "gradient norm".
         quantity: &'static str,
-        /// The value met.
+        /// The value of that quantity.
         value: f64,
-        /// First example of the batch, within the examples or within the reversed ones, counted from 0.
+        /// First example of the batch, counted from 0 within the examples or the reversed examples.
         example: usize,
-        /// Whether it is one of the reversed examples.
+        /// Whether it is a reversed example.
         reversed: bool,
     },
-    /// Training was given nothing to learn from.
+    /// There are no training windows.
     #[error(
-        "no training windows: every epoch needs at least one window with its future, somebody seen at 20 steps of 0.4 s in a row"
+        "no training windows: every epoch needs at least one window with a pedestrian observed at 20 consecutive time \
+         steps of 0.4 s"
     )]
     NoTrainingWindows,
     /// libtorch reported an error.

@@ -1,4 +1,4 @@
-//! Training of the network that proposes where a pedestrian will be at the end of the horizon, on libtorch.
+//! Training of the network that proposes endpoints, on libtorch.
 
 mod augment;
 mod data;

@@ -14,5 +14,5 @@ pub use trainer::Trainer;
 
 use std::sync::Mutex;
 
-/// libtorch has one generator a process: two trainings side by side take turns to draw from it.
+/// libtorch has one generator per process: concurrent trainings take turns to draw from it.
 pub(crate) static GENERATOR: Mutex<()> = Mutex::new(());

@@ -1,4 +1,4 @@
-//! A backbone of one's own: trained on libtorch, forecast by kernels.
+//! A custom backbone: trained on libtorch, forecast by kernels.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -110,7 +110,7 @@ fn forecasts(network: &dyn ForecastWindows) -> Result<Vec<WindowRollout>, Networ
 }
 
 #[test]
-fn a_third_backbone_is_trained_and_forecasts_without_libtorch() {
+fn a_custom_backbone_is_trained_and_forecasts_without_libtorch() {
     let training = TrainingConfig {
         epochs: 25,
         batch_pedestrians: 40,
@@ -148,7 +148,7 @@ fn a_third_backbone_is_trained_and_forecasts_without_libtorch() {
     };
     let difference = apart(&ours, &forecasts(&*exact.into_forecaster()).unwrap());
     assert!(difference < 1e-3, "{difference} m");
-    // and it is what was learned that shapes them
+    // the learned weights shape the forecasts
     let change = apart(&ours, &before);
     assert!(change > 1e-2, "{change} m");
 }

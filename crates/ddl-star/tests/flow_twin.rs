@@ -1,5 +1,5 @@
-//! The differentiable flow against `ddl-dynamics`, in f64, also at the goal and next to it; and its
-//! derivatives there, which must be numbers.
+//! Compares the differentiable flow with `ddl-dynamics` in f64, also at the goal and close to it, and checks that its
+//! derivatives there are finite.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -81,7 +81,7 @@ fn oracle(
     path.unwrap()[1].into()
 }
 
-/// Bounds of any pedestrian, and a step of its twelve.
+/// Random bounds of a pedestrian, and a step of its twelve.
 fn bounds(dt: f64) -> impl Strategy<Value = (Bounds, StepTime<f64>)> {
     let own = prop::array::uniform2(-4.0..4.0);
     let draw = (0.5..8.0, own, 0.0..=1.0, any::<bool>(), 0..12_usize);
@@ -91,7 +91,7 @@ fn bounds(dt: f64) -> impl Strategy<Value = (Bounds, StepTime<f64>)> {
     })
 }
 
-/// Anywhere in a scene; sometimes the origin, where offsets of 1e-12 m keep all their digits.
+/// A random position in a scene; sometimes the origin, where offsets of 1e-12 m keep all their digits.
 fn place() -> impl Strategy<Value = [f64; 2]> {
     prop_oneof![
         4 => prop::array::uniform2(-20.0..20.0),
@@ -99,7 +99,7 @@ fn place() -> impl Strategy<Value = [f64; 2]> {
     ]
 }
 
-/// A goal, and a pedestrian anywhere, at the goal, or that close to it in any direction.
+/// A goal, and a pedestrian anywhere, at the goal, or very close to it in any direction.
 fn goal_and_pedestrian() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
     let distance = prop::sample::select(vec![None, Some(0.0), Some(1e-12), Some(1e-6)]);
     (place(), place(), distance, 0.0..std::f64::consts::TAU).prop_map(
@@ -115,8 +115,8 @@ fn goal_and_pedestrian() -> impl Strategy<Value = ([f64; 2], [f64; 2])> {
     )
 }
 
-/// Pedestrians side by side, each rolled out for 12 steps: the derivatives of a loss over all positions, by
-/// the starts `[P, 2]` and the factors `[12, P, 3]`.
+/// The gradients of a loss over all positions by the starts `[P, 2]` and the factors `[12, P, 3]`, for pedestrians that
+/// are rolled out side by side for 12 steps.
 fn gradients_of_a_chain(
     pedestrians: &[([f64; 2], [f64; 2])],
     factors: &[f64],
@@ -142,7 +142,7 @@ fn gradients_of_a_chain(
         positions = tensor_step(&positions, &goals, &factors.get(t), (dt, bounds));
         path.push(positions.shallow_clone());
     }
-    // off the goals, so that the loss has a slope there
+    // the offset gives the loss a slope at the goals
     let loss = (Tensor::stack(&path, 0) - &goals - 0.5).square().sum(kind);
     loss.backward();
     [starts.grad(), factors.grad()]
@@ -156,7 +156,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1_500))]
 
     #[test]
-    fn the_twin_steps_as_the_crate_does(
+    fn the_twin_makes_the_same_steps(
         (goal, p) in goal_and_pedestrian(),
         factor in prop::array::uniform3(-3.0..3.0),
         dt in 1e-3..10.0f64,
@@ -175,7 +175,7 @@ const SIDE_BY_SIDE: usize = 16;
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100))]
 
-    /// Stable steps arrive, and then every further step is taken at the goal.
+    /// Stable steps arrive, and every further step starts at the goal.
     #[test]
     fn no_gradient_through_twelve_steps_is_nan(
         pedestrians in prop::collection::vec(goal_and_pedestrian(), SIDE_BY_SIDE),
@@ -192,7 +192,8 @@ proptest! {
     }
 }
 
-/// A metric within the bounds learns: a longer factor at the first step changes where the walk leads, also through the steps after it.
+/// Checks that a metric within the bounds has a gradient: a longer factor at the first step changes the path, also
+/// through the later steps.
 #[test]
 fn gradients_reach_back_to_the_first_step() {
     let factors: Vec<f64> = [1.1, 0.2, 0.9].repeat(HORIZON as usize);
@@ -207,7 +208,7 @@ fn gradients_reach_back_to_the_first_step() {
         "{start} {shape}"
     );
     assert!(shape.get(0).abs().max().double_value(&[]) > 1e-3, "{shape}");
-    // the last step ends on the goal, whatever was emitted
+    // the last step ends at the goal, whatever the network emits
     assert!(
         shape.get(HORIZON - 1).abs().max().double_value(&[]) < 1e-12,
         "{shape}"

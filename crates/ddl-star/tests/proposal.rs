@@ -1,4 +1,4 @@
-//! The proposal network: what it learns, what its ends do not depend on, and how its training is resumed.
+//! The proposal network: what it learns, the invariances of its endpoints, and how its training is resumed.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -11,7 +11,7 @@ use ddl_network::{
 use ddl_star::{ComputeDevice, ProposalTrainer, StarError, TorchProposals};
 use std::f64::consts::TAU;
 
-/// Steps in which the memory branch learns.
+/// Training steps of the memory branch.
 const MEMORY_STEPS: u64 = 8;
 
 fn device() -> ComputeDevice {
@@ -32,7 +32,7 @@ fn network() -> TorchProposals {
     TorchProposals::new(small(), 3, device()).unwrap()
 }
 
-/// A view of somebody who walks at `speed` (m/s) with `neighbours` ahead.
+/// A view of a pedestrian at `speed` (m/s) with `neighbours` ahead.
 fn view(speed: f64, neighbours: usize) -> PedestrianView {
     let walk = |speed: f64, x: f64, y: f64| {
         std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
@@ -46,7 +46,7 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
     }
 }
 
-/// Somebody who was seen before: at first like [`view`] at 1 m/s, then turning by `angle` (radians).
+/// An earlier pedestrian: at first like [`view`] at 1 m/s, then turning by `angle` (radians).
 fn earlier(angle: f64) -> Remembered {
     let (sin, cos) = angle.sin_cos();
     let track = std::array::from_fn(|t| {
@@ -63,7 +63,7 @@ fn earlier(angle: f64) -> Remembered {
     }
 }
 
-/// Pedestrians who go on straight or turn left or right by 60 degrees, a third each.
+/// Pedestrians who continue straight or turn left or right by 60 degrees, a third each.
 fn examples() -> Vec<ProposalExample> {
     (0..90)
         .map(|i| {
@@ -92,7 +92,7 @@ fn training(steps: u64) -> ProposalTraining {
     }
 }
 
-/// Mean distance of the nearest end to the true one (m).
+/// Mean distance of the nearest endpoint to the true one (m).
 fn oracle(network: &TorchProposals, examples: &[ProposalExample]) -> f64 {
     let views: Vec<_> = examples
         .iter()
@@ -129,7 +129,7 @@ fn it_learns_where_pedestrians_go_on_a_fork() {
         before > 1.0 && error < 0.45,
         "{before:.2} m before, {error:.2} m after"
     );
-    // Who walks fast ends further: the ends are not one table for all.
+    // A faster pedestrian ends further away: the endpoints depend on the observation.
     let reach = |speed| {
         let proposed = after.propose(&[view(speed, 0)]).unwrap();
         let lengths = proposed[0].ends.iter().map(|end| end[0].hypot(end[1]));
@@ -139,8 +139,8 @@ fn it_learns_where_pedestrians_go_on_a_fork() {
 }
 
 #[test]
-fn what_earlier_pedestrians_did_decides_and_the_rest_of_the_network_stays() {
-    // All are seen walking alike; where they turn, earlier ones have turned.
+fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
+    // All observed motions are alike; pedestrians turn where earlier ones have turned.
     let angle = |i: i32| f64::from(i % 2 * 2 - 1) * TAU / 6.0;
     let examples: Vec<ProposalExample> = (0..60)
         .map(|i| {
@@ -156,7 +156,7 @@ fn what_earlier_pedestrians_did_decides_and_the_rest_of_the_network_stays() {
         let network = TorchProposals::new(config.clone(), 3, device()).unwrap();
         let mut training = training(60);
         training.memory.steps = steps;
-        // Mirror images would be remembered mirrored: the fork is learned by the side of the earlier pedestrian.
+        // Without mirroring: each side of the fork is learned from an earlier pedestrian on that side.
         let mut trainer = ProposalTrainer::new(network, &examples, &[], training).unwrap();
         while !trainer.is_finished() {
             trainer.step().unwrap();
@@ -166,7 +166,7 @@ fn what_earlier_pedestrians_did_decides_and_the_rest_of_the_network_stays() {
         plain.with_weights(weights.unwrap()).unwrap()
     };
     let views: Vec<_> = examples.iter().map(|of| of.view.clone()).collect();
-    // One end of each member from the observation alone, then one of each memory branch.
+    // The first endpoints are from the observation only, the others from the memory branch.
     let error = |network: &ProposalNetwork, which: std::ops::Range<usize>| {
         let proposed = network.propose(&views).unwrap();
         let off = |(proposed, example): (&ProposedEnds, &ProposalExample)| {
@@ -190,14 +190,14 @@ fn what_earlier_pedestrians_did_decides_and_the_rest_of_the_network_stays() {
 }
 
 #[test]
-fn plain_numbers_propose_what_libtorch_proposes() {
+fn kernels_propose_the_endpoints_of_libtorch() {
     let mut views: Vec<PedestrianView> = (0..70_u8)
         .map(|i| view(0.03 * f64::from(i), usize::from(i % 11)))
         .collect();
     views[5].neighbours.push([[40.0, 3.0]; 8]);
     views[6].neighbours = vec![[[40.0, 3.0]; 8]];
     views[7].neighbours = vec![views[7].own];
-    // More than are looked at, and fewer; some remember nothing.
+    // More earlier pedestrians than are used, and fewer; some views have none.
     for (i, view) in (0_u8..).zip(&mut views) {
         view.remembered = (0..i % 15).map(|j| earlier(0.2 * f64::from(j))).collect();
     }
@@ -235,7 +235,7 @@ fn a_resumed_training_ends_with_the_same_weights() {
     let begin = || ProposalTrainer::new(network(), &examples(), &[], training(12)).unwrap();
     let weights = |network: TorchProposals| network.parameters().to_weights().unwrap();
     let whole = weights(trained(12));
-    // Before, at the end of and after what is learned from the observation alone.
+    // Before, at and after the end of training on the observation only.
     for done in [5, 12, 15] {
         let mut first = begin();
         for _ in 0..done {
@@ -259,7 +259,7 @@ fn a_resumed_training_ends_with_the_same_weights() {
 }
 
 #[test]
-fn what_cannot_be_learned_from_is_refused() {
+fn invalid_examples_are_refused() {
     let nothing = ProposalTrainer::new(network(), &[], &[], training(5));
     assert!(matches!(nothing, Err(StarError::NoTrainingWindows)));
     let mut broken = examples();
@@ -275,7 +275,7 @@ fn what_cannot_be_learned_from_is_refused() {
     assert_eq!(trainer.steps(), (0, 5 + MEMORY_STEPS));
     assert!(error.to_string().contains("of the examples"), "{error}");
 
-    // The sound ones before them are not blamed.
+    // The error does not name the valid examples before them.
     let only_reversed = ProposalTraining {
         reversed: 1.0,
         ..training(5)

@@ -1,5 +1,5 @@
-//! Agreement with the published network: weights by formula, outputs computed by the published code
-//! in f64 on a CPU (`reference/star_ddl_forward.json`).
+//! Agreement with the published network: weights by formula, outputs of the published code in f64 on a CPU
+//! (`reference/star_ddl_forward.json`).
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

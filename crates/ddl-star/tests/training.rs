@@ -1,4 +1,4 @@
-//! Training: what it learns, and that stopping changes nothing.
+//! Training: what it learns, and that a stopped and resumed run gives the same result.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -53,14 +53,14 @@ fn every_variant_learns() {
     for variant in Variant::ALL {
         let losses = losses(trainer(variant, 25));
 
-        // the noise of a step makes single epochs jump: the best of the last ones counts
+        // The noise of a step makes single epochs jump, so the best of the last ones counts.
         let best = losses[17..].iter().copied().fold(f64::INFINITY, f64::min);
         assert!(best < 0.5 * losses[0], "{variant}: {losses:?}");
     }
 }
 
-/// Walks to goals that are not the true ends, backwards and forwards, in the pedestrians' own frames.
-fn pedestrian(epochs: usize, jitter: f64) -> Trainer {
+/// Training on paths to goals other than the true endpoints, in the pedestrians' own frames, also with time reversed.
+fn path_trainer(epochs: usize, jitter: f64) -> Trainer {
     let config = StarConfig {
         feed_forward_width: 64,
         ..StarConfig::recommended(Variant::Full)
@@ -89,17 +89,17 @@ fn pedestrian(epochs: usize, jitter: f64) -> Trainer {
 }
 
 #[test]
-fn walks_to_goals_are_learned() {
-    // from exact positions: what jitter adds to the loss of so few pedestrians is not to be learned
-    let losses = losses(pedestrian(30, 0.0));
-    // It begins at the neutral motion, ends 0.36 m off, where it is led, and can keep to the true path on the way there only in part: a third
-    // of the error is learned away.
+fn paths_to_goals_are_learned() {
+    // Exact positions: jitter would add to the loss of so few pedestrians.
+    let losses = losses(path_trainer(30, 0.0));
+    // Training starts at the neutral motion. Its endpoints are 0.36 m off, because the goals are, so the path can
+    // follow the true one only in part: training removes a third of the error.
     let last = losses[29];
     assert!(last < 0.72 * losses[0] && last < 0.22, "{losses:?}");
 }
 
 #[test]
-fn a_goal_is_needed_for_everybody() {
+fn every_pedestrian_needs_a_goal() {
     let network = TorchNetwork::new(config(Variant::Full), 7, cpu()).unwrap();
     let training = TrainingConfig::recommended(Variant::Full);
     let mut goals: Vec<Vec<_>> = windows().iter().map(|w| vec![[0.0; 2]; w.len()]).collect();
@@ -140,14 +140,15 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
     for stop in [1, total / 2 + 1, total - 1] {
         assert_eq!(resumed(single_steps, stop), expected, "stopped at {stop}");
     }
-    let walks = || pedestrian(2, 0.06);
+    let walks = || path_trainer(2, 0.06);
     let (_, total) = walks().steps();
     assert_eq!(resumed(walks, total / 2), whole(walks()));
 }
 
 #[test]
-fn a_loss_that_is_no_number_stops_the_run_and_names_the_batch() {
-    // At the end of the network, which libtorch computes, and at its beginning, from where it has to come through kernels.
+fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
+    // At the end of the network, which libtorch computes, and at its beginning, from where it has to pass through
+    // kernels.
     for bias in [
         "output_layer.bias",
         "input_embedding_layer_temporal.bias",

@@ -1,9 +1,11 @@
-//! Fits what tells how far a model is trusted, on recordings of places that no model was trained on:
-//! `calibrate FOLDER=FPS ...` prints, for each folder and each built-in model, the log loss of the weights, AMD and likelihood, and the coverage
-//! of regions that were calibrated on the other folders; then it writes the table of regions of all folders to
-//! `crates/ddl/src/trust/calibration.json`.
+//! Fits the calibration constants on recordings of places that no model was trained on.
 //!
-//! Of each folder every other file is used, of a folder with one file the first half of its windows: the rest is for the last look.
+//! `calibrate FOLDER=FPS ...` prints for each folder and each built-in model the log loss of the weights, AMD and
+//! likelihood, and the coverage of regions that were calibrated on the other folders. It then writes the table of
+//! regions of all folders to `crates/ddl/src/trust/calibration.json`.
+//!
+//! It uses every other file of a folder, or the first half of the windows of a single file. The rest is for the final
+//! evaluation.
 
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 
@@ -19,7 +21,7 @@ mod places;
 const LEVELS: [f64; 12] = [
     0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99,
 ];
-/// Pedestrian-windows of a folder that are forecast by each model, about.
+/// About this many pedestrian-windows of a folder are forecast by each model.
 const PEDESTRIANS: usize = 1500;
 /// Windows forecast at a time.
 const CHUNK: usize = 64;

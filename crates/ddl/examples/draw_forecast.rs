@@ -1,6 +1,7 @@
-//! Draws a model's forecast of one test window of the scene it has never seen:
-//! `draw_forecast RUN PEDESTRIANS FILE.svg` takes the window with the most walking among those of
-//! exactly so many pedestrians. The picture of the README is of a simulated crowd.
+//! Draws a model's forecast of one test window of the scene that it was trained without.
+//!
+//! `draw_forecast RUN PEDESTRIANS FILE.svg` takes the window of exactly this many pedestrians in which the slowest
+//! walks furthest.
 
 use ddl::data::{Convention, Dataset, Window, WindowRule, locate};
 use ddl::report::figure;
@@ -25,13 +26,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .filter(|window| window.len() == pedestrians)
         .max_by(|one, other| walked(one).total_cmp(&walked(other)))
-        .ok_or("no test window has that many pedestrians")?;
+        .ok_or("no test window has exactly this many pedestrians")?;
     let forecast = model.forecast(&window.without_future())?;
     std::fs::write(file, figure::scene(window, &forecast)?)?;
     Ok(())
 }
 
-/// Metres walked by the pedestrian who walks least.
+/// Length of the shortest observed path, metres.
 fn walked(window: &Window) -> f64 {
     let length = |track: &[[f64; 2]]| -> f64 {
         track

@@ -1,13 +1,14 @@
-//! Forecasts the people of a csv: where each will be in 4.8 s, with goals, weights and certificates.
+//! Forecasts the pedestrians of a csv file: positions in 4.8 s, goals, weights and certificates.
 //!
 //! ```text
 //! cargo run --release -p ddl --example forecast_csv
 //! cargo run --release -p ddl --example forecast_csv -- tracks.csv
 //! ```
-//! The table has the columns `frame`, `pedestrian`, `x` and `y`: metres, a row each 0.4 s. Without an argument, a small one is made up: two
-//! people who meet on a pavement, and a third who comes late. The model is the one that comes with the crate. The last moment of the table is
-//! forecast: everybody's three likeliest goals with their weights, the place that stands for all 20 hypotheses, and whether the certificates hold.
-#![expect(clippy::print_stdout, reason = "what it is for")]
+//! The table has the columns `frame`, `pedestrian`, `x` and `y`: metres, a row every 0.4 s. Without an argument, the
+//! example makes a small one: two pedestrians who meet on a pavement, and a third who appears later. It forecasts the
+//! last moment of the table with the default built-in model. For each pedestrian it prints the three most likely goals
+//! with their weights, the representative position of all 20 hypotheses, and whether the certificates hold.
+#![expect(clippy::print_stdout, reason = "the output of the example")]
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -39,11 +40,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => return Err("usage: forecast_csv [TRACKS.csv]".into()),
     };
     let recording = parse_recording(&table, name, Format::Table)?;
-    // Who came late or was lost for a moment is forecast, too.
+    // Pedestrians with short or incomplete observations are forecast as well.
     let windows = recording.completed_windows(Completion::USUAL);
-    let window = windows.last().ok_or("nobody was seen twice")?;
+    let window = windows.last().ok_or("no pedestrian was observed twice")?;
 
-    ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread: this is little work
+    ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread is enough
     let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
     let certified = model
         .forecast_certified(std::slice::from_ref(window))?
@@ -51,20 +52,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let forecast = &certified.forecast;
 
     println!(
-        "{name}, frame {}: {} people, {} hypotheses each",
+        "{name}, frame {}: {} pedestrians, {} hypotheses each",
         window.frames()[7],
         window.len(),
         forecast.hypotheses()
     );
     for (i, pedestrian) in window.pedestrians().iter().enumerate() {
         let ([x, y], seen) = (window.observed(i)[7], window.made_up(i).seen());
-        println!("pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, seen at {seen} of 8 steps");
-        // Hypotheses come with the likeliest goal first.
+        println!(
+            "pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, observed at {seen} of 8 time steps"
+        );
+        // Hypotheses are in the order of their weights, the largest first.
         for k in 0..3.min(forecast.hypotheses()) {
             let [x, y] = forecast.goal(i, k).ok_or("a model without goals")?;
             let certificate = certified.certificate(i, k);
             let verdict = match certificate.holds() {
-                Ok(()) => "nearer at every step".to_owned(),
+                Ok(()) => "closer at every step".to_owned(),
                 Err(violation) => violation.to_string(),
             };
             println!(
@@ -74,7 +77,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
         }
         let [x, y] = forecast.hypothesis(i, forecast.representative(i))[HORIZON - 1];
-        println!("  in 4.8 s, for all of them: ({x:.2}, {y:.2}) m");
+        println!("  representative position in 4.8 s: ({x:.2}, {y:.2}) m");
     }
     match certified.first_violation() {
         None => println!("all {} certificates hold", certified.certificates.len()),

@@ -1,5 +1,6 @@
-//! Plays recorded tracks as if they were seen now: `live RUN TRACKS.csv [FRAME_STEP]` pushes one frame after the other, and prints
-//! where each pedestrian is forecast to be in 4.8 s, with the evidence that the forecast goes to its goal, and how long it took.
+//! Replays recorded tracks as a live stream: `live RUN TRACKS.csv [FRAME_STEP]` pushes one frame after the other. It
+//! prints the position of each pedestrian in 4.8 s, whether the forecast approaches its goal at every step, and the
+//! time it took.
 
 use ddl::data::{Format, HORIZON, read_recording};
 use ddl::{Ddl, DeviceChoice, LiveForecaster};
@@ -29,7 +30,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         let took = started.elapsed().as_secs_f64() * 1e3;
         let Some(now) = now else {
             let known = live.tracks().len();
-            writeln!(out, "frame {frame}: {known} seen, nobody for 8 frames yet")?;
+            writeln!(
+                out,
+                "frame {frame}: {known} pedestrians, none observed at 8 steps yet"
+            )?;
             continue;
         };
         writeln!(out, "frame {frame}: forecast in {took:.1} ms")?;
@@ -39,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let [x, y] = forecast.hypothesis(i, k)[HORIZON - 1];
             let certificate = now.forecast.certificate(i, k);
             let verdict = match certificate.holds() {
-                Ok(()) => "nearer to its goal at every step".to_owned(),
+                Ok(()) => "closer to its goal at every step".to_owned(),
                 Err(violation) => violation.to_string(),
             };
             writeln!(

@@ -1,4 +1,5 @@
-//! Where networks compute, on how many threads, and the networks for it: kernels on the CPU, libtorch on CUDA.
+//! The device and the number of threads that networks compute with. Networks run as kernels on the CPU and through
+//! libtorch on CUDA.
 
 use crate::error::DdlError;
 use ddl_network::weights::{Layout, Weights};
@@ -8,7 +9,7 @@ use ddl_network::{
 };
 use std::sync::Arc;
 
-/// A device that was opened and is there.
+/// A device that has been opened and is available.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Device(Opened);
 
@@ -26,7 +27,7 @@ impl Device {
     /// Opens the device.
     ///
     /// # Errors
-    /// When CUDA is asked for and cannot be had, or the program is built without libtorch.
+    /// When CUDA is requested and unavailable, or the program is built without libtorch.
     pub fn open(choice: DeviceChoice) -> Result<Self, DdlError> {
         #[cfg(feature = "torch")]
         if choice != DeviceChoice::Cpu {
@@ -42,7 +43,7 @@ impl Device {
         Ok(Self::CPU)
     }
 
-    /// libtorch on the CPU: what the kernels are held to.
+    /// libtorch on the CPU: the reference for the kernels.
     ///
     /// # Errors
     /// When libtorch cannot compute.
@@ -115,25 +116,25 @@ impl Device {
     }
 }
 
-/// Opens the device and sets the number of threads (all cores when `None`) of the kernels and of goal search; libtorch
-/// itself uses one. Call it once, before anything else: CUDA can only be opened before the first tensor is made.
+/// Opens the device and sets the number of threads of the kernels and of goal search (`None`: all cores). libtorch
+/// itself uses one thread. Call it once, before anything else: CUDA can be opened only before the first tensor is made.
 ///
 /// # Errors
-/// When the device cannot be had.
+/// When the device is unavailable.
 pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlError> {
     Device::open(device)?;
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     let threads = threads.unwrap_or(cores).max(1);
     #[cfg(feature = "torch")]
     ddl_star::set_threads(1);
-    // A pool that was built earlier stays as it is: results do not depend on it.
+    // An existing thread pool is kept: results do not depend on the number of threads.
     let _ = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global();
     Ok(())
 }
 
-/// "yes", or "no" and why.
+/// "yes", or "no" with the reason.
 #[must_use]
 pub fn cuda_status() -> String {
     match Device::open(DeviceChoice::Cuda) {

@@ -1,17 +1,17 @@
 use std::path::PathBuf;
 
-/// Errors of `ddl`. Messages say what is wrong, where, and what to do.
+/// Errors of `ddl`. A message states the fault, its place and the remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum DdlError {
     #[error(transparent)]
     Data(#[from] ddl_data::DataError),
     #[error(transparent)]
     Live(#[from] ddl_data::LiveError),
     #[error(
-        "the memory was made with {memory} frames in a step of 0.4 s ({} a second), these tracks have {camera} ({} a second): use a \
-         memory of this rate, or a new file", rate(*.memory), rate(*.camera)
+        "the memory was made at {} frames per second ({memory} frames per step of 0.4 s), but these tracks have {} \
+         ({camera} per step): use a memory of the same frame rate, or a new file", rate(*.memory), rate(*.camera)
     )]
     MemoryFrameStep { camera: i64, memory: i64 },
     #[error(transparent)]
@@ -28,8 +28,8 @@ pub enum DdlError {
     #[error(transparent)]
     Torch(#[from] ddl_star::StarError),
     #[error(
-        "{what} needs libtorch, which this program is built without: in a checkout of the project, \
-         `cargo xtask setup` brings it in and `cargo build --release -p ddl-cli --features torch` builds with it (docs/libtorch.md)"
+        "{what} needs libtorch, and this program is built without it; in a checkout of the project, run \
+         `cargo xtask setup` and `cargo build --release -p ddl-cli --features torch` (docs/libtorch.md)"
     )]
     WithoutLibtorch { what: &'static str },
     #[error(transparent)]
@@ -41,31 +41,33 @@ pub enum DdlError {
     #[error(transparent)]
     Report(#[from] ddl_report::ReportError),
     #[error(
-        "validation = {0} is not allowed: a share of the recordings' time, at least 0, below 1"
+        "validation = {0} is out of range: it is a share of the recordings' time, at least 0 and below 1"
     )]
     Validation(f64),
     #[error(
-        "nobody in the part kept for validation was seen at 20 steps in a row; keep {}",
+        "no pedestrian in the validation part was observed at 20 consecutive time steps; keep {}",
         more_for_validation(*.recordings)
     )]
     NothingToValidateOn { recordings: usize },
     #[error(
-        "a patience of {patience} epochs with {validation} of the recordings' time for validation is not allowed: at least 1 epoch, \
-         and a share above 0 or whole recordings to measure epochs on"
+        "a patience of {patience} epochs with validation = {validation} is not allowed: use a patience of at least 1, \
+         and keep a share above 0 or whole recordings for validation"
     )]
     Patience { patience: usize, validation: f64 },
-    #[error("retrieved_share = {0} is not allowed: 0 to 1")]
+    #[error("retrieved_share = {0} is out of range: 0 to 1")]
     RetrievedShare(f64),
-    #[error("a clearance of {0} metres is not allowed: above 0 and at most 10, such as 0.4")]
+    #[error(
+        "a clearance of {0} m is out of range: it must be above 0 and at most 10 m, for example 0.4"
+    )]
     Clearance(f64),
     #[error(
-        "the variant `{variant}` has no flow that could mind others: its network emits \
-         positions; use a model of the variant `full` or `no-goal-shift`"
+        "the variant `{variant}` cannot keep a clearance: its network emits positions and has no flow; \
+         use a model of the variant `full` or `no-goal-shift`"
     )]
     NoFlow { variant: ddl_network::Variant },
     #[error(
-        "{tracks} tracks of 20 steps to train on, but the published goal estimator, which evaluation runs too, retrieves {experts}; train on more or longer \
-         recordings (what is kept for validation does not count)"
+        "the training recordings hold {tracks} tracks of 20 steps, but the published goal estimator, which evaluation \
+         also runs, retrieves {experts}; train on more or longer recordings (the validation part does not count)"
     )]
     TooFewTracks { tracks: usize, experts: usize },
     #[error(transparent)]
@@ -81,17 +83,17 @@ pub enum DdlError {
         path: PathBuf,
         source: std::io::Error,
     },
-    /// The caller asked to stop. Training has saved its steps; an evaluation starts anew.
-    #[error("interrupted; what training has saved stays, and the same command goes on from there")]
+    /// The caller asked to stop. Training keeps its saved steps; an evaluation starts again from the beginning.
+    #[error("interrupted; saved training steps are kept, and the same command continues from them")]
     Interrupted,
 }
 
-/// Frames in a second, where so many make a step of 0.4 s.
+/// Frames per second, from the number of frames in a step of 0.4 s.
 fn rate(frame_step: i64) -> f64 {
     frame_step as f64 / ddl_data::TIME_STEP
 }
 
-/// What to keep where the validation part of so many recordings holds no window.
+/// Advice for a validation part without windows, given the number of recordings.
 pub(crate) fn more_for_validation(recordings: usize) -> String {
     let whole = match recordings {
         0 | 1 => "",

@@ -1,4 +1,4 @@
-//! What a model is worth: scores, beside baselines and other models.
+//! Evaluation of a model: scores, beside those of baselines and other models.
 
 pub(crate) mod baselines;
 pub(crate) mod comparison;

@@ -1,4 +1,4 @@
-//! From goals to forecasts: the walks that the network shapes, and their certificates.
+//! From goals to forecasts: the paths that the network shapes, and their certificates.
 
 pub(crate) mod certified;
 pub(crate) mod clearance;

@@ -1,4 +1,4 @@
-//! Where the goals of a model come from.
+//! The goals of a model.
 
 pub(crate) mod experts;
 pub(crate) mod model;

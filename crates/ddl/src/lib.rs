@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(
     not(feature = "torch"),
-    allow(dead_code, reason = "training alone needs it")
+    allow(dead_code, reason = "only training needs it")
 )]
 
 mod device;
@@ -62,7 +62,7 @@ pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingSte
 pub use trust::calibration::Calibration;
 pub use trust::familiarity::UNFAMILIAR;
 
-/// The examples of the guide, run as those of this documentation are.
+/// The examples of the guide, run as documentation tests.
 #[cfg(doctest)]
 mod guide {
     #[doc = include_str!("../../../docs/rust.md")]

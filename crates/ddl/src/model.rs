@@ -1,4 +1,4 @@
-//! A trained model, and where it is taken from.
+//! A trained model and its sources.
 
 pub(crate) mod builtin;
 pub(crate) mod ddl;

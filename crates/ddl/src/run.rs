@@ -1,4 +1,4 @@
-//! The directory of a run, and what is written there.
+//! The directory of a run and its files.
 
 pub(crate) mod config;
 pub(crate) mod directory;

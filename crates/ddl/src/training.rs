@@ -1,4 +1,4 @@
-//! Training of one fold into a run directory, stopped and resumed at will.
+//! Training of one fold into a run directory. It can be stopped and resumed.
 
 pub(crate) mod best_epoch;
 #[cfg(feature = "torch")]
@@ -20,36 +20,37 @@ use ddl_data::Dataset;
 use ddl_network::{DeviceChoice, ProposalStep, StarConfig, StepReport, TrainingConfig};
 use std::ops::ControlFlow;
 
-/// What to train, and where to put it.
+/// What to train, and the directory for it.
 #[derive(Debug, Clone)]
 pub struct TrainingRequest {
     /// The fold whose test scene is left out.
     pub fold: String,
     /// Size and variant of the forecasting network.
     pub star: StarConfig,
-    /// How to train.
+    /// The training of the forecasting network.
     pub training: TrainingConfig,
     /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
     pub validation: f64,
-    /// Training recordings kept for validation whole.
+    /// Training recordings kept for validation as a whole.
     pub validation_recordings: Vec<String>,
-    /// What the goals come from.
+    /// The origin of the goals.
     pub goals: GoalRecipe,
-    /// The model whose weights both networks begin with; `None`: random ones. With [`patience`](Self::patience) it is
-    /// an epoch like the others, number 0.
+    /// The model whose weights both networks start with; `None`: random weights. With [`patience`](Self::patience) the
+    /// starting weights count as epoch 0.
     pub from: Option<ModelSource>,
-    /// End early when the validation error has not fallen for so many epochs, and take the best epoch for the model; `None`: all epochs, and the
-    /// last.
+    /// Ends early when the validation error has not fallen for this many epochs, and takes the best epoch as the model.
+    /// `None`: train all epochs, and take the last.
     pub patience: Option<usize>,
-    /// What the numbers of own recordings mean, for the record; `None` where nothing was said.
+    /// The units of own recordings, for the record; `None` if not given.
     pub units: Option<TrackUnits>,
-    /// Keep the weights of the last epoch alone, and not those of some 20 among which the protocol `published` chooses.
+    /// Keeps the weights of the last epoch only, instead of the weights of about 20 epochs, from which the protocol
+    /// `published` chooses.
     pub last_epoch_only: bool,
-    /// The last stage to train; a later call may go on.
+    /// The last stage to train; a later call can continue.
     pub until: TrainingStage,
     /// The run's directory.
     pub out: RunDirectory,
-    /// Where to compute.
+    /// The device to compute on.
     pub device: DeviceChoice,
     /// Commit of the program, for the record.
     pub commit: String,
@@ -58,16 +59,16 @@ pub struct TrainingRequest {
 /// The stages of a training, in order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum TrainingStage {
-    /// What the goals come from: the expert library and the proposal network.
+    /// The goals: the expert library and the proposal network.
     Goals,
     /// The forecasting network.
     Network,
 }
 
-/// What training tells its observer.
+/// Progress of a training, for its observer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainingProgress {
-    /// Steps of the stage done and in all.
+    /// Steps of the stage done, and in total.
     pub steps: (u64, u64),
     /// The step just done.
     pub step: TrainingStep,
@@ -76,20 +77,20 @@ pub struct TrainingProgress {
 /// A step of one of the stages.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrainingStep {
-    /// Of the proposal network.
+    /// A step of the proposal network.
     Goals(ProposalStep),
-    /// Of the forecasting network.
+    /// A step of the forecasting network.
     Network(StepReport),
 }
 
-/// Trains the fold, or goes on where an earlier call stopped, or returns at once when it is done.
+/// Trains the fold, or continues an earlier call. Returns at once if training is done.
 ///
-/// `observe` is called after every step and may ask to stop: the state is then saved and the result
-/// is [`DdlError::Interrupted`].
+/// `observe` is called after every step and may ask to stop: the state is then saved, and the result is
+/// [`DdlError::Interrupted`].
 ///
 /// # Errors
-/// Unreadable data, a directory that holds another run, a device that is not there, or a loss that
-/// is no longer a number (the last good state is kept); [`DdlError::WithoutLibtorch`] in a program without it.
+/// Unreadable data, a directory that holds another run, an unavailable device, or a loss that is not finite (the last
+/// good state is kept); [`DdlError::WithoutLibtorch`] in a program without libtorch.
 #[cfg(feature = "torch")]
 pub fn train(
     request: &TrainingRequest,
@@ -102,7 +103,7 @@ pub fn train(
 /// Training needs libtorch, which this program is built without.
 ///
 /// # Errors
-/// [`DdlError::WithoutLibtorch`], which says how to get it.
+/// [`DdlError::WithoutLibtorch`], which tells how to build with it.
 #[cfg(not(feature = "torch"))]
 pub fn train(
     _: &TrainingRequest,

@@ -1,4 +1,4 @@
-//! How far a model is trusted, and on which motions.
+//! Trust in a model, depending on how familiar a motion is.
 
 pub(crate) mod calibration;
 pub(crate) mod familiarity;

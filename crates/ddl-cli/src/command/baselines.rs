@@ -5,7 +5,7 @@ use ddl::report::Report;
 use ddl::{Protocol, Results};
 use std::path::PathBuf;
 
-/// Measure constant velocity and other baselines on test scenes
+/// Evaluate constant velocity and other baselines on test scenes
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  ddl baselines --convention social-gan --out runs/baselines-social-gan"
@@ -16,16 +16,17 @@ pub(crate) struct Baselines {
     convention: Convention,
     #[command(flatten)]
     recordings: RecordingsAt,
-    /// Fold to measure on; may be repeated [default: all]
+    /// Fold to evaluate on; may be repeated [default: all]
     #[arg(long = "fold")]
     folds: Vec<String>,
-    /// published, fair or single; may be repeated
+    /// Protocol: published, fair or single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
-    /// Measure a seeded part of the test windows with about so many pedestrians a fold by the widest window rule [default: all]
+    /// Evaluate a seeded part of the test windows, about this many pedestrians per fold under the widest window rule
+    /// [default: all]
     #[arg(long, value_parser = at_least_one)]
     test_pedestrians: Option<usize>,
-    /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json and figures [default: only print]
+    /// Folder for the report: report.html, report.md, report.tex, report.json and figures [default: only print]
     #[arg(long)]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -48,7 +49,7 @@ impl Baselines {
                 Results::new(report.clone(), Vec::new()).save(folder)?;
                 format!("all metrics: {}", folder.join("report.html").display())
             }
-            None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
+            None => "for all metrics as a page and as files, add --out FOLDER".to_owned(),
         };
         self.reporting.print(&report, &rest)
     }

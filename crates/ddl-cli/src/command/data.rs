@@ -14,12 +14,12 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-/// Tell what recordings hold, and what looks wrong with them
+/// Summarise recordings and report suspicious values
 ///
-/// How many pedestrians, for how long, how fast; how many pedestrian-windows can be forecast, and from how many a model can learn: a pedestrian counts
-/// once in every window.
-/// Files that cannot be read are named on standard error, and the others told of all the same (exit code 1).
-/// Of the memory of a place, which `ddl forecast - --memory` writes, it tells what was seen there.
+/// Prints the number of pedestrians, the duration and the speeds, and how many pedestrian-windows can be forecast or
+/// used for training; a pedestrian counts once in every window. Files that cannot be read are reported on standard
+/// error, and the others are still summarised (exit code 1). For the memory of a place, which `ddl forecast - --memory`
+/// writes, it prints what was observed there.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(
@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
         ddl data hall.memory --svg hall.svg"
 )]
 pub(crate) struct Data {
-    /// Files of tracks, in any format that `ddl forecast` reads, or folders of such files; or memories of places
+    /// Files of tracks in any format that `ddl forecast` reads, folders of such files, or memories of places
     #[arg(value_name = "TRACKS", required = true)]
     paths: Vec<PathBuf>,
     #[command(flatten)]
@@ -95,15 +95,15 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
         100.0 * f64::from(u32::try_from(unfamiliar)?) / f64::from(u32::try_from(all.max(1))?);
     if share > MANY_UNFAMILIAR {
         tell(format_args!(
-            "warning: {share:.0} % of the motions are unlike those that the built-in model {model} was trained on (familiarity below {}): their \
-             forecasts are less certain",
+            "warning: {share:.0} % of the motions are unlike the training motions of the built-in model {model} \
+         (familiarity below {}): their forecasts are less certain",
             ddl::UNFAMILIAR
         ));
     }
     Ok(())
 }
 
-/// Share of unfamiliar motions (%) above which there is something to say: five times what training recordings have.
+/// Share of unfamiliar motions (%) above which to warn: five times that of training recordings.
 const MANY_UNFAMILIAR: f64 = 5.0;
 
 #[derive(Debug, Default, Serialize)]
@@ -131,7 +131,7 @@ impl std::fmt::Display for Total {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(
             f,
-            "in all: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
+            "total: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
             self.recordings,
             many(self.pedestrians, "pedestrian", "pedestrians"),
             many(

@@ -1,6 +1,6 @@
 mod forecasts;
 
-use super::{Exactness, KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
+use super::{KeepClear, Machine, PrecisionOption, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -14,9 +14,10 @@ use ddl::{
 use forecasts::OtherProgram;
 use std::path::PathBuf;
 
-/// Measure a model or another program's forecasts, and baselines
+/// Evaluate a model or another program's forecasts beside baselines
 ///
-/// A model is measured on the scene left out of its training; forecasts of another program on the test windows of a fold.
+/// A model is evaluated on the scene left out of its training; forecasts of another program on the test windows of a
+/// fold.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl evaluate --fold zara1\n  \
@@ -25,25 +26,28 @@ use std::path::PathBuf;
         ddl evaluate --model runs/eth --protocol fair --protocol single\n  \
         ddl evaluate --forecasts mine.jsonl --fold zara1 --out results")]
 pub(crate) struct Evaluate {
-    /// Model, measured on the scene it was trained without, or on your own recordings (--data FOLDER): the directory of a run, a
-    /// packed file, or the name of a built-in model [default: the built-in model that was trained without --fold; on your own recordings hotel]
+    /// Model: the directory of a run, a packed file, or a built-in model. It is evaluated on the scene it was trained
+    /// without, or on your own recordings (--data FOLDER) [default: the built-in model trained without --fold; on own
+    /// recordings hotel]
     #[arg(long, conflicts_with_all = ["forecasts", "fold", "window_rule"])]
     model: Option<PathBuf>,
     #[command(flatten)]
     other: OtherProgram,
     #[command(flatten)]
     recordings: RecordingsAt,
-    /// published, fair, single, online or online-single; may be repeated
+    /// Protocol: published, fair, single, online or online-single; may be repeated
     #[arg(long = "protocol", default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
-    /// Measure on the validation part of the training recordings instead of the test scene; of own recordings that the model does not know, on what
-    /// a training would keep: the last fifth of each, or every fifth recording where they are short
+    /// Evaluate on the validation part of the training recordings instead of the test scene. For own recordings that
+    /// the model was not trained on: the part that training would keep, which is the last fifth of each, or every fifth
+    /// recording if they are short
     #[arg(long, conflicts_with = "forecasts")]
     validation: bool,
-    /// Own recordings that are the validation part whole, such as `lobby,yard`
+    /// Own recordings that form the validation part, such as `lobby,yard`
     #[arg(long, value_delimiter = ',', requires = "validation")]
     validation_recordings: Vec<String>,
-    /// Measure a seeded part of the test windows with about so many pedestrians by the widest window rule [default: all]
+    /// Evaluate a seeded part of the test windows, about this many pedestrians under the widest window rule [default:
+    /// all]
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_pedestrians: Option<usize>,
     #[command(flatten)]
@@ -51,7 +55,7 @@ pub(crate) struct Evaluate {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
-    exactness: Exactness,
+    exactness: PrecisionOption,
     #[command(flatten)]
     reporting: Reporting,
 }
@@ -69,7 +73,7 @@ impl Evaluate {
         }
     }
 
-    /// The built-in model where none is named: that of the fold, or the one that forecasts, where there are own recordings to measure it on.
+    /// The built-in model if none is named: that of the fold, or the default model for own recordings.
     fn builtin_model(&self) -> anyhow::Result<BuiltinModel> {
         let windows = &self.other.windows;
         if windows.convention(&self.recordings, Convention::Star) == Convention::Own {
@@ -79,8 +83,8 @@ impl Evaluate {
             return self.other.builtin_model(&self.recordings);
         }
         bail!(
-            "say what to measure: a model (--model), a built-in one on the scene that it was trained without (--fold eth, hotel, univ, zara1 or \
-             zara2) or on your own recordings (--data FOLDER), or another program's forecasts (--forecasts)"
+            "nothing to evaluate: give a model (--model), a fold for a built-in model (--fold eth, hotel, univ, zara1 \
+             or zara2), your own recordings (--data FOLDER), or another program's forecasts (--forecasts)"
         )
     }
 
@@ -115,7 +119,7 @@ impl Evaluate {
                 model.config().star.variant
             ),
         };
-        // Results on other recordings than those of the run's convention are not the run's.
+        // Results on recordings of another convention are not saved in the run.
         let kept = model.run().filter(|_| convention == trained_on);
         let mut dataset = self.recordings.dataset_for(model.config(), convention)?;
         if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
@@ -163,7 +167,7 @@ impl Evaluate {
             (Some(run), None) => {
                 let (report, run) = (run.report(), run.path());
                 format!(
-                    "all metrics: {}; as a page: ddl report {} --out FOLDER",
+                    "all metrics: {}; for a page: ddl report {} --out FOLDER",
                     report.display(),
                     run.display()
                 )

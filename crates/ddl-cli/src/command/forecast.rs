@@ -3,7 +3,7 @@ mod kept_memory;
 mod live;
 mod table;
 
-use super::{Exactness, KeepClear, Machine, ModelChoice};
+use super::{KeepClear, Machine, ModelChoice, PrecisionOption};
 use crate::clock::{Clock, FrameNumber};
 use crate::output::{ensure_not_input, write_output};
 use crate::telling::tell;
@@ -34,40 +34,43 @@ pub(crate) struct Forecast {
     /// File to write [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
-    /// csv: a row a position, to 0.1 mm; jsonl: a JSON object a pedestrian, with all digits
+    /// Format: csv (one row per position, to 0.1 mm) or jsonl (one JSON object per pedestrian, with all digits)
     #[arg(long, value_enum, default_value = "csv")]
     format: OutputFormat,
-    /// One forecast a pedestrian instead of 20: to one central goal that sums up the 20
+    /// One hypothesis per pedestrian instead of 20: to a central goal that represents the 20
     #[arg(long)]
     one: bool,
-    /// With `-`: the scene memory, earlier tracks of this place, which forecasts look at; made where there is none, and written every minute and at the end
+    /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
+    /// missing, written every minute and at the end
     ///
-    /// Name a file for each camera. A memory of another place is found out by the first 30 pedestrians: it is left as it is, and forecasts go on without it.
-    /// `ddl data FILE` tells what it holds.
+    /// Use one file for each camera. The first 30 pedestrians show whether the memory is of this place; if it is not,
+    /// the file is left unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
     #[arg(long, value_name = "FILE")]
     memory: Option<PathBuf>,
-    /// Attach to every hypothesis the evidence that it comes nearer to its goal at every step
+    /// Add to every hypothesis the evidence that it approaches its goal at every step
     ///
-    /// A certificate holds when the distance to the goal falls at every one of the 12 steps, along a
-    /// flow that descends everywhere, and a pedestrian at its goal stays. It speaks of the very positions
-    /// in JSON lines, which csv has to 0.1 mm. csv: two columns, the distance to the goal at that frame (metres) and the verdict;
-    /// jsonl: the verdict and its evidence, step by step. It says that the forecast is stable, not
-    /// that people will do as forecast. The variants star and no-dynamics have no certificates (with --one, star alone).
+    /// A certificate holds when the distance to the goal falls at each of the 12 steps, along a flow that descends
+    /// everywhere, and a pedestrian at its goal stays there. It refers to exactly the positions in JSON lines; csv
+    /// rounds them to 0.1 mm. csv adds two columns, the distance to the goal at that frame (metres) and the verdict;
+    /// jsonl adds the verdict and its evidence for each step. It proves that the forecast is stable, not that it is
+    /// accurate. The variants star and no-dynamics have no certificates (with --one, only star).
     #[arg(long)]
     certificate: bool,
-    /// Regions that hold the pedestrian with these probabilities at each step, such as 0.5,0.9: discs about the hypotheses
+    /// Regions that contain the pedestrian with these probabilities at each step, such as 0.5,0.9: discs around the
+    /// hypotheses
     ///
-    /// csv: a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl: the discs of each step. The first were calibrated on
-    /// other places. From frame to frame they follow what is seen, so that they hold their share in this place too (docs/regions.md); with --last
-    /// nothing was forecast before, and they are the first.
-    #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability, conflicts_with = "one")]
+    /// csv adds a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl adds the discs of each
+    /// step. The initial regions were calibrated on other places. From frame to frame they adapt to the observations,
+    /// so that they keep their share in this place too (docs/regions.md). --last uses the initial regions.
+    #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability)]
+    #[arg(conflicts_with = "one")]
     region: Vec<f64>,
     #[command(flatten)]
     clear: KeepClear,
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
-    exactness: Exactness,
+    exactness: PrecisionOption,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -76,16 +79,16 @@ enum OutputFormat {
     Jsonl,
 }
 
-/// Lines that a person can be expected to look through on a terminal.
+/// Number of lines above which a terminal gets a note.
 const LOOKED_THROUGH: usize = 100;
-/// Bytes of a file that few expect of some tracks.
+/// Bytes above which the output counts as large.
 const LARGE: usize = 50 << 20;
 
-/// What one text of forecasts leaves to the next.
+/// State that one chunk of forecasts passes on to the next.
 #[derive(Debug, Default)]
 struct Onward {
     headed: bool,
-    /// Whether unfamiliar motions were warned of, which is done once.
+    /// Whether the warning about unfamiliar motions has been given.
     warned: bool,
     regions: AdaptiveRegions,
 }
@@ -106,14 +109,14 @@ impl Forecast {
         }
         if self.memory.is_some() && !self.tracks.are_live() {
             bail!(
-                "--memory is for tracks as they come; write them to standard input: `tracker | ddl forecast - --memory FILE`"
+                "--memory is for live tracks from standard input: `tracker | ddl forecast - --memory FILE`"
             );
         }
         if let Some(memory) = &self.memory {
             ensure_not_input(self.output.as_deref(), memory)?;
             if self.output.as_ref() == Some(memory) {
                 bail!(
-                    "--output and --memory name one file, {}; name another one for the forecasts",
+                    "--output and --memory name the same file, {}; give another file for the forecasts",
                     memory.display()
                 );
             }
@@ -136,17 +139,19 @@ impl Forecast {
         Ok(())
     }
 
-    /// Says how to have fewer lines, or have them elsewhere: on a terminal thousands are of no use, and every frame of a camera makes a large file.
+    /// Notes how to reduce large output: thousands of lines on a terminal, or a large file.
     fn warn_of_flood(&self, text: &str) {
         let on_terminal = self.output.is_none() && std::io::stdout().is_terminal();
         if on_terminal && text.lines().nth(LOOKED_THROUGH).is_some() {
             let lines = text.lines().count();
             tell(format_args!(
-                "note: {lines} lines; --output FILE writes them to a file, --last and --one make fewer of them, `ddl view` shows them"
+                "note: {lines} lines; --output FILE writes them to a file, --last and --one reduce them, `ddl view` \
+                 shows them"
             ));
         } else if text.len() > LARGE {
             tell(format_args!(
-                "note: {} MiB, because everybody is forecast from every frame; --last and --one make less of it",
+                "note: {} MiB, because all pedestrians are forecast from every frame; --last and --one reduce the \
+                 output",
                 text.len() >> 20
             ));
         }
@@ -160,7 +165,8 @@ impl Forecast {
         Ok(self.clear.of(model)?)
     }
 
-    /// What is forecast from the windows, in order of time, as it is written; the first text is headed by the names of columns where there are any.
+    /// Forecasts of the windows in order of time, as text. The first text starts with the names of the columns, if the
+    /// format has any.
     fn text(
         &self,
         model: &Ddl,
@@ -201,7 +207,7 @@ impl Forecast {
         }
     }
 
-    /// Warns of motions unlike those of the training, whose forecasts are less certain; whether there are any.
+    /// Warns of motions unlike the training motions, whose forecasts are less certain; returns whether there are any.
     fn warn_of_unfamiliar(&self, moments: &[Moment<'_>]) -> bool {
         let all = moments
             .iter()
@@ -215,13 +221,14 @@ impl Forecast {
         };
         let count = 1 + unfamiliar.count();
         let later = if self.tracks.are_live() {
-            "; this warning is told once, and each forecast has its familiarity"
+            "; this warning appears once, but each forecast has its familiarity"
         } else {
             ""
         };
         tell(format_args!(
-            "warning: {count} of {} motions are unlike those that the model was trained on (familiarity below {}), the first that of pedestrian {} observed \
-             until frame {}: for them the network hardly counts, and the weights are more alike{later}",
+            "warning: {count} of {} motions are unlike the training motions (familiarity below {}), first that of \
+             pedestrian {} observed until frame {}: their forecasts use little of the network, and their weights are \
+             flatter{later}",
             all.count(),
             ddl::UNFAMILIAR,
             moment.window.name(i),
@@ -257,7 +264,9 @@ fn probability(text: &str) -> Result<f64, String> {
     if (low..=high).contains(&level) {
         return Ok(level);
     }
-    Err(format!("a region has a probability of {low} to {high}"))
+    Err(format!(
+        "the probability of a region must be from {low} to {high}"
+    ))
 }
 
 impl<'a> Moment<'a> {
@@ -294,8 +303,8 @@ impl<'a> Moment<'a> {
     }
 }
 
-/// Stable steps cannot break the guarantee, whatever the network emits. If one does, a user who acts on
-/// the forecasts must know.
+/// Stable steps keep the guarantee whatever the network emits. If one breaks it, a user who relies on the forecasts
+/// must know.
 fn warn_of_violation(moments: &[Moment<'_>]) {
     let first = moments.iter().find_map(|moment| {
         let (i, hypothesis, violation) = moment.certified?.first_violation()?;
@@ -303,8 +312,8 @@ fn warn_of_violation(moments: &[Moment<'_>]) {
     });
     if let Some((moment, i, hypothesis, violation)) = first {
         tell(format_args!(
-            "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
-             observed until frame {}, hypothesis {hypothesis}: {violation}",
+            "warning: not all certificates hold; the first violation is of pedestrian {}, observed until frame {}, \
+             hypothesis {hypothesis}: {violation}",
             moment.window.name(i),
             moment.observed_until(),
         ));

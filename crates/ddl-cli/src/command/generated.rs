@@ -1,4 +1,4 @@
-//! `ddl completions` and `ddl man`: what is generated from the definition of the command line.
+//! `ddl completions` and `ddl man`: output generated from the definition of the command line.
 
 use crate::output;
 use anyhow::Context as _;
@@ -7,14 +7,14 @@ use clap_complete::{Shell, generate};
 use clap_mangen::Man as Page;
 use std::path::PathBuf;
 
-/// Print what completes ddl's commands and options in a shell
+/// Print a shell script that completes ddl's commands and options
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl completions bash > ~/.local/share/bash-completion/completions/ddl\n  \
         ddl completions zsh > ~/.zfunc/_ddl\n  \
         ddl completions fish > ~/.config/fish/completions/ddl.fish")]
 pub(crate) struct Completions {
-    /// The shell
+    /// Shell
     #[arg(value_enum)]
     shell: Shell,
 }
@@ -27,11 +27,11 @@ impl Completions {
     }
 }
 
-/// Write the manual pages: ddl(1) and one a command
+/// Write the manual pages: ddl(1) and one for each command
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  ddl man ~/.local/share/man/man1 && man ddl-forecast")]
 pub(crate) struct Man {
-    /// Folder to write to, which is made if need be [default: ddl(1) on standard output]
+    /// Folder to write to, created if missing [default: print ddl(1) to standard output]
     #[arg(value_name = "FOLDER")]
     folder: Option<PathBuf>,
 }

@@ -10,9 +10,9 @@ use ddl::{EvaluationSplit, GoalEvaluation, Remembering};
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// Estimate where the people of your own tracks are going
+/// Estimate the goals of the pedestrians in your own tracks
 ///
-/// As csv; or, with --measure, how good a model's goals are.
+/// Writes csv; with --measure it evaluates a model's goals instead.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(
@@ -23,19 +23,20 @@ pub(crate) struct Goals {
     model: ModelChoice,
     #[command(flatten)]
     tracks: Tracks,
-    /// Compare the goals with the true ends of the recordings the model was trained without, or of your own (--data)
+    /// Compare the goals with the true endpoints in the scene that the model was trained without, or in your own
+    /// recordings (--data)
     #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole"])]
     measure: Option<Measure>,
-    /// Measure with what is remembered of the place
+    /// Memory of the place to use for --measure
     #[arg(long, value_enum, requires = "measure")]
     memory: Option<Memory>,
-    /// Recordings to measure on: the folder of those that the model is of, or your own, a folder or a file [default: `$DDL_DATASETS`, then
-    /// `datasets/eth_ucy`]
+    /// Recordings to evaluate on: the folder of the model's convention, or your own folder or file [default:
+    /// `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
     data: Option<PathBuf>,
     #[command(flatten)]
     telling: Telling,
-    /// Also draw pedestrians with typical errors, one of each kind of motion, as an SVG
+    /// Also draw pedestrians with typical errors, one for each kind of motion, as SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
     /// File to write [default: standard output]
@@ -49,15 +50,15 @@ pub(crate) struct Goals {
 enum Measure {
     /// The scene left out of training
     Test,
-    /// What was kept for validation
+    /// The validation part
     Validation,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Memory {
-    /// Training recordings of the same place, whether they have been confirmed to help or not
+    /// Training recordings of the same place, whether confirmed to help or not
     Place,
-    /// The recording until then, as in the protocol `online`
+    /// The recording before the last observed frame, as in the protocol `online`
     Online,
 }
 
@@ -78,7 +79,7 @@ impl Goals {
         if self.measure.is_none()
             && (self.telling.json || self.svg.is_some() || self.data.is_some())
         {
-            bail!("--json, --svg and --data go with --measure test or --measure validation");
+            bail!("--json, --svg and --data need --measure test or --measure validation");
         }
         let tracks = &self.tracks;
         let text = match self.measure {
@@ -86,7 +87,8 @@ impl Goals {
             None if tracks.are_named() => {
                 if tracks.are_live() {
                     bail!(
-                        "goals are estimated for a file of tracks; `ddl forecast - --format jsonl` tells those of live ones"
+                        "goals are estimated for a file of tracks; for live tracks, `ddl forecast - --format jsonl` \
+                         prints the goals"
                     );
                 }
                 ensure_not_input(self.output.as_deref(), tracks.file())?;
@@ -159,7 +161,7 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
 fn words(evaluation: &GoalEvaluation) -> String {
     let mut lines = vec![
         format!(
-            "fold {}, {} goals a pedestrian, {}",
+            "fold {}, {} goals per pedestrian, {}",
             evaluation.fold, evaluation.clusters, evaluation.goals
         ),
         evaluation.windows.clone(),

@@ -14,7 +14,7 @@ pub(crate) struct Info {
     /// Directory of a run, a packed file, or the name of a built-in model [default: the program itself]
     #[arg(value_name = "MODEL")]
     model: Option<PathBuf>,
-    /// The same, as other commands take it
+    /// The model as in other commands
     #[arg(
         long = "model",
         value_name = "MODEL",
@@ -76,7 +76,7 @@ fn summary(goals: &GoalModel, trained: &str) -> String {
         scene => format!(", without {scene}"),
     };
     format!(
-        "{}: variant {}, {trained} on {} walks of 20 steps (convention {}{left_out}); goals {}",
+        "{}: variant {}, {trained} on {} pedestrian-windows of 20 steps (convention {}{left_out}); goals {}",
         goals.source(),
         config.star.variant,
         data.pedestrians,

@@ -9,9 +9,9 @@ use std::path::{Path, PathBuf};
 
 /// Pack a trained model into one small file, without its tracks
 ///
-/// The file holds the weights of both networks in half precision and the configuration of the run, and no trajectory data: goals
-/// are then proposed by the network alone. Every command that takes a --model takes the file. How much the tracks would add, a row
-/// "DDL without an expert library" in the results of the run says.
+/// The file holds the weights of both networks in half precision and the configuration of the run, but no trajectory
+/// data: the packed model proposes all of its goals with its network. Every command with --model takes the file. The
+/// row "DDL without an expert library" in the results of the run shows the errors without the tracks.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl pack --model runs/zara1 --out zara1.safetensors")]
@@ -19,14 +19,14 @@ pub(crate) struct Pack {
     /// Directory of a finished run
     #[arg(long, required_unless_present = "benchmark")]
     model: Option<PathBuf>,
-    /// Folder of a finished benchmark of the star recordings instead: one file for each fold, and what each reached. So the models that come
-    /// with the program are made
+    /// Folder of a finished benchmark on star recordings instead of --model: packs one file for each fold, with its
+    /// results, as for the models that come with the program
     #[arg(long, value_name = "DIR", conflicts_with = "model")]
     benchmark: Option<PathBuf>,
     /// Seed of the runs to pack [default: the lowest of the benchmark]
     #[arg(long, requires = "benchmark")]
     seed: Option<u64>,
-    /// File to write; of a benchmark the folder to write to
+    /// File to write; for a benchmark, folder to write to
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     #[command(flatten)]

@@ -2,13 +2,13 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// What `--recipe` takes.
+/// The values of `--recipe`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Recipe {
-    /// Whole walks to estimated goals, in minutes on a CPU.
+    /// Training on whole paths to estimated goals; minutes on a CPU.
     Recommended,
-    /// The paper's: single steps, in hours.
+    /// The paper's training on single steps; hours.
     Published,
 }
 

@@ -4,9 +4,9 @@ use clap::Args;
 use ddl::Results;
 use std::path::PathBuf;
 
-/// Put results together: a page to look at, tables, figures
+/// Combine results into a page, tables and figures
 ///
-/// Writes report.html to look at, report.md, report.tex, report.json, moments.json and figures.
+/// Writes report.html, report.md, report.tex, report.json, moments.json and figures.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl report runs/eth runs/hotel --out runs")]

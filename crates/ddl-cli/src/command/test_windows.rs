@@ -6,15 +6,16 @@ use ddl::data::{Convention, Recording, Window, WindowRule};
 /// The test windows of a fold.
 #[derive(Debug, Args)]
 pub(crate) struct TestWindows {
-    /// Data convention: star, social-gan, simulated or own [default: star; own where --data names recordings that are not those of star, and --fold names no scene of star]
+    /// Data convention: star, social-gan, simulated or own [default: star; own if --data names recordings that are not
+    /// those of star and --fold names no scene of star]
     #[arg(long)]
     pub(crate) convention: Option<Convention>,
-    /// Scene to test on: eth, hotel, univ, zara1, zara2 (simulated: corridor, crossing, plaza, bottleneck,
-    /// doorway; own: the name of a file, without its extension [default of own ones: all])
+    /// Scene to test on: eth, hotel, univ, zara1, zara2 (simulated: corridor, crossing, plaza, bottleneck, doorway;
+    /// own: the name of a file without its extension [default for own: all])
     #[arg(long)]
     pub(crate) fold: Option<String>,
-    /// Which stretches count as windows: published, complete, social-gan (at least 2 pedestrians) or social-gan-1
-    /// [default: that of the convention's headline tables: published, social-gan, complete]
+    /// Window rule: published, complete, social-gan (at least 2 pedestrians) or social-gan-1 [default: that of the
+    /// convention's headline tables: published, social-gan, complete]
     #[arg(long)]
     window_rule: Option<WindowRule>,
 }
@@ -30,7 +31,7 @@ impl TestWindows {
     pub(crate) fn ensure_no_rule_for_own(&self) -> anyhow::Result<()> {
         if self.window_rule.is_some() {
             bail!(
-                "own recordings are measured on every complete window of 20 steps: leave --window-rule out"
+                "own recordings are evaluated on every complete window of 20 steps: leave out --window-rule"
             );
         }
         Ok(())
@@ -45,7 +46,10 @@ impl TestWindows {
     fn fold(&self, convention: Convention) -> anyhow::Result<Option<&str>> {
         if self.fold.is_none() && convention != Convention::Own {
             let known: Vec<&str> = convention.fold_names().collect();
-            bail!("give the --fold to test on, one of {}", known.join(", "));
+            bail!(
+                "give the fold to test on, --fold NAME with one of {}",
+                known.join(", ")
+            );
         }
         if let (None, Convention::Star, Some(fold)) = (self.convention, convention, &self.fold) {
             ensure_scene_of_star(fold)?;
@@ -57,13 +61,14 @@ impl TestWindows {
         let convention = self.convention.unwrap_or(Convention::Star);
         if convention != Convention::Star {
             bail!(
-                "the built-in models were trained on `star` data and cannot be measured on `{convention}` data; train one on it (`ddl train \
-                 --convention {convention}`) and name it with --model"
+                "the built-in models were trained on `star` data and cannot be evaluated on `{convention}` data; train \
+                 a model on it (`ddl train --convention {convention}`) and give it with --model"
             );
         }
         if self.window_rule.is_some() {
             bail!(
-                "a model is measured under the rules of its convention's tables: leave --window-rule out, or measure --forecasts"
+                "a model is evaluated under the window rules of its convention: leave out --window-rule, or evaluate \
+                 --forecasts"
             );
         }
         Ok(())
@@ -90,7 +95,8 @@ pub(crate) fn ensure_scene_of_star(fold: &str) -> anyhow::Result<()> {
     let known: Vec<&str> = Convention::Star.fold_names().collect();
     if !known.contains(&fold) {
         bail!(
-            "no fold {fold:?} in the star convention; it has {}; where {fold:?} is one of your own recordings, add --convention own",
+            "the star convention has no fold {fold:?}, only {}; if {fold:?} is one of your own recordings, add \
+             --convention own",
             known.join(", ")
         );
     }

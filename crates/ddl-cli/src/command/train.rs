@@ -19,14 +19,14 @@ use ddl::{
 };
 use std::path::PathBuf;
 
-/// Own recordings of fewer pedestrian-windows to learn from are too few to learn everything from.
+/// Own recordings with fewer pedestrian-windows are too few to train from random weights.
 const FEW: usize = 10_000;
-/// Epochs to wait for a smaller validation error, on own recordings.
+/// Epochs without a smaller validation error that end training on own recordings.
 const PATIENCE: usize = 10;
 
 /// Train a model on your own recordings, or on all scenes but one
 ///
-/// The same command goes on where an earlier run of it stopped.
+/// The same command continues where an earlier run of it stopped.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl train --data recordings --out runs/own\n  \
@@ -39,74 +39,79 @@ pub(crate) struct Train {
     convention: Option<Convention>,
     #[command(flatten)]
     recordings: RecordingsAt,
-    /// Scene left out of training: eth, hotel, univ, zara1 or zara2; of the simulated ones corridor,
-    /// crossing, plaza, bottleneck or doorway; of own ones the name of a file, without its extension [default: none of the own ones]
+    /// Scene left out of training: eth, hotel, univ, zara1 or zara2; simulated: corridor, crossing, plaza, bottleneck
+    /// or doorway; own: the name of a file without its extension [default for own: none]
     #[arg(long)]
     fold: Option<String>,
-    /// full, no-goal-shift, no-dynamics or star (neither)
+    /// Variant: full, no-goal-shift, no-dynamics or star (without both)
     #[arg(long, default_value = "full")]
     variant: Variant,
-    /// How the network is made and trained: recommended (whole walks to estimated goals, minutes on a CPU) or published (the
-    /// paper's: single steps, 200 epochs, hours); the next options change parts of it
+    /// Shape and training of the network: recommended (whole paths to estimated goals; minutes on a CPU) or published
+    /// (single steps, 200 epochs; hours); the following options change parts of it
     #[arg(long, value_enum, default_value_t = Recipe::Recommended)]
     recipe: Recipe,
-    /// Network behind the dynamics: star (the paper's Transformer) or perceptron (the goal and the observed motion alone)
-    /// [default: star]
+    /// Network behind the dynamics: star (the paper's Transformer) or perceptron (reads only the goal and the observed
+    /// motion) [default: star]
     #[arg(long)]
     backbone: Option<BackboneKind>,
-    /// Width of the hidden layer of each feed-forward block; narrower ones forecast faster
-    /// (docs/performance.md) [default: 32, published 2048]
+    /// Width of the hidden layer of each feed-forward block; narrower blocks are faster (docs/performance.md) [default:
+    /// 32, published 2048]
     #[arg(long)]
     feed_forward_width: Option<i64>,
     /// Encoder layers of each of the two spatial encoders [default: 1, published 2]
     #[arg(long, value_name = "LAYERS")]
     spatial_layers: Option<usize>,
-    /// Model to begin with, instead of random weights: a built-in one, such as hotel, a packed file or the directory of a run, of the same sizes; none for
-    /// random weights. It is trained on in fewer and smaller steps, and kept as it was where that forecasts the validation part no better [default:
-    /// none; for own recordings with fewer than 10000 pedestrian-windows to learn from hotel]
+    /// Model to start from instead of random weights: a built-in model such as hotel, a packed file or the directory of
+    /// a run, with networks of the same sizes; `none` for random weights. Training takes fewer and smaller steps, and
+    /// the starting model is kept if training does not improve it on the validation part [default: none; hotel for own
+    /// recordings with fewer than 10000 pedestrian-windows]
     #[arg(long, value_name = "MODEL")]
     from: Option<PathBuf>,
-    /// Seed of everything random
+    /// Random seed
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Epochs [default: 20, published 200, with --from 5]
     #[arg(long)]
     epochs: Option<usize>,
-    /// Pedestrians an epoch, going round the training set [default: 5000, published all]
+    /// Pedestrians per epoch, in a seeded order of the training set [default: 5000, published all]
     #[arg(long = "train-pedestrians")]
     pedestrians_per_epoch: Option<usize>,
-    /// Pedestrians a batch [default: 64, published 256]
+    /// Pedestrians per batch [default: 64, published 256]
     #[arg(long)]
     batch_pedestrians: Option<usize>,
     /// Largest step size of Adam [default: 1e-3, published 1.5e-3, with --from 1e-4]
     #[arg(long)]
     learning_rate: Option<f64>,
-    /// How the step size changes: constant or cosine [default: cosine, published constant]
+    /// Schedule of the step size: constant or cosine [default: cosine, published constant]
     #[arg(long)]
     learning_rate_schedule: Option<LearningRateSchedule>,
-    /// Share of the training recordings' time, at their ends, kept for validation [default: 0, of own recordings 0.2 unless some are kept whole, which is done
-    /// where the ends of short ones hold next to no windows]
+    /// Share of the training recordings' time, at their ends, kept for validation [default: 0; for own recordings 0.2,
+    /// or 0 and whole recordings if their ends hold too few windows]
     #[arg(long)]
     validation: Option<f64>,
-    /// Training recordings kept for validation whole, such as `uni_examples,zara03`
+    /// Training recordings kept for validation as a whole, such as `uni_examples,zara03`
     #[arg(long, value_delimiter = ',')]
     validation_recordings: Vec<String>,
-    /// Stop when the error on the validation part has not fallen for so many epochs, and keep the best one; 0 trains all epochs [default: 0, of own
-    /// recordings 10]
+    /// Stop when the validation error has not fallen for this many epochs, and keep the best epoch; 0 trains all epochs
+    /// [default: 0; for own recordings 10]
     #[arg(long, value_name = "EPOCHS")]
     patience: Option<usize>,
-    /// Where goals come from: proposed by a network trained first, or retrieved from the training tracks
+    /// Source of goals: proposed by a network that is trained first, or retrieved from the training tracks
     #[arg(long, value_enum, default_value_t = GoalsFrom::Proposed)]
     goals: GoalsFrom,
-    #[arg(long, help = format!("Batches that the proposal network is trained on [default: {}, with --from 300]", ProposalTraining::default().steps))]
+    #[arg(long, help = format!(
+        "Batches that the proposal network is trained on [default: {}, with --from 300]",
+        ProposalTraining::default().steps
+    ))]
     proposal_steps: Option<u64>,
-    /// JSON file with all of it: a run's config.json, or its part `goals`
+    /// JSON file with all settings of the goals: a run's config.json, or its part `goals`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["goals", "proposal_steps"])]
     goal_recipe: Option<PathBuf>,
-    /// Stop when the goals are trained; the same command without this goes on
+    /// Stop when the goals are trained; the same command without this option continues
     #[arg(long)]
     only_goals: bool,
-    /// Keep the weights of the last epoch alone: less on disk, and nothing for `--protocol published` to choose among
+    /// Keep the weights of the last epoch only: saves disk space, but `--protocol published` has no epochs to choose
+    /// from
     #[arg(long)]
     last_epoch_only: bool,
     /// Directory of the run
@@ -145,10 +150,10 @@ impl Train {
         }
         if patience > 0 && self.last_epoch_only {
             bail!(
-                "--last-epoch-only keeps no other epoch that may be the best: add --patience 0 to take the last one"
+                "--last-epoch-only discards the best epoch: add --patience 0 to use the last epoch as the model"
             );
         }
-        let from = self.begin_with(&dataset, &fold, &part)?;
+        let from = self.starting_model(&dataset, &fold, &part)?;
         let goals = self.goal_recipe(from.is_some())?;
         let (star, training) = self.recipe(from.is_some());
         let request = TrainingRequest {
@@ -211,16 +216,17 @@ impl Train {
                 "some recordings are"
             };
             tell(format_args!(
-                "note: the ends of these recordings hold next to no windows to validate on: {whole} kept for validation whole \
-                 (--validation-recordings {})",
+                "note: the ends of these recordings hold too few windows for validation: {whole} kept for \
+                 validation as a whole (--validation-recordings {})",
                 part.recordings.join(",")
             ));
         }
         Ok(part)
     }
 
-    /// The model to begin with: the one that is named, or for few own recordings the built-in one, where it is of the sizes asked for.
-    fn begin_with(
+    /// The model to start from: the named one, or for few own recordings the built-in one if it has the requested
+    /// sizes.
+    fn starting_model(
         &self,
         dataset: &Dataset,
         fold: &str,
@@ -251,8 +257,8 @@ impl Train {
         }
         let model = BuiltinModel::default();
         tell(format_args!(
-            "note: {pedestrians} pedestrian-windows to learn from are few: training begins with the weights of the built-in model {model} (--from none \
-             for random ones)"
+            "note: only {pedestrians} pedestrian-windows for training: it starts from the weights of the built-in \
+             model {model} (--from none for random weights)"
         ));
         Ok(Some(ModelSource::Builtin(model)))
     }
@@ -265,13 +271,16 @@ impl Train {
                 Ok((Convention::Star, fold.clone()))
             }
             (None, None) if !self.recordings.is_named() => bail!(
-                "say what to train on: your own recordings (--data FOLDER), or the scene to leave out of ETH/UCY (--fold eth, hotel, univ, zara1 \
-                 or zara2)"
+                "nothing to train on: give your own recordings (--data FOLDER), or the scene of ETH/UCY to leave out \
+                 (--fold eth, hotel, univ, zara1 or zara2)"
             ),
             (None | Some(Convention::Own), None) => Ok((Convention::Own, Fold::WHOLE.to_owned())),
             (Some(convention), None) => {
                 let known: Vec<&str> = convention.fold_names().collect();
-                bail!("give the --fold to leave out, one of {}", known.join(", "))
+                bail!(
+                    "give the fold to leave out, --fold NAME with one of {}",
+                    known.join(", ")
+                )
             }
         }
     }
@@ -312,10 +321,10 @@ impl Train {
         if let Some(path) = &self.goal_recipe {
             let text = std::fs::read_to_string(path)
                 .with_context(|| format!("cannot read {}", path.display()))?;
-            let wrong = || format!("{} is no recipe for goals", path.display());
+            let wrong = || format!("{} holds no settings of goals", path.display());
             let mut recipe: serde_json::Value = serde_json::from_str(&text)
                 .with_context(|| format!("{} is not JSON", path.display()))?;
-            // the whole of a config.json will do
+            // a whole config.json works as well
             if let Some(goals) = recipe.get_mut("goals") {
                 recipe = goals.take();
             }
@@ -323,7 +332,7 @@ impl Train {
         }
         match (self.goals, self.proposal_steps) {
             (GoalsFrom::Retrieved, Some(_)) => {
-                bail!("--proposal-steps is for --goals proposed: retrieved goals have no network")
+                bail!("--proposal-steps needs --goals proposed: retrieved goals have no network")
             }
             (GoalsFrom::Retrieved, None) => Ok(GoalRecipe::retrieved(self.seed)),
             (GoalsFrom::Proposed, steps) => {

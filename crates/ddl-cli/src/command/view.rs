@@ -7,15 +7,14 @@ use ddl::{Forecast, Forecaster as _, RecordingPlayer};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
-/// Look at forecasts of your own tracks in the browser
+/// Show forecasts of your own tracks in the browser
 ///
-/// Writes one page that needs no network: a player of moments of the recording, with everybody's hypotheses, their weights, goals and
-/// certificates, and what then happened as far as it was seen.
+/// Writes a self-contained page with a player of moments of the recording: all hypotheses with their weights, goals and
+/// certificates, and the true paths as far as they were observed.
 #[derive(Debug, Args)]
 #[command(mut_arg("file", |file| file.required(true)))]
-#[command(
-    after_help = "Examples:\n  ddl view tracks.csv\n  ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open"
-)]
+#[command(after_help = "Examples:\n  ddl view tracks.csv\n  \
+                  ddl view camera.csv --fps 25 --homography H.txt --output lobby.html --no-open")]
 pub(crate) struct View {
     #[command(flatten)]
     model: ModelChoice,
@@ -24,10 +23,10 @@ pub(crate) struct View {
     /// Moments to show, evenly spread over the recording
     #[arg(long, default_value_t = 60, value_parser = super::at_least_one)]
     moments: usize,
-    /// Page to write [default: the name of the tracks with -forecasts.html, in this folder]
+    /// Page to write [default: the name of the tracks with -forecasts.html, in the current folder]
     #[arg(long, short)]
     output: Option<PathBuf>,
-    /// Only write the page; otherwise it is opened too, where standard output is a terminal
+    /// Do not open the page; by default it is opened if standard output is a terminal
     #[arg(long)]
     no_open: bool,
     #[command(flatten)]
@@ -39,7 +38,7 @@ pub(crate) struct View {
 impl View {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         if self.tracks.are_live() {
-            bail!("a page is made of a file of tracks; `ddl forecast -` forecasts live ones");
+            bail!("a page needs a file of tracks; for live tracks, use `ddl forecast -`");
         }
         output::ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         self.machine.prepare_for_little()?;
@@ -69,7 +68,7 @@ impl View {
 fn open(path: &Path) -> anyhow::Result<()> {
     open::that_detached(path).with_context(|| {
         format!(
-            "the page is written, but no browser could be started; open {} in one (--no-open does not try)",
+            "the page is written, but no browser could be started; open {} yourself, or add --no-open",
             path.display()
         )
     })

@@ -5,11 +5,11 @@ use clap::Args;
 use ddl::eval::external;
 use std::path::PathBuf;
 
-/// Write test windows for another program to forecast
+/// Write the observed part of test windows, for another program to forecast
 ///
-/// What is observed in those of a fold, as JSON lines: an object for each pedestrian of each window: recording, `observed_until` (the last observed raw frame),
-/// pedestrian, and the 8 observed positions in metres, 0.4 s apart. Nothing of the future is in them. `ddl evaluate
-/// --forecasts` scores what the other program makes of them.
+/// Writes JSON lines, one object for each pedestrian of each window of a fold: recording, `observed_until` (the last
+/// observed raw frame), pedestrian, and the 8 observed positions in metres, 0.4 s apart. They hold no future positions.
+/// `ddl evaluate --forecasts` scores the other program's forecasts.
 #[derive(Debug, Args)]
 #[command(
     after_help = "Example:\n  ddl windows --convention star --fold zara1 --output windows.jsonl"

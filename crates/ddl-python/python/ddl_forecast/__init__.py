@@ -1,6 +1,7 @@
-"""Forecasts of pedestrians that converge to their goals.
+"""Forecasts of pedestrians, along stable paths to their goals.
 
-Positions are metres, time steps 0.4 s: 8 observed positions (3.2 s) in, 20 weighted hypotheses of 12 positions (4.8 s) out.
+Positions are in metres, time steps 0.4 s. The input are 8 observed positions (3.2 s); the output are 20 weighted
+hypotheses of 12 positions (4.8 s).
 
 >>> import numpy as np
 >>> from ddl_forecast import Forecaster

@@ -8,7 +8,7 @@ from ddl_forecast import _core
 
 def main() -> int:
     """Run the program with the arguments of this process and return its exit code."""
-    # The program handles Ctrl-C itself, and ends quietly when nobody reads its output any more.
+    # The program handles Ctrl-C itself, and ends without a message when its output is closed.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     return _core.main(["ddl", *sys.argv[1:]])
 

@@ -1,4 +1,4 @@
-"""What the compiled module takes: arrays of float64 or int64 in one piece. An array that is one already is not copied."""
+"""Conversion to the arrays of the compiled module: contiguous float64 or int64. Such arrays are not copied."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
-#: Whole numbers beyond it are not exact as float64.
+#: Larger whole numbers are not exact as float64.
 LARGEST = 2**53
 
 
 def floats(values: ArrayLike, dimensions: int, name: str, shape: str) -> Floats:
-    """The values as float64 in C order; an error names the shape that is expected."""
+    """The values as float64 in C order; an error names the expected shape."""
     unmasked(values, name)
     try:
         array = np.require(values, np.float64, ["C", "A"])
@@ -29,9 +29,10 @@ def floats(values: ArrayLike, dimensions: int, name: str, shape: str) -> Floats:
 
 
 def scene(past: ArrayLike, neighbours: ArrayLike | None) -> tuple[Floats, int]:
-    """Everybody of a scene, and how many of them are to be forecast: the first."""
+    """All pedestrians of a scene, and the number of those to forecast, which come first."""
     if np.ndim(past) == 2 and np.shape(past)[-1:] == (2,):
-        raise ValueError(f"past must have the shape (n, 8, 2); found {np.shape(past)}: of one pedestrian, give past[None]")
+        hint = "for one pedestrian, give past[None]"
+        raise ValueError(f"past must have the shape (n, 8, 2); found {np.shape(past)}; {hint}")
     array = floats(past, 3, "past", "(n, 8, 2)")
     if neighbours is None:
         return array, len(array)
@@ -43,7 +44,7 @@ def scene(past: ArrayLike, neighbours: ArrayLike | None) -> tuple[Floats, int]:
 
 
 def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
-    """Pedestrians as whole numbers, and the word that each number stands for; nothing where they are whole numbers already."""
+    """Ids as whole numbers, and the word for each number; None if the ids are whole numbers already."""
     array = column(ids, "id")
     if array.dtype.kind in "iuf":
         return whole(array, "id"), None
@@ -64,7 +65,7 @@ def whole(values: ArrayLike, name: str) -> Integers:
     wrong = np.flatnonzero(~((np.abs(array.astype(np.float64)) < LARGEST) & (array == np.round(array))))
     if len(wrong):
         row = int(wrong[0])
-        missing = "; leave rows without it out" if np.isnan(array[row]) else ""
+        missing = "; leave out rows without it" if np.isnan(array[row]) else ""
         hint = missing or ("; count frames: 0, 1, 2, and so on" if name == "frame" else "")
         raise ValueError(f"row {row}, column {name}: {array[row]} is not a whole number below 2^53 in size{hint}")
     return np.require(array, np.int64, ["C", "A"])
@@ -80,6 +81,6 @@ def column(values: ArrayLike, name: str) -> NDArray[Any]:
 
 
 def unmasked(values: ArrayLike, name: str) -> None:
-    """Refuses masked values, which would count as if they were not masked."""
+    """Refuse masked values, because their masks would be ignored."""
     if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
-        raise ValueError(f"{name} has masked values: leave these rows out, or fill past with NaN")
+        raise ValueError(f"{name} has masked values: leave out these rows, or fill past with NaN")

@@ -1,4 +1,4 @@
-"""The compiled module. Arrays that go in are of float64 or int64 and in one piece."""
+"""The compiled module. It takes contiguous arrays of float64 or int64."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -44,7 +44,7 @@ _Path = str | os.PathLike[str]
 
 def main(arguments: list[str]) -> int: ...
 def set_num_threads(threads: int) -> None:
-    """Compute on so many threads; otherwise on as many as the processor has, or as RAYON_NUM_THREADS says."""
+    """Set the number of threads. The default is the number of cores, or RAYON_NUM_THREADS."""
 
 @final
 class Model:
@@ -129,9 +129,9 @@ def value(
     gamma
         Smoothing, in the unit of the cost; 0 is hard DTW.
     cost
-        ``"squared_euclidean"`` or ``"euclidean"``, of two steps.
+        ``"squared_euclidean"`` or ``"euclidean"`` distance of two steps.
     band
-        Steps that the two may be apart; None for all.
+        Largest difference of the indices of matched steps; None for no limit.
     normalised
         D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 
@@ -150,7 +150,7 @@ def value_and_gradient(
     band: int | None = None,
     normalised: bool = False,
 ) -> tuple[float, Floats]:
-    """Soft-DTW, and its gradient (n, components) by ``x``; parameters and errors as for :func:`value`."""
+    """Soft-DTW, and its gradient (n, components) with respect to ``x``; see :func:`value`."""
 
 @final
 class SearchIndex:

@@ -1,4 +1,4 @@
-"""The benchmark: windows of the five scenes of ETH/UCY, and models of one's own measured on them."""
+"""The benchmark: windows of the five scenes of ETH/UCY, and the evaluation of custom models on them."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ from ddl_forecast._recording import Recording
 Folder = Union[str, "os.PathLike[str]", None]
 #: Hypotheses (n, k, 12, 2) or one path (n, 12, 2), metres; or those with weights (n, k).
 Prediction = Union[Floats, "tuple[Floats, Floats]", Forecast]
-#: What is measured: called with (n, 8, 2), under ``online`` also with the rows seen before.
+#: A model: called with (n, 8, 2), under ``online`` also with the earlier rows.
 Predictor = Callable[..., Prediction]
-#: Called with what is done and what there is to do.
+#: Called with the numbers done and in total.
 Progress = Callable[[int, int], Any]
 
 
 @dataclass(frozen=True, eq=False)
 class Window:
-    """20 steps of 0.4 s, with the pedestrians who are there at each of them.
+    """20 time steps of 0.4 s, with the pedestrians present at all of them.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Window:
     future : (n, 12, 2)
         Metres.
     ids : (n,)
-        Who they are: whole numbers or words.
+        Ids of the pedestrians: whole numbers or words.
     frame, frame_step
         Last observed frame, and frame numbers in 0.4 s.
     recording : str
@@ -67,11 +67,12 @@ def windows(
     source
         A recording (every complete window), or a data convention: ``"star"``, ``"social-gan"``, ``"simulated"``.
     fold, part
-        Of a convention: the scene left out (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), ``"test"`` windows or ``"training"``.
+        For a convention: the scene left out (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), and the windows
+        ``"test"`` or ``"training"``.
     rule
-        Which stretches count: ``published``, ``complete``, ``social-gan``; otherwise that of the convention's tables.
+        Window rule: ``published``, ``complete``, ``social-gan``; default: that of the convention's tables.
     data
-        Folder of the convention's files; otherwise the environment variable DDL_DATASETS.
+        Folder of the convention's files; default: the environment variable DDL_DATASETS.
     """
     if isinstance(source, Recording):
         parts = _core.windows("simulated", None, "", part, rule or "complete", source._core)
@@ -81,7 +82,7 @@ def windows(
 
 
 class Results:
-    """Results, a row a fold, protocol and model, with the conditions of each number."""
+    """Results: one row for each fold, protocol and model, with the conditions of each number."""
 
     def __init__(self, rows: Iterable[str]) -> None:
         self._rows = list(rows)
@@ -98,12 +99,12 @@ class Results:
     def mean(self, score: str = "min_ade", *, protocol: str = "fair", name: str | None = None, rule: str | None = None) -> float:
         """Mean over folds of a score of one model under a protocol.
 
-        ``name`` and ``rule`` (as ``conditions["window_rule"]`` has it) choose among several models and window rules.
+        ``name`` and ``rule`` (as in ``conditions["window_rule"]``) select one of several models and window rules.
 
         Raises
         ------
         ValueError
-            There is no such row, there are several for a fold, or a row has no such score.
+            The row or its score is missing, or a fold has several rows.
         """
         values: dict[str, float] = {}
         for row in self.rows:
@@ -113,12 +114,13 @@ class Results:
             if name not in (None, conditions["forecaster"]) or rule not in (None, _words(conditions["window_rule"])):
                 continue
             if conditions["fold"] in values:
-                raise ValueError(f"there are several rows of {conditions['fold']} under {protocol}; choose by name and rule: {self._choices(protocol)}")
+                choices = f"choose by name and rule: {self._choices(protocol)}"
+                raise ValueError(f"several rows match {conditions['fold']} under {protocol}; {choices}")
             if row["scores"].get(score) is None:
                 raise ValueError(f"the rows have no score {score!r}")
             values[conditions["fold"]] = row["scores"][score]
         if not values:
-            raise ValueError(f"there is no such row of the protocol {protocol!r}")
+            raise ValueError(f"no row matches under the protocol {protocol!r}")
         return float(np.mean(list(values.values())))
 
     def _choices(self, protocol: str) -> list[tuple[str, str]]:
@@ -136,7 +138,7 @@ class Results:
 
 
 def _words(rule: Any) -> str:
-    """A window rule in a word, also one with a number."""
+    """A window rule as one word, with its number if it has one."""
     return rule if isinstance(rule, str) else "-".join(f"{name}-{number}" for name, of in rule.items() for number in of.values())
 
 
@@ -154,35 +156,36 @@ def evaluate(
     data: Folder = None,
     progress: Progress | bool | None = None,
 ) -> Results:
-    """Measure a model on the folds of the benchmark, as every other number of this project was measured.
+    """Evaluate a model on the folds of the benchmark, with the metrics of this project.
 
-    A function is called with the (n, 8, 2) observed positions of each test window, metres, and never with its future. It returns
-    hypotheses (n, k, 12, 2), at most 20, or one path (n, 12, 2), or hypotheses with weights (n, k), or a :class:`Forecast`.
+    A function is called with the (n, 8, 2) observed positions of each test window, metres, but without its future. It
+    returns hypotheses (n, k, 12, 2), at most 20, one path (n, 12, 2), hypotheses with weights (n, k), or a
+    :class:`Forecast`.
 
     Parameters
     ----------
     model
-        A function for all folds; or a mapping from fold to function, as for a model trained on each. A :class:`Forecaster` is measured on
-        the fold that it was trained without.
+        A function for all folds, or a mapping from fold to function for a model trained on each fold. A
+        :class:`Forecaster` is evaluated on the fold that it was trained without.
     folds
-        Otherwise all of the convention, or those of the mapping.
+        Default: all of the convention, or those of the mapping.
     protocols
-        ``fair``: at most 20 hypotheses, the best is scored. ``single``: one forecast; of several hypotheses the one of least expected
-        ADE. ``online``, ``online-single``: the function gets a second argument, a mapping of the columns frame, id, x and y of what was
-        seen in the same recording up to the last observed frame, that of ``past[:, -1]``.
+        ``fair``: at most 20 hypotheses, of which the best counts. ``single``: one path; of several hypotheses the one
+        with the least expected ADE. ``online``, ``online-single``: the function gets a second argument, a mapping with
+        the columns frame, id, x and y of the recording up to the last observed frame, that of ``past[:, -1]``.
     convention, rule, data
         As for :func:`windows`.
     name
-        What the model is called in the tables.
+        Name of the model in the tables.
     progress
-        Called with windows (of a Forecaster: pedestrians) done and in all; True shows a bar where tqdm is installed.
+        Called with the numbers of windows (for a Forecaster: pedestrians) done and in total; True shows a tqdm bar.
 
     Raises
     ------
     FileNotFoundError
-        The recordings are not there.
+        The recordings are missing.
     ValueError
-        A fold, a protocol or what the function returned is wrong.
+        A fold, a protocol or a result of the function is wrong.
 
     Examples
     --------
@@ -199,24 +202,25 @@ def evaluate(
     if isinstance(model, Forecaster):
         of, fold = model._core.trained_on
         if of != convention:
-            raise ValueError(f"{model!r} was trained without {of} {fold}; it is measured on that: convention={of!r}")
+            raise ValueError(f"{model!r} was trained without {of} {fold} and can only be evaluated on it: set convention={of!r}")
         model = {fold: model}
     asked = list(folds) if folds is not None else [*model] if isinstance(model, Mapping) else known[convention]
     for fold in asked:
         if fold not in known[convention]:
-            raise ValueError(f"there is no fold {fold!r} in the convention {convention}; it has {', '.join(known[convention])}")
+            raise ValueError(f"the convention {convention} has no fold {fold!r}, only {', '.join(known[convention])}")
         if isinstance(model, Mapping) and fold not in model:
-            raise ValueError(f"there is no model for the fold {fold}; there are some for {', '.join(model)}")
+            raise ValueError(f"no model for the fold {fold}; the mapping has {', '.join(model)}")
         of_fold = model[fold] if isinstance(model, Mapping) else model
         if isinstance(of_fold, Forecaster) and of_fold._core.trained_on != (convention, fold):
             trained = " ".join(of_fold._core.trained_on)
-            raise ValueError(f"{of_fold!r} was trained without {trained}, and has seen what it would be measured on as {convention} {fold}")
+            seen = f"and was trained on recordings of {convention} {fold}"
+            raise ValueError(f"{of_fold!r} was trained without {trained}, {seen}; it cannot be evaluated on them")
     rows = Results([])
     for fold in asked:
         of_fold = model[fold] if isinstance(model, Mapping) else model
         if isinstance(of_fold, Forecaster):
             if rule is not None:
-                raise ValueError("a Forecaster is measured under the rules of its convention's tables: leave rule out")
+                raise ValueError("a Forecaster is evaluated under the window rules of its convention: leave out rule")
             rows += _of_forecaster(of_fold, protocols, data, progress)
             continue
         tests = _core.TestSet(convention, data, fold, rule)
@@ -226,7 +230,7 @@ def evaluate(
 
 
 def _of_forecaster(model: Forecaster, protocols: Sequence[str], data: Folder, progress: Progress | bool | None) -> Results:
-    with _Told(progress, "pedestrians") as told:
+    with _Progress(progress, "pedestrians") as told:
         return Results(_core.evaluate_model(model._core, data, list(protocols), told.update))
 
 
@@ -236,7 +240,7 @@ def _measured(
     watching = protocol.startswith("online")
     seen = {one.name: _Seen(Recording._of(one)) for one in tests.recordings()} if watching else {}
     made = []
-    with _Told(progress, title) as told:
+    with _Progress(progress, title) as told:
         for index in range(len(tests)):
             window = tests.observed(index)
             earlier = (seen[window["recording"]].until(window["frame"]),) if watching else ()
@@ -249,7 +253,7 @@ def _measured(
 def _prediction(
     made: Prediction, asked: tuple[str, str, int], title: str
 ) -> tuple[Floats, Floats | None, Floats | None]:
-    """A copy of what was returned, so that a model that uses its arrays again changes nothing that was forecast before."""
+    """A copy of the result, so that a model may reuse its arrays."""
     goals: Floats | None = None
     weights: ArrayLike | None
     if isinstance(made, Forecast):
@@ -271,7 +275,7 @@ def _prediction(
 
 
 class _Seen:
-    """What was seen in a recording until a frame: slices of its columns, which are in order of frames."""
+    """The rows of a recording up to a frame, as slices of its columns, which are in order of frames."""
 
     def __init__(self, recording: Recording) -> None:
         self._columns = {"frame": recording.frame, "id": recording.id, "x": recording.x, "y": recording.y}
@@ -281,8 +285,8 @@ class _Seen:
         return {name: values[:rows].copy() for name, values in self._columns.items()}
 
 
-class _Told:
-    """Progress to a function, to a bar of tqdm, or to nobody."""
+class _Progress:
+    """Progress for a function or a tqdm bar, or none."""
 
     def __init__(self, progress: Progress | bool | None, title: str) -> None:
         self._call = progress if callable(progress) else None
@@ -301,7 +305,7 @@ class _Told:
             self._bar.total = total
             self._bar.update(done - self._bar.n)
 
-    def __enter__(self) -> _Told:
+    def __enter__(self) -> _Progress:
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,4 +1,4 @@
-"""What is forecast."""
+"""Forecasts."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Certificates:
-    """The evidence that every hypothesis comes nearer to its goal at each of the 12 steps.
+    """Evidence that every hypothesis approaches its goal at each of the 12 steps.
 
-    It is about the forecast: the forecast is stable. It does not say that the pedestrian does as forecast.
+    It proves that the forecast is stable, not that it is accurate.
     """
 
-    #: (n, k, 13) distance to the goal, metres, the last observed position first; it falls.
+    #: (n, k, 13) distances to the goal, metres, from the last observed position on; they fall.
     potentials: Floats
     #: (n, k) smallest eigenvalue of P over the steps; above 0.
     min_eigenvalue: Floats
-    #: (n, k) what the strictest step is shorter than allowed, as a share.
+    #: (n, k) smallest margin between a step and its bound, relative to the bound.
     min_step_margin: Floats
-    #: (n, k) largest angle between the velocity and the direction to the goal, radians; below a quarter turn.
+    #: (n, k) largest angle between velocity and direction to the goal, radians; below pi / 2.
     largest_angle: Floats
 
 
 class DoubtWarning(UserWarning):
-    """Something looks wrong with what is forecast from: a unit, a frame rate, or motions unlike those of the training."""
+    """The input looks wrong: a unit, a frame rate, or motions unlike the training motions."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Forecast:
     """k weighted hypotheses of the next 4.8 s for each of n pedestrians.
 
-    Rows of pedestrians who cannot be forecast are NaN; ``valid`` tells them: they were not seen in the last frame, or only once since
-    the last hole of more than 2 steps.
+    ``valid`` is False for pedestrians that cannot be forecast: those not observed in the last frame, or observed only
+    once since the last hole of more than 2 steps. Their rows are NaN.
 
     Attributes
     ----------
@@ -53,21 +53,22 @@ class Forecast:
     weights : (n, k)
         Probability of each hypothesis; they sum to 1.
     goals : (n, k, 2) or None
-        Where each hypothesis heads, metres.
+        Goal of each hypothesis, metres.
     familiarity : (n,)
-        How much the observed motion is like those of the training, 0 to 1; below 0.01 a forecast is doubtful.
+        Similarity of the observed motion to the training motions, 0 to 1; below 0.01 a forecast is doubtful.
     certified : (n, k) or None
-        Whether each hypothesis provably comes nearer to its goal at each step.
+        Whether each hypothesis provably approaches its goal at each step.
     spread : (n, 12) or None
-        Standard deviation about the right hypothesis, metres.
+        Standard deviation around the right hypothesis, metres.
     past : (n, 8, 2)
-        What was forecast from, holes filled and late beginnings padded, metres.
+        The observation with holes filled and late beginnings padded, metres.
     made_up : (n, 2)
-        How many of the 8 positions were not seen: before the first that counts, and in holes.
+        How many of the 8 positions are made up: before the first that counts, and in holes.
     certificates : Certificates or None
-        The evidence, where ``certificates=True`` asked for it.
+        The evidence, with ``certificates=True``.
     ids, frame, frames, recording
-        Who, the last observed frame, the 12 frames forecast, and the name of the recording; frames are None for arrays.
+        Ids of the pedestrians, the last observed frame, the 12 forecast frames, and the name of the recording; frames
+        are None for arrays.
     """
 
     paths: Floats
@@ -111,13 +112,14 @@ class Forecast:
         return f"Forecast({n} pedestrians, {k} hypotheses{frame})"
 
     def unfamiliar(self) -> str | None:
-        """What is to be said of motions unlike those of the training; None where there are none."""
+        """A warning about motions unlike the training motions; None without such motions."""
         few = int(np.count_nonzero(self.familiarity < UNFAMILIAR))
         if few == 0:
             return None
         return (
-            f"{few} of {int(self.valid.sum())} motions are unlike those that the model was trained on (familiarity below {UNFAMILIAR}): are "
-            "positions metres and steps 0.4 s? For such motions the network hardly counts, and the weights are more alike"
+            f"{few} of {int(self.valid.sum())} motions are unlike the training motions (familiarity below {UNFAMILIAR}); "
+            "check that positions are in metres and steps are 0.4 s. Forecasts of such motions use little of the "
+            "network, and their weights are flatter"
         )
 
     @property
@@ -126,7 +128,7 @@ class Forecast:
         return ~np.isnan(self.weights[:, 0]) if self.weights.size else np.zeros(len(self.paths), dtype=np.bool_)
 
     def most_likely(self) -> Floats:
-        """(n, 12, 2) the path of the heaviest hypothesis of each pedestrian, metres."""
+        """(n, 12, 2) the path of the hypothesis with the largest weight, metres."""
         heaviest = np.argmax(np.nan_to_num(self.weights, nan=-1.0), axis=1)
         chosen: Floats = self.paths[np.arange(len(self.paths)), heaviest]
         return chosen
@@ -137,7 +139,9 @@ class Forecast:
         return mean
 
     def regions(self, level: float = 0.9) -> Floats:
-        """(n, k, 12) radii, metres: the pedestrian is within such a radius of one of ``paths`` with the probability ``level``.
+        """Radii (n, k, 12) in metres of regions with the probability ``level``.
+
+        With this probability the pedestrian is within the radius of at least one of ``paths``.
 
         NaN where a hypothesis has no disc. Calibrated on places that the model was not trained on.
 
@@ -147,19 +151,22 @@ class Forecast:
             The forecast has no regions (one hypothesis, a baseline), or there is none of this level.
         """
         if self.spread is None or self._region_table is None:
-            raise ValueError("this forecast has no regions: they belong to the 20 hypotheses of a model, not to one forecast or a baseline")
+            raise ValueError("this forecast has no regions: only the 20 hypotheses of a model have them")
         return _core.region_radii(self.weights, self.spread, self._region_table, level)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
-        """Columns of a table, a row a position, for ``pandas.DataFrame`` or ``polars.DataFrame``.
+        """Columns of a table, one row per position, for ``pandas.DataFrame`` or ``polars.DataFrame``.
 
-        Columns: observed_until, pedestrian, hypothesis, weight, frame, x, y, goal_x, goal_y, certified. Hypotheses are in order of
-        their weights, the heaviest first.
+        Columns: observed_until, pedestrian, hypothesis, weight, frame, x, y, goal_x, goal_y, certified. Hypotheses are
+        in the order of their weights, the largest first.
         """
         return table([self])
 
     def plot(self, ax: Axes | None = None, *, level: float | None = None) -> Axes:
-        """Draw the scene with matplotlib: pasts, hypotheses by weight, goals; with ``level`` the region of that probability at the end."""
+        """Draw the scene with matplotlib: pasts, hypotheses by weight, goals.
+
+        With ``level``, also the region of that probability at the horizon.
+        """
         from ddl_forecast._plot import draw
 
         shown = self.valid
@@ -223,9 +230,10 @@ def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast])
     rows = []
     for forecast in forecasts:
         if forecast.frame is None or not forecast.recording or forecast.ids.dtype.kind not in "iu":
-            raise ValueError("forecasts of recordings whose pedestrians are numbered can be written; these are of arrays or words")
+            raise ValueError("only forecasts of recordings with numbered pedestrians can be written, not of arrays or words")
         if forecast.frame != int(forecast.frame):
-            raise ValueError(f"frame {forecast.frame} lies between two frames, because the recording was resampled; such forecasts cannot be written")
+            between = f"frame {forecast.frame} lies between two frames, because the recording was resampled"
+            raise ValueError(f"{between}; such forecasts cannot be written")
         keep = forecast.valid
         rows.append((
             forecast.recording,

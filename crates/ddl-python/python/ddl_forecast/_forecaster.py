@@ -17,26 +17,26 @@ from ddl_forecast._recording import Recording
 
 
 class Forecaster:
-    """A trained model, which forecasts the next 4.8 s from the last 3.2 s.
+    """A trained model that forecasts the next 4.8 s from the last 3.2 s.
 
-    It may be used by several threads at once, and pickled: the name or path of the model is, so a path must be there where it is
-    unpickled.
+    It may be used by several threads at once, and pickled. A pickle holds the name or path of the model, so a path must
+    exist where it is unpickled.
 
     Parameters
     ----------
     model
-        A built-in model: ``"hotel"`` (for new places), ``"eth"``, ``"univ"``, ``"zara1"`` or ``"zara2"``, each named by the scene of
-        ETH/UCY that it was trained without. Or a path: the folder of a training, or a packed model (``./hotel`` for a folder of that
-        name).
+        A built-in model: ``"hotel"`` (for new places), ``"eth"``, ``"univ"``, ``"zara1"`` or ``"zara2"``, each named
+        after the ETH/UCY scene that it was trained without. Or a path: the folder of a training run, or a packed model
+        (``./hotel`` for a folder with the name of a built-in model).
     keep_clear
-        Distance in metres, such as 0.4, that pedestrians keep from where the others most likely go; None to walk as if alone.
+        Distance in metres, such as 0.4, that pedestrians keep from each other's most likely paths; None for no distance.
 
     Raises
     ------
     FileNotFoundError
-        There is no such model.
+        The model is missing.
     ValueError
-        What lies there is damaged, or of another version.
+        The file is damaged, or of another version.
 
     Examples
     --------
@@ -51,20 +51,21 @@ class Forecaster:
         name = os.fspath(model)
         names = _core.Model.builtin_names()
         if name not in names and not os.path.exists(name):
-            raise FileNotFoundError(f"there is no model {name!r}: give a path, or the name of a built-in model ({', '.join(names)})")
-        # A folder of that name does not stand in the way of a built-in model.
+            builtin = f"a built-in model ({', '.join(names)})"
+            raise FileNotFoundError(f"there is no model {name!r}: give a path, or the name of {builtin}")
+        # A built-in model takes precedence over a folder of that name.
         self._name = name if name in names else os.path.abspath(name)
         self._keep_clear = keep_clear
         self._core = _core.Model.open(self._name, keep_clear)
 
     @property
     def hypotheses(self) -> int:
-        """Hypotheses a pedestrian, k."""
+        """Number of hypotheses for each pedestrian, k."""
         return self._core.hypotheses
 
     @property
     def parameter_count(self) -> int:
-        """Numbers learned by its networks."""
+        """Number of learned parameters of its networks."""
         return self._core.parameter_count
 
     def forecast(
@@ -81,17 +82,18 @@ class Forecaster:
         Parameters
         ----------
         past
-            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not seen. Holes of up to 2
-            positions are filled on a straight line; what was seen before a longer hole does not count. Who was then seen at 2
-            positions or more, and now, is forecast; the rest is padded at the mean velocity.
+            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not observed. Holes
+            of up to 2 positions are filled on a straight line; positions before a longer hole are ignored. A pedestrian is
+            forecast if the last position and at least one other remain; earlier positions are padded at the mean
+            velocity.
         neighbours
-            (m, 8, 2) of others who are there, whom the forecast takes into account and does not contain.
+            (m, 8, 2) positions of other pedestrians, which influence the forecast but are not forecast.
         samples
-            20 hypotheses, or 1: the one forecast of the model, made to be right on average.
+            20: all hypotheses; 1: the central forecast of the model, with the least expected error.
         whole
-            Forecast only who was seen at all 8 positions.
+            Forecast only pedestrians observed at all 8 positions.
         certificates
-            Keep the evidence, step by step, that each hypothesis comes nearer to its goal.
+            Return the evidence that each hypothesis approaches its goal, for each step.
 
         Raises
         ------
@@ -101,13 +103,13 @@ class Forecaster:
         Warns
         -----
         DoubtWarning
-            A motion is unlike those of the training: pixels instead of metres, another time step, or no pedestrian.
+            A motion is unlike the training motions: pixels instead of metres, another time step, or no pedestrian.
 
         Examples
         --------
         >>> import numpy as np
         >>> past = np.stack([np.linspace([0, 0], [3.5, 0], 8), np.linspace([6, 1], [2.5, 1], 8)])
-        >>> past[1, :3] = np.nan  # the second one came later
+        >>> past[1, :3] = np.nan  # the second one appeared later
         >>> forecast = Forecaster().forecast(past)
         >>> forecast.paths.shape, forecast.made_up.tolist()
         ((2, 20, 12, 2), [[0, 0], [3, 0]])
@@ -129,10 +131,10 @@ class Forecaster:
         whole: bool = False,
         certificates: bool = False,
     ) -> list[Forecast]:
-        """Forecast many scenes, each as :meth:`forecast` does, on all threads."""
+        """Forecast many scenes on all threads, each as in :meth:`forecast`."""
         others: list[ArrayLike | None] = [None] * len(pasts) if neighbours is None else list(neighbours)
         if len(others) != len(pasts):
-            raise ValueError(f"{len(pasts)} scenes but neighbours of {len(others)}")
+            raise ValueError(f"neighbours are of {len(others)} scenes, pasts of {len(pasts)}")
         scenes = [scene(past, other) for past, other in zip(pasts, others, strict=True)]
         arrays, asked = [array for array, _ in scenes], [count for _, count in scenes]
         made = self._core.forecast(arrays, asked, samples, whole, certificates)
@@ -147,7 +149,7 @@ class Forecaster:
         whole: bool = False,
         certificates: bool = False,
     ) -> list[Forecast]:
-        """Forecast from every frame of a recording that has anybody to forecast, or with ``last`` from the last such frame only."""
+        """Forecast from every frame of a recording that has pedestrians to forecast, or with ``last`` from the last one."""
         _tell_doubt(recording)
         made = self._core.forecast_recording(recording._core, last, samples, whole, certificates)
         return _told([Forecast._of(parts) for parts in made])
@@ -164,31 +166,33 @@ class Forecaster:
         samples: int = 20,
         whole: bool = False,
     ) -> dict[str, NDArray[Any]]:
-        """Columns in, columns out: forecasts of columns of lists, numpy, pandas or polars.
+        """Forecast from columns of lists, numpy, pandas or polars, and return columns.
 
-        The columns are those of :meth:`Forecast.to_dict`; ``pandas.DataFrame(...)`` or ``polars.DataFrame(...)`` makes a table of them.
+        The result has the columns of :meth:`Forecast.to_dict`; ``pandas.DataFrame(...)`` or ``polars.DataFrame(...)``
+        makes a table of them.
 
         Raises
         ------
         ValueError
-            A value is wrong (row and column are named), or nobody was seen long enough to be forecast.
+            A value is wrong (the message names row and column), or no pedestrian was observed long enough.
         """
         recording = Recording(frame, id, x, y, fps=fps)
         made = self.forecast_recording(recording, last=last, samples=samples, whole=whole)
         if not made:
-            raise ValueError("nobody was seen at two steps of 0.4 s in a row; give fps, the frame numbers in a second")
+            missing = "no pedestrian was observed at 2 consecutive time steps of 0.4 s"
+            raise ValueError(f"{missing}; set fps to the frame numbers per second")
         return table(made)
 
     def goals(self, past: ArrayLike, *, neighbours: ArrayLike | None = None) -> tuple[Floats, Floats]:
-        """Where the pedestrians may be going: (n, 20, 2) positions in 4.8 s, metres, and (n, 20) weights."""
+        """Estimate goals: (n, 20, 2) positions in 4.8 s, metres, and (n, 20) weights."""
         array, asked = scene(past, neighbours)
         return self._core.goals(array, asked)
 
     def show(self, recording: Recording, path: str | os.PathLike[str] | None = None, *, moments: int = 60) -> Page:
-        """The forecasts of a recording as a page with a player: what was observed, where each may go, and what then happened.
+        """Write a page that plays the forecasts of a recording: observations, hypotheses and true paths.
 
-        The page needs no network. Without ``path`` it is written to a temporary folder; in a notebook it is shown there, and
-        ``Page.open()`` opens it in a browser.
+        The page is self-contained. Without ``path`` it is written to a temporary folder. In a notebook it is shown in
+        place, and ``Page.open()`` opens it in a browser.
         """
         _tell_doubt(recording)
         html = self._core.page(recording._core, moments)
@@ -209,7 +213,7 @@ class Forecaster:
 
 
 def _tell_doubt(recording: Recording) -> None:
-    """Warns where speeds are not those of pedestrians: wrong units or a wrong rate give forecasts that look right and mean nothing."""
+    """Warn of suspicious speeds: wrong units or a wrong rate give forecasts that are plausible but meaningless."""
     if not isinstance(recording, Recording):
         raise TypeError(f"recording must be a Recording, as read('tracks.csv') gives it; found {type(recording).__name__}")
     doubt = recording.doubt()
@@ -218,7 +222,7 @@ def _tell_doubt(recording: Recording) -> None:
 
 
 def _told(forecasts: list[Forecast]) -> list[Forecast]:
-    """The forecasts, with a warning of the first that has unfamiliar motions."""
+    """The forecasts, with a warning about the first one with unfamiliar motions."""
     for forecast in forecasts:
         words = forecast.unfamiliar()
         if words is not None:
@@ -233,7 +237,7 @@ def _rebuilt(name: str, keep_clear: float | None) -> Forecaster:
 
 
 class Page:
-    """A page that was written."""
+    """A written page."""
 
     def __init__(self, path: Path) -> None:
         #: The file.

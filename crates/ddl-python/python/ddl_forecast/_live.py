@@ -1,4 +1,4 @@
-"""Forecasts of a place that is watched."""
+"""Live forecasts of a watched place."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ from ddl_forecast._forecast import DoubtWarning, Forecast
 from ddl_forecast._forecaster import Forecaster
 
 
-#: What is known by a word is numbered from here on.
+#: Words are numbered from here on.
 FIRST_WORD = 2**52
-#: Words that are remembered: far more than anybody who may still be there.
+#: Number of words that are kept: far more than pedestrians can be present.
 MOST_WORDS = 100_000
 
 
 class Live:
-    """Forecasts frame by frame, of one camera or robot.
+    """Forecasts for each frame of one camera or robot.
 
-    Forecasts have the bits of :meth:`Forecaster.forecast_recording` of the same frames, but for regions, which follow what is seen so
-    that they hold their share in this place too.
+    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same frames, except for regions, which adapt
+    to the observations so that they keep their share in this place too.
 
     Parameters
     ----------
     forecaster
-        One may serve several places.
+        A forecaster can serve several places.
     fps
-        Frame numbers in a second, of which 0.4 s must be a whole number: 2.5, 5, 10, 12.5, 25 for instance.
+        Frame numbers per second; 0.4 s must be a whole number of frames, as for 2.5, 5, 10, 12.5 or 25.
     memory
-        File of a scene memory: what earlier pedestrians did in this place counts in the forecasts. It is made where there is none, and
-        written as frames come, about every minute, and by :meth:`close`. A memory of another place is found out by the first
-        pedestrians: a warning is given, and the file is left as it is.
+        File of a scene memory, through which the paths of earlier pedestrians of this place influence the forecasts. It
+        is created if missing, written about every minute while frames arrive, and written by :meth:`close`. The first
+        pedestrians show whether a memory is of another place: then a warning is given, and the file is left unchanged.
     whole, certificates
         As for :meth:`Forecaster.forecast`.
 
@@ -72,26 +72,26 @@ class Live:
         self._doubted = False
 
     def observe(self, frame: int, ids: Iterable[Hashable], xy: ArrayLike) -> Forecast | None:
-        """Add a frame, which must come after the last one, and forecast from it.
+        """Add a frame, which must be later than the last one, and forecast from it.
 
         Parameters
         ----------
         frame
-            Its number. A frame that is left out is a gap.
+            Its number. A missing frame is a gap.
         ids
-            Who is there: n whole numbers or words, the same for the same pedestrian in every frame.
+            Ids of the n pedestrians: whole numbers or words, which must not change from frame to frame.
         xy
             (n, 2) positions, metres.
 
         Returns
         -------
-        A forecast of everybody seen now and often enough before; None while that is nobody.
+        A forecast of all pedestrians observed in this frame and often enough before; None without such pedestrians.
 
         Raises
         ------
         ValueError
-            A frame out of order, somebody twice, or a position that is not finite. Nothing has changed then: the frame may be given
-            again without it.
+            A frame out of order, a repeated pedestrian, or a position that is not finite. The state is then unchanged:
+            the frame may be given again without the fault.
         """
         people = list(ids)
         positions = np.empty((0, 2)) if len(people) == 0 and np.size(xy) == 0 else floats(xy, 2, "xy", "(n, 2)")
@@ -103,18 +103,18 @@ class Live:
             names = None if parts is None else [words.get(one, one) for one in parts["ids"]]
         self._tell_refusal()
         if unwritten is not None:
-            warnings.warn(f"the memory was not written and is tried again in a minute: {unwritten}", stacklevel=2)
+            warnings.warn(f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2)
         if parts is None:
             return None
         forecast = Forecast._of(parts, names)
         doubt = None if self._doubted else forecast.unfamiliar()
         if doubt is not None:
             self._doubted = True
-            warnings.warn(f"frame {frame}: {doubt}; this is told once", DoubtWarning, stacklevel=2)
+            warnings.warn(f"frame {frame}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
         return forecast
 
     def _number(self, one: Hashable) -> int:
-        """Numbers as they are, words from a place on where no tracker counts."""
+        """Numbers are kept; words get numbers beyond those of trackers."""
         if isinstance(one, (int, np.integer)) and not isinstance(one, bool):
             number = int(one)
             if abs(number) >= FIRST_WORD:
@@ -129,7 +129,7 @@ class Live:
         return self._numbers[one]
 
     def _forget(self, seen: Integers) -> None:
-        """Words of pedestrians who have gone, so that a stream of days stays small: all but those of the last frames."""
+        """Drop the words of pedestrians who left before the last frames, so that a long stream needs little memory."""
         if len(self._words) <= MOST_WORDS:
             return
         keep = {int(one) for one in seen}
@@ -141,19 +141,19 @@ class Live:
         why = None if self._told else self._core.refused()
         if why is not None:
             self._told = True
-            warnings.warn(f"{why}; its file stays as it is", stacklevel=3)
+            warnings.warn(f"{why}; its file is unchanged", stacklevel=3)
 
     @property
     def remembered(self) -> int:
-        """Stretches of 3.2 s and more that are remembered of the place; 0 without a memory."""
+        """Number of remembered stretches of 3.2 s and more; 0 without a memory."""
         return self._core.remembered()
 
     def clear(self) -> None:
-        """Forget who is there, as when a tracker starts anew: any frame may come next. The memory stays."""
+        """Forget all tracks, as when a tracker restarts: any frame may follow. The memory is kept."""
         self._core.clear()
 
     def close(self) -> None:
-        """Write the memory and let go of its file; a warning tells where it stays as it was. Without a memory nothing happens."""
+        """Write the memory, if there is one, and close its file; a warning tells if the file is left unchanged."""
         why = self._core.close()
         if why is not None and not self._told:
             self._told = True

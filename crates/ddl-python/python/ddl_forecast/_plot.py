@@ -1,4 +1,4 @@
-"""A forecast as a figure of matplotlib."""
+"""A forecast as a matplotlib figure."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def draw(
     radii: Floats | None,
     level: float | None,
 ) -> Axes:
-    """The scene on these axes, or on new ones; `radii` (n, k) of the region of that level at the end."""
+    """Draw the scene on these axes, or on new ones; `radii` (n, k) are of the region of `level` at the horizon."""
     try:
         import matplotlib.pyplot as plt
         from matplotlib.collections import LineCollection
@@ -59,12 +59,12 @@ def draw(
         ax.plot(now[0], now[1], "o", color=PAST, markersize=5, zorder=5)
     legend = [Line2D([], [], color=PAST, marker="o", label="observed, 3.2 s"), Line2D([], [], color=PATH, linewidth=2, label="forecast, 4.8 s")]
     if padded.any():
-        legend.insert(1, Line2D([], [], color=PAST, linestyle=":", label="before that, not seen"))
+        legend.insert(1, Line2D([], [], color=PAST, linestyle=":", label="not observed (padded)"))
     if goals is not None and len(goals):
-        ring = Line2D([], [], color="none", marker="o", markerfacecolor="none", markeredgecolor=GOAL, label="goal, as large as its weight")
+        ring = Line2D([], [], color="none", marker="o", markerfacecolor="none", markeredgecolor=GOAL, label="goal, size by weight")
         legend.append(ring)
     if level is not None:
-        legend.append(Line2D([], [], color=PATH, alpha=0.25, marker="o", markersize=10, linestyle="", label=f"{level:.0%} region at the end"))
+        legend.append(Line2D([], [], color=PATH, alpha=0.25, marker="o", markersize=10, linestyle="", label=f"{level:.0%} region at the horizon"))
     ax.legend(handles=legend, loc="best", frameon=False, fontsize="small")
     ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
     ax.margins(0.08)

@@ -1,4 +1,4 @@
-"""Recordings of tracks, from files or columns, and back."""
+"""Recordings of tracks, read from and written to files or columns."""
 
 from __future__ import annotations
 
@@ -16,25 +16,25 @@ FORMATS = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
 
 
 class Recording:
-    """Tracks of pedestrians of one place.
+    """Tracks of pedestrians in one place.
 
     Parameters
     ----------
     frame, id, x, y
-        Columns of one length, a row a position: frame number, pedestrian (whole number or word), metres. Any order. Lists, numpy
-        arrays, pandas or polars columns.
+        Columns of equal length, one row per position in any order: frame number, pedestrian (whole number or word), and
+        metres. Lists, numpy arrays, pandas or polars columns.
     fps
-        Frame numbers in a second. Where 0.4 s are no whole number of frames, positions are taken on straight lines between frames.
-        Without it, the most common difference of two frame numbers is taken to be 0.4 s.
+        Frame numbers per second. Positions are interpolated linearly if 0.4 s is not a whole number of frames. Default:
+        the most common difference of two frame numbers counts as 0.4 s.
     frame_step
         Frame numbers in 0.4 s, instead of ``fps``.
     name
-        What it is called in results.
+        Name of the recording in results.
 
     Raises
     ------
     ValueError
-        A value is missing or not finite (row and column are named), or a pedestrian is twice in a frame.
+        A value is missing or not finite (the message names row and column), or a frame has a pedestrian twice.
 
     Examples
     --------
@@ -67,7 +67,7 @@ class Recording:
 
     @property
     def name(self) -> str:
-        """What it is called."""
+        """Name of the recording."""
         return self._core.name
 
     @property
@@ -77,7 +77,7 @@ class Recording:
 
     @property
     def frame(self) -> NDArray[Any]:
-        """Frame of each position, ascending; between two frames where positions were taken there."""
+        """Frame of each position, ascending; a fraction for interpolated positions."""
         return self._core.columns()[0]
 
     @property
@@ -87,22 +87,22 @@ class Recording:
 
     @property
     def x(self) -> Floats:
-        """Metres."""
+        """x of each position, metres."""
         return self._core.columns()[2]
 
     @property
     def y(self) -> Floats:
-        """Metres."""
+        """y of each position, metres."""
         return self._core.columns()[3]
 
     def doubt(self) -> str | None:
-        """What looks wrong with the speeds: wrong units or a wrong rate; None where nothing does."""
+        """A fault that the speeds suggest, such as wrong units or a wrong rate; None without a fault."""
         return self._core.doubt()
 
     def write(self, path: str | os.PathLike[str], *, format: str = "table") -> None:
-        """Write a file that :func:`read` takes back, position by position, in one of :data:`FORMATS`.
+        """Write a file that :func:`read` restores position by position, in one of :data:`FORMATS`.
 
-        The file is there whole or not at all. Words as pedestrians can be written as ``table`` and ``trajnet``. No format keeps
+        The file is either complete or missing. Only ``table`` and ``trajnet`` can hold words as ids. No format holds
         ``fps``: give it to :func:`read` again.
         """
         self._core.write(path, format=format)
@@ -146,13 +146,14 @@ def read(
     Parameters
     ----------
     path
-        csv with the header ``frame,pedestrian,x,y``, ndjson of TrajNet++, ``obsmat.txt`` of ETH, a file of Social-GAN or of STAR.
+        csv with the header ``frame,pedestrian,x,y``, ndjson of TrajNet++, ``obsmat.txt`` of ETH, or a file of
+        Social-GAN or of STAR.
     format
-        One of :data:`FORMATS`; otherwise it is told by the extension and the first lines.
+        One of :data:`FORMATS`; default: recognised by the extension and the first lines.
     fps, frame_step
         As for :class:`Recording`.
     homography
-        3 x 3, from pixels to metres, where positions are pixels.
+        3 x 3 matrix from pixels to metres, for positions in pixels.
 
     Raises
     ------

@@ -1,6 +1,6 @@
-"""Forecasts that need no training, to be beaten.
+"""Baselines: forecasts that need no training.
 
-Each takes (n, 8, 2) observed positions in metres, NaN where a pedestrian was not seen, and returns a
+Each takes (n, 8, 2) observed positions in metres, NaN where a pedestrian was not observed, and returns a
 :class:`ddl_forecast.Forecast` of one hypothesis (``angular_noise``: 20).
 
 >>> import numpy as np
@@ -28,30 +28,30 @@ def _baseline(name: str, past: ArrayLike, seed: int = 0, goals: ArrayLike | None
 
 
 def constant_velocity(past: ArrayLike) -> Forecast:
-    """On with the velocity of the last step."""
+    """Constant velocity, that of the last step."""
     return _baseline("constant_velocity", past)
 
 
 def mean_velocity(past: ArrayLike) -> Forecast:
-    """On with the mean velocity of the observation."""
+    """Constant velocity, the mean of the observation."""
     return _baseline("mean_velocity", past)
 
 
 def angular_noise(past: ArrayLike, *, seed: int = 0) -> Forecast:
-    """20 hypotheses: the velocity of the last step, turned at random (Schoeller et al., RA-L 2020)."""
+    """20 hypotheses: the velocity of the last step, rotated at random (Schoeller et al., RA-L 2020)."""
     return _baseline("angular_noise", past, seed)
 
 
 def constant_acceleration(past: ArrayLike) -> Forecast:
-    """On with the acceleration of the last steps, within what pedestrians do."""
+    """Constant acceleration, that of the last steps, within the limits of pedestrians."""
     return _baseline("constant_acceleration", past)
 
 
 def social_force(past: ArrayLike) -> Forecast:
-    """The social force model (Helbing & Molnar 1995), with constant velocity as the intention."""
+    """The social force model (Helbing & Molnar 1995), with constant velocity as the desired velocity."""
     return _baseline("social_force", past)
 
 
 def straight_line(past: ArrayLike, goals: ArrayLike) -> Forecast:
-    """Straight lines at constant speed to (n, k, 2) goals, metres, which are reached in 4.8 s."""
+    """Straight lines at constant speed that reach (n, k, 2) goals, metres, in 4.8 s."""
     return _baseline("straight_line", past, goals=goals)

@@ -1,4 +1,4 @@
-"""Flows in the plane that come nearer to a goal all the time: v = -P grad Phi, with Phi the distance to the goal.
+"""Flows in the plane that always approach a goal: v = -P grad Phi, with Phi the distance to the goal.
 
 >>> import numpy as np
 >>> from ddl_forecast.dynamics import Flow
@@ -25,17 +25,17 @@ __all__ = ["Certificate", "Flow"]
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """The evidence about a path: whether it came nearer to the goal at each step, along a flow that descends."""
+    """Evidence about a path: whether it approaches the goal at each step, along a flow that descends."""
 
-    #: Whether all of it holds.
+    #: Whether the certificate holds.
     holds: bool
-    #: What does not hold, in words; None where all holds.
+    #: The first violated condition, in words; None if the certificate holds.
     violation: str | None
     #: (steps + 1,) distance to the goal, metres.
     potentials: Floats
     #: Smallest eigenvalue of P along the path, m/s.
     min_eigenvalue: float
-    #: What the strictest step is shorter than allowed, as a share.
+    #: Smallest margin between a step and its bound, relative to the bound.
     min_step_margin: float
     #: Largest angle between velocity and direction to the goal, radians.
     largest_angle: float
@@ -49,12 +49,12 @@ class Flow:
     goal
         (2,) metres.
     P
-        (2, 2) symmetric positive definite, m/s: the identity is 1 m/s straight to the goal. Or (steps, 2, 2), one a step, the last of
-        which counts on.
+        (2, 2) symmetric positive definite, m/s: the identity is 1 m/s straight to the goal. Or (steps, 2, 2), one
+        matrix for each step; further steps use the last one.
     obstacles
-        (m, 3) discs that are not entered: x, y and radius, metres.
+        (m, 3) discs that the flow does not enter: x, y and radius, metres.
     margin
-        Distance from a disc, metres, within which the approach is slowed.
+        Distance from a disc, metres, within which the approach slows down.
 
     Raises
     ------
@@ -82,13 +82,16 @@ class Flow:
         return velocities[0] if single else velocities
 
     def rollout(self, start: ArrayLike, *, dt: float = 0.4, steps: int = 12) -> Floats:
-        """(steps + 1, 2) positions from a start (2,), or (m, steps + 1, 2) from (m, 2); the distance to the goal falls at each step."""
+        """(steps + 1, 2) positions from a start (2,), or (m, steps + 1, 2) from (m, 2).
+
+        The distance to the goal falls at each step.
+        """
         single, points = _points(start, "start")
         paths = self._core.rollout(points, dt, steps)
         return paths[0] if single else paths
 
     def certificate(self, path: ArrayLike, *, dt: float = 0.4) -> Certificate:
-        """The evidence about a path (steps + 1, 2), by whatever program it was made."""
+        """The certificate of a path (steps + 1, 2), from any program."""
         return Certificate(**self._core.certificate(floats(path, 2, "path", "(steps + 1, 2)"), dt))
 
 

@@ -1,6 +1,6 @@
-"""Goals from similar tracks: where pedestrians who moved alike went.
+"""Goals from similar tracks: the endpoints of pedestrians that moved alike.
 
-The goals of a trained model are :meth:`ddl_forecast.Forecaster.goals`; this is the estimator alone, with tracks of your own.
+:meth:`ddl_forecast.Forecaster.goals` gives the goals of a trained model; this is the estimator alone, for own tracks.
 """
 
 from __future__ import annotations
@@ -14,16 +14,18 @@ __all__ = ["GoalEstimator"]
 
 
 class GoalEstimator:
-    """Finds the tracks that begin most alike, by soft-DTW in the frame of the heading, and sums up their ends in a few goals.
+    """Finds the tracks with the most similar beginnings, and clusters their endpoints into a few goals.
+
+    Similarity is soft-DTW in the frame of the heading.
 
     Parameters
     ----------
     experts
         (m, 20, 2) whole tracks, metres, 0.4 s apart.
     similar
-        How many similar tracks vote.
+        Number of similar tracks to use.
     goals
-        Goals a pedestrian.
+        Number of goals for each pedestrian.
 
     Examples
     --------

@@ -1,7 +1,7 @@
-"""Metrics of trajectory forecasts, as the field defines them.
+"""Metrics of trajectory forecasts, with the usual definitions.
 
-``paths`` are (n, k, 12, 2) hypotheses and ``truth`` (n, 12, 2) positions, metres; ``weights`` (n, k) sum to 1 a pedestrian, and are 1/k
-where they are left out.
+``paths`` are (n, k, 12, 2) hypotheses and ``truth`` (n, 12, 2) positions, metres; ``weights`` (n, k) sum to 1 for each
+pedestrian; the default is 1/k.
 
 >>> import numpy as np
 >>> from ddl_forecast import metrics
@@ -65,40 +65,43 @@ def fde(paths: ArrayLike, truth: ArrayLike) -> Floats:
 
 
 def min_ade(paths: ArrayLike, truth: ArrayLike) -> Floats:
-    """(n,) least ADE of the hypotheses of each pedestrian, metres."""
+    """(n,) smallest ADE of the hypotheses of each pedestrian, metres."""
     least: Floats = ade(paths, truth).min(axis=1)
     return least
 
 
 def min_fde(paths: ArrayLike, truth: ArrayLike) -> Floats:
-    """(n,) least FDE of the hypotheses of each pedestrian, metres; a minimum of its own."""
+    """(n,) smallest FDE of the hypotheses of each pedestrian, metres; not always that of min_ade."""
     least: Floats = fde(paths, truth).min(axis=1)
     return least
 
 
 def joint_ade(paths: ArrayLike, truth: ArrayLike) -> float:
-    """JADE: ADE of the best joint future of the scene, hypothesis k of everybody together, metres."""
+    """JADE: ADE of the best joint future of the scene, hypothesis k of all pedestrians, metres."""
     return float(ade(paths, truth).mean(axis=0).min())
 
 
 def joint_fde(paths: ArrayLike, truth: ArrayLike) -> float:
-    """JFDE, metres."""
+    """JFDE: FDE of the best joint future of the scene, metres."""
     return float(fde(paths, truth).mean(axis=0).min())
 
 
 def miss(paths: ArrayLike, truth: ArrayLike, *, distance: float = 2.0) -> Flags:
-    """(n,) whether every hypothesis ends farther than ``distance`` metres from the true end; the mean is the miss rate."""
+    """(n,) whether every hypothesis ends further than ``distance`` metres from the truth; the mean is the miss rate."""
     missed: Flags = min_fde(paths, truth) > distance
     return missed
 
 
 def kde_nll(paths: ArrayLike, truth: ArrayLike, weights: ArrayLike | None = None) -> Floats:
-    """(n,) negative log-likelihood of the truth under a kernel density of the hypotheses, nats; the log-likelihood of a step counts as -20 at least."""
+    """(n,) negative log-likelihood of the truth under a kernel density of the hypotheses, nats.
+
+    The log-likelihood of a step counts as at least -20.
+    """
     return _core.kde_nll(_paths(paths), _truth(truth), _weights(weights))
 
 
 def amd(paths: ArrayLike, truth: ArrayLike, weights: ArrayLike | None = None) -> Floats:
-    """(n,) average Mahalanobis distance of the truth from the hypotheses, deviations."""
+    """(n,) average Mahalanobis distance of the truth from the hypotheses, standard deviations."""
     return _core.mahalanobis(_paths(paths), _truth(truth), _weights(weights))[0]
 
 
@@ -116,17 +119,17 @@ def diversity(paths: ArrayLike) -> Floats:
 
 
 def end_diversity(paths: ArrayLike) -> Floats:
-    """(n,) mean distance between the ends of two hypotheses, metres."""
+    """(n,) mean distance between the endpoints of two hypotheses, metres."""
     return _core.spread_between(_paths(paths))[1]
 
 
 def collides(paths: ArrayLike, *, radius: float = 0.2) -> Flags:
-    """(n,) whether each of (n, t, 2) paths comes nearer than two radii (metres) to another at one time, between steps too."""
+    """(n,) whether each of (n, t, 2) paths comes within two radii (metres) of another, also between steps."""
     return _core.collisions(floats(paths, 3, "paths", "(n, t, 2)"), radius)[0]
 
 
 def closest_approach(paths: ArrayLike) -> Floats:
-    """(n,) the nearest that each of (n, t, 2) paths comes to any other at one time, metres."""
+    """(n,) smallest distance of each of (n, t, 2) paths to any other at the same time, metres."""
     return _core.collisions(floats(paths, 3, "paths", "(n, t, 2)"), 0.2)[1]
 
 
@@ -138,9 +141,10 @@ def scores(
     weights: ArrayLike | Sequence[ArrayLike] | None = None,
     goals: ArrayLike | Sequence[ArrayLike] | None = None,
 ) -> dict[str, Any]:
-    """All scores of a scene, or of a list of scenes together: means over pedestrians.
+    """All scores of a scene, or of a list of scenes: means over pedestrians.
 
-    ``past`` (n, 8, 2) tells kinds of motion apart. The keys are those of ``report.json``, the fields of `ddl_eval::Scores`.
+    ``past`` (n, 8, 2) is needed to classify the motions. The keys are those of ``report.json``, the fields of
+    `ddl_eval::Scores`.
     """
     one = np.ndim(paths[0]) == 3 if len(paths) else False
 

@@ -1,11 +1,12 @@
 """Soft-DTW: value, gradient, and exact nearest-neighbour search (Cuturi & Blondel, ICML 2017).
 
-A sequence is an array (steps, components) of up to 128 components, or (steps,). Sequences of float64 in one piece are not copied.
+A sequence is an array (steps, components) of up to 128 components, or (steps,). Contiguous sequences of float64 are not
+copied.
 
 >>> import numpy as np
 >>> from ddl_forecast import soft_dtw
 >>> x, y = np.array([[0.0], [0.0], [1.0]]), np.array([[0.0], [1.0], [1.0]])
->>> soft_dtw.value(x, y, gamma=0)  # hard DTW: one shape at two paces
+>>> soft_dtw.value(x, y, gamma=0)  # hard DTW: one shape at two speeds
 0.0
 >>> distance, gradient = soft_dtw.value_and_gradient(x, y, gamma=1.0)
 >>> gradient.shape
@@ -26,14 +27,14 @@ __all__ = ["SearchIndex", "SlidingIndex", "value", "value_and_gradient"]
 
 
 class SearchIndex:
-    """Candidates that are searched again and again.
+    """An index of candidates for repeated searches.
 
     Parameters
     ----------
     candidates
-        Sequences of any lengths, of one number of components.
+        Sequences of any lengths, with the same number of components.
     gamma, cost, band
-        As for :func:`value`. With a band, or the cost ``"euclidean"``, a search compares pair by pair, which takes longer.
+        As for :func:`value`. With a band, or the cost ``"euclidean"``, a search compares all pairs, which takes longer.
 
     Examples
     --------
@@ -69,18 +70,18 @@ class SearchIndex:
 
 
 class SlidingIndex:
-    """All windows of one length of longer tracks, searched without cutting them.
+    """An index of all windows of one length of longer tracks, without copies.
 
     Parameters
     ----------
     tracks
         Sequences of any lengths.
     length
-        Steps of a window.
+        Number of steps of a window.
     gamma, cost, band
         As for :func:`value`.
     tail
-        Steps that a track must go on after a window, for instance to read off what happened next.
+        Number of steps that a track must continue after a window, for instance to read the continuation.
     """
 
     def __init__(
@@ -99,5 +100,5 @@ class SlidingIndex:
         return len(self._core)
 
     def nearest(self, query: ArrayLike, n: int = 1) -> tuple[Integers, Integers, Floats]:
-        """For each window of ``query``: tracks (w, n), first steps (w, n) and distances (w, n) of the nearest windows."""
+        """Tracks, first steps and distances, (w, n) each, of the windows nearest to each of the w windows of ``query``."""
         return self._core.nearest(query, n)

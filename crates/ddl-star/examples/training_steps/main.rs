@@ -1,6 +1,7 @@
 //! Training steps of the published network in double precision, where libtorch computes everything, as on CUDA.
 //!
-//! With the library made of `operations.cpp` it counts what libtorch does in a step (docs/performance.md):
+//! With the preloaded library from `operations.cpp` it counts the operations of libtorch in a step
+//! (docs/performance.md):
 //!
 //! ```console
 //! $ cargo run --release -p ddl-star --example training_steps -- STEPS DROPOUT
@@ -25,7 +26,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let cpu = ComputeDevice::open(DeviceChoice::Cpu)?;
     let network = TorchNetwork::with_precision(config, 1, cpu, tch::Kind::Double)?;
-    // How many pedestrians there are makes no difference to the number of operations.
+    // The number of operations does not depend on the number of pedestrians.
     let training = TrainingConfig {
         batch_pedestrians: 16,
         ..TrainingConfig::published()

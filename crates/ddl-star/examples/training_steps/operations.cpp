@@ -1,8 +1,8 @@
-// Counts the kernels that libtorch's operations would launch on CUDA, in any program: a library to be preloaded.
+// A library to preload into any program: it counts the kernels that libtorch's operations would launch on CUDA.
 //
-// An operation counts when it is in the table below, forwards or backwards, and not a part of another one that
-// counts. Views, allocations and operations made of others launch nothing themselves. Where one operation
-// launches several kernels on CUDA, the table has a lower bound.
+// An operation of the table below counts, forwards or backwards, unless it is part of another counted operation.
+// Views, allocations and composite operations launch nothing themselves. Where one operation launches several
+// kernels on CUDA, the count is a lower bound.
 #include <ATen/record_function.h>
 
 #include <cstdio>

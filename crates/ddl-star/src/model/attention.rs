@@ -1,11 +1,11 @@
-//! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms STAR needs.
+//! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms that STAR needs.
 
 use super::neighbours::SeenNeighbours;
 use std::rc::Rc;
 use tch::Tensor;
 
-/// Attention of every pedestrian over those that it sees.
-/// Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or B -> `[B, P, width]`.
+/// Attention of every pedestrian over its neighbours. Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or
+/// B -> `[B, P, width]`.
 pub(super) fn among_pedestrians(
     qkv: &Tensor,
     heads: i64,
@@ -34,18 +34,18 @@ pub(super) fn among_pedestrians(
     seen.out_of_rows(&mixed)
 }
 
-/// Attention of the newest token over itself and the cached ones.
-/// Shapes: `newest` and each of `cache` `[B, P, 3 * width]` -> `[B, P, width]`.
+/// Attention of the newest token over itself and the cached tokens. Shapes: `newest` and each of `cache` `[B, P, 3 *
+/// width]` -> `[B, P, width]`.
 pub(super) fn over_cache(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> Tensor {
     let (batch, pedestrians, width) = (newest.size()[0], newest.size()[1], newest.size()[2] / 3);
     let cached = cache.iter().map(|token| &**token);
     let tokens: Vec<&Tensor> = cached.chain([newest]).collect();
-    // All projections of all tokens at once: one copy, and one gradient for each token.
+    // Stack all projections of all tokens: this is one copy, and one gradient for each token.
     let parts = Tensor::stack(&tokens, 0)
         .view([-1, batch, pedestrians, 3, heads, width / heads])
         .unbind(3);
     let (query, key, value) = (parts[0].narrow(0, -1, 1), &parts[1], &parts[2]);
-    // One query a pedestrian and head: products and sums beat a batch of 1 x t matrix products.
+    // With one query for each pedestrian and head, products and sums are faster than a batch of 1 x t matrix products.
     let scores = key * (query * scale(width, heads));
     let scores = scores.sum_dim_intlist([-1i64].as_slice(), true, None);
     let weights = scores.softmax(0, scores.kind());

@@ -1,4 +1,4 @@
-//! The operations of a backbone by libtorch: on any device, in any precision, with its own gradients.
+//! The operations of a backbone on libtorch: on any device, in any precision, with automatic gradients.
 
 use super::attention::{among_pedestrians, over_cache};
 use super::dropout::dropout;
@@ -19,7 +19,7 @@ pub struct TorchBackend {
 }
 
 impl TorchBackend {
-    /// A pass whose gradients are libtorch's own.
+    /// A pass with libtorch's own gradients.
     pub(crate) fn new(parameters: &Parameters, mode: Mode) -> Self {
         let tensors = parameters.tensors().iter();
         Self {
@@ -29,7 +29,7 @@ impl TorchBackend {
         }
     }
 
-    /// A pass of training: gradients of weights come from all their uses at once, by [`gradient`](Self::gradient).
+    /// A training pass: [`gradient`](Self::gradient) computes the gradients of a weight from all its uses at once.
     pub(crate) fn training(parameters: &Parameters, mode: Mode) -> Self {
         Self {
             shared: Some(SharedWeights::default()),
@@ -37,7 +37,7 @@ impl TorchBackend {
         }
     }
 
-    /// y = x W^T + b with the weight of that number and the bias after it.
+    /// y = x W^T + b, with the weight of that index and the bias after it.
     /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
     fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
         let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
@@ -47,7 +47,7 @@ impl TorchBackend {
         }
     }
 
-    /// The gradient of `loss` with respect to all learned numbers, as one vector.
+    /// The gradient of `loss` with respect to all learned parameters, as one vector.
     pub(crate) fn gradient(
         &self,
         loss: &Tensor,
@@ -59,7 +59,7 @@ impl TorchBackend {
         }
     }
 
-    /// What follows attention in an encoder layer.
+    /// The part of an encoder layer after attention.
     fn after_attention(&self, layer: EncoderLayer, x: &Tensor, mixed: &Tensor) -> Rc<Tensor> {
         let (first, p, mode) = (layer.tensor, layer.dropout, self.mode);
         let attended = self.affine(mixed, first + 2);
@@ -132,7 +132,7 @@ impl Backend for TorchBackend {
     }
 
     fn key_values(&self, layer: EncoderLayer, x: &Rc<Tensor>) -> Rc<Tensor> {
-        // The query is projected too: a part of the weights would have a gradient as large as the whole, at every token.
+        // Project the query too: the gradient of a slice of the weights would be as large as the whole at every token.
         Rc::new(self.affine(x, layer.tensor))
     }
 

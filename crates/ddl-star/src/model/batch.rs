@@ -1,4 +1,4 @@
-//! Several windows side by side as tensors.
+//! Several windows concatenated into tensors.
 
 use super::neighbours::Neighbours;
 use super::numbers::tensor;
@@ -9,21 +9,21 @@ use ddl_network::{NetworkError, visibility};
 use std::rc::Rc;
 use tch::{Device, Kind, Tensor};
 
-/// The pedestrians of several windows, one after the other, with who sees whom.
+/// The pedestrians of several windows, concatenated, with their neighbours.
 ///
 /// # Shapes
-/// T frames, P pedestrians in all: positions `[T, P, 2]` in metres; who sees whom in the first M frames.
+/// T frames, P pedestrians in total: positions `[T, P, 2]` in metres; neighbours in the first M frames.
 #[derive(Debug)]
 pub struct SceneBatch {
     pub(crate) positions: Tensor,
     pub(crate) neighbours: Rc<Neighbours>,
     pub(crate) scene_means: SceneMeans,
-    /// Share of the network's metric in what shapes a step, `[1]` or `[1, P, 1]`.
+    /// Share of the network's metric in the metric of a step, `[1]` or `[1, P, 1]`.
     pub(crate) share: Tensor,
 }
 
 impl SceneBatch {
-    /// Lays out windows: `frames` of each, with the neighbours of the first `mask_frames`.
+    /// Concatenates windows: `frames` of each, with the neighbours of the first `mask_frames`.
     ///
     /// # Errors
     /// [`NetworkError::Shape`] when there is no window, or one is shorter than `frames`.
@@ -65,7 +65,7 @@ impl SceneBatch {
         })
     }
 
-    /// All positions turned about the world's origin. Neighbours stay as they were found.
+    /// All positions rotated about the world's origin. Neighbours are kept.
     #[must_use]
     pub fn rotated(&self, rotation: Rotation) -> Self {
         let ([xx, xy], [yx, yy]) = (rotation.apply([1.0, 0.0]), rotation.apply([0.0, 1.0]));
@@ -76,7 +76,7 @@ impl SceneBatch {
         self.turned(&images)
     }
 
-    /// All positions turned as the axes are: `images` `[2, 2]`, one a row. Neighbours stay as they were found.
+    /// All positions transformed by the images of the axes, the rows of `images` `[2, 2]`. Neighbours are kept.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {
             positions: self.positions.matmul(images),
@@ -94,7 +94,7 @@ impl SceneBatch {
         }
     }
 
-    /// Pedestrians in all windows together.
+    /// The number of pedestrians in all windows.
     pub fn pedestrians(&self) -> usize {
         self.positions.size()[1] as usize
     }

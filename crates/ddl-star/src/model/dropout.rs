@@ -5,14 +5,14 @@ use tch::{Kind, Tensor};
 
 /// Sets each entry to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
-/// On the CPU the generator makes 64 bits at a time and libtorch spends them all on one decision; here they make
-/// four, of 16 bits each: the same distribution up to p being rounded to 1/65536.
+/// On the CPU the generator makes 64 bits at a time, and libtorch uses them all for one decision. Here they serve four
+/// decisions of 16 bits each: the same distribution, with p rounded to 1/65536.
 pub(crate) fn dropout(x: Tensor, p: f64, mode: Mode) -> Tensor {
     if mode == Mode::Evaluate || p == 0.0 {
         return x;
     }
     if x.device().is_cuda() {
-        // One kernel, and cheap random numbers.
+        // One kernel with cheap random numbers.
         return x.dropout(p, true);
     }
     let count = x.numel() as i64;
@@ -20,7 +20,7 @@ pub(crate) fn dropout(x: Tensor, p: f64, mode: Mode) -> Tensor {
     let mut random = Tensor::empty([words], (Kind::Int64, x.device()));
     let _ = random.random_from_(i64::MIN, None);
     let dropped = (p * 65_536.0).round();
-    // 16 random bits lie in [-32768, 32767]; the lowest `dropped` values drop
+    // 16 random bits lie in [-32768, 32767]; the lowest `dropped` values drop the entry
     let keep = random
         .view_dtype(Kind::Int16)
         .narrow(0, 0, count)
@@ -45,7 +45,7 @@ mod tests {
         let zeros = dropped.eq(0.0).to_kind(Kind::Double);
         let share = zeros.mean(None::<Kind>).double_value(&[]);
         assert!((share - 0.1).abs() < 2e-3, "{share}");
-        // every column has its share: no lane of the 64 bits is special
+        // every column has its share: all lanes of the 64 bits are equal
         let columns = zeros.mean_dim([0i64].as_slice(), false, None::<Kind>);
         let worst = (columns - 0.1).abs().max().double_value(&[]);
         assert!(worst < 0.06, "{worst}"); // standard error 0.0095

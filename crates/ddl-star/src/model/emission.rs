@@ -1,4 +1,4 @@
-//! From tokens to what they mean: the output layer and its noise.
+//! The output layer and its noise.
 
 use ddl_network::StarConfig;
 use tch::Tensor;
@@ -6,7 +6,7 @@ use tch::Tensor;
 /// The noise of the output layer.
 #[derive(Debug)]
 pub enum NoiseInput {
-    /// One vector a hypothesis (or one for all), `[1 or H, noise]`.
+    /// One vector for each hypothesis (or one for all), `[1 or H, noise]`.
     Draws(Tensor),
     /// The expectation over N(0, 1) noise.
     Expected,
@@ -21,7 +21,7 @@ impl NoiseInput {
     }
 }
 
-/// The output layer under some noise, prepared once for all steps.
+/// The output layer with its noise, prepared once for all steps.
 #[derive(Debug)]
 pub(crate) struct Emission<'a> {
     weight: &'a Tensor,
@@ -33,7 +33,7 @@ pub(crate) struct Emission<'a> {
 enum Prepared<'a> {
     Draws(&'a Tensor),
     Expected {
-        /// The columns for the token.
+        /// The columns of the weight for the token.
         weight: Tensor,
         spread: Option<NoiseCovariance>,
     },
@@ -65,7 +65,7 @@ impl<'a> Emission<'a> {
         }
     }
 
-    /// What the tokens mean: (a, b, c), or (x, y), a pedestrian. Noise is shared by all pedestrians.
+    /// The output for each pedestrian: (a, b, c), or (x, y). All pedestrians share the noise.
     /// Shapes: `tokens` `[B, P, width]` -> `[B, P, outputs]`.
     pub(crate) fn of(&self, tokens: &Tensor) -> Tensor {
         let (batch, pedestrians) = (tokens.size()[0], tokens.size()[1]);
@@ -86,7 +86,7 @@ impl<'a> Emission<'a> {
     }
 }
 
-/// What noise adds to the metric: entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
+/// The effect of noise on the metric: entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
 #[derive(Debug)]
 struct NoiseCovariance {
     c11: Tensor,
@@ -108,7 +108,8 @@ impl NoiseCovariance {
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
     ///
-    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n; L0 alone is too slow.
+    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n. L0 alone would be too
+    /// slow.
     /// Shapes: `mean` `[.., 3]` -> `[.., 3]`.
     fn expected_factor(&self, mean: &Tensor) -> Tensor {
         let l = |i: i64| mean.narrow(-1, i, 1);
@@ -123,5 +124,5 @@ impl NoiseCovariance {
     }
 }
 
-/// Pivots of the expected metric below this count as this, in m/s.
+/// Lower bound of the pivots of the expected metric, in m/s.
 const SMALLEST_PIVOT: f64 = 1e-12;

@@ -1,11 +1,11 @@
-//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors; a test holds the two together.
+//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors. A test compares the two.
 
 use ddl_dynamics::{MotionBounds, StepTime};
 use tch::Tensor;
 
-/// Within this distance (m) a pedestrian is at the goal: squares of smaller offsets underflow in f32.
+/// Within this distance (m) a pedestrian counts as at its goal: squares of smaller offsets underflow in f32.
 const SMALLEST_NORM: f64 = 1e-18;
-/// Added to the square of half the difference of the eigenvalues (m/s), whose root has no derivative at 0.
+/// Added to the square of half the difference of the eigenvalues (m/s), because its root has no derivative at 0.
 const SMALLEST_RADIUS_SQUARED: f64 = 1e-14;
 
 /// Constants of the flow.
@@ -13,7 +13,7 @@ const SMALLEST_RADIUS_SQUARED: f64 = 1e-14;
 pub struct FlowConstants {
     /// sigma of P = L L^T + sigma I (eq. 11).
     pub sigma: f64,
-    /// Seconds a step.
+    /// Duration of a step in seconds.
     pub time_step: f64,
 }
 
@@ -24,9 +24,9 @@ pub struct StepBounds {
     pub top_speed: Tensor,
     /// The pedestrians' own velocities, m/s; broadcasts to `[.., 2]`.
     pub velocity: Tensor,
-    /// Share of the network's metric in what shapes a step, 0 to 1; broadcasts to `[.., 1]`.
+    /// Share of the network's metric in the metric of a step, 0 to 1; broadcasts to `[.., 1]`.
     pub share: Tensor,
-    /// Whether the network emits metrics in m/s, as published, and not departures from the neutral motion.
+    /// Whether the network emits metrics in m/s, as published, instead of departures from the neutral motion.
     pub absolute: bool,
 }
 
@@ -38,8 +38,8 @@ pub struct StepBounds {
 /// L = [[a, 0], [b, c]] -> `[.., 2]`.
 ///
 /// # Numerics
-/// P is never formed: P u = L (L^T u) + sigma u, so that sigma survives in f32. At the goal u is 0
-/// and so is its derivative: nothing moves and nothing is NaN.
+/// P is never formed: P u = L (L^T u) + sigma u, so that sigma is not lost in f32. At the goal u and its derivative are
+/// 0: the pedestrian stays, and no value is NaN.
 pub fn natural_gradient_step(
     positions: &Tensor,
     goals: &Tensor,
@@ -57,13 +57,13 @@ pub fn natural_gradient_step(
     positions - Tensor::cat(&[&pu1, &pu2], -1) * constants.time_step
 }
 
-/// Next positions under v = -P' u, where P' is what [`MotionBounds::shape`] makes of P = L L^T + sigma I.
+/// Next positions under v = -P' u, where P' is the result of [`MotionBounds::shape`] for P = L L^T + sigma I.
 ///
 /// # Shapes
 /// As [`natural_gradient_step`].
 ///
 /// # Numerics
-/// Where an eigenvalue is clamped it has no derivative; the bounds and the neutral motion count as constants.
+/// A clamped eigenvalue has no derivative; the bounds and the neutral motion count as constants.
 pub fn bounded_step(
     positions: &Tensor,
     goals: &Tensor,
@@ -127,7 +127,7 @@ fn neutral(
         bounds.velocity.narrow(-1, 1, 1),
     );
     let along = arriving * (1.0 - g) + (&vx * &cos + &vy * &sin) * g;
-    // At the goal all of these are 0, and nothing moves.
+    // At the goal all of these are 0, and the pedestrian stays.
     let a = along
         .maximum(smallest)
         .clamp_min(f64::from(f32::MIN_POSITIVE));
@@ -144,7 +144,7 @@ fn neutral(
     }
 }
 
-/// Symmetric 2 x 2 matrices, `[.., 1]` each entry.
+/// Symmetric 2 x 2 matrices, with each entry `[.., 1]`.
 struct SymmetricTensors {
     xx: Tensor,
     xy: Tensor,
@@ -164,7 +164,7 @@ impl SymmetricTensors {
         )
     }
 
-    /// The matrix with its eigenvalues changed.
+    /// The matrix with transformed eigenvalues.
     fn changed(&self, changed: impl Fn(Tensor) -> Tensor) -> Self {
         let (mean, half) = ((&self.xx + &self.yy) * 0.5, (&self.xx - &self.yy) * 0.5);
         let radius = (half.square() + self.xy.square() + SMALLEST_RADIUS_SQUARED).sqrt();
@@ -182,14 +182,14 @@ impl SymmetricTensors {
 fn away(positions: &Tensor, goals: &Tensor) -> (Tensor, Tensor) {
     let offset = positions - goals;
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
-    // Divided by infinity at the goal: u and its derivative are 0 there. Divided by something small, the
-    // derivative would be huge, and that of a few steps at the goal no number.
+    // At the goal, divide by infinity: u and its derivative are then 0. A small divisor would make the derivative huge,
+    // and that of a few steps at the goal NaN.
     let at_goal = distance.lt(SMALLEST_NORM);
     let u = offset / distance.masked_fill(&at_goal, f64::INFINITY);
     (distance, u)
 }
 
-/// a, b and c, `[.., 1]` each.
+/// a, b and c, each `[.., 1]`.
 fn entries(factors: &Tensor) -> [Tensor; 3] {
     [0, 1, 2].map(|i| factors.narrow(-1, i, 1))
 }

@@ -1,4 +1,4 @@
-//! The network on libtorch behind the trait that forecasts are asked of.
+//! Forecasts of the network on libtorch, through the trait `ForecastWindows`.
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
@@ -18,7 +18,7 @@ use std::sync::{Mutex, PoisonError};
 use tch::Tensor;
 
 impl TorchNetwork {
-    /// This network behind the trait that forecasts are asked of, computed by libtorch.
+    /// This network, computed by libtorch, as a `ForecastWindows`.
     #[must_use]
     pub fn into_forecaster(self) -> Box<dyn ForecastWindows> {
         Box::new(TorchForecaster {
@@ -67,7 +67,7 @@ fn arrays<const N: usize>(tensor: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
     Ok(groups.to_vec())
 }
 
-/// Forecasts by libtorch. Tensors may move between threads, but not be shared: one forecast at a time.
+/// Forecasts by libtorch. Tensors can move between threads but not be shared, so one forecast runs at a time.
 #[derive(Debug)]
 struct TorchForecaster {
     config: StarConfig,

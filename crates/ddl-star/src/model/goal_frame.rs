@@ -1,17 +1,17 @@
-//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, lengths are in its own
+//! A pedestrian's own frame: the first axis points from its last observed position to its goal; lengths are in its own
 //! [unit](ddl_network::motion_unit).
 
 use super::own_motion;
 use ddl_data::OBSERVED;
 use tch::Tensor;
 
-/// Nearer to its goal than this (metres) a pedestrian has the axes of the world.
+/// Closer to its goal than this (metres), a pedestrian uses the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
-/// Squares of pivots below this count as this, in m/s.
+/// Lower bound of the squares of pivots, in m/s.
 const SMALLEST_PIVOT: f64 = 1e-12;
 
-/// The first axis of every pedestrian in every hypothesis, as cosine and sine, and its unit.
-/// Shapes: `[G, P, 1]`, the unit `[1, P, 1]` (no unit: metres a metre).
+/// The first axis of every pedestrian in every hypothesis, as cosine and sine, and its unit. Shapes: `[G, P, 1]`; the
+/// unit `[1, P, 1]` is a dimensionless factor (metres in a unit).
 #[derive(Debug)]
 pub(crate) struct GoalFrame {
     cos: Tensor,
@@ -35,7 +35,7 @@ impl GoalFrame {
         }
     }
 
-    /// Vectors of the world in the pedestrians' axes and units.
+    /// Vectors of the world in the axes and units of the pedestrians.
     /// Shapes: `[.., P, 2]`, broadcast with `[G, P, 1]`.
     pub(crate) fn of_world(&self, vectors: &Tensor) -> Tensor {
         let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
@@ -44,7 +44,7 @@ impl GoalFrame {
         Tensor::cat(&[ahead, left], -1) / &self.unit
     }
 
-    /// The reverse of [`of_world`](Self::of_world).
+    /// The inverse of [`of_world`](Self::of_world).
     pub(crate) fn to_world(&self, vectors: &Tensor) -> Tensor {
         let (x, y) = (vectors.narrow(-1, 0, 1), vectors.narrow(-1, 1, 1));
         let along_x = &self.cos * &x - &self.sin * &y;
@@ -52,12 +52,13 @@ impl GoalFrame {
         Tensor::cat(&[along_x, along_y], -1) * &self.unit
     }
 
-    /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
-    /// Shapes: `factors` `[.., P, 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the same of L' comes back.
+    /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R. Shapes: `factors` `[.., P,
+    /// 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the result holds those of L'.
     ///
     /// # Numerics
-    /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is raised to 1e-12 m/s and
-    /// what the second row is worth is lost: the pedestrian stands, and P is still positive definite.
+    /// If the first row of R^T L vanishes (L singular, its null space along the world's x axis), the square of the
+    /// first pivot is raised to 1e-12 m/s, and the second row is lost: the pedestrian stands, and P is still positive
+    /// definite.
     pub(crate) fn factors_to_world(&self, factors: &Tensor) -> Tensor {
         let l = |i: i64| factors.narrow(-1, i, 1);
         let (a, b, c) = (l(0), l(1), l(2));

@@ -1,4 +1,4 @@
-//! Where the pedestrians of a batch are led, and what the network's input and output mean on the way.
+//! Goals of the pedestrians of a batch, and the frame of the network's input and output.
 
 use super::flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
 use super::goal_frame::GoalFrame;
@@ -7,18 +7,19 @@ use tch::Tensor;
 
 #[derive(Debug)]
 pub(super) struct Guidance {
-    /// What temporal positions are relative to, `[G or 1, P, 2]`: the goal, or the last observed position.
+    /// The reference of temporal positions, `[G or 1, P, 2]`: the goal, or the last observed position.
     pub(super) reference: Tensor,
-    /// The frame they are read in; `None` for that of the world.
+    /// The frame of temporal positions; `None` for that of the world.
     pub(super) frame: Option<GoalFrame>,
     pub(super) dynamics: bool,
     pub(super) constants: FlowConstants,
-    /// Of the steps; `None` for plain Euler steps.
+    /// Bounds of the steps; `None` for plain Euler steps.
     pub(super) bounds: Option<StepBounds>,
 }
 
 impl Guidance {
-    /// Positions as the temporal encoder reads them, with the velocity since the positions `before` where there is a frame.
+    /// The input of the temporal encoder: positions and, in a pedestrian's own frame, the velocity since the positions
+    /// `before`.
     /// Shapes: `[.., P, 2]` -> `[.., P, inputs]`, broadcast with the reference.
     pub(super) fn seen(&self, positions: &Tensor, before: &Tensor) -> Tensor {
         let relative = positions - &self.reference;
@@ -35,7 +36,7 @@ impl Guidance {
         }
     }
 
-    /// What the output layer says, in the frame of the world.
+    /// The output of the output layer, in the frame of the world.
     pub(super) fn to_world(&self, emitted: &Tensor) -> Tensor {
         match &self.frame {
             None => emitted.shallow_clone(),
@@ -44,7 +45,7 @@ impl Guidance {
         }
     }
 
-    /// One step on: with `done` steps made and `left` of them left, this one included.
+    /// Next positions after one step: `done` steps are made and `left` remain, including this one.
     pub(super) fn next_positions(
         &self,
         positions: &Tensor,

@@ -1,4 +1,4 @@
-//! Who sees whom in a batch of scenes.
+//! Neighbours in a batch of scenes.
 
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -10,7 +10,7 @@ use super::packing::Packing;
 use ddl_network::backend::Scenes;
 use std::sync::Arc;
 
-/// Who sees whom in each frame of a batch: scene by scene for the kernels, in rows for libtorch.
+/// The neighbours in each frame of a batch: by scene for the kernels, in rows for libtorch.
 #[derive(Debug)]
 pub(crate) struct Neighbours {
     scenes: Arc<Scenes>,
@@ -33,7 +33,7 @@ impl Neighbours {
         &self.scenes
     }
 
-    /// Who sees whom during some frames: one frame serves every batch entry, several one entry each.
+    /// The neighbours during some frames: one frame serves every batch entry, several serve one entry each.
     pub(crate) fn during(self: &Rc<Self>, frames: Range<usize>) -> SeenNeighbours {
         SeenNeighbours {
             neighbours: Rc::clone(self),
@@ -50,7 +50,7 @@ impl Neighbours {
             let mut mask = vec![f32::NEG_INFINITY; frames * rows * length * length];
             let masks = mask.chunks_exact_mut(rows * length * length);
             for (frame, mask) in masks.enumerate() {
-                // Who fills a row up sees itself, so that its weights are numbers.
+                // Padding entries attend to themselves, so that their weights are finite.
                 for (place, row) in mask.chunks_exact_mut(length).enumerate() {
                     row[place % length] = 0.0;
                 }
@@ -79,11 +79,11 @@ impl Neighbours {
 
 #[derive(Debug)]
 struct MaskedRows {
-    /// The pedestrian at each place, `[R * L]`.
+    /// The pedestrian at each place of the rows, `[R * L]`.
     pedestrians: Tensor,
     /// The place of each pedestrian, `[P]`.
     places: Tensor,
-    /// `[frames, R, L, L]`, 0 where a pedestrian sees another or itself, -inf elsewhere.
+    /// `[frames, R, L, L]`: 0 for a pedestrian itself and its neighbours, -inf elsewhere.
     mask: Tensor,
 }
 
@@ -95,8 +95,7 @@ pub struct SeenNeighbours {
 }
 
 impl SeenNeighbours {
-    /// Pedestrians in rows of one length, for libtorch.
-    /// Shapes: `x` `[B, P, n]` -> `[B * R, L, n]`.
+    /// Pedestrians in rows of equal length, for libtorch. Shapes: `x` `[B, P, n]` -> `[B * R, L, n]`.
     pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let length = rows.mask.size()[3];
@@ -104,16 +103,15 @@ impl SeenNeighbours {
             .view([-1, length, x.size()[2]])
     }
 
-    /// Undoes [`in_rows`](Self::in_rows).
-    /// Shapes: `x` `[B * R, L, n]` -> `[B, P, n]`.
+    /// The inverse of [`in_rows`](Self::in_rows). Shapes: `x` `[B * R, L, n]` -> `[B, P, n]`.
     pub(crate) fn out_of_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let (places, width) = (rows.pedestrians.size()[0], x.size()[2]);
         x.reshape([-1, places, width]).index_select(1, &rows.places)
     }
 
-    /// Who sees whom in the rows of a batch of `entries`: `[B * R, 1, L, L]`, 0 or -inf. Nobody sees beyond its
-    /// scene, and everybody sees somebody.
+    /// The mask of the rows of a batch of `entries`: `[B * R, 1, L, L]`, 0 or -inf. Neighbours are of the same scene,
+    /// and every row of the mask has at least one 0.
     pub(crate) fn row_mask(&self, entries: i64) -> Tensor {
         let mask = &self.neighbours.rows().mask;
         let (rows, length) = (mask.size()[1], mask.size()[3]);

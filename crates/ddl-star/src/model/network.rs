@@ -1,4 +1,4 @@
-//! The forecasting network on libtorch: for training, for CUDA, and as the oracle of the kernels.
+//! The forecasting network on libtorch: for training, for CUDA, and as the reference of the kernels.
 
 use super::backend::TorchBackend;
 use super::emission::{Emission, NoiseInput};
@@ -51,7 +51,7 @@ impl TorchNetwork {
         }
     }
 
-    /// A network with a backbone of one's own; `make` declares its layers.
+    /// A network with a custom backbone; `make` declares its layers.
     ///
     /// # Errors
     /// [`StarError::Network`] when the configuration is out of range.
@@ -90,17 +90,18 @@ impl TorchNetwork {
         &self.parameters
     }
 
-    /// Where the network computes.
+    /// The device of the network.
     pub fn device(&self) -> Device {
         self.device
     }
 
-    /// Kind of all its numbers.
+    /// The precision of all its numbers.
     pub fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// The weights as kernels read them; `None` where they cannot compute: elsewhere than on the CPU, or in f64.
+    /// The weights in the form of the kernels; `None` where kernels cannot compute: on other devices than the CPU, or
+    /// in f64.
     pub(crate) fn kernels(&self) -> Result<Option<Arc<Kernels>>, StarError> {
         if (self.device, self.kind) != (Device::Cpu, Kind::Float) {
             return Ok(None);

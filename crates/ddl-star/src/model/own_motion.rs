@@ -1,18 +1,17 @@
-//! What everybody's own motion was when it was last observed, on tensors: the twins of
-//! [`motion_unit`](ddl_network::motion_unit) and [`motion_bounds`](ddl_network::motion_bounds).
+//! The observed motion of every pedestrian on tensors: the twins of [`motion_unit`](ddl_network::motion_unit) and
+//! [`motion_bounds`](ddl_network::motion_bounds).
 
 use ddl_dynamics::MotionBounds;
 use tch::{Kind, Tensor};
 
 /// Speed (m/s) around which the unit of length begins to grow.
 const FAST_WALK: f64 = 2.0;
-/// Mean length of the second differences of positions (m) that takes the last step all but a third of its say.
+/// Mean length of the second differences of positions (m) at which the last step has a third of its weight.
 const JITTER: f64 = 0.06;
-/// Steps whose mean velocity counts where the last step alone says little.
+/// Number of steps whose mean velocity replaces a noisy last step.
 const RECENT: usize = 3;
 
-/// Units of length of everybody in a batch, metres.
-/// Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
+/// Units of length of all pedestrians in a batch, metres. Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
 pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
     let steps = step_lengths(observed);
     let relative = steps.mean_dim([0i64].as_slice(), true, None::<Kind>) / (time_step * FAST_WALK);
@@ -66,7 +65,10 @@ mod tests {
             tremble in 0.0..1.0f64,
             scale in -6.0..6.0f64,
         ) {
-            let at = |(t, p): (usize, &[f64; 2])| [0.4 * vx * t as f64 + tremble * p[0], 0.4 * vy * t as f64 + tremble * p[1]];
+            let at = |(t, p): (usize, &[f64; 2])| {
+                let time = 0.4 * t as f64;
+                [vx * time + tremble * p[0], vy * time + tremble * p[1]]
+            };
             let track: Vec<Position> = track.iter().enumerate().map(at).collect();
             let tensor = Tensor::from_slice(track.as_flattened()).reshape([8, 1, 2]);
             let top = top_speeds(&tensor, 0.4).double_value(&[0, 0, 0]);

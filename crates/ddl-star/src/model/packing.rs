@@ -1,22 +1,23 @@
-//! Scenes in rows of one length, so that attention among their pedestrians is a batch of small matrices.
+//! Scenes in rows of equal length, so that attention among their pedestrians is a batch of small matrices.
 
 use std::cmp::Reverse;
 use std::ops::Range;
 
-/// Rows are a multiple of this long: what libtorch's fused attention on CUDA takes without copying the mask.
+/// The length of rows is a multiple of this: libtorch's fused attention on CUDA then takes the mask without a copy.
 const ALIGNMENT: usize = 8;
 
-/// Where the pedestrians of some scenes stand in rows of about the length of the largest scene, each with whole scenes.
+/// Places of the pedestrians of several scenes in rows of about the length of the largest scene. Each row holds whole
+/// scenes.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Packing {
     rows: usize,
     length: usize,
-    /// For each pedestrian, its place: `row * length + column`.
+    /// The place of each pedestrian: `row * length + column`.
     places: Vec<usize>,
 }
 
 impl Packing {
-    /// Places scenes, the largest first, each in the first row that has room for it.
+    /// Places the scenes, the largest first, each in the first row with enough room.
     pub(crate) fn new(scenes: &[Range<usize>]) -> Self {
         let largest = scenes.iter().map(Range::len).max().unwrap_or(0);
         let length = largest.next_multiple_of(ALIGNMENT);
@@ -57,7 +58,7 @@ impl Packing {
         &self.places
     }
 
-    /// The pedestrian at each place; the first pedestrian where nobody stands.
+    /// The pedestrian at each place; the first pedestrian at empty places.
     pub(crate) fn pedestrians(&self) -> Vec<usize> {
         let mut pedestrians = vec![0; self.rows * self.length];
         for (pedestrian, &place) in self.places.iter().enumerate() {
@@ -104,7 +105,7 @@ mod tests {
                     places[places.len() - 1] / packing.length()
                 );
             }
-            // any two rows together hold more than one row has room for
+            // any two rows together hold more than fits in one row
             let half_full = packing.rows().saturating_sub(1) * packing.length();
             prop_assert!(half_full < 2 * pedestrians);
         }

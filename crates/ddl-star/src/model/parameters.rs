@@ -7,8 +7,8 @@ use tch::{Device, Kind, Tensor};
 
 /// The learned tensors of a network, in the order of its [`Layout`].
 ///
-/// All of them are views into one flat vector, so that the optimiser, gradient clipping and
-/// checkpoints of its state work on a single tensor.
+/// All of them are views into one flat vector, so that the optimiser, gradient clipping and saved states work on a
+/// single tensor.
 #[derive(Debug)]
 pub struct Parameters {
     layout: Arc<Layout>,
@@ -57,12 +57,12 @@ impl Parameters {
             .map(|(_, tensor)| tensor)
     }
 
-    /// How many numbers are learned in all.
+    /// The number of learned parameters.
     pub fn count(&self) -> usize {
         self.layout.count()
     }
 
-    /// A copy of all learned numbers in single precision.
+    /// A copy of all learned parameters in single precision.
     ///
     /// # Errors
     /// [`StarError::Torch`] when they cannot be fetched from their device.
@@ -72,7 +72,7 @@ impl Parameters {
         Ok(Weights::new(Arc::clone(&self.layout), numbers))
     }
 
-    /// Takes over other learned numbers of the same layout.
+    /// Copies learned parameters of the same layout.
     ///
     /// # Errors
     /// [`StarError::Network`] when they are of another layout; the parameters are then unchanged.
@@ -88,12 +88,12 @@ impl Parameters {
         &self.tensors
     }
 
-    /// All learned numbers as one vector that shares its memory with the tensors.
+    /// All learned parameters as one vector that shares its memory with the tensors.
     pub(crate) fn flat(&self) -> &Tensor {
         &self.flat
     }
 
-    /// The gradient of a loss that only libtorch's operations lead to, as one vector like [`flat`](Self::flat).
+    /// The gradient of a loss computed by libtorch's operations only, as one vector like [`flat`](Self::flat).
     pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
         let rows = Tensor::f_run_backward(&[loss], &self.tensors, false, false)?
             .iter()

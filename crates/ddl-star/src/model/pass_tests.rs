@@ -11,7 +11,7 @@ use ddl_network::{
 };
 use tch::Kind;
 
-/// Windows of very different numbers of pedestrians, a lone one among them, or that one alone.
+/// Windows of very different numbers of pedestrians, including a single one, or the single one only.
 fn scenes() -> [Vec<Window>; 3] {
     let dataset = Dataset::simulated(1);
     let windows = dataset.recordings()[0].windows(WindowRule::Complete);
@@ -60,9 +60,9 @@ fn network(config: &StarConfig, kind: Kind) -> TorchNetwork {
 enum By {
     /// Kernels and tape, in single precision.
     Kernels,
-    /// libtorch in double precision, with weights shared by all their uses, as on CUDA.
+    /// libtorch in double precision, with gradients of a weight from all its uses at once, as on CUDA.
     SharedWeights,
-    /// libtorch alone, in double precision.
+    /// libtorch only, in double precision.
     Torch,
 }
 
@@ -116,7 +116,7 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: &Pass) -> Tensor {
     crate::mean_distance(&walk.positions.squeeze_dim(1), &truth)
 }
 
-/// A loss, and how far it and its gradient may be off, as shares.
+/// A loss, with the largest relative errors of it and of its gradient.
 type Compared = (fn(&[Window], &TorchNetwork, &Pass) -> Tensor, [f64; 2]);
 
 #[test]
@@ -151,7 +151,7 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
     }
 }
 
-/// What is asked of a network: windows, goals, noise, step rule, shares.
+/// The input of a forecast: windows, goals, noise, step rule, shares.
 type Question = (
     Vec<Window>,
     Vec<Vec<Vec<[f64; 2]>>>,
@@ -160,9 +160,9 @@ type Question = (
     Option<Vec<Vec<f64>>>,
 );
 
-/// Several goals or several noise vectors, all of the metric or shares of it.
+/// Several goals or several noise vectors, with the whole metric or shares of it.
 fn questions(rule: StepRule) -> Vec<Question> {
-    // Next to the goal rounding decides where a plain step leads: those goals are out of reach.
+    // Close to the goal, rounding decides the direction of a plain step: those goals are far away.
     let beyond = if rule == StepRule::Euler { 20.0 } else { 0.0 };
     let [_, many, alone] = scenes();
     let mut questions = Vec::new();
@@ -221,10 +221,10 @@ fn apart(ours: &[WindowRollout], known: &[WindowRollout]) -> f64 {
     differences.max_by(f64::total_cmp).unwrap()
 }
 
-/// Positions and factors of forecasts by the plain network as libtorch has them in double precision, before and after the
+/// Positions and factors of forecasts by the kernels equal those of libtorch in double precision, before and after the
 /// weights change.
 #[test]
-fn plain_numbers_give_the_forecasts_of_libtorch() {
+fn kernels_give_the_forecasts_of_libtorch() {
     let [bounded, euler] = [StepRule::Bounded, StepRule::Euler].map(questions);
     for config in configs() {
         let name = name(&config);

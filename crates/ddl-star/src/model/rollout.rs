@@ -16,23 +16,24 @@ use ddl_network::{NetworkFrame, StepRule};
 use std::slice::from_ref;
 use tch::{Kind, Tensor};
 
-/// What the network made of observed frames: where everybody goes, and what shaped the way.
+/// The forecast from observed frames: positions, and the factors that shaped them.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct Rollout {
     /// `[horizon, H, P, 2]`, metres.
     pub positions: Tensor,
-    /// `[horizon, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), with which each position
-    /// was reached; `None` for the variants without dynamics.
+    /// `[horizon, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), of the step to each position; `None`
+    /// for the variants without dynamics.
     pub factors: Option<Tensor>,
 }
 
 impl TorchNetwork {
-    /// One-step-ahead positions: from the true positions up to each frame, the next one.
+    /// One-step-ahead positions: the next position from the true positions up to each frame.
     ///
     /// # Shapes
-    /// `batch` of T frames with neighbours of at least T - 1, T at least 8 in the pedestrians' own frames and without goal shift; `goals`
-    /// `[P, 2]`; `noise` one vector, or none -> `[T - 1, P, 2]`, the forecasts of frames 1..T.
+    /// `batch` of T frames with neighbours of at least T - 1, where T is at least 8 in the pedestrians' own frames and
+    /// without goal shift; `goals` `[P, 2]`; `noise` one vector or none -> `[T - 1, P, 2]`, the forecasts of frames
+    /// 1..T.
     pub fn teacher_forced(
         &self,
         batch: &SceneBatch,
@@ -44,7 +45,7 @@ impl TorchNetwork {
         self.teacher_forced_in(batch, goals, noise, &pass)
     }
 
-    /// [`teacher_forced`](Self::teacher_forced) in a pass of its own.
+    /// [`teacher_forced`](Self::teacher_forced) in the given pass.
     pub(crate) fn teacher_forced_in(
         &self,
         batch: &SceneBatch,
@@ -71,7 +72,7 @@ impl TorchNetwork {
     ) -> Tensor {
         let steps = batch.positions.size()[0] as usize - 1;
         let positions = batch.positions.narrow(0, 0, steps as i64);
-        // The frames are known, so the backbone looks at all their scenes at once.
+        // The frames are known, so the backbone encodes all their scenes at once.
         let centred = backend.given(&centre(batch, &positions));
         let scenes = backbone.scene(backend, &centred, &backend.seen(batch, 0..steps));
         let scenes = backend.each_entry(&scenes);
@@ -95,14 +96,14 @@ impl TorchNetwork {
         course.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
-    /// Forecast positions: 8 frames observed, then every forecast is the input of the next step.
+    /// Forecast positions: 8 observed frames, then every forecast is the input of the next step.
     ///
-    /// Neighbours are those of the last observed frame throughout. H = G hypotheses with one goal
-    /// each, or H = number of noise vectors when all share one goal (G = 1).
+    /// Neighbours are those of the last observed frame throughout. H = G hypotheses with one goal each, or H = number
+    /// of noise vectors for a single goal (G = 1).
     ///
     /// # Shapes
-    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none
-    /// -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions `[horizon, H, P,
+    /// 2]` and factors `[horizon, H, P, 3]`.
     pub fn roll_out(
         &self,
         batch: &SceneBatch,
@@ -115,7 +116,7 @@ impl TorchNetwork {
         self.roll_out_in(batch, goals, noise, (horizon, rule), &pass)
     }
 
-    /// [`roll_out`](Self::roll_out) in a pass of its own. Gradients come back through walk and memory alone.
+    /// [`roll_out`](Self::roll_out) in the given pass. Gradients flow back through positions and memory only.
     pub(crate) fn roll_out_in(
         &self,
         batch: &SceneBatch,
@@ -150,8 +151,8 @@ impl TorchNetwork {
         let course = self.course(batch, goals, rule);
         let centred = backend.given(&centre(batch, &observed));
         let scene = backbone.scene(backend, &centred, &backend.seen(batch, 0..OBSERVED));
-        // The observed frames differ between hypotheses only through the goal they are shifted by:
-        // `relative` has one batch entry a distinct reference.
+        // The observed frames differ between hypotheses only by the goal that they are relative to: `relative` has one
+        // batch entry for each distinct reference.
         let mut memory = Memory::default();
         let mut features = Vec::new();
         for (t, scene) in backend.each_entry(&scene).iter().enumerate() {
@@ -199,7 +200,7 @@ impl TorchNetwork {
         }
     }
 
-    /// Where the pedestrians are led, as this network reads it. Shapes: `batch` of at least 8 frames, unless the network
+    /// Goals and frames of the pedestrians for this network. Shapes: `batch` of at least 8 frames, unless the network
     /// reads positions relative to the goal in the world's frame; `goals` `[.., P, 2]`.
     fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
         let config = self.config();

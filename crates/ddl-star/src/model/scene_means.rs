@@ -3,14 +3,14 @@
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// Averages over scenes, summed in the same order whenever they are computed, which sums by index are not on CUDA.
+/// Averages over scenes, always summed in the same order. Sums by index on CUDA are not.
 #[derive(Debug)]
 pub(crate) struct SceneMeans {
     scenes: i64,
     largest: i64,
-    /// `[S * largest]`, the pedestrians of each scene; its first pedestrian again where it has no more.
+    /// `[S * largest]`, the pedestrians of each scene, padded with its first pedestrian.
     pedestrians: Tensor,
-    /// `[S, largest, 1]`, 1 / size for the pedestrians of a scene, 0 for what fills it up.
+    /// `[S, largest, 1]`, 1 / size for the pedestrians of a scene, 0 for padding.
     shares: Tensor,
     /// `[P]`, the scene of each pedestrian.
     scene_of: Tensor,
@@ -44,8 +44,7 @@ impl SceneMeans {
         }
     }
 
-    /// For every pedestrian, the mean of `x` over its scene.
-    /// Shapes: `x` `[B, P, n]` -> the same.
+    /// For every pedestrian, the mean of `x` over its scene. Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn of(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
         let side_by_side =

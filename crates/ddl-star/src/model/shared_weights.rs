@@ -1,6 +1,6 @@
-//! Affine maps that are applied many times in a pass: the gradients of their weights from all uses at once.
-//! What comes back to the output of every use is kept, and dW = G^T X is one product over the rows of all uses: on CUDA
-//! a gradient at each of 19 frames would cost launches and little else.
+//! Affine maps that are applied many times in a pass, with the gradients of their weights from all uses at once. The
+//! gradient of the output of every use is kept, and dW = G^T X is one product over the rows of all uses. On CUDA,
+//! separate gradients at each of 19 frames would mostly cost launches.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -23,7 +23,7 @@ pub(crate) struct SharedWeights {
     uses: RefCell<Vec<Use>>,
 }
 
-/// Inputs and gradients of outputs, row by row, of all uses of a weight, and its bias.
+/// Inputs and gradients of outputs, in row-major order, of all uses of a weight and its bias.
 #[derive(Debug)]
 struct UsedRows {
     bias: usize,
@@ -32,7 +32,7 @@ struct UsedRows {
 }
 
 impl SharedWeights {
-    /// y = x W^T + b, to be differentiated by [`gradient`](Self::gradient) alone.
+    /// y = x W^T + b, which only [`gradient`](Self::gradient) differentiates.
     /// Shapes: `x` `[.., inputs]`, `weight` `[outputs, inputs]`, `bias` `[outputs]` -> `[.., outputs]`.
     pub(crate) fn linear(&self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
         let output = x.linear(&weight.detach(), Some(&bias.detach()));
@@ -50,7 +50,7 @@ impl SharedWeights {
         output
     }
 
-    /// The gradient of `loss` with respect to all learned numbers, as one vector; forgets the uses.
+    /// The gradient of `loss` with respect to all learned parameters, as one vector; clears the uses.
     pub(crate) fn gradient(
         &self,
         loss: &Tensor,
@@ -80,11 +80,11 @@ impl SharedWeights {
     }
 }
 
-/// The gradients of weights and biases, by the place of these, from those of the uses' outputs.
+/// The gradients of weights and biases, by their address, from those of the uses' outputs.
 fn shares(uses: &[Use], of_outputs: Vec<Tensor>) -> Result<BTreeMap<usize, Tensor>, TchError> {
     let mut by_weight: BTreeMap<usize, UsedRows> = BTreeMap::new();
     for (of, gradient) in uses.iter().zip(of_outputs) {
-        // The loss does not depend on everything: what the last frame remembers is never asked for.
+        // The loss does not depend on every use: the memory of the last frame, for example, is never read.
         if !gradient.defined() {
             continue;
         }
@@ -111,7 +111,7 @@ fn shares(uses: &[Use], of_outputs: Vec<Tensor>) -> Result<BTreeMap<usize, Tenso
     Ok(shares)
 }
 
-/// What tells the learned tensors apart: where their numbers lie. None is empty and no two overlap.
+/// The address of its numbers identifies a learned tensor: no tensor is empty, and no two overlap.
 fn place(tensor: &Tensor) -> usize {
     tensor.data_ptr() as usize
 }

@@ -1,4 +1,4 @@
-//! Backends whose tokens come from tensors and go back to them: what the rollout of training needs.
+//! Backends that convert tokens from and to tensors, for the rollout of training.
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
@@ -10,16 +10,16 @@ use std::sync::Arc;
 use tch::{TchError, Tensor};
 
 pub(crate) trait TensorBackend: Backend {
-    /// Numbers that the network is given, which nobody asks the gradient of, `[B, P, width]`.
+    /// Inputs of the network without gradients, `[B, P, width]`.
     fn given(&self, x: &Tensor) -> Self::Tokens;
 
-    /// All batch entries, `[1, P, width]` each.
+    /// The batch entries, each `[1, P, width]`.
     fn each_entry(&self, x: &Self::Tokens) -> Vec<Self::Tokens>;
 
-    /// All batch entries of all tokens, for libtorch, which goes on from there.
+    /// All batch entries of all tokens as a tensor of libtorch.
     fn joined(&self, all: &[Self::Tokens]) -> Tensor;
 
-    /// Who sees whom during some time steps: one serves every batch entry, several one entry each.
+    /// The neighbours during some time steps: one step serves every batch entry, several serve one entry each.
     fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> Self::Seen;
 }
 
@@ -29,7 +29,7 @@ impl TensorBackend for TorchBackend {
     }
 
     fn each_entry(&self, x: &Rc<Tensor>) -> Vec<Rc<Tensor>> {
-        // All at once: the gradients of single ones would each be filled up to the whole and added.
+        // Split all at once: the gradient of each single slice would be padded to the whole and added.
         x.split(1, 0).into_iter().map(Rc::new).collect()
     }
 
@@ -65,7 +65,7 @@ impl TensorBackend for KernelBackend {
             [one] => tensor(one),
             all => Tensor::cat(&all.iter().map(tensor).collect::<Vec<_>>(), 0),
         };
-        // Here libtorch's graph begins; its gradients come back to the rows first.
+        // libtorch's graph begins here; its gradients return to the rows first.
         let leaf = joined.set_requires_grad(true);
         let joined = leaf.shallow_clone();
         let all = all.to_vec();
@@ -92,7 +92,7 @@ impl TensorBackend for KernelBackend {
     }
 }
 
-/// The numbers of a tensor, row by row.
+/// The numbers of a tensor in row-major order.
 pub(super) fn numbers(tensor: &Tensor) -> Buffer {
     let mut numbers = Buffer::any(tensor.numel());
     let plain = tensor.detach().contiguous();
@@ -100,7 +100,7 @@ pub(super) fn numbers(tensor: &Tensor) -> Buffer {
     numbers
 }
 
-/// One run through a network: by libtorch, or by kernels where they can, on the CPU in `f32`.
+/// One pass through a network: by libtorch, or by kernels where possible, on the CPU in `f32`.
 #[derive(Debug)]
 pub(crate) enum Pass {
     /// On any device, in any precision.
@@ -110,7 +110,7 @@ pub(crate) enum Pass {
 }
 
 impl Pass {
-    /// A pass of training: dropout by this seed in the kernels, gradients by [`gradient`](Self::gradient).
+    /// A training pass: dropout by this seed in the kernels, gradients by [`gradient`](Self::gradient).
     pub(crate) fn training(
         mode: Mode,
         seed: u64,
@@ -125,7 +125,7 @@ impl Pass {
         }
     }
 
-    /// The gradient of `loss` with respect to all learned numbers, as one vector.
+    /// The gradient of `loss` with respect to all learned parameters, as one vector.
     pub(crate) fn gradient(
         &self,
         loss: &Tensor,
@@ -141,7 +141,7 @@ impl Pass {
         loss.f_backward()?;
         let mut sums = vec![0.0; parameters.count()];
         kernels.backward(&mut sums);
-        // Those of the layers that libtorch computes.
+        // The gradients of the layers that libtorch computes.
         let tensors = parameters.layout().tensors().iter();
         for (learned, tensor) in parameters.tensors().iter().zip(tensors) {
             let gradient = learned.f_grad()?;

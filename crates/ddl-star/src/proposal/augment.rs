@@ -1,15 +1,15 @@
-//! Changes to a batch that leave a plausible scene. A fold's windows overlap: what identifies a pedestrian must change from
-//! visit to visit, or it is learned by heart.
+//! Augmentations that keep a scene plausible. The windows of a fold overlap: without random changes, the network would
+//! memorise single pedestrians.
 
 use super::data::{RememberedViews, Views};
 use ddl_network::ProposalTraining;
 use tch::{Kind, Tensor};
 
-/// Standard deviation of what is added to each of a neighbour's positions (metres).
+/// Standard deviation of the noise on each position of a neighbour (metres).
 const NEIGHBOUR_NOISE: f64 = 0.02;
 
-/// Augments a batch with numbers from libtorch's generator.
-/// Shapes: `views` `[M, B, ..]`, `future` `[M, B, 12, 2]`; the same come back.
+/// Augments a batch with numbers from libtorch's generator. Shapes: `views` `[M, B, ..]`, `future` `[M, B, 12, 2]`; the
+/// result has the same shapes.
 pub(crate) fn augment(
     views: &Views,
     future: &Tensor,
@@ -20,11 +20,11 @@ pub(crate) fn augment(
     let options = (future.kind(), future.device());
     let uniform = || Tensor::rand(per_pedestrian, options) * 2.0 - 1.0;
     let scale = (uniform() * training.scale).exp();
-    // Not `sign`, which has a third value.
+    // `sign` would have a third value, 0.
     let mirror = uniform().ge(0.0).to_kind(options.0) * 2.0 - 1.0;
     let angle = Tensor::randn(per_pedestrian, options) * training.turn;
     let (cos, sin) = (&scale * angle.cos(), &scale * angle.sin());
-    // Row vectors: p' = p [[cos, sin], [-m sin, m cos]], a turn after a mirror image in the x axis.
+    // Row vectors: p' = p [[cos, sin], [-m sin, m cos]], a reflection in the x axis, then a rotation.
     let matrix = Tensor::stack(
         &[
             Tensor::stack(&[cos.shallow_clone(), sin.shallow_clone()], -1),
@@ -55,8 +55,8 @@ pub(crate) fn augment(
     (augmented, future.matmul(&matrix))
 }
 
-/// What is remembered, turned by `matrix`, each track elsewhere by some centimetres, and for some pedestrians only in part.
-/// Shapes: `matrix` `[M, B, 2, 2]`.
+/// The memory transformed by `matrix`, with each track shifted by some centimetres, and dropped in part for some
+/// pedestrians. Shapes: `matrix` `[M, B, 2, 2]`.
 fn remembering(
     remembered: &RememberedViews,
     matrix: &Tensor,

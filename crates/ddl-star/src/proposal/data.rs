@@ -1,4 +1,4 @@
-//! What the network sees of many pedestrians, as tensors.
+//! The views of many pedestrians as tensors.
 
 use crate::StarError;
 use crate::model::tensor;
@@ -16,8 +16,8 @@ pub(crate) struct Views {
     pub(crate) remembered: RememberedViews,
 }
 
-/// Earlier pedestrians of the place, G of each view; G is 0 for a network without a memory branch.
-/// Shapes: `tracks` `[.., G, 20, 2]`, `distances` `[.., G]`, `present` `[.., G]` (1 or 0).
+/// Earlier pedestrians of the place, G in each view; G is 0 for a network without a memory branch. Shapes: `tracks`
+/// `[.., G, 20, 2]`, `distances` `[.., G]`, `present` `[.., G]` (1 or 0).
 #[derive(Debug)]
 pub(crate) struct RememberedViews {
     pub(crate) tracks: Tensor,

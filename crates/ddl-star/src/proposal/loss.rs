@@ -1,4 +1,5 @@
-//! The loss: the nearest ends share it at first, the winner takes all at last.
+//! The loss: several of the nearest endpoints share it at first, only the nearest at the end (relaxed winner takes
+//! all).
 
 use super::network::Proposals;
 use ddl_data::HORIZON;
@@ -7,16 +8,15 @@ use tch::{Kind, Tensor};
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LossWeights {
-    /// How many of the nearest ends share the loss; a fraction counts for the last of them.
+    /// Number of nearest endpoints that share the loss; a fraction weights the last of them.
     pub(crate) relaxed: f64,
     pub(crate) waypoints: f64,
     pub(crate) probability: f64,
 }
 
-/// Mean over pedestrians of the (relaxed) distance of the nearest proposal, plus the cross-entropy of
-/// the nearest one's probability; summed over members, which learn apart.
-/// Shapes: `future` `[M, B, 12, 2]` -> the loss to descend, and the distance part as the mean over members
-/// (metres), both scalar.
+/// Mean over pedestrians of the (relaxed) distance of the nearest proposal, plus the cross-entropy of its probability.
+/// It is summed over members, which are trained independently. Shapes: `future` `[M, B, 12, 2]` -> the loss to
+/// minimise, and its distance part as the mean over members (metres), both scalar.
 pub(crate) fn winner_takes_all(
     proposals: &Proposals,
     future: &Tensor,
@@ -71,7 +71,7 @@ mod tests {
     use tch::{Device, Kind, Tensor};
 
     #[test]
-    fn only_the_nearest_count_and_fewer_of_them_as_it_goes() {
+    fn only_the_nearest_count_and_their_number_shrinks() {
         // One member, one pedestrian that ends at (5, 0); ends at distances 1, 3 and 2.
         let future = Tensor::zeros([1, 1, 12, 2], (Kind::Double, Device::Cpu));
         future.select(2, 11).copy_(&Tensor::from_slice(&[5.0, 0.0]));

@@ -17,8 +17,8 @@ use tch::{Kind, Tensor};
 
 const CHUNK: usize = 2048;
 
-/// What the network says of a batch.
-/// Shapes: `ends` `[M, B, K, 2]`, `waypoints` `[M, B, K, 3, 2]` (metres), `logits` `[M, B, K]`.
+/// The output of the network for a batch. Shapes: `ends` `[M, B, K, 2]`, `waypoints` `[M, B, K, 3, 2]` (metres),
+/// `logits` `[M, B, K]`.
 #[derive(Debug)]
 pub(crate) struct Proposals {
     pub(crate) ends: Tensor,
@@ -61,7 +61,7 @@ impl TorchProposals {
         })
     }
 
-    /// This network behind the trait that proposals are asked of, computed by libtorch.
+    /// This network, computed by libtorch, as a `ProposeEnds`.
     #[must_use]
     pub fn into_proposer(self) -> Box<dyn ProposeEnds> {
         Box::new(TorchProposer {
@@ -77,12 +77,12 @@ impl TorchProposals {
         tensors[1].baddbmm(x, &tensors[0], 1.0, 1.0)
     }
 
-    /// Its shape.
+    /// The shape of the network.
     pub fn config(&self) -> &ProposalConfig {
         &self.config
     }
 
-    /// The learned tensors, each with the members along its first dimension.
+    /// The learned tensors, each with the ensemble's members along its first dimension.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
     }
@@ -95,13 +95,13 @@ impl TorchProposals {
         self.kind
     }
 
-    /// Proposes ends for each of the pedestrians.
+    /// Proposes endpoints for each of the pedestrians.
     ///
     /// # Shapes
-    /// One [`ProposedEnds`] a view, in their order: places in metres ahead and to the left.
+    /// One [`ProposedEnds`] for each view, in their order: positions in metres ahead and to the left.
     ///
     /// # Errors
-    /// [`StarError::Torch`] when libtorch fails, for want of memory for instance.
+    /// [`StarError::Torch`] when libtorch fails, for example for lack of memory.
     pub fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, StarError> {
         let _guard = tch::no_grad_guard();
         let mut proposed = Vec::with_capacity(views.len());
@@ -150,15 +150,14 @@ impl TorchProposals {
         Ok(proposed)
     }
 
-    /// What is proposed from the observation alone.
-    /// Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
+    /// The proposals from the observation only. Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
     pub(crate) fn forward(&self, views: &Views) -> Proposals {
         let readings = self.read(&self.layers.readout, &self.hidden_layer(views));
         self.placed(readings, views)
     }
 
-    /// What the memory branch proposes; `None` without one. No gradient reaches the rest of the network.
-    /// Shapes: `views` `[M, B, ..]` -> `[M, B, K, ..]`.
+    /// The proposals of the memory branch; `None` without one. No gradient reaches the rest of the network. Shapes:
+    /// `views` `[M, B, ..]` -> `[M, B, K, ..]`.
     pub(crate) fn forward_remembering(&self, views: &Views) -> Option<Proposals> {
         let (attention, readout) = self.layers.memory.as_ref()?;
         let memory = self.config.memory.as_ref()?;
@@ -187,8 +186,7 @@ impl TorchProposals {
         Some(self.placed(readings, views))
     }
 
-    /// The last hidden layer of the network without a memory branch.
-    /// Shapes: -> `[M, B, width]`.
+    /// The last hidden layer of the network without a memory branch. Shapes: -> `[M, B, width]`.
     fn hidden_layer(&self, views: &Views) -> Tensor {
         let size = views.own.size();
         let (m, b) = (size[0], size[1]);
@@ -209,8 +207,8 @@ impl TorchProposals {
         self.through(hidden, code, context, sum(&seen) * 0.1)
     }
 
-    /// Hidden layers, with short cuts between those of one width.
-    /// Shapes: `code` `[M, B, width]`, `context` `[M, B, ..]`, `amount` `[M, B, 1]` -> `[M, B, width]`.
+    /// Hidden layers, with residual connections between layers of equal width. Shapes: `code` `[M, B, width]`,
+    /// `context` `[M, B, ..]`, `amount` `[M, B, 1]` -> `[M, B, width]`.
     fn through(
         &self,
         layers: &[MemberAffine],
@@ -230,7 +228,8 @@ impl TorchProposals {
         hidden
     }
 
-    /// What a readout says, before it is placed: ends about the straight way, waypoints about the way to the ends.
+    /// The output of a readout before it is placed: endpoints relative to the straight path, waypoints relative to the
+    /// paths to the endpoints.
     fn read(&self, layers: &ReadoutLayers, hidden: &Tensor) -> Proposals {
         let size = hidden.size();
         let (m, b, ends, points) = (size[0], size[1], self.config.ends, WAYPOINTS.len() as i64);
@@ -258,8 +257,8 @@ impl TorchProposals {
         }
     }
 
-    /// What somebody makes of others: attention with one more choice of score 0, nobody.
-    /// Shapes: `code` `[M, B, width]`, `features` `[M, B, J, ..]`, `present` `[M, B, J]` (1 or 0) -> `[M, B, code width]`.
+    /// Attention of a pedestrian over others, with an additional empty entry of score 0. Shapes: `code` `[M, B,
+    /// width]`, `features` `[M, B, J, ..]`, `present` `[M, B, J]` (1 or 0) -> `[M, B, code width]`.
     fn attend(
         &self,
         layers: &AttentionLayers,
@@ -282,9 +281,9 @@ impl TorchProposals {
             / ((near / heads) as f64).sqrt();
         let hidden = present.eq(0.0).unsqueeze(-1);
         let scores = scores.masked_fill(&hidden, f64::NEG_INFINITY);
-        // One more choice of score 0: nobody.
-        let nobody = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.torch()));
-        let attention = Tensor::cat(&[scores, nobody], 2)
+        // The additional entry of score 0.
+        let empty = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.torch()));
+        let attention = Tensor::cat(&[scores, empty], 2)
             .softmax(2, None::<Kind>)
             .narrow(2, 0, slots);
         (attention.unsqueeze(-1) * value)
@@ -367,7 +366,7 @@ fn sum(x: &Tensor) -> Tensor {
     x.sum_dim_intlist([-1i64].as_slice(), true, None::<Kind>)
 }
 
-/// Proposals by libtorch. Tensors may move between threads, but not be shared: one call at a time.
+/// Proposals by libtorch. Tensors can move between threads but not be shared, so one call runs at a time.
 #[derive(Debug)]
 struct TorchProposer {
     config: ProposalConfig,

@@ -21,9 +21,9 @@ use tch::Tensor;
 
 /// Name of the running mean of the weights in a saved state.
 const AVERAGED: &str = "average";
-/// Share of the past that the running mean of the weights keeps at each step.
+/// Decay of the running mean of the weights in each step.
 const AVERAGE: f64 = 0.999;
-/// Share of the past that the reported distance keeps at each step.
+/// Decay of the reported distance in each step.
 const REPORTED: f64 = 0.98;
 
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -32,27 +32,27 @@ struct ProposalProgress {
     distance: f64,
 }
 
-/// A proposal network in training: first what it proposes from the observation alone, then its memory branch, if it has
-/// one. A run that was stopped, saved and resumed gives the weights of one that was not.
+/// A proposal network in training: first the proposals from the observation only, then its memory branch, if it has
+/// one. A run that was stopped, saved and resumed gives the same weights as an uninterrupted run.
 #[derive(Debug)]
 pub struct ProposalTrainer {
     network: TorchProposals,
     adam: Adam,
-    /// Always open: every step is looked at before it is taken.
+    /// Always open: every step is checked before it is taken.
     gate: FiniteGate,
-    /// Running mean of the weights, which is what is used in the end.
+    /// Running mean of the weights, which becomes the result.
     average: Tensor,
-    /// Of the examples, then of the reversed ones.
+    /// Views of the examples, then of the reversed ones.
     views: Views,
     future: Tensor,
-    /// Examples that are not reversed.
+    /// Number of examples that are not reversed.
     onward: usize,
     training: ProposalTraining,
     progress: ProposalProgress,
 }
 
 impl ProposalTrainer {
-    /// Prepares training on the examples, and on `reversed` ones, pedestrians as if time ran backwards; there may be none.
+    /// Prepares training on the examples and on `reversed` ones, with time running backwards; there may be none.
     ///
     /// # Errors
     /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without
@@ -94,7 +94,7 @@ impl ProposalTrainer {
         })
     }
 
-    /// Steps done, and steps in all.
+    /// Steps done, and steps in total.
     pub fn steps(&self) -> (u64, u64) {
         let memory = self.network.config().memory.as_ref();
         let of_memory = memory.map_or(0, |_| self.training.memory.steps);
@@ -107,7 +107,7 @@ impl ProposalTrainer {
         done >= all
     }
 
-    /// Ends training and hands the network over, with the running mean of its weights.
+    /// Ends training and returns the network with the running mean of its weights.
     ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails.
@@ -121,7 +121,7 @@ impl ProposalTrainer {
     /// Saves weights, their mean, the optimiser and the progress to one file.
     ///
     /// # Errors
-    /// When the file cannot be written; an earlier one is then left as it was.
+    /// When the file cannot be written; an earlier one is unchanged.
     pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let extra = Extra {
             progress: vec![self.progress.steps as f64, self.progress.distance],
@@ -130,10 +130,10 @@ impl ProposalTrainer {
         checkpoint::save(self.network.parameters(), &self.adam, &extra, origin, path)
     }
 
-    /// Goes on from a saved state of the same run.
+    /// Continues from a saved state of the same run.
     ///
     /// # Errors
-    /// [`StarError::Network`] when the file is of another origin, or not a whole state of this network.
+    /// [`StarError::Network`] when the file is of another origin, or not a complete state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let mut extra = Extra {
             progress: vec![0.0; 2],
@@ -154,13 +154,13 @@ impl ProposalTrainer {
     /// One batch for every member: forward, backward, clipped Adam step.
     ///
     /// # Errors
-    /// [`StarError::ProposalNonFinite`] when loss or gradient is no longer a number; the weights are
-    /// then those before the step.
+    /// [`StarError::ProposalNonFinite`] when the loss or gradient is not finite; the weights are then those before the
+    /// step.
     pub fn step(&mut self) -> Result<ProposalStep, StarError> {
         let _one_thread = OneThread::begin();
         let step = self.progress.steps;
         let training = &self.training;
-        // Steps of this part of the training: done, and in all.
+        // Steps of this part of the training: done, and in total.
         let (done, all) = match step.checked_sub(training.steps) {
             None => (step, training.steps),
             Some(done) => (done, training.memory.steps),
@@ -191,12 +191,12 @@ impl ProposalTrainer {
             [("loss", distance), ("gradient norm", norm_value)],
         )?;
         let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, all);
-        // Members learn apart: the norm of all their gradients grows with the root of their number.
+        // Members are trained independently: the norm of all their gradients grows with the root of their number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
         self.adam
             .step(parameters, &gradient, &norm, clip, rate, &self.gate);
         let _guard = tch::no_grad_guard();
-        // Young means follow quickly, so that the initial weights are soon forgotten.
+        // The decay is smaller at first, so that the initial weights are soon forgotten.
         let kept = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));
         let _ = self.average.lerp_(&parameters.flat().detach(), 1.0 - kept);
         let kept = if done == 0 { 0.0 } else { REPORTED };
@@ -208,8 +208,8 @@ impl ProposalTrainer {
         })
     }
 
-    /// From here on the rest of the network is the mean of its weights, and no gradient reaches it: without moments,
-    /// Adam leaves it as it is.
+    /// Fixes the rest of the network at the mean of its weights. No gradient reaches it, and without moments Adam does
+    /// not change it.
     fn begin_memory_branch(&mut self) -> Result<(), StarError> {
         let _guard = tch::no_grad_guard();
         let parameters = self.network.parameters();
@@ -229,7 +229,7 @@ impl ProposalTrainer {
             return Ok(());
         };
         let row = rows.int64_value(&[0, 0]) as usize;
-        // the reversed examples lie behind the others
+        // the reversed examples come after the others
         let reversed = row >= self.onward;
         let example = if reversed { row - self.onward } else { row };
         Err(StarError::ProposalNonFinite {
@@ -261,7 +261,7 @@ impl ProposalTrainer {
             .reshape([members, batch])
             .to_device(self.future.device());
         let (views, future) = (self.views.rows(&rows), rows_of(&self.future, &rows));
-        // Held from seeding to the last draw.
+        // Hold the lock from seeding to the last draw.
         let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         tch::manual_seed((rng.next_u64() >> 1).cast_signed());
         let (views, future) = augment(&views, &future, &self.training);

@@ -1,4 +1,4 @@
-//! The state of a training under way, as one file: checked when read, atomic when written.
+//! The state of an unfinished training in one file, checked when read and written atomically.
 
 use super::optimizer::Adam;
 use crate::StarError;
@@ -15,7 +15,7 @@ const FIRST_MOMENT: &str = "first_moment";
 const SECOND_MOMENT: &str = "second_moment";
 const PROGRESS: &str = "progress";
 
-/// What lies beside weights and moments: the counters of a training, as `progress`, and vectors like the weights.
+/// Additional content of the file: the counters of a training, as `progress`, and vectors of the size of the weights.
 #[derive(Debug)]
 pub(crate) struct Extra<'a> {
     /// The first one is the number of steps.
@@ -34,7 +34,7 @@ pub(crate) struct TrainerProgress {
     pub(crate) seconds: f64,
 }
 
-/// Writes everything a killed run needs to go on in one file, so that its parts never disagree.
+/// Writes everything that a killed run needs to continue into one file, so that its parts always match.
 pub(crate) fn save(
     parameters: &Parameters,
     adam: &Adam,
@@ -60,7 +60,7 @@ pub(crate) fn save(
     Ok(write_tensors(&tensors, origin, path)?)
 }
 
-/// Restores all of it, and gives the progress; nothing is changed when the file is not whole.
+/// Restores the state and returns the progress; changes nothing if the file is not complete.
 pub(crate) fn load(
     parameters: &Parameters,
     adam: &mut Adam,
@@ -84,7 +84,7 @@ pub(crate) fn load(
     let others = names
         .map(|(name, _)| find(name))
         .collect::<Result<Vec<_>, _>>()?;
-    // Adam divides by the root of its second moment: a negative one would turn weights into NaN.
+    // Adam divides by the root of its second moment: a negative one would give NaN.
     if second.lt(0.0).any().int64_value(&[]) != 0 {
         let problem = format!(
             "{SECOND_MOMENT} holds negative numbers; delete it and run the same training again"

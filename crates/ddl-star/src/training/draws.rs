@@ -1,4 +1,4 @@
-//! What training steps draw: noise, rotation and seeds, for many steps at once.
+//! The random draws of training steps: noise, rotations and seeds, for many steps at once.
 
 use super::schedule::Schedule;
 use crate::StarError;
@@ -10,14 +10,14 @@ use rand_distr::StandardNormal;
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// Everything random of some steps in a row, copied to the device at once, so that no step has to wait.
+/// The random draws of consecutive steps, copied to the device at once, so that no step has to wait.
 #[derive(Debug)]
 pub(crate) struct StepDraws {
     steps: Range<u64>,
     seeds: Vec<Seeds>,
     /// `[steps, noise]`.
     noise: Tensor,
-    /// `[steps, 2, 2]`, the images of the axes; `None` where nothing is turned.
+    /// `[steps, 2, 2]`, the images of the axes; `None` without rotation and mirroring.
     turns: Option<Tensor>,
 }
 
@@ -40,7 +40,7 @@ pub(crate) struct StepDraw {
 }
 
 impl StepDraws {
-    /// Draws for `steps`; `turned` and `mirrored` where batches are to be.
+    /// Draws for `steps`; rotations and reflections if `turned` and `mirrored`.
     pub(crate) fn new(
         steps: Range<u64>,
         schedule: &Schedule,
@@ -88,7 +88,7 @@ impl StepDraws {
         })
     }
 
-    /// What a step draws; `None` for a step that these draws are not for.
+    /// The draws of a step; `None` for a step outside of these draws.
     pub(crate) fn at(&self, step: u64) -> Option<StepDraw> {
         let index = step.checked_sub(self.steps.start)?;
         let seeds = self.seeds.get(index as usize)?;
@@ -101,7 +101,7 @@ impl StepDraws {
         })
     }
 
-    /// Makes the noise of a step no number.
+    /// Sets the noise of a step to NaN.
     #[cfg(test)]
     pub(crate) fn spoil(&mut self, step: u64) {
         let row = (step - self.steps.start) as i64;

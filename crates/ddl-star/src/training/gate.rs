@@ -1,8 +1,8 @@
-//! Updates that stop at the first number that is none, without asking the device for it.
+//! A gate that stops updates at the first value that is not finite, without waiting for the device.
 
 use tch::{Device, Kind, Tensor};
 
-/// Open until it has seen a number that is not finite, then shut until it is reopened; decided on the device.
+/// Open until it sees a value that is not finite, then shut until it is reopened; evaluated on the device.
 #[derive(Debug)]
 pub(crate) struct FiniteGate {
     /// Scalar, 1 or 0.
@@ -16,10 +16,10 @@ impl FiniteGate {
         }
     }
 
-    /// Shuts it if any of the numbers is not finite.
+    /// Shuts the gate if a value is not finite.
     pub(crate) fn watch(&mut self, numbers: &Tensor) {
         let _guard = tch::no_grad_guard();
-        // 0 x is 0 for every number and for nothing else.
+        // 0 x is 0 for finite x only.
         let finite = (numbers * 0.0).eq(0.0).all();
         self.open *= finite;
     }
@@ -28,12 +28,12 @@ impl FiniteGate {
         let _ = self.open.fill_(1.0);
     }
 
-    /// 1 where it is open, 0 where it is shut; a scalar.
+    /// 1 if open, 0 if shut; a scalar.
     pub(crate) fn open(&self) -> &Tensor {
         &self.open
     }
 
-    /// Whether it is shut, a truth value on the device; a scalar.
+    /// Whether it is shut, a boolean scalar on the device.
     pub(crate) fn shut(&self) -> Tensor {
         self.open.eq(0.0)
     }

@@ -20,7 +20,7 @@ pub fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
 /// Both `[T, P, 2]` -> scalar, in metres.
 ///
 /// # Numerics
-/// Where both are the same the derivative is 0.
+/// The derivative is 0 where both are equal.
 pub fn mean_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
     (forecast - truth)
         .norm_scalaropt_dim(2, [-1i64].as_slice(), false)

@@ -1,4 +1,4 @@
-//! Adam (Kingma and Ba 2015) with its state in our hands, so that it can be saved and restored.
+//! Adam (Kingma and Ba 2015) with accessible state, so that it can be saved and restored.
 
 use super::gate::FiniteGate;
 use crate::model::Parameters;
@@ -8,7 +8,7 @@ const BETA_1: f64 = 0.9;
 const BETA_2: f64 = 0.999;
 const EPSILON: f64 = 1e-8;
 
-/// Adam over all learned numbers as one vector.
+/// Adam over all learned parameters as one vector.
 #[derive(Debug)]
 pub(crate) struct Adam {
     steps: u64,
@@ -17,7 +17,7 @@ pub(crate) struct Adam {
 }
 
 impl Adam {
-    /// Fresh state for a network's parameters.
+    /// Initial state for a network's parameters.
     pub(crate) fn new(parameters: &Parameters) -> Self {
         Self {
             steps: 0,
@@ -31,12 +31,12 @@ impl Adam {
     }
 
     /// One step against `gradient`, whose norm is `norm`, clipped to norm `clip`. Behind a shut gate neither the
-    /// parameters nor the moments change, whatever the gradient is; the step is counted all the same.
-    /// Shapes: `gradient`: as many numbers as [`Parameters::count`]; `norm`: scalar.
+    /// parameters nor the moments change, whatever the gradient is, but the step counts. Shapes: `gradient` has
+    /// [`Parameters::count`] entries; `norm` is a scalar.
     ///
     /// # Numerics
     /// m / (1 - b1^n) / (sqrt(v / (1 - b2^n)) + e) is computed as c m / (sqrt(v) + e'), with both corrections in the
-    /// scalars: all of it is nine passes over the numbers, and nothing is read back.
+    /// scalars: nine passes over the numbers in total, without reading from the device.
     pub(crate) fn step(
         &mut self,
         parameters: &Parameters,
@@ -48,7 +48,7 @@ impl Adam {
     ) {
         let _guard = tch::no_grad_guard();
         let mut gradient = gradient * (clip / (norm + 1e-6)).clamp_max(1.0);
-        // What is no number stays none when it is multiplied by 0.
+        // NaN times 0 is NaN, so use a mask.
         let _ = gradient.masked_fill_(&gate.shut(), 0.0);
         self.steps += 1;
         let power = i32::try_from(self.steps).unwrap_or(i32::MAX);
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn it_does_what_the_paper_says() {
+    fn it_agrees_with_the_paper() {
         let parameters = parameters();
         let mut adam = Adam::new(&parameters);
         let gate = FiniteGate::new(Device::Cpu, Kind::Double);

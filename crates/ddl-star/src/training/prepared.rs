@@ -1,4 +1,4 @@
-//! The batches of a training, made once.
+//! The batches of a training, each made once.
 
 use crate::StarError;
 use crate::model::{SceneBatch, tensor};
@@ -6,11 +6,11 @@ use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use tch::{Device, Kind, Tensor};
 
-/// Training windows as batches that stay where the network computes, each laid out at its first visit.
+/// Training windows as batches on the device of the network, each made at its first visit.
 #[derive(Debug)]
 pub(crate) struct PreparedBatches {
     windows: Vec<Window>,
-    /// One a pedestrian of each window; `None` for the true ends.
+    /// One goal for each pedestrian of each window; `None` for the true endpoints.
     goals: Option<Vec<Vec<Position>>>,
     neighbour_box: f64,
     device: Device,
@@ -18,7 +18,7 @@ pub(crate) struct PreparedBatches {
     made: Vec<OnceCell<TrainingBatch>>,
 }
 
-/// A batch with its future, and where its pedestrians are led.
+/// A batch with its future and the goals of its pedestrians.
 #[derive(Debug)]
 pub(crate) struct TrainingBatch {
     pub(crate) scenes: SceneBatch,
@@ -27,7 +27,7 @@ pub(crate) struct TrainingBatch {
 }
 
 impl TrainingBatch {
-    /// The same with all positions turned as the axes are: `images` `[2, 2]`, one a row.
+    /// The same with all positions transformed by the images of the axes, the rows of `images` `[2, 2]`.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {
             scenes: self.scenes.turned(images),
@@ -35,8 +35,8 @@ impl TrainingBatch {
         }
     }
 
-    /// The same as if every observed coordinate were off by a normal error, whose deviation is uniform from 0 to
-    /// `jitter` (m) for each pedestrian. Future and goals stay where they are. Draws from libtorch's generator.
+    /// Adds a normal error to every observed coordinate, with a standard deviation for each pedestrian that is uniform
+    /// from 0 to `jitter` (m). Future and goals are unchanged. Draws from libtorch's generator.
     pub(crate) fn jittered(self, jitter: f64) -> Self {
         let Self { scenes, goals } = self;
         let observed = scenes.positions.narrow(0, 0, OBSERVED as i64);
@@ -63,7 +63,8 @@ impl TrainingBatch {
 }
 
 impl PreparedBatches {
-    /// Room for `count` batches of `windows`, each with its future and, where they do not lead to the true ends, its goals.
+    /// Prepares `count` batches of `windows`, each with its future and with its goals unless these are the true
+    /// endpoints.
     pub(crate) fn new(
         (windows, goals): (Vec<Window>, Option<Vec<Vec<Position>>>),
         count: usize,
@@ -85,8 +86,8 @@ impl PreparedBatches {
         &self.windows[index]
     }
 
-    /// The batch of that number, which consists of `windows`, the same at every call.
-    /// Shapes: All 20 frames, with neighbours of the first 19.
+    /// The batch of that index, which consists of `windows`, the same at every call. Shapes: all 20 frames, with
+    /// neighbours of the first 19.
     pub(crate) fn batch(
         &self,
         index: usize,
@@ -125,7 +126,7 @@ mod tests {
     use ddl_data::{Dataset, WindowRule};
 
     #[test]
-    fn jitter_moves_what_was_observed_and_nothing_else() {
+    fn jitter_moves_only_observed_positions() {
         let dataset = Dataset::simulated(1);
         let windows = dataset.recordings()[0].windows(WindowRule::Complete);
         let (device, kind) = (Device::Cpu, Kind::Double);
@@ -138,8 +139,8 @@ mod tests {
         let (observed, future) = (moved.slice(0, 0, 8, 1), moved.slice(0, 8, 20, 1));
         assert_eq!(future, future.zeros_like());
         assert_eq!(off.goals, exact.goals);
-        // Every pedestrian, frame and axis has an error of its own, some pedestrians' are small, and over all of them the mean
-        // square of a uniform deviation is a third of that of the largest.
+        // Every pedestrian, frame and axis has its own error, and those of some pedestrians are small. The mean square
+        // of a uniform deviation is a third of the square of the largest.
         let squares = observed.square();
         let all = squares.mean(Kind::Double).double_value(&[]).sqrt();
         assert!((all - 0.05 / 3_f64.sqrt()).abs() < 0.004, "{all}");

@@ -1,4 +1,4 @@
-//! Which windows form a batch, in which order batches are visited, and how each is turned.
+//! Assigns windows to batches, orders the batches, and draws their rotations.
 
 use ddl_data::{Rotation, Window};
 use ddl_network::TrainingConfig;
@@ -6,8 +6,7 @@ use ddl_network::seed::{Stage, stream};
 use rand::RngExt as _;
 use std::f64::consts::PI;
 
-/// Batches of window indices, visited round and round in a fixed order (as published: windows are
-/// shuffled once).
+/// Batches of window indices, visited repeatedly in a fixed order (as published: windows are shuffled once).
 #[derive(Debug)]
 pub(crate) struct Schedule {
     batches: Vec<Vec<usize>>,
@@ -16,8 +15,8 @@ pub(crate) struct Schedule {
 }
 
 impl Schedule {
-    /// Shuffles the windows and gathers them into batches of more than `batch_pedestrians` pedestrians; an
-    /// incomplete last batch is dropped, unless it is the only one.
+    /// Shuffles the windows and groups them into batches of more than `batch_pedestrians` pedestrians. An incomplete
+    /// last batch is dropped unless it is the only one.
     pub(crate) fn new(windows: &[Window], config: &TrainingConfig) -> Self {
         let mut order: Vec<usize> = (0..windows.len()).collect();
         let mut rng = stream(config.seed, Stage::BatchOrder, 0);
@@ -75,7 +74,7 @@ impl Schedule {
         &self.batches[index]
     }
 
-    /// How the batch of a step is turned: one angle in [0, pi) a visit, added up over its visits.
+    /// The rotation of the batch of a step: the sum over its visits of one angle in [0, pi) for each visit.
     pub(crate) fn rotation(&self, step: u64) -> Rotation {
         let batches = self.batches.len() as u64;
         let (visit, index) = (step / batches, step % batches);

@@ -20,21 +20,21 @@ use std::sync::PoisonError;
 use std::time::Instant;
 use tch::{Device, Tensor};
 
-/// Steps whose losses CUDA keeps before they are read.
+/// Number of steps whose losses CUDA keeps before they are read.
 const READ_EVERY_ON_CUDA: usize = 16;
 
-/// A network in training. A run that was stopped, saved and resumed gives the weights of one that was not.
+/// A network in training. A run that was stopped, saved and resumed gives the same weights as an uninterrupted run.
 #[derive(Debug)]
 pub struct Trainer {
     network: TorchNetwork,
-    /// The weights as kernels read them, where kernels compute.
+    /// The weights in the form of the kernels, if kernels compute.
     kernels: Option<Arc<Kernels>>,
     adam: Adam,
     schedule: Schedule,
     batches: PreparedBatches,
     draws: Option<StepDraws>,
     gate: FiniteGate,
-    /// Loss and norm of the gradient of the last steps, `[2]` each, not read yet.
+    /// Loss and norm of the gradient of the last steps, `[2]` each, not yet read from the device.
     unread: Vec<Tensor>,
     read_every: usize,
     config: TrainingConfig,
@@ -52,14 +52,14 @@ impl Trainer {
         windows: Vec<Window>,
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
-        let lessons = windows.into_iter().filter(Window::has_future).collect();
-        Self::of(network, lessons, None, config)
+        let with_future = windows.into_iter().filter(Window::has_future).collect();
+        Self::of(network, with_future, None, config)
     }
 
-    /// Prepares training of `network` on `windows`, whose pedestrians are led to `goals` instead of their true ends.
+    /// Prepares training of `network` on `windows`, with `goals` instead of the true endpoints.
     ///
     /// # Shapes
-    /// `goals[w][i]` is that of pedestrian i of window w, metres.
+    /// `goals[w][i]` is the goal of pedestrian i of window w, metres.
     ///
     /// # Errors
     /// As [`new`](Self::new); [`NetworkError::Shape`] when the goals do not fit the windows.
@@ -75,12 +75,15 @@ impl Trainer {
             let first = pedestrians.iter().zip(&given).position(|(a, b)| a != b);
             let (expected, got) = match first {
                 Some(w) => (
-                    format!("{} goals, one a pedestrian, of window {w}", pedestrians[w]),
+                    format!(
+                        "{} goals for window {w}, one for each pedestrian",
+                        pedestrians[w]
+                    ),
                     format!("{}", given[w]),
                 ),
                 None => (
-                    format!("the goals of {} windows", pedestrians.len()),
-                    format!("those of {}", given.len()),
+                    format!("goals of {} windows", pedestrians.len()),
+                    format!("goals of {} windows", given.len()),
                 ),
             };
             return Err(NetworkError::shape("training", expected, got).into());
@@ -132,12 +135,12 @@ impl Trainer {
         })
     }
 
-    /// The network as trained so far.
+    /// The network with its current weights.
     pub fn network(&self) -> &TorchNetwork {
         &self.network
     }
 
-    /// A copy of the learned numbers as trained so far.
+    /// A copy of the current weights.
     ///
     /// # Errors
     /// [`StarError::Torch`] when they cannot be fetched from their device.
@@ -145,8 +148,8 @@ impl Trainer {
         self.network.parameters().to_weights()
     }
 
-    /// Ends training and hands the network over. On CUDA, losses not read yet are never looked at: end at the
-    /// end of an epoch, or [`save`](Self::save) first.
+    /// Ends training and returns the network. On CUDA, unread losses are discarded unchecked: end at the end of an
+    /// epoch, or [`save`](Self::save) first.
     #[must_use]
     pub fn into_network(self) -> TorchNetwork {
         self.network
@@ -162,7 +165,7 @@ impl Trainer {
         (self.progress.steps / self.schedule.steps_per_epoch() as u64) as usize
     }
 
-    /// Steps done, over all epochs, and steps in all.
+    /// Steps done, over all epochs, and steps in total.
     pub fn steps(&self) -> (u64, u64) {
         let total = self.schedule.steps_per_epoch() * self.config.epochs;
         (self.progress.steps, total as u64)
@@ -171,7 +174,7 @@ impl Trainer {
     /// Saves weights, optimiser and progress to one file.
     ///
     /// # Errors
-    /// When the file cannot be written; an earlier one is then left as it was. [`StarError::NonFinite`] as in
+    /// When the file cannot be written; an earlier one is unchanged. [`StarError::NonFinite`] as in
     /// [`step`](Self::step).
     pub fn save(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         self.read()?;
@@ -187,10 +190,10 @@ impl Trainer {
         checkpoint::save(self.network.parameters(), &self.adam, &extra, origin, path)
     }
 
-    /// Goes on from a saved state of the same run.
+    /// Continues from a saved state of the same run.
     ///
     /// # Errors
-    /// [`NetworkError::Checkpoint`] when the file is of another origin, or not a whole state of this network.
+    /// [`NetworkError::Checkpoint`] when the file is of another origin, or not a complete state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let (_, total) = self.steps();
         let parameters = self.network.parameters();
@@ -211,13 +214,12 @@ impl Trainer {
 
     /// One batch: forward, backward, clipped Adam step.
     ///
-    /// Nothing is read back from the device but what [`StepReport::loss`] says. That a step changes nothing
-    /// when its loss is no longer a number is decided on the device, and so does no later one; the
-    /// next reading finds out.
+    /// Only the loss in [`StepReport::loss`] is read back from the device. If the loss of a step is not finite, the
+    /// device itself skips this step and all later ones; the next reading reports it.
     ///
     /// # Errors
-    /// [`StarError::NonFinite`] when loss or gradient of this step, or of one since the last reading, is no longer a
-    /// number. The weights and the steps done are then those before that step.
+    /// [`StarError::NonFinite`] when the loss or gradient of this step, or of one since the last reading, is not
+    /// finite. The weights and the number of steps are then those before that step.
     pub fn step(&mut self) -> Result<StepReport, StarError> {
         let started = Instant::now();
         let step = self.progress.steps;
@@ -225,7 +227,7 @@ impl Trainer {
         self.update_kernels()?;
         let batch = self.batch(step, &draw)?;
         let (loss, pass) = {
-            // Held from seeding to the last draw of dropout.
+            // Hold the lock from seeding to the last draw of dropout.
             let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
             tch::manual_seed(draw.libtorch);
             let batch = if self.config.jitter > 0.0 {
@@ -271,13 +273,13 @@ impl Trainer {
     fn update_kernels(&mut self) -> Result<(), StarError> {
         if let Some(kernels) = &mut self.kernels {
             let weights = self.network.parameters().to_weights()?;
-            // In place, unless an earlier pass still holds those of before.
+            // In place, unless an earlier pass still holds the old weights.
             Arc::make_mut(kernels).update(weights.numbers());
         }
         Ok(())
     }
 
-    /// Reads the losses that are not read yet: their mean, if there are any. Waits for the device.
+    /// Reads the unread losses; returns their mean, if there are any. Waits for the device.
     fn read(&mut self) -> Result<Option<f64>, StarError> {
         let unread = std::mem::take(&mut self.unread);
         if unread.is_empty() {
@@ -328,7 +330,7 @@ impl Trainer {
         }
     }
 
-    /// The batch of a step, turned as it draws.
+    /// The batch of a step, transformed by its draws.
     fn batch(&self, step: u64, draw: &StepDraw) -> Result<TrainingBatch, StarError> {
         let index = self.schedule.batch_index(step);
         let batch = self.batches.batch(index, self.schedule.batch(index))?;
@@ -338,7 +340,7 @@ impl Trainer {
         })
     }
 
-    /// What a step draws, drawn with all that is left of its epoch.
+    /// The draws of a step, made for the rest of its epoch at once.
     fn draw(&mut self, step: u64) -> Result<StepDraw, StarError> {
         loop {
             if let Some(draw) = self.draws.as_ref().and_then(|draws| draws.at(step)) {

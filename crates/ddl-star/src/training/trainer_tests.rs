@@ -1,4 +1,4 @@
-//! Training whose losses are read now and then, as on CUDA.
+//! Training whose losses are read at intervals, as on CUDA.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -38,7 +38,7 @@ fn state(trainer: &Trainer) -> [Tensor; 3] {
 }
 
 #[test]
-fn when_losses_are_read_makes_no_difference() {
+fn the_interval_of_reading_losses_changes_nothing() {
     for kind in [Kind::Float, Kind::Double] {
         let mut every = trainer(kind, 1);
         let mut some = trainer(kind, 4);
@@ -62,7 +62,7 @@ fn when_losses_are_read_makes_no_difference() {
 }
 
 #[test]
-fn a_bad_step_is_found_later_and_nothing_after_it_counts() {
+fn a_bad_step_is_reported_later_and_later_steps_do_not_count() {
     for kind in [Kind::Float, Kind::Double] {
         let mut known = trainer(kind, 1);
         for _ in 0..2 {
@@ -87,7 +87,7 @@ fn a_bad_step_is_found_later_and_nothing_after_it_counts() {
         assert_eq!(trainer.steps(), known.steps());
         assert!((trainer.progress.loss_sum - known.progress.loss_sum).abs() < 1e-15);
 
-        // Drawn afresh, the step is as good as any other.
+        // New draws make the step finite.
         trainer.draws = None;
         trainer.read_every = 1;
         assert_eq!(trainer.step().unwrap().loss, known.step().unwrap().loss);
@@ -96,7 +96,7 @@ fn a_bad_step_is_found_later_and_nothing_after_it_counts() {
 }
 
 #[test]
-fn saving_reads_what_is_not_read_yet() {
+fn saving_reads_unread_losses() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.safetensors");
     let (mut every, mut some) = (trainer(Kind::Float, 1), trainer(Kind::Float, 16));
@@ -121,7 +121,7 @@ fn saving_reads_what_is_not_read_yet() {
 }
 
 #[test]
-fn a_state_that_cannot_be_is_refused() {
+fn an_impossible_state_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.safetensors");
     let refused = |spoil: &dyn Fn(&mut Trainer), words: &str| {

@@ -1,15 +1,15 @@
-//! Timing in turns, with empty caches.
+//! Measures several pieces of work in turns, with empty caches.
 
 use crate::Result;
 use rustix::time::{ClockId, clock_gettime};
 use std::hint::black_box;
 
-/// Bytes that are gone through to empty the caches: more than they hold.
+/// Bytes read to empty the caches: more than they hold.
 const CACHES: usize = 256 << 20;
 
 #[derive(Clone, Copy)]
 pub(crate) enum Clock {
-    /// That of the processor, of all threads of the process together.
+    /// Processor time of all threads of the process.
     Processor,
     #[cfg(feature = "torch")]
     Wall,
@@ -32,8 +32,8 @@ impl Clock {
     }
 }
 
-/// Seconds of everything, median of the turns. Before each of them the caches are emptied; the first turn does not
-/// count.
+/// Seconds of each piece of work, as the median of the turns. The caches are emptied before each piece; the first turn
+/// does not count.
 pub(crate) fn side_by_side<const N: usize>(
     clock: Clock,
     turns: usize,

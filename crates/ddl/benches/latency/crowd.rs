@@ -1,4 +1,4 @@
-//! The cost of a forecast by the number of pedestrians at a constant density.
+//! The cost of a forecast as a function of the number of pedestrians, at constant density.
 
 use crate::Result;
 use crate::clock::Clock;
@@ -11,18 +11,18 @@ use std::f64::consts::TAU;
 use std::io::Write as _;
 use std::{fs, iter};
 
-/// Pedestrians in a square metre, about as many as in the recording `students003`.
+/// Pedestrians per square metre, about as many as in the recording `students003`.
 const DENSITY: f64 = 0.2;
-/// Metres that a place jitters by from frame to frame.
+/// Noise of a position from frame to frame (metres).
 const JITTER: f64 = 0.01;
 
-/// A row for each number of pedestrians: seconds of processor time, and the memory the process needs at most.
+/// Prints one row for each number of pedestrians: seconds of processor time, and the peak memory of the process.
 pub(crate) fn measure(sizes: &[usize]) -> Result<()> {
     let model = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
     let mut out = std::io::stdout().lock();
     writeln!(
         out,
-        "{DENSITY} pedestrians in a square metre, one thread, processor time\n\
+        "{DENSITY} pedestrians per square metre, one thread, processor time\n\
          pedestrians | 20 hypotheses, s | ms a pedestrian | one, s | a live frame, one, s | MiB at most"
     )?;
     for &pedestrians in sizes {
@@ -42,7 +42,7 @@ pub(crate) fn measure(sizes: &[usize]) -> Result<()> {
     Ok(())
 }
 
-/// Pedestrians at random places of a square, each walking straight on at its own speed.
+/// Pedestrians at random positions in a square, each in a straight line at its own speed.
 fn crowd(pedestrians: usize) -> Result<Window> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let side = (pedestrians as f64 / DENSITY).sqrt();
@@ -63,7 +63,7 @@ fn crowd(pedestrians: usize) -> Result<Window> {
     Ok(Window::new("crowd", 0, 1, ids.collect(), tracks)?)
 }
 
-/// The central forecast alone.
+/// Only the central forecast.
 #[derive(Debug, Clone, Copy)]
 struct One<'a>(&'a Ddl);
 
@@ -73,13 +73,12 @@ impl Forecaster for One<'_> {
     }
 
     fn forecast(&self, window: &Window) -> std::result::Result<Forecast, ForecastError> {
-        // One window in, one forecast out.
         let mut forecasts = self.0.forecast_one(std::slice::from_ref(window))?;
         Ok(forecasts.remove(0))
     }
 }
 
-/// Seconds to push the eighth frame of a stream, the first from which all pedestrians can be forecast.
+/// Seconds to push the eighth frame of a stream, the first with a forecast for all pedestrians.
 fn live_frame(model: &Ddl, window: &Window) -> Result<f64> {
     let mut live = LiveForecaster::new(One(model));
     let frame = |t: usize| {
@@ -95,8 +94,8 @@ fn live_frame(model: &Ddl, window: &Window) -> Result<f64> {
     })
 }
 
-/// Processor time of the work, the least of three turns. A turn repeats the work of a small window until it is long
-/// enough for the clock; a long turn is the only one.
+/// Processor time of the work, the minimum of three turns. A turn repeats the work of a small window until it is long
+/// enough for the clock; a long turn is not repeated.
 fn seconds(pedestrians: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     let repetitions = (400 / pedestrians).max(1);
     let mut least = f64::INFINITY;
@@ -113,12 +112,12 @@ fn seconds(pedestrians: usize, mut work: impl FnMut() -> Result<()>) -> Result<f
 /// Seconds after which a turn is not repeated.
 const LONG: f64 = 2.0;
 
-/// MiB that the process has had resident at most since the last call.
+/// The peak resident memory of the process in MiB since the last call.
 fn most_memory() -> Result<usize> {
     let status = fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     let kib = line.and_then(|line| line.split_whitespace().next());
-    // A 5 resets what `VmHWM` counts from.
+    // Writing 5 resets `VmHWM`.
     fs::write("/proc/self/clear_refs", "5")?;
     Ok(kib
         .ok_or("no VmHWM in /proc/self/status")?

@@ -1,11 +1,11 @@
-//! What a forecast costs, `cargo bench -p ddl --bench latency`, and with `--features torch` a training step as well.
+//! The cost of a forecast: `cargo bench -p ddl --bench latency`; with `--features torch` also that of a training step.
 //!
 //! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of about
 //! 266 pedestrians with initial weights. Figures are medians of turns, each with empty caches: processor time for one
-//! thread, wall time for two.
+//! thread, wall-clock time for two.
 //!
-//! `cargo bench -p ddl --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead,
-//! `-- crowd 100 400` of these numbers of them alone.
+//! `cargo bench -p ddl --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead, and `-- crowd
+//! 100 400` only these numbers of pedestrians.
 
 mod clock;
 mod crowd;
@@ -58,10 +58,10 @@ fn main() -> Result<()> {
 
 const CROWDS: [usize; 9] = [1, 10, 25, 100, 400, 1_600, 5_000, 10_000, 20_000];
 
-/// Stretches of a memory that is all but full.
+/// Stretches of a memory that is almost full.
 const FULL: usize = SceneMemory::DEFAULT_CAPACITY * 9 / 10;
 
-/// A memory of all the simulated scenes, and of other crowds in them until it holds so many stretches.
+/// A memory of all simulated scenes, filled with other simulated crowds up to this number of stretches.
 fn memory_of(dataset: &Dataset, stretches: usize) -> Result<SceneMemory> {
     let step = dataset.recordings()[0].frame_step();
     let mut memory = SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)?;
@@ -79,7 +79,7 @@ fn memory_of(dataset: &Dataset, stretches: usize) -> Result<SceneMemory> {
     }
 }
 
-/// The time of a whole forecast, and of its parts.
+/// The time of a whole forecast and of its parts.
 fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<String> {
     let model = Ddl::open(
         &ModelSource::Builtin(BuiltinModel::Hotel),
@@ -90,7 +90,7 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();
     let all = vec![goals];
     let star = &model.config().star;
-    // Weights do not change the time.
+    // The time does not depend on the weights.
     let network = |backbone| {
         let config = StarConfig {
             backbone,

@@ -3,7 +3,7 @@ use ddl::data::{Dataset, Window};
 
 const PEDESTRIANS: usize = 25;
 
-/// The first moment of the simulated recordings at which so many people can be forecast, and so many of these.
+/// The first moment of the simulated recordings with enough pedestrians to forecast, cut to `PEDESTRIANS`.
 pub(crate) fn of(dataset: &Dataset) -> Result<Window> {
     let recordings = dataset.recordings().iter();
     let window = recordings

@@ -19,7 +19,7 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     let (clock, time) = if threads == 1 {
         (Clock::Processor, "processor time")
     } else {
-        (Clock::Wall, "by the clock")
+        (Clock::Wall, "wall-clock time")
     };
     let [step] = pool.install(|| {
         let device = ComputeDevice::open(DeviceChoice::Cpu)?;
@@ -34,7 +34,8 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     ))
 }
 
-/// Training windows of few people each, as most recorded ones are, until they hold more than `pedestrians`: one batch.
+/// One batch of training windows with few pedestrians each, as in most recordings; together they hold more than
+/// `pedestrians`.
 fn one_batch(dataset: &Dataset, pedestrians: usize) -> Result<Vec<Window>> {
     let windows = dataset
         .fold("corridor")?

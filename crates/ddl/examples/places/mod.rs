@@ -5,11 +5,11 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[allow(dead_code, reason = "each example takes one part")]
+#[allow(dead_code, reason = "each example uses one part")]
 pub(crate) enum Part {
-    /// The first, the third and so on, or of one file the first half of its windows: what constants are fitted on.
+    /// Every other file from the first, or the first half of the windows of a single file: data for fitting constants.
     Calibration,
-    /// The others, for the last look.
+    /// The others, for the final evaluation.
     Rest,
 }
 
@@ -22,12 +22,12 @@ pub(crate) struct Place {
     pub(crate) windows: Vec<Window>,
 }
 
-/// Folder and frames a second of `FOLDER=FPS`.
+/// Folder and frame rate of `FOLDER=FPS`.
 fn parts(place: &str) -> Result<(&str, &str), Box<dyn Error>> {
     Ok(place.split_once('=').ok_or("a place is FOLDER=FPS")?)
 }
 
-/// All recordings of `FOLDER=FPS`, csv files in metres, in steps of 0.4 s, by name.
+/// All recordings of `FOLDER=FPS`, from csv files in metres, by name, in steps of 0.4 s.
 pub(crate) fn recordings(place: &str) -> Result<Vec<Recording>, Box<dyn Error>> {
     let (folder, rate) = parts(place)?;
     let frame_time = 1.0 / rate.parse::<f64>()?;
@@ -44,7 +44,8 @@ pub(crate) fn recordings(place: &str) -> Result<Vec<Recording>, Box<dyn Error>> 
 }
 
 impl Place {
-    /// Of `FOLDER=FPS`, csv files in metres, in steps of 0.4 s, as many windows, evenly spread, as hold about `pedestrians`.
+    /// Evenly spread windows of `FOLDER=FPS` that hold about `pedestrians`, from csv files in metres, in steps of 0.4
+    /// s.
     pub(crate) fn read(
         place: &str,
         part: Part,

@@ -3,12 +3,13 @@ use crate::evaluation::test_set::TestSet;
 use ddl_data::{Dataset, Window};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 
-/// Measures the baselines on the test windows of some folds, under every window rule that the convention's tables have.
+/// Measures the baselines on the test windows of these folds, under every window rule in the tables of the convention.
 ///
-/// With `test_pedestrians`, on a seeded part of at least so many pedestrians a fold: the part that [`evaluate`](crate::evaluate) takes.
+/// With `test_pedestrians`, on the seeded part of the windows that [`evaluate`](crate::evaluate) takes: at least this
+/// many pedestrians for each fold.
 ///
 /// # Errors
-/// When there is no fold of that name, or its windows cannot be scored.
+/// When a fold is missing, or its windows cannot be scored.
 pub fn measure_baselines(
     dataset: &Dataset,
     folds: &[String],
@@ -21,7 +22,7 @@ pub fn measure_baselines(
         let convention = dataset.convention();
         let test = TestSet::new(&dataset.fold(name)?, convention, test_pedestrians);
         for (rule, indices) in &test.rules {
-            // a small part may hold no window of one of the rules
+            // A small part may hold no window of a rule.
             if indices.is_empty() {
                 continue;
             }

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 const WINDOWS_AT_ONCE: usize = 64;
 
-/// Errors of the best of 20 hypotheses, means over pedestrians, metres.
+/// Errors of the best of 20 hypotheses in metres, means over pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct BestOfTwenty {
     /// minADE.
@@ -36,20 +36,23 @@ impl BestOfTwenty {
 /// A run and another model on the same windows, under the protocol `fair`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Pedestrians in the windows, each counted once a window.
+    /// Pedestrians in the windows, each counted once for each window.
     pub pedestrians: usize,
     /// The run.
     pub run: BestOfTwenty,
     /// The other model.
     pub other: BestOfTwenty,
-    /// How much greater the minADE of the run is, with its interval; `None` where they start in fewer than 10 stretches of 20 s.
+    /// The minADE of the run minus that of the other model, with its interval; `None` where the windows start in fewer
+    /// than 10 blocks of 20 s.
     pub difference: Option<PairedDifference>,
 }
 
-/// Measures a run and another model on all windows that the run kept for validation, as [`evaluate`](crate::evaluate) does under the protocol `fair`.
+/// Measures a run and another model on all validation windows of the run, as [`evaluate`](crate::evaluate) does under
+/// the protocol `fair`.
 ///
 /// # Errors
-/// When the run kept nothing for validation, or the data is not what it was trained on; [`DdlError::Interrupted`] when the observer asks to stop.
+/// When the run kept no validation part, or the data is not its training data; [`DdlError::Interrupted`] when the
+/// observer asks to stop.
 pub fn compare_on_validation(
     run: &Ddl,
     other: &Ddl,
@@ -71,7 +74,7 @@ pub fn compare_on_validation(
         Ok(block_errors(&windows, &forecasts)?)
     };
     let (of_run, of_other) = (measured(run)?, measured(other)?);
-    // of the same windows, so that there is no such error
+    // The windows are the same, so the only error is too few blocks.
     let difference = paired_difference(&[&of_run], &[&of_other], BlockMetric::MinAde).ok();
     Ok(Comparison {
         pedestrians: windows.iter().map(Window::len).sum(),

@@ -18,54 +18,56 @@ use ddl_report::{Moment, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
-const PEDESTRIANS_A_REPORT: usize = 128;
-/// Protocols under which the windows alone are seen.
+const PEDESTRIANS_PER_REPORT: usize = 128;
+/// Protocols that show the windows alone.
 const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
-/// Protocols under which their recordings have been watched until then.
+/// Protocols that also show the recording before the last observed frame of a window.
 const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
-/// Pedestrians of the test set on which the published protocol chooses its epoch, at most.
+/// Largest number of test pedestrians on which the published protocol chooses its epoch.
 const SELECTION_PEDESTRIANS: usize = 250;
 
-/// What to measure.
+/// What to evaluate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EvaluationRequest {
-    /// Under which protocols.
+    /// The protocols.
     pub protocols: Vec<Protocol>,
-    /// On which windows.
+    /// The windows.
     pub on: EvaluationSplit,
-    /// Recordings that are the validation part of own recordings, instead of that which a training would keep; only for models that know none of them.
+    /// Recordings that form the validation part of own recordings, instead of the part that training would keep. Only
+    /// for models that were trained on none of these recordings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub validation_recordings: Vec<String>,
-    /// On at least so many test pedestrians, a seeded part; on all when `None`.
+    /// Evaluate a seeded part of the windows with at least this many test pedestrians; `None`: all.
     pub test_pedestrians: Option<usize>,
     /// Commit of the program, for the record.
     pub commit: String,
 }
 
-/// What the evaluation tells its observer.
+/// Progress of an evaluation, for its observer.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationProgress {
-    /// Pedestrians forecast so far, and in all.
+    /// Pedestrians forecast so far, and in total.
     pub pedestrians: (usize, usize),
-    /// The protocol under way.
+    /// The current protocol.
     pub protocol: Protocol,
 }
 
-/// What an evaluation gives.
+/// The result of an evaluation.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Evaluation {
-    /// The numbers, each with its conditions.
+    /// The scores, each with its conditions.
     pub rows: Vec<ResultRow>,
-    /// Moments to look at, with what the model forecast under `fair`, on windows of the headline rule; none without that protocol.
+    /// Moments to look at, with the model's `fair` forecasts on windows of the headline rule; empty without that
+    /// protocol.
     pub moments: Vec<Moment>,
 }
 
-/// Measures the model and the baselines on the test windows of the model's fold.
+/// Evaluates the model and the baselines on the test windows of the model's fold.
 ///
 /// # Errors
-/// When the data is neither of the convention the model was trained on nor somebody's own, when the model has learned from it, or forecasting or scoring fails;
-/// [`DdlError::Interrupted`] when the observer asks to stop.
+/// When the data is neither of the convention that the model was trained on nor own recordings; when the model was
+/// trained on the data; when forecasting or scoring fails. [`DdlError::Interrupted`] when the observer asks to stop.
 pub fn evaluate(
     model: &Ddl,
     dataset: &Dataset,
@@ -98,19 +100,19 @@ pub fn evaluate(
     } else {
         test.windows.clone()
     };
-    let honest = measuring.honest(&ALONE, &windows)?;
-    rows.extend(honest.rows);
+    let results = measuring.without_future(&ALONE, &windows)?;
+    rows.extend(results.rows);
     if asked(&WATCHING) {
         let windows = remembering(Remembering::Online)?;
-        rows.extend(measuring.honest(&WATCHING, &windows)?.rows);
+        rows.extend(measuring.without_future(&WATCHING, &windows)?.rows);
     }
     Ok(Evaluation {
         rows,
-        moments: honest.moments,
+        moments: results.moments,
     })
 }
 
-/// The goals that a manner is given, where the model has these of its own; of the published ones another estimator knows.
+/// The goals for a manner, from the model itself; `None` for the published goals, which another estimator makes.
 fn goals_for(
     given: GivenGoals,
     model: &GoalModel,
@@ -128,9 +130,9 @@ fn goals_for(
     }
 }
 
-/// Forecasts of the model and straight lines to its own goals, one each a window.
+/// Forecasts of the model, and straight lines to its goals; one of each for each window.
 struct Forecasts {
-    /// One list a manner.
+    /// One list for each manner.
     model: Vec<Vec<Forecast>>,
     lines: Vec<Forecast>,
 }
@@ -145,8 +147,12 @@ struct Measuring<'a, O> {
 }
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
-    /// Protocols that show the same of the windows: one set of forecasts serves all of them.
-    fn honest(&mut self, of: &[Protocol], windows: &[Window]) -> Result<Evaluation, DdlError> {
+    /// Evaluates protocols that show the same input: they share one set of forecasts.
+    fn without_future(
+        &mut self,
+        of: &[Protocol],
+        windows: &[Window],
+    ) -> Result<Evaluation, DdlError> {
         let protocols: Vec<Protocol> = of.iter().copied().filter(|p| self.asked(*p)).collect();
         let Some(&first) = protocols.first() else {
             return Ok(Evaluation::default());
@@ -155,9 +161,9 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let mut manners = Manner::all(model, &self.request.protocols);
         manners.retain(|manner| protocols.contains(&manner.protocol));
         let goal = "the estimated goals";
-        // Straight lines lead to many goals.
+        // Straight lines lead to several goals.
         let lines_asked = protocols.iter().any(|p| p.hypotheses() > 1);
-        // Its library is copied: only where it is asked for.
+        // The estimator copies the expert library, so make it only when it is needed.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
         let published = if manners.iter().any(given) {
             Some(
@@ -222,7 +228,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         Ok(Evaluation { rows, moments })
     }
 
-    /// What to look at of the model's forecasts, one a window of the test set.
+    /// Moments to look at from the model's forecasts, one for each window of the test set.
     fn moments(&self, forecasts: &[Forecast]) -> Result<Vec<Moment>, DdlError> {
         let (windows, forecasts): (Vec<Window>, Vec<Forecast>) = self
             .test
@@ -287,8 +293,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         ])
     }
 
-    /// Forecasts all windows in a number of manners, some windows at a time, showing their futures only where
-    /// the protocol does.
+    /// Forecasts all windows in several manners, in chunks. Futures are shown only where the protocol shows them.
     fn forecast(
         &mut self,
         (protocol, windows): (Protocol, &[Window]),
@@ -307,7 +312,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 .iter()
                 .position(|window| {
                     pedestrians += window.len();
-                    pedestrians >= PEDESTRIANS_A_REPORT
+                    pedestrians >= PEDESTRIANS_PER_REPORT
                 })
                 .map_or(rest.len(), |last| last + 1);
             let some = of(&protocol.visible(&rest[..count]))?;

@@ -7,13 +7,14 @@ use ddl_eval::{ForecastError, MotionKind};
 use ddl_goal::GoalSet;
 use ddl_report::figure::{self, GoalCase};
 
-/// Retrieved pedestrians that are drawn, the most similar ones.
+/// Retrieved pedestrians to draw: the most similar ones.
 const EXPERTS: usize = 60;
 
-/// An SVG of typical pedestrians: what was observed, the retrieved pedestrians where there are some, the goals, and how it went on.
+/// An SVG of typical pedestrians: the observation, the retrieved pedestrians where available, the goals, and the true
+/// future.
 ///
 /// # Errors
-/// When a picture cannot be drawn of such goals.
+/// When these goals cannot be drawn.
 pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<String, DdlError> {
     let pedestrians: Vec<Pedestrian<'_>> = measured
         .windows
@@ -27,7 +28,7 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
         .collect();
     let mut shown: Vec<&Pedestrian<'_>> = Vec::new();
     for kind in MotionKind::ALL {
-        // one pedestrian once
+        // each pedestrian once
         let candidates: Vec<&Pedestrian<'_>> = pedestrians
             .iter()
             .filter(|pedestrian| {

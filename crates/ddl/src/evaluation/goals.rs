@@ -10,22 +10,22 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
-/// Quality of the goals on the windows they were measured on.
+/// Quality of the goals on a set of windows.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GoalEvaluation {
     /// The fold.
     pub fold: String,
-    /// Where the goals come from, in words.
+    /// The origin of the goals, in words.
     pub goals: String,
-    /// Which windows, in words.
+    /// The windows, in words.
     pub windows: String,
-    /// Goals a pedestrian.
+    /// Goals for each pedestrian.
     pub clusters: usize,
     /// Errors over all pedestrians.
     pub all: GoalErrors,
-    /// Errors by recording.
+    /// Errors of each recording.
     pub recordings: BTreeMap<String, GoalErrors>,
-    /// Whether the goals' probabilities mean what they say.
+    /// Calibration of the probabilities of the goals.
     pub calibration: Option<Calibration>,
     /// Wall-clock seconds that the estimation took.
     pub seconds: f64,
@@ -42,14 +42,14 @@ pub struct MeasuredGoals {
     pub sets: Vec<Vec<GoalSet>>,
 }
 
-/// Distances between goals and true ends, means over pedestrians (metres).
+/// Distances between goals and true endpoints in metres, means over pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GoalErrors {
     /// Pedestrians.
     pub pedestrians: usize,
-    /// Of the goal nearest the TRUE end: what no forecast that ends at a goal can beat.
+    /// Distance of the goal nearest the TRUE endpoint: a lower bound for every forecast that ends at a goal.
     pub oracle_fde: f64,
-    /// Of the likeliest goal.
+    /// Distance of the most likely goal.
     pub likeliest_fde: f64,
 }
 
@@ -74,13 +74,13 @@ impl GoalErrors {
     }
 }
 
-/// Measures the goals of a run on the test windows of its fold (headline rule, all pedestrians) or on its
-/// validation windows.
+/// Measures the goals of a run on its validation windows, or on the test windows of its fold (headline rule, all
+/// pedestrians).
 ///
-/// The goals see the 8 observed frames, and what is remembered of the place.
+/// The goals are estimated from the 8 observed frames and the memory of the place.
 ///
 /// # Errors
-/// When the data is not what the run was trained on, or goals cannot be estimated.
+/// When the data is not the training data of the run, or goals cannot be estimated.
 pub fn evaluate_goals(
     model: &GoalModel,
     dataset: &Dataset,

@@ -5,37 +5,37 @@ use crate::model::ddl::Ddl;
 use ddl_eval::Protocol;
 use ddl_network::Objective;
 
-/// A manner in which the model forecasts, each a row of its own.
+/// A way in which the model forecasts. Each has its own row of results.
 #[derive(Debug)]
 pub(crate) struct Manner {
     pub(crate) goals: GivenGoals,
     pub(crate) way: Way,
-    /// What is different from the model as it is; `None` for that one.
+    /// The difference from the unchanged model; `None` for the unchanged model.
     pub(crate) change: Option<String>,
     pub(crate) protocol: Protocol,
 }
 
-/// Which goals the model is given.
+/// The goals that the model receives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum GivenGoals {
     Own,
-    /// The one that stands for its own.
+    /// The central goal, which represents the model's own goals.
     Central,
     WithoutLibrary,
-    /// Without training recordings of the same place.
+    /// Goals without the memory of training recordings of the same place.
     WithoutMemory,
-    /// Those of the published estimator, without its look at the first future frame.
+    /// Goals of the published estimator, without its look at the first future frame.
     Published,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Way {
     Shaped(Gait),
-    /// The neutral motion, alone or keeping clear of the others.
+    /// The neutral motion, with a clearance or without regard to others.
     Neutral(Option<Clearance>),
 }
 
-/// What is remembered under a protocol, in the same words for all folds of a convention: they share a line.
+/// The memory under a protocol, in the same words for all folds of a convention, because they share a line.
 pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
     let convention = model.config().data.convention;
     let folds: Vec<&str> = convention.folds_with_place_memory().collect();
@@ -56,7 +56,7 @@ impl Manner {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         let goals = model.goal_model();
         let words = match self.goals {
-            // Of the published goals the name of the row tells.
+            // The name of the row already tells of the published goals.
             GivenGoals::Own
             | GivenGoals::Central
             | GivenGoals::Published
@@ -69,8 +69,9 @@ impl Manner {
         }
     }
 
-    /// The model as it is and, where asked for, keeping clear of others. Once each: by the published steps, without its
-    /// expert library, and to the published goals; in `single`, on the way that its network would make.
+    /// The unchanged model and, where requested, the model with a clearance. Further variants appear once each: with
+    /// plain Euler steps, without the expert library, with the published goals, and, under `single`, with the dynamics
+    /// of the network.
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
         let variant = model.config().star.variant;
         let mut manners = Vec::new();
@@ -101,7 +102,7 @@ impl Manner {
             }
         }
         let said = |change: &str| Some(change.to_owned());
-        // A network that has learned whole stable walks has never seen where plain steps would lead it: they diverge.
+        // Plain steps diverge for a network that was trained on whole paths of the stable integrator.
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
         if variant.dynamics() && learned_on_plain_steps {
             let plain = Way::Shaped(Gait::PlainEuler);

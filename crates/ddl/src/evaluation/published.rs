@@ -1,4 +1,4 @@
-//! The model as the published protocol runs it, kept apart because it is chosen with the truth.
+//! The model under the published protocol. It is kept separate because it uses the true future.
 
 use crate::error::DdlError;
 use crate::forecast::certified::Walked;
@@ -14,8 +14,8 @@ use ddl_network::{ForecastWindows, NetworkFrame, Noise};
 
 const SAMPLES: usize = 20;
 
-/// The model as the published code measures it: the estimated goal nearest the TRUE end, then 20
-/// noise samples on that goal, plain Euler steps.
+/// The model as the published code evaluates it: 20 noise samples to the estimated goal nearest the TRUE endpoint, with
+/// plain Euler steps.
 #[derive(Debug)]
 pub(crate) struct Published {
     network: Box<dyn ForecastWindows>,
@@ -23,8 +23,8 @@ pub(crate) struct Published {
 }
 
 impl Published {
-    /// The epoch that is best on the given TEST windows, of those kept: as the published code
-    /// chooses, and as no honest evaluation may.
+    /// Chooses the saved epoch that is best on the given TEST windows, as the published code does. A fair evaluation
+    /// must not do this.
     pub(crate) fn best_on_test(
         model: &Ddl,
         estimator: &GoalEstimator,
@@ -33,24 +33,24 @@ impl Published {
     ) -> Result<Self, DdlError> {
         let Some(run) = model.run() else {
             return Err(model.source().wrong(
-                "keeps one set of weights, and the protocol `published` chooses among epochs; measure it under `fair` and \
-                 `single`",
+            "keeps one set of weights, but the protocol `published` chooses among epochs; evaluate it under `fair` and \
+             `single`",
             ));
         };
         let config = model.config();
-        // One epoch is no choice: a number that says "best kept epoch" must have had several to choose from.
+        // The result is labelled "best kept epoch", so there must be several to choose from.
         if config.training.epochs > 1 && config.keep_every >= config.training.epochs {
             return Err(DdlError::run(
                 run.path(),
-                "keeps the weights of its last epoch alone, and `published` chooses among several; train it \
-                 anew without --last-epoch-only",
+                "keeps the weights of its last epoch only, but `published` chooses among several; train it again \
+                 without --last-epoch-only",
             ));
         }
         if config.patience.is_some() {
             return Err(DdlError::run(
                 run.path(),
-                "keeps the weights of its best epoch alone, chosen on its validation part, and `published` chooses among several; train it anew with \
-                 --patience 0",
+                "keeps the weights of its best epoch only, chosen on its validation part, but `published` chooses \
+                 among several; train it again with --patience 0",
             ));
         }
         let goals = sets::nearest_true_end(estimator, windows)?;
@@ -68,14 +68,13 @@ impl Published {
                 best = Some((error, candidate));
             }
         }
-        let (_, best) = best.ok_or_else(|| {
-            DdlError::run(run.path(), "keeps the weights of no epoch; train it anew")
-        })?;
+        let (_, best) =
+            best.ok_or_else(|| DdlError::run(run.path(), "has no saved epochs; train it again"))?;
         Ok(best)
     }
 
-    /// Twenty noise samples on the one goal of every pedestrian: plain Euler steps, or bounded ones of a network that has learned these, whose
-    /// output has no unit.
+    /// Makes 20 noise samples for the single goal of every pedestrian. The steps are plain Euler, or bounded for a
+    /// network that was trained with bounded steps, because its output has no unit.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],

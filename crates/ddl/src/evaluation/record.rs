@@ -1,4 +1,4 @@
-//! Which evaluation a run's `report.json` holds, so that a repeated one can be skipped.
+//! The record of the evaluation in a run's `report.json`, by which a repeated evaluation is skipped.
 
 use crate::error::DdlError;
 use crate::evaluation::evaluate::EvaluationRequest;
@@ -14,7 +14,7 @@ use ddl_report::{Moment, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What the results depend on besides the run itself.
+/// Everything the results depend on besides the run itself.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
 struct Record {
     request: EvaluationRequest,
@@ -23,10 +23,10 @@ struct Record {
     device: String,
     #[serde(default)]
     clearance: Option<Clearance>,
-    /// Which rows there are; results with fewer are measured anew.
+    /// Version of the set of rows; an older set is evaluated again.
     #[serde(default)]
     rows: u32,
-    /// SHA-256 of the constants that forecasts depend on besides the run.
+    /// SHA-256 of the calibration constants that forecasts depend on.
     #[serde(default)]
     calibration: String,
 }
@@ -38,8 +38,8 @@ struct Measured {
     sha256: String,
 }
 
-/// 1: with the row without an expert library. 2: the central goal is drawn towards where the last step leads.
-/// 3: the one forecast walks straight. 4: motion is bounded.
+/// 1: with the row without an expert library. 2: the central goal is drawn towards the extrapolated last step. 3: the
+/// single forecast is straight. 4: motion is bounded.
 const ROWS: u32 = 4;
 
 impl Record {
@@ -60,7 +60,7 @@ impl Record {
     }
 }
 
-/// Whether the model's run already holds the results of exactly this evaluation on these recordings; a packed model
+/// Whether the model's run already holds the results of exactly this evaluation on these recordings. A packed model
 /// holds none.
 #[must_use]
 pub fn is_evaluated(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> bool {
@@ -74,11 +74,11 @@ pub fn is_evaluated(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest)
     {
         return false;
     }
-    // a record that cannot be read, of another version perhaps, vouches for nothing
+    // A record that cannot be read, such as one of another version, does not count.
     read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, dataset, request))
 }
 
-/// Writes `report.json` and `moments.json` of the model's run, then the record of what was asked for.
+/// Writes `report.json` and `moments.json` of the model's run, then the record of the request.
 ///
 /// # Errors
 /// When a file cannot be written, or the model is packed and has no run.
@@ -90,14 +90,14 @@ pub fn save_evaluation(
     moments: &[Moment],
 ) -> Result<(), DdlError> {
     let Some(run) = model.run() else {
-        return Err(model.source().wrong(
-            "has no directory of a run to keep results in; write them elsewhere (`Results::save`)",
-        ));
+        return Err(model
+            .source()
+            .wrong("has no run directory for results; write them elsewhere (`Results::save`)"));
     };
     let _claimed = RunLock::wait(run.path())?;
     let record = record_file(run);
     if record.is_file() {
-        // while the report is replaced, no record may vouch for it
+        // Remove the record first: it must not vouch for a half-written report.
         std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
     }
     let json = report.to_json()?;

@@ -7,21 +7,21 @@ use std::path::Path;
 
 const LOSS: &str = "training loss: mean squared error of the next position (m²)";
 
-/// Results of any number of evaluated runs, with what there is to look at.
+/// Results of evaluated runs and of other programs' forecasts, with moments to look at.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Results {
     /// All rows.
     pub report: Report,
-    /// Moments of the runs of the whole method and of the lowest seed, the model that the headline is about, and those of other
-    /// programs' forecasts.
+    /// Moments of other programs' forecasts and of the headline model: the runs of the whole method with the lowest
+    /// seed.
     pub moments: Vec<Moment>,
-    /// How each training went.
+    /// The training curves.
     pub curves: Vec<TrainingCurve>,
 }
 
 impl Results {
-    /// Results that were not gathered from runs: those of another program's forecasts.
+    /// Results that do not come from runs, such as those of another program's forecasts.
     #[must_use]
     pub fn new(report: Report, moments: Vec<Moment>) -> Self {
         Self {
@@ -31,10 +31,12 @@ impl Results {
         }
     }
 
-    /// Gathers what lies in folders that hold a `report.json`: evaluated runs, or results of other programs' forecasts.
+    /// Gathers the results in folders that hold a `report.json`: evaluated runs, or results of other programs'
+    /// forecasts.
     ///
     /// # Errors
-    /// When a folder holds no results, one of its files is damaged, or two folders hold different numbers for the same conditions.
+    /// When a folder holds no results, one of its files is damaged, or two folders hold different numbers for the same
+    /// conditions.
     pub fn of(title: impl Into<String>, folders: &[impl AsRef<Path>]) -> Result<Self, DdlError> {
         let mut results = Self {
             report: Report::new(title, [])?,
@@ -48,18 +50,18 @@ impl Results {
             if !run.report().is_file() {
                 return Err(DdlError::run(
                     run.path(),
-                    "holds no results (report.json); run `ddl evaluate` on it first",
+                    "holds no results (report.json is missing); run `ddl evaluate` on it first",
                 ));
             }
             let report = Report::load(&run.report())?;
             results.report.extend(report.rows().iter().cloned())?;
-            // Results of another program's forecasts come without a run.
+            // Results of another program's forecasts have no run.
             if !run.has_config() {
                 elsewhere.extend(run.read_moments()?);
                 continue;
             }
             let config = run.config()?;
-            // epoch 0, the weights that a training began with, has no loss
+            // Epoch 0 holds the starting weights and has no loss.
             let trained = run.metrics()?.into_iter().filter(|epoch| epoch.epoch > 0);
             let epochs = trained.map(|epoch| EpochPoint {
                 epoch: epoch.epoch,
@@ -88,8 +90,9 @@ impl Results {
         Ok(results)
     }
 
-    /// Writes `report.md`, `report.tex`, `report.json`, `moments.json`, the page `report.html` and each of its figures as `figures/NAME.svg` into
-    /// `folder`, which is made if need be. A file that is there is replaced as a whole; other `.svg` files in `figures` are removed.
+    /// Writes `report.md`, `report.tex`, `report.json`, `moments.json`, the page `report.html` and each of its figures
+    /// as `figures/NAME.svg` into `folder`, which is created if missing. Existing files are replaced; other `.svg`
+    /// files in `figures` are removed.
     ///
     /// # Errors
     /// When the folder or a file cannot be written, or a figure cannot be drawn.
@@ -109,7 +112,7 @@ impl Results {
         for (name, svg) in &drawn {
             write_atomically(&figures.join(name), svg.as_bytes())?;
         }
-        // Figures of an earlier report would be taken for this one's.
+        // Figures of an earlier report could be taken for those of this one.
         remove_others(&figures, &drawn)?;
         write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
     }

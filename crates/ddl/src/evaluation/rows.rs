@@ -8,18 +8,18 @@ use crate::training::words::{recipe, subset};
 use ddl_data::{Convention, Window, WindowRule};
 use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 
-/// Forecasts of one forecaster, one a window of the test set.
+/// Forecasts of one forecaster, one for each window of the test set.
 #[derive(Debug)]
 pub(crate) struct Forecasted {
     forecaster: String,
-    /// By the trained model, or by straight lines to goals, which depend on the run's seed alone.
+    /// By the trained model, or by straight lines to goals, which depend on the run's seed only.
     by_model: bool,
     goals: String,
     forecasts: Vec<Forecast>,
 }
 
 impl Forecasted {
-    /// What the model of that name forecast, with something changed or as it is, to goals that come from where `goals` says.
+    /// Forecasts of the model of that name, unchanged or with a change; `goals` names the origin of its goals.
     pub(crate) fn model(
         name: &str,
         forecasts: Vec<Forecast>,
@@ -39,7 +39,7 @@ impl Forecasted {
         }
     }
 
-    /// Straight lines to the goals of that name, which were made as `recipe` says.
+    /// Straight lines to the goals of that name; `recipe` tells how these were made.
     pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
         Self {
             forecaster: format!("straight line to {goal}"),
@@ -50,7 +50,7 @@ impl Forecasted {
     }
 }
 
-/// What the conditions of all rows of a protocol have in common.
+/// The conditions that all rows of a protocol share.
 #[derive(Debug)]
 pub(crate) struct ResultRows<'a> {
     pub(crate) model: &'a Ddl,
@@ -61,11 +61,11 @@ pub(crate) struct ResultRows<'a> {
 }
 
 impl ResultRows<'_> {
-    /// Rows of the forecasts, in their order, then of the baselines, under each window rule.
+    /// The rows of the forecasts in their order, then those of the baselines, for each window rule.
     pub(crate) fn of(&self, forecasted: &[Forecasted]) -> Result<Vec<ResultRow>, DdlError> {
         let mut rows = Vec::new();
         for (rule, indices) in &self.test.rules {
-            // a small part may hold no window of one of the rules
+            // A small part may hold no window of a rule.
             if indices.is_empty() {
                 continue;
             }
@@ -107,7 +107,7 @@ impl ResultRows<'_> {
         }
     }
 
-    /// What else decides the model's forecasts.
+    /// Further conditions that the model's forecasts depend on.
     fn besides(&self) -> String {
         let rounded = match self.model.run() {
             Some(_) => "",
@@ -116,7 +116,7 @@ impl ResultRows<'_> {
         let data = &self.model.config().data;
         let (convention, fold) = (data.convention, &data.fold);
         if convention == Convention::Own {
-            // Models of different recordings are told apart.
+            // Distinguishes models trained on different own recordings.
             let (count, sha256) = (data.recordings.len(), data.sha256.get(..12));
             let sha256 = sha256.unwrap_or_default();
             return format!("{rounded}; trained on {count} own recordings ({sha256})");

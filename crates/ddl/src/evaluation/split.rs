@@ -1,11 +1,11 @@
 use serde::{Deserialize, Serialize};
 
-/// Which windows to measure on.
+/// The windows to evaluate on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EvaluationSplit {
     /// The scene left out of training.
     Test,
-    /// The last part of the training recordings, kept out of training for choices to be made on.
+    /// The last part of the training recordings, kept out of training for validation.
     Validation,
 }

@@ -1,4 +1,4 @@
-//! Straight lines to goals that are known already: the baseline that shows what the dynamics add.
+//! Straight lines to known goals: the baseline that shows what the dynamics add.
 
 use ddl_data::Window;
 use ddl_eval::baseline::{GoalSource, StraightLine, WeightedGoals};

@@ -1,5 +1,5 @@
-//! The windows a model is measured on: the test windows of its fold under the headline rule and the
-//! one printed beside it, or the validation part of its training recordings.
+//! The windows that a model is evaluated on: the test windows of its fold under the headline rule and a second rule, or
+//! the validation part of its training recordings.
 
 use crate::error::DdlError;
 use crate::error::more_for_validation;
@@ -12,10 +12,10 @@ use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Seed of the test subset: one for all runs, so that all are tested on the same windows.
+/// Seed of the test subset, fixed so that all runs are tested on the same windows.
 const SUBSET_SEED: u64 = 0;
 
-/// Test windows with the rules they belong to. A window that both rules have is forecast once.
+/// Test windows with the rules they belong to. A window under both rules is forecast once.
 #[derive(Debug)]
 pub(crate) struct TestSet {
     pub(crate) convention: Convention,
@@ -23,13 +23,13 @@ pub(crate) struct TestSet {
     pub(crate) windows: Vec<Window>,
     /// Each rule with the indices of its windows; the headline rule first.
     pub(crate) rules: Vec<(WindowRule, Vec<usize>)>,
-    /// How the subset was chosen; `None` when these are all windows.
+    /// How the subset was chosen; `None` for all windows.
     pub(crate) subset: Option<String>,
 }
 
 impl TestSet {
-    /// The windows that the run may be measured on; `whole` names the validation part of own recordings, if not the
-    /// usual ones.
+    /// The windows that the run may be evaluated on. `whole` names the recordings of a validation part of own
+    /// recordings that differs from the default.
     pub(crate) fn of_run(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -41,21 +41,22 @@ impl TestSet {
         let own = dataset.convention() == Convention::Own;
         match on {
             EvaluationSplit::Test if own => return Self::of_own(goals, dataset, pedestrians),
-            EvaluationSplit::Validation if own && !knows_some(goals, dataset) => {
+            EvaluationSplit::Validation if own && !was_trained_on_some(goals, dataset) => {
                 return Self::own_validation(goals, dataset, whole, pedestrians);
             }
             _ => {}
         }
         if data.convention != dataset.convention() {
             return wrong(format!(
-                "was trained on `{}` data and cannot be measured on `{}` data",
+                "was trained on `{}` data and cannot be evaluated on `{}` data",
                 data.convention,
                 dataset.convention()
             ));
         }
         if !whole.is_empty() && whole != data.validation_recordings {
             return wrong(
-                "kept a validation part of its own when it was trained, and is measured on that: leave --validation-recordings out".to_owned(),
+                "has a validation part from its training and is evaluated on that; leave out --validation-recordings"
+                    .to_owned(),
             );
         }
         if on == EvaluationSplit::Test {
@@ -65,14 +66,15 @@ impl TestSet {
         let set = Self::kept_by(goals, dataset, pedestrians)?;
         if set.windows.is_empty() {
             return wrong(format!(
-                "cannot be measured on what it kept for validation: nobody in it was seen at 20 steps in a row; train a model that keeps {}",
+                "cannot be evaluated on its validation part: no pedestrian in it was observed at 20 consecutive \
+                     time steps; train a model that keeps {}",
                 more_for_validation(data.recordings.len())
             ));
         }
         Ok(set)
     }
 
-    /// What the run kept for validation, which may hold no window.
+    /// The validation part of the run, which may hold no window.
     pub(crate) fn kept_by(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -81,21 +83,22 @@ impl TestSet {
         let data = &goals.config().data;
         if data.validation <= 0.0 && data.validation_recordings.is_empty() {
             return Err(goals.source().wrong(
-                "kept nothing for validation; train it with --validation 0.2 or --validation-recordings",
+                "kept no validation part; train it with --validation 0.2 or --validation-recordings",
             ));
         }
         let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
         let (rule, fraction) = (data.window_rule, data.validation);
         if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
             return Err(goals.source().wrong(
-                "was trained on other recordings than these, whose last part it may have seen; give the --data it was trained on",
+                "was trained on other recordings than these and may have seen their last part; give the --data that it \
+                 was trained on",
             ));
         }
         let kept = (rule, fraction);
         Ok(Self::validation(&fold, data.convention, kept, pedestrians))
     }
 
-    /// The part of own recordings that a model trained on them would be validated on, for a model that knows none of them.
+    /// The default validation part of own recordings, for a model that was not trained on them.
     fn own_validation(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -115,14 +118,15 @@ impl TestSet {
         let set = Self::validation(&fold, dataset.convention(), kept, pedestrians);
         if set.windows.is_empty() {
             return Err(goals.source().wrong(
-                "cannot be measured on the validation part of these recordings: nobody in it was seen at 20 steps in a row; name whole \
-                 recordings (--validation-recordings), or measure it on all of them, without --validation",
+                "cannot be evaluated on the validation part of these recordings: no pedestrian in it was observed at \
+                 20 consecutive time steps; name whole recordings (--validation-recordings), or leave out --validation \
+                 to evaluate it on all of them",
             ));
         }
         Ok(set)
     }
 
-    /// Somebody's own recordings: the one that the model was trained without, where it is there, else all of them.
+    /// Own recordings: the one that the model was trained without, if present, else all of them.
     fn of_own(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -147,15 +151,16 @@ impl TestSet {
             .find(|recording| data.recordings.contains_key(recording.name()));
         if let (true, Some(namesake)) = (known.is_empty(), namesake) {
             return Err(goals.source().wrong(format!(
-                "was trained on a recording that is called {0:?} as well, of other frames or positions: cut, resampled or rounded it would be no test; give the \
-                 file another name if {0:?} shows another time or place",
+                "was trained on a recording with the same name {0:?}, but with other frames or positions, so {0:?} is \
+                 no independent test if it was cut, resampled or rounded; rename the file if it shows another time or \
+                 place",
                 namesake.name()
             )));
         }
         if !known.is_empty() {
             return Err(goals.source().wrong(format!(
-                "was trained on {}; measure it on what it kept for validation, on other recordings, or on one that it is trained without (`ddl \
-                 train --convention own --fold NAME`)",
+                "was trained on {}; evaluate it on its validation part, on other recordings, or on a recording that it \
+                 is trained without (`ddl train --convention own --fold NAME`)",
                 known.join(", ")
             )));
         }
@@ -163,7 +168,8 @@ impl TestSet {
         let windows: Vec<Window> = tested.iter().flat_map(|r| r.windows(rule)).collect();
         if windows.is_empty() {
             return Err(goals.source().wrong(
-                "cannot be measured on these recordings: nobody in them was seen at 20 steps in a row",
+                "cannot be evaluated on these recordings: no pedestrian in them was observed at 20 consecutive time \
+                 steps",
             ));
         }
         let set = Self {
@@ -176,7 +182,7 @@ impl TestSet {
         Ok(set.at_most(pedestrians))
     }
 
-    /// The fold's test windows, or a seeded part of them with about `pedestrians` pedestrians.
+    /// The test windows of the fold, or a seeded part of them with about `pedestrians` pedestrians.
     pub(crate) fn new(fold: &Fold<'_>, convention: Convention, pedestrians: Option<usize>) -> Self {
         let by_rule: Vec<(WindowRule, Vec<Window>)> = rules(convention)
             .into_iter()
@@ -185,7 +191,7 @@ impl TestSet {
         let mut index_of: BTreeMap<(String, i64, Vec<PedestrianId>), usize> = BTreeMap::new();
         let mut windows: Vec<Window> = Vec::new();
         let mut rules = Vec::new();
-        // the widest rule last in `rules`, first here: subsets are drawn from all its windows
+        // The widest rule is last in `rules` and comes first here: subsets are drawn from its windows.
         for (rule, of_rule) in by_rule.into_iter().rev() {
             let mut indices = Vec::with_capacity(of_rule.len());
             for window in of_rule {
@@ -213,7 +219,7 @@ impl TestSet {
         .at_most(pedestrians)
     }
 
-    /// The last part of the fold's training recordings, on which choices may be made.
+    /// The validation part: the last part of the fold's training recordings.
     pub(crate) fn validation(
         fold: &Fold<'_>,
         convention: Convention,
@@ -257,7 +263,7 @@ impl TestSet {
         let Some(pedestrians) = pedestrians else {
             return self;
         };
-        // The same words for every fold, cut or not: the folds of one benchmark share a table.
+        // The same words for every fold, cut or not, because the folds of a benchmark share a table.
         let subset = format!(
             "where a fold has more than {pedestrians} pedestrians, a seeded part of its windows"
         );
@@ -318,8 +324,8 @@ impl TestSet {
     }
 }
 
-/// Whether the model has learned from, or was validated on, one of these recordings, or one of the same name.
-fn knows_some(goals: &GoalModel, dataset: &Dataset) -> bool {
+/// Whether the model was trained or validated on one of these recordings, or on one of the same name.
+fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
     let learned = &goals.config().data.recordings;
     let digests: BTreeSet<&String> = learned.values().collect();
     dataset.recordings().iter().any(|recording| {
@@ -327,7 +333,7 @@ fn knows_some(goals: &GoalModel, dataset: &Dataset) -> bool {
     })
 }
 
-/// What results call recordings that are tested on together: as short for a hundred as for two.
+/// A short name in the results for recordings that are tested together.
 #[must_use]
 pub fn name_of(tested: &[&Recording]) -> String {
     match tested {
@@ -342,7 +348,7 @@ pub fn name_of(tested: &[&Recording]) -> String {
     }
 }
 
-/// The rule of the headline tables, then the one printed beside it.
+/// The rule of the headline tables, then the second rule.
 fn rules(convention: Convention) -> Vec<WindowRule> {
     let beside = match convention {
         Convention::Star => Some(WindowRule::Complete),

@@ -7,17 +7,17 @@ use ddl_eval::{Forecast, ForecastError};
 use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
 use rayon::prelude::*;
 
-/// A forecast whose every hypothesis carries a Lyapunov certificate.
+/// A forecast with a Lyapunov certificate for every hypothesis.
 ///
-/// The certificate speaks of exactly the positions that the forecast holds, from the last observed one on;
-/// [`LyapunovCertificate::holds`] judges it anew from its numbers.
+/// A certificate refers to exactly the positions of the forecast, from the last observed one on.
+/// [`LyapunovCertificate::holds`] checks it from its numbers.
 ///
 /// # Shapes
-/// One certificate for each pedestrian and hypothesis, `[N][K]`, of 12 steps each.
+/// One certificate of 12 steps for each pedestrian and hypothesis, `[N][K]`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CertifiedForecast {
-    /// The forecast; its [`certified`](Forecast::certified) repeats the verdicts.
+    /// The forecast; its [`certified`](Forecast::certified) holds the verdicts.
     pub forecast: Forecast,
     /// `[N][K]`.
     pub certificates: Vec<LyapunovCertificate<f64>>,
@@ -38,8 +38,7 @@ impl CertifiedForecast {
         &self.certificates[i * self.forecast.hypotheses() + k]
     }
 
-    /// Pedestrian, hypothesis and violation of the first certificate that does not hold; `None` when
-    /// all hold.
+    /// Pedestrian, hypothesis and violation of the first certificate that does not hold; `None` when all hold.
     #[must_use]
     pub fn first_violation(&self) -> Option<(usize, usize, Violation)> {
         let hypotheses = self.forecast.hypotheses();
@@ -53,10 +52,10 @@ impl CertifiedForecast {
     }
 }
 
-/// Why a forecast carries no certificates.
+/// The reason why a forecast has no certificates.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum CertificateError {
     #[error(
         "the variant `{variant}` has no flow to certify: its network emits positions; use a model of the \
@@ -65,7 +64,7 @@ pub enum CertificateError {
     NoFlow { variant: Variant },
     #[error(
         "window of `{recording}` starting at frame {start_frame}, pedestrian {pedestrian}, hypothesis \
-         {hypothesis}: {cause}; has the model diverged, or are the positions no metres?"
+         {hypothesis}: {cause}; check that the positions are in metres and that training has not diverged"
     )]
     Walk {
         recording: String,
@@ -76,30 +75,30 @@ pub enum CertificateError {
     },
 }
 
-/// Where the pedestrians of a window are led, how likely, and how they walk.
+/// Goals, weights and steps for the pedestrians of a window.
 #[derive(Debug)]
 pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,
     pub(crate) gait: Gait,
     pub(crate) window: &'a Window,
     pub(crate) hypotheses: usize,
-    /// `[N][K][12]`: what the network itself walked, metres; empty where it had no part in it.
+    /// `[N][K][12]`: the path of the network's own rollout, metres; empty where the network is not used.
     pub(crate) rolled_out: Vec<Position>,
-    /// `[N][K][12]`: (a, b, c) of the factor of P; `None` where there is no flow.
+    /// `[N][K][12]`: (a, b, c) of the factor of P; `None` without a flow.
     pub(crate) factors: Option<Vec<[f64; 3]>>,
-    /// N: share of the network's metric in what shapes a pedestrian's steps.
+    /// N: share of the network's metric in the metric of the steps.
     pub(crate) shares: Vec<f64>,
-    /// N: how familiar the observed motions are; `None` where that is not asked.
+    /// N: familiarity of the observed motions; `None` where it is not requested.
     pub(crate) familiarity: Option<Vec<f64>>,
     pub(crate) weights: Vec<f64>,
     pub(crate) goals: Vec<Position>,
 }
 
 impl Walked<'_> {
-    /// The forecast alone, with the verdicts where there is a flow to certify.
+    /// The forecast, with the verdicts of its certificates where there is a flow.
     pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
         if self.factors.is_some() {
-            // Certificates of a crowd take more memory than its forecast: each is dropped once it is judged.
+            // Certificates of a crowd take more memory than its forecast: drop each after its check.
             let (positions, held) = self.walks(|certificate| certificate.holds().is_ok())?;
             return Ok(self.at(positions)?.with_certified(held)?);
         }
@@ -107,7 +106,7 @@ impl Walked<'_> {
         self.at(positions)
     }
 
-    /// The forecast of these positions, with its spread where there are several hypotheses.
+    /// The forecast of these positions, with its spread if there are several hypotheses.
     fn at(&self, positions: Vec<Position>) -> Result<Forecast, ForecastError> {
         let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
         let (weights, goals) = (self.weights.clone(), Some(self.goals.clone()));
@@ -143,8 +142,8 @@ impl Walked<'_> {
         })
     }
 
-    /// The positions of every hypothesis, `[N][K][12]`, and `of` of its certificate, `[N][K]`. With plain Euler steps the
-    /// positions are those of the network's own rollout.
+    /// The positions of every hypothesis, `[N][K][12]`, and the result of `of` for its certificate, `[N][K]`. With
+    /// plain Euler steps the positions are those of the network's own rollout.
     fn walks<R: Send>(
         &self,
         of: impl Fn(LyapunovCertificate<f64>) -> R + Sync,
@@ -176,7 +175,8 @@ impl Walked<'_> {
         Ok((positions.into_flattened(), certificates))
     }
 
-    /// The obstacles of all pedestrians: the paths to their likeliest goals, each walked without regard to the others.
+    /// The obstacles of all pedestrians: the paths to their most likely goals, each computed without regard to the
+    /// others.
     fn others(&self, factors: &[[f64; 3]], clearance: Clearance) -> Result<Others, ForecastError> {
         let hypotheses = self.hypotheses;
         let weights = self.weights.chunks_exact(hypotheses).enumerate();
@@ -202,8 +202,8 @@ impl Walked<'_> {
         }
     }
 
-    /// What `of` makes of every hypothesis, in order, from pedestrian x hypotheses + hypothesis, its course and its factors.
-    /// The error is that of the first hypothesis that fails.
+    /// Applies `of` to every hypothesis, in order: its index pedestrian x hypotheses + hypothesis, its course and its
+    /// factors. The error is that of the first hypothesis that fails.
     fn each<R: Send>(
         &self,
         factors: &[[f64; 3]],
@@ -211,7 +211,7 @@ impl Walked<'_> {
     ) -> Result<Vec<R>, ForecastError> {
         let pairs = factors.par_chunks_exact(HORIZON).enumerate();
         let each = pairs.map(|(pair, factors)| self.one(pair, factors, &of));
-        // Collected in parallel, the error would be that of whichever hypothesis is first to fail.
+        // A parallel collect into a `Result` could return the error of any hypothesis.
         each.collect::<Vec<_>>().into_iter().collect()
     }
 

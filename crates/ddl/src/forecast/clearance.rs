@@ -4,27 +4,27 @@ use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
 
-/// Within which distance of others, from centre to centre, pedestrians mind them (metres).
+/// The distance that pedestrians keep from each other, from centre to centre (metres).
 ///
-/// Every hypothesis is walked again among the others, each a disc on the path it would most likely take alone: within
+/// Every hypothesis is integrated again among the others. Each of them is a disc on its most likely path. Within
 /// [`MARGIN`](Self::MARGIN) of a disc the pedestrian slides along it ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
 ///
 /// # What is guaranteed
-/// The distance to the goal still falls at every step. Keeping clear is not: the others move, and a pedestrian is not moved
-/// aside where one of them walks into it.
+/// The distance to the goal still falls at every step. The clearance itself is not guaranteed: the others move, and a
+/// pedestrian does not step aside when one of them walks into it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Clearance(f64);
 
-/// Nobody keeps farther from others than this (metres): more is a slip of the hand.
+/// The largest clearance (metres); a larger one is a mistake.
 const MOST: f64 = 10.0;
 
 impl Clearance {
-    /// Within this distance of another's disc pedestrians mind it (metres). Chosen on validation recordings,
-    /// see docs/stability.md.
+    /// Pedestrians react within this distance of another's disc (metres). Chosen on validation recordings, see
+    /// docs/stability.md.
     pub const MARGIN: f64 = 0.4;
 
-    /// Keep `distance` metres from centre to centre; two pedestrians touch at 0.4 m.
+    /// A clearance of `distance` metres from centre to centre; two pedestrians touch at 0.4 m.
     ///
     /// # Errors
     /// [`DdlError::Clearance`] unless the distance is positive and at most 10 m.
@@ -43,7 +43,7 @@ impl Clearance {
     }
 }
 
-/// The likeliest path of every pedestrian, which the others keep clear of.
+/// The most likely path of every pedestrian, which the others keep clear of.
 #[derive(Debug)]
 pub(crate) struct Others {
     clearance: Clearance,
@@ -62,11 +62,11 @@ impl Others {
         }
     }
 
-    /// The discs that pedestrian `i` keeps clear of in each step on its way from `start` to `goal`.
+    /// The discs that pedestrian `i` keeps clear of in each step from `start` to `goal`.
     ///
-    /// Its distance to the goal, at first d, falls at every step, so it stays within 2 d of the start. A disc shortens a
-    /// step that would use up more than half of the gap to it, and no step is longer than d: a disc that is 4 d and the
-    /// margin away from the start has no effect and is left out.
+    /// With d the first distance to the goal, which falls at every step, the pedestrian stays within 2 d of the start.
+    /// A disc shortens a step that would use more than half of the gap to it, and no step is longer than d. Discs
+    /// further than 4 d plus the margin from the start have no effect and are left out.
     pub(crate) fn near(
         &self,
         i: usize,
@@ -93,7 +93,7 @@ mod tests {
     use ddl_dynamics::{ObstacleSource as _, State};
 
     #[test]
-    fn the_others_are_where_they_will_be_at_the_end_of_the_step() {
+    fn the_others_are_at_their_positions_at_the_end_of_the_step() {
         let path = |x: f64| std::array::from_fn(|t| [x, t as f64]);
         let likeliest = vec![path(0.0), path(1.0), path(2.0), path(99.0)];
         let others = Others::new(Clearance::new(0.4).unwrap(), likeliest);

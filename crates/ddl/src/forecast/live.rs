@@ -7,26 +7,27 @@ use ddl_eval::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
 use ddl_memory::SceneMemory;
 use std::borrow::Borrow;
 
-/// A forecaster that is fed one frame at a time, 0.4 s apart or faster, and remembers what it has to.
+/// A forecaster for a live stream of frames, 0.4 s apart or faster, that keeps the observed tracks itself.
 ///
-/// Once somebody has been seen for 8 steps in a row (or as often as a [`Completion`] asks for), every
-/// [`push`](Self::push) forecasts everybody of whom that is true, with the bits of [`Forecaster::forecast`] on the
-/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far (with a memory:
-/// on that window with what the memory recalls; with regions that adapt: all but the regions); of gaps, see [`LiveTracks`]. The forecaster is owned, or borrowed: `LiveForecaster::new(&model)` watches several places
-/// with one model.
+/// Every [`push`](Self::push) forecasts all pedestrians that have been observed at 8 consecutive time steps, or as a
+/// [`Completion`] allows. The forecast has the bits of [`Forecaster::forecast`] on the window that
+/// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With a memory,
+/// this window holds what the memory recalls; regions that adapt are the only other difference. For gaps, see
+/// [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`, one model serves several
+/// places.
 ///
-/// # What is kept from frame to frame
-/// What was seen during the last 8 steps of those who are there, so that memory is bounded by the people present; and the
-/// memory of the place, bounded by its capacity, where one is [asked for](Self::remembering).
-/// Where [regions adapt](Self::adapting_regions), also the forecasts of the last 4.8 s.
-/// Nothing of the networks: their tokens are relative to goals and to the scene, which are others at every frame.
+/// # State kept between frames
+/// The last 8 time steps of the pedestrians that are present, so that memory is bounded by their number. The memory of
+/// the place, bounded by its capacity, [if requested](Self::remembering). Where [regions
+/// adapt](Self::adapting_regions), also the forecasts of the last 4.8 s. No state of the networks is kept: their tokens
+/// are relative to goals and to the scene, which change at every frame.
 ///
 /// # Errors
-/// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) nothing has changed: the same
-/// frame may be pushed again, without whatever was wrong with it. A frame never pushed is a gap.
+/// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) the state is unchanged:
+/// the frame may be pushed again without the fault. A frame that is never pushed is a gap.
 ///
 /// # Examples
-/// Any [`Forecaster`] can be fed so, a loaded model or constant velocity, which needs none:
+/// Any [`Forecaster`] works: a loaded model, or constant velocity, which needs no model:
 /// ```
 /// use ddl::LiveForecaster;
 /// use ddl::data::PedestrianId;
@@ -50,25 +51,25 @@ pub struct LiveForecaster<M = Ddl> {
     place: Option<WatchedPlace>,
 }
 
-/// What is forecast from one frame on.
+/// The forecast from one frame.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct LiveForecast<F = Forecast> {
-    /// Who is forecast, in the order of the forecast, and their last 8 positions.
+    /// The pedestrians, in the order of the forecast, with their last 8 positions.
     pub window: Window,
     /// A [`Forecast`], or a [`CertifiedForecast`].
     pub forecast: F,
 }
 
 impl<F> LiveForecast<F> {
-    /// The last frame observed, from which is forecast.
+    /// The last observed frame, from which the forecast starts.
     pub fn frame(&self) -> i64 {
         self.window.frames()[OBSERVED - 1]
     }
 }
 
 impl<M> LiveForecaster<M> {
-    /// Nobody seen yet; frames are counted, so that one step of 0.4 s is from one number to the next.
+    /// A forecaster without tracks; frame numbers are time steps, 0.4 s apart.
     #[must_use]
     pub fn new(model: M) -> Self {
         Self {
@@ -79,10 +80,11 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// Nobody seen yet, with another number of raw frames in a step of 0.4 s, such as 10 of a camera at 25 frames a second.
+    /// A forecaster without tracks, with another number of raw frames in a step of 0.4 s, such as 10 of a camera at 25
+    /// frames per second.
     ///
     /// # Errors
-    /// [`DdlError::Live`] if the step does not lie in 1..=2^31.
+    /// [`DdlError::Live`] if the step is outside 1..=2^31.
     pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
         let tracks = LiveTracks::with_frame_step(frame_step)?;
         Ok(Self {
@@ -91,17 +93,16 @@ impl<M> LiveForecaster<M> {
         })
     }
 
-    /// The same, with incomplete observations filled in as the completion allows; [`Window::made_up`] counts the filled-in
-    /// positions.
+    /// Fills incomplete observations in as the completion allows. [`Window::made_up`] counts the filled-in positions.
     #[must_use]
     pub fn completing(self, completion: Completion) -> Self {
         let tracks = self.tracks.completing(completion);
         Self { tracks, ..self }
     }
 
-    /// The same, with regions that keep their share in this place: they follow what is seen, as [`AdaptiveRegions`] tells.
-    /// Everything else of the forecasts has the same bits. What another watch of the place
-    /// [learned](AdaptiveRegions::learned) is taken up by [`AdaptiveRegions::resuming`].
+    /// Adapts the regions to the observations of this place so that they keep their share, see [`AdaptiveRegions`]. All
+    /// other parts of the forecasts have the same bits. To continue from what an earlier watch of the place
+    /// [learned](AdaptiveRegions::learned), use [`AdaptiveRegions::resuming`].
     #[must_use]
     pub fn adapting_regions(self, regions: AdaptiveRegions) -> Self {
         Self {
@@ -110,18 +111,18 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// The regions that adapt, where they were asked to.
+    /// The adaptive regions; `None` unless requested.
     pub fn regions(&self) -> Option<&AdaptiveRegions> {
         self.regions.as_ref()
     }
 
-    /// What forecasts.
+    /// The model.
     pub fn model(&self) -> &M {
         &self.model
     }
 
-    /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew. What is remembered of
-    /// the place stays, and what regions have learned of it.
+    /// Forgets all tracks and the last frame, as when a tracker restarts: any frame may follow. The memory of the place
+    /// and the adapted regions are kept.
     pub fn clear(&mut self) {
         self.tracks.clear();
         if let Some(regions) = &mut self.regions {
@@ -132,23 +133,23 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// What is remembered of the place, to be [saved](SceneMemory::write); `None` unless the forecaster was asked to
-    /// [remember](LiveForecaster::remembering).
+    /// The memory of the place, to be [saved](SceneMemory::write); `None` unless
+    /// [requested](LiveForecaster::remembering).
     pub fn memory(&self) -> Option<&SceneMemory> {
         self.place.as_ref().map(WatchedPlace::memory)
     }
 
-    /// Why the memory that was given is no longer used; `None` while it is.
+    /// The reason why the given memory is no longer used; `None` while it is.
     pub fn refused_memory(&self) -> Option<&OtherPlace> {
         self.place.as_ref()?.refused()
     }
 
-    /// The place that is remembered, for its [file](crate::MemoryFile).
+    /// The watched place, for its [memory file](crate::MemoryFile).
     pub fn place(&self) -> Option<&WatchedPlace> {
         self.place.as_ref()
     }
 
-    /// Decides whether the memory that was given is of this place by those seen so far, where no more are to come
+    /// Decides from the pedestrians so far whether the given memory is of this place; call it when no more will follow
     /// ([`WatchedPlace::end_trial`]).
     pub fn end_trial(&mut self) {
         if let Some(place) = &mut self.place {
@@ -156,12 +157,12 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// What is remembered of the frames so far.
+    /// The tracks of the frames so far.
     pub fn tracks(&self) -> &LiveTracks {
         &self.tracks
     }
 
-    /// Adds a frame, and forecasts from it by `forecast` where there is somebody to forecast; all or nothing.
+    /// Adds a frame and forecasts from it with `forecast` if there are pedestrians to forecast; changes all or nothing.
     fn push_with<F>(
         &mut self,
         frame: i64,
@@ -197,12 +198,12 @@ impl<M> LiveForecaster<M> {
 }
 
 impl<M: Forecaster> LiveForecaster<M> {
-    /// Adds a frame, everybody's positions (m) in any order, and forecasts everybody seen for 8 steps in a row; `None` while
-    /// that is nobody.
+    /// Adds a frame, with the positions (m) of all pedestrians in any order. Forecasts the pedestrians observed at 8
+    /// consecutive time steps; `None` if there are none.
     ///
     /// # Errors
-    /// [`DdlError::Live`] for a frame that is out of order, a position that is not finite or somebody twice;
-    /// [`DdlError::Forecast`] when the forecast fails, for positions out of this world for instance.
+    /// [`DdlError::Live`] for a frame out of order, a position that is not finite or a repeated pedestrian;
+    /// [`DdlError::Forecast`] when the forecast fails, for instance for positions of absurd size.
     pub fn push(
         &mut self,
         frame: i64,
@@ -217,15 +218,15 @@ impl<M: Forecaster> LiveForecaster<M> {
 }
 
 impl<M: Borrow<Ddl>> LiveForecaster<M> {
-    /// The same, with a memory of the place, such as [`SceneMemory::new`] or one that was [read](SceneMemory::read): what earlier
-    /// pedestrians did where these are counts in the forecasts, and the memory grows with every frame.
+    /// Adds a memory of the place: [`SceneMemory::new`], or one from a file ([`SceneMemory::read`]). The paths of
+    /// earlier pedestrians then influence the forecasts, and the memory grows with every frame.
     ///
-    /// A forecast uses what was observed before its frame. A memory that already holds [`OtherPlace::FEWEST_STRETCHES`] is
-    /// tried on the first pedestrians; where it is of another place, it is [refused](Self::refused_memory): forecasts go on
-    /// with an empty one.
+    /// A forecast uses observations before its frame. A memory of at least [`OtherPlace::FEWEST_STRETCHES`] stretches
+    /// is tested on the first pedestrians. If it is of another place, it is [refused](Self::refused_memory), and an
+    /// empty one replaces it.
     ///
     /// # Errors
-    /// When the model has no memory branch, or the memory another number of raw frames in a step.
+    /// When the model has no memory branch, or the memory has another number of raw frames in a step.
     pub fn remembering(self, memory: SceneMemory) -> Result<Self, DdlError> {
         let place = WatchedPlace::new(self.model.borrow(), memory)?;
         let (camera, its) = (self.tracks.frame_step(), place.memory().frame_step());
@@ -241,8 +242,8 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
         })
     }
 
-    /// The same, with the evidence for every hypothesis that it goes to its goal: what [`Ddl::forecast_certified`] says of the
-    /// window.
+    /// Like [`push`](Self::push), with evidence for every hypothesis that it approaches its goal: the result of
+    /// [`Ddl::forecast_certified`] for the window.
     ///
     /// # Errors
     /// As [`push`](Self::push); for the variants without dynamics
@@ -255,7 +256,6 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
         certified::ensure_flow(self.model.borrow().config().star.variant)?;
         let now = self.push_with(frame, people, |model, window| {
             let windows = std::slice::from_ref(window);
-            // one window in, one forecast out
             Ok(model.borrow().forecast_certified(windows)?.remove(0))
         })?;
         Ok(now.map(|LiveForecast { window, forecast }| {

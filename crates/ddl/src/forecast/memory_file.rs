@@ -1,4 +1,4 @@
-//! The file in which the memory of a place is kept from one watch to the next.
+//! The file that keeps the memory of a place from one watch to the next.
 
 use crate::error::DdlError;
 use crate::forecast::watched_place::WatchedPlace;
@@ -8,27 +8,28 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The file of a scene memory: read when a watch begins, written as frames come and at the end, by one process at a time.
+/// The file of a scene memory. It is read when a watch begins and written during the watch and at its end, by one
+/// process at a time.
 ///
-/// A file is never written over by a memory that is, or may be, of another place.
+/// A memory that is, or may be, of another place never overwrites the file.
 #[derive(Debug)]
 pub struct MemoryFile {
-    /// As it was named.
+    /// The path as given.
     path: PathBuf,
-    /// Where it lies.
+    /// The path with links resolved.
     file: PathBuf,
     written: Instant,
     _lock: RunLock,
 }
 
 impl MemoryFile {
-    /// From one writing to the next, as long as frames come.
+    /// The interval between writes while frames arrive.
     pub const PAUSE: Duration = Duration::from_mins(1);
 
-    /// Takes the file for this process, and reads the memory in it, if there is one. A link is followed.
+    /// Opens the file for this process, and reads the memory in it if there is one. Links are followed.
     ///
     /// # Errors
-    /// When it could not be written later, another process writes it, or it holds no whole memory.
+    /// When the file is not writable, another process writes it, or it holds no complete memory.
     pub fn open(path: &Path) -> Result<(Self, Option<SceneMemory>), DdlError> {
         let file = resolved(path);
         ensure_writable(&file).map_err(|error| {
@@ -47,31 +48,32 @@ impl MemoryFile {
         Ok((file, memory))
     }
 
-    /// The file as it was named.
+    /// The path as given.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether [`PAUSE`](Self::PAUSE) has passed since it was last written, or tried to be.
+    /// Whether [`PAUSE`](Self::PAUSE) has passed since the last attempt to write.
     pub fn is_due(&self) -> bool {
         self.written.elapsed() >= Self::PAUSE
     }
 
-    /// Writes the memory, unless it is, or may be, of another place than that in the file, or has seen nothing.
+    /// Writes the memory. It is not written when it is empty, or is or may be of another place than the file.
     ///
     /// # Errors
-    /// When the file cannot be written; an earlier one is then as it was.
+    /// When the file cannot be written; an earlier one is unchanged.
     pub fn write(&mut self, place: &WatchedPlace) -> Result<(), DdlError> {
         self.written = Instant::now();
         let decided = place.refused().is_none() && place.on_trial().is_none();
-        // A file without a frame would only fix the frame rate of the next watch.
+        // Without a frame, the file would only fix the frame rate of the next watch.
         if decided && place.memory().last_frame().is_some() {
             place.memory().write(&self.file)?;
         }
         Ok(())
     }
 
-    /// Writes the memory at the end of a watch, whose [trial](WatchedPlace::end_trial) has ended; why the file stays as it was, if it does.
+    /// Writes the memory at the end of a watch, after its [trial](WatchedPlace::end_trial). Returns the reason if the
+    /// file is left unchanged.
     ///
     /// # Errors
     /// As [`write`](Self::write).
@@ -80,18 +82,21 @@ impl MemoryFile {
         let path = self.path.display();
         if let Some(other) = place.refused() {
             return Ok(Some(format!(
-                "{path}: {other}; the file stays as it is, and what is seen now is not kept in it: give another file for this place"
+                "{path}: {other}; the file is unchanged, and this watch is not saved in it; give another file for this \
+                 place"
             )));
         }
         Ok(place.on_trial().map(|tried| {
             format!(
-                "{path}: {tried} pedestrians were seen for 8 steps, too few to tell whether the memory is of this place; the file stays as it is"
+                "{path}: {tried} pedestrians were observed for 8 time steps, too few to tell whether the memory is of \
+                 this place; the file is unchanged"
             )
         }))
     }
 }
 
-/// The file itself, wherever a link leads and whatever becomes the folder that the process works in; also where there is no file yet.
+/// The absolute path of the file with links resolved, so that a later change of the working directory does not matter.
+/// The file may not exist yet.
 fn resolved(path: &Path) -> PathBuf {
     if let Ok(path) = path.canonicalize() {
         return path;
@@ -110,12 +115,12 @@ fn resolved(path: &Path) -> PathBuf {
     }
 }
 
-/// Whether a file can be written and replaced there; nothing of it changes.
+/// Checks that the file can be written and replaced, without changing it.
 fn ensure_writable(path: &Path) -> std::io::Result<()> {
     if path.exists() {
-        // To open a pipe would wait for its reader.
+        // Opening a pipe would wait for its reader.
         if !path.is_file() {
-            return Err(std::io::Error::other("it is no file"));
+            return Err(std::io::Error::other("it is not a regular file"));
         }
         File::options().write(true).open(path)?;
     }

@@ -6,7 +6,7 @@ use ddl_eval::{EvaluationError, Forecast, Forecaster as _};
 use ddl_report::Moment;
 use ddl_report::page::Viewer;
 
-/// One page with a player of forecasts at moments of a recording, which needs no network.
+/// A self-contained page that plays forecasts at moments of a recording.
 #[derive(Debug)]
 pub struct RecordingPlayer<'a> {
     model: &'a Ddl,
@@ -16,7 +16,7 @@ pub struct RecordingPlayer<'a> {
 }
 
 impl<'a> RecordingPlayer<'a> {
-    /// Shows at most `most` of the recording's observed windows, evenly spread.
+    /// A player of at most `most` of the recording's observed windows, evenly spread.
     pub fn new(
         model: &'a Ddl,
         recording: &'a Recording,
@@ -38,11 +38,11 @@ impl<'a> RecordingPlayer<'a> {
         (1..=count).map(|k| self.windows[last(k)].clone()).collect()
     }
 
-    /// The page, of a forecast for each window that is [shown](Self::shown). `name` is what the recording is called, `doubt`
-    /// what is wrong with it, `frame` makes a frame number of the recording one of its file.
+    /// The page, from one forecast for each window in [`shown`](Self::shown). `name` is the title of the recording,
+    /// `doubt` describes a fault of it, and `frame` converts a frame number of the recording to one of its file.
     ///
     /// # Errors
-    /// [`DdlError::Evaluation`] or [`DdlError::Page`] where a forecast does not fit its window, or there is none.
+    /// [`DdlError::Evaluation`] or [`DdlError::Page`] if a forecast does not fit its window, or if there are none.
     pub fn to_html(
         &self,
         forecasts: &[&Forecast],
@@ -59,8 +59,8 @@ impl<'a> RecordingPlayer<'a> {
         let moments: Vec<Moment> = moments.collect::<Result<_, EvaluationError>>()?;
         let doubt = doubt.map(|doubt| format!("Doubtful: {doubt} "));
         let lead = format!(
-            "{}{} of {} moments of {name}: what was observed of each pedestrian, where each may go in the next 4.8 s, and what then \
-             happened as far as it was seen.",
+            "{}{} of {} moments of {name}: the observed path of each pedestrian, its forecast for the next 4.8 s, and \
+             its true path as far as it was observed.",
             doubt.unwrap_or_default(),
             shown.len(),
             self.windows.len()
@@ -93,8 +93,8 @@ fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
         .count();
     (unlike > 0).then(|| {
         format!(
-            "{unlike} of {} motions are unlike those that the model was trained on (familiarity below {}): they are forecast nearly without the \
-             network, and less sharply weighted.",
+        "{unlike} of {} motions are unlike the training motions (familiarity below {}): their forecasts use little of \
+         the network, and their weights are flatter.",
             all.count(),
             UNFAMILIAR
         )
@@ -113,8 +113,8 @@ fn certificates(forecasts: &[&Forecast]) -> Option<String> {
     let held = verdicts.iter().filter(|&&holds| holds).count();
     (!verdicts.is_empty()).then(|| {
         format!(
-            "Certificates: {held} of {} hypotheses come nearer to their goal at each of the 12 steps, along a flow that descends everywhere. \
-             That says that the forecasts are stable, not that pedestrians will do as forecast.",
+        "Certificates: {held} of {} hypotheses approach their goal at each of the 12 steps, along a flow that descends \
+         everywhere. This proves that the forecasts are stable, not that they are accurate.",
             verdicts.len()
         )
     })

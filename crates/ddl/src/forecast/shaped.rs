@@ -1,4 +1,4 @@
-//! What a forecasting network makes of windows and their goals, trained or still in training.
+//! Forecasts of a network, trained or in training, for windows and their goals.
 
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
@@ -9,11 +9,12 @@ use ddl_eval::{Forecast, ForecastError};
 use ddl_goal::GoalSet;
 use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 
-/// Hypotheses of the variant without goals: as many noise vectors.
+/// Hypotheses of the variant without goals: one for each noise vector.
 const NOISE_HYPOTHESES: usize = 20;
 
-/// One hypothesis a goal for every pedestrian, with the goal's weight, shaped by the network as far as the pedestrian's motion is
-/// familiar; for the variant without goals, one a noise vector of that seed, all equally likely.
+/// For every pedestrian one hypothesis for each goal, with the weight of the goal. The network shapes it as far as the
+/// observed motion is familiar. The variant without goals makes one for each noise vector of this seed, all equally
+/// likely.
 pub(crate) fn towards(
     network: &dyn ForecastWindows,
     seed: u64,
@@ -29,8 +30,8 @@ pub(crate) fn towards(
         .collect()
 }
 
-/// The network's rollouts to all goals; each becomes a forecast when it is its turn, so that the
-/// certificates of many windows need not be kept.
+/// The network's rollouts to all goals. Each becomes a forecast on demand, so that the certificates of many windows are
+/// not kept.
 pub(crate) fn walked<'a>(
     network: &'a dyn ForecastWindows,
     windows: &'a [Window],
@@ -67,7 +68,7 @@ pub(crate) fn walked<'a>(
     ))
 }
 
-/// Plain STAR: noise samples, all equally likely.
+/// Plain STAR: equally likely noise samples.
 pub(crate) fn without_goals(
     network: &dyn ForecastWindows,
     seed: u64,
@@ -77,7 +78,7 @@ pub(crate) fn without_goals(
         count: NOISE_HYPOTHESES,
         seed,
     };
-    // A goal for everybody, which this variant does not read.
+    // This variant does not read the goals.
     let unused = |window: &Window| vec![vec![[0.0; 2]]; window.len()];
     let goals: Vec<_> = windows.iter().map(unused).collect();
     network

@@ -1,5 +1,6 @@
-//! One hypothesis of one pedestrian: the network emits the factors of P, `ddl-dynamics` turns them into positions in `f64`,
-//! by the integrator whose guarantee holds for the computed numbers; or positions walked elsewhere are certified.
+//! The path of one hypothesis of one pedestrian. The network emits the factors of P, and `ddl-dynamics` integrates them
+//! to positions in `f64`, with the integrator whose guarantee holds for the computed numbers. Positions from elsewhere
+//! can be certified as well.
 
 use crate::forecast::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
@@ -14,9 +15,9 @@ use std::cell::RefCell;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Gait {
-    /// The published steps, which may pass the goal.
+    /// Plain Euler steps as published, which may overshoot the goal.
     PlainEuler,
-    /// `StableEuler` within bounds, everybody alone or keeping clear of the others.
+    /// `StableEuler` within bounds, with a clearance or without regard to others.
     Stable(Option<Clearance>),
 }
 
@@ -42,17 +43,17 @@ pub(crate) struct Course {
 
 #[derive(Debug)]
 pub(crate) struct Walk {
-    /// One a step, the start left out; metres.
+    /// One for each step, without the start; metres.
     pub(crate) positions: [Position; HORIZON],
     pub(crate) certificate: LyapunovCertificate<f64>,
 }
 
-/// The flow to a goal, shaped by a metric a step.
+/// The flow to a goal, shaped by one metric for each step.
 type ShapedFlow = NaturalGradientFlow<f64, 2, Remembered>;
 
 /// Computes the metric of each step once, for the integrator and for the certificate.
 ///
-/// An [`ArrivingSchedule`] reads the step and the position of a state, and nothing else of it.
+/// This is valid because an [`ArrivingSchedule`] depends only on the step and the position of a state.
 #[derive(Debug)]
 struct Remembered {
     metrics: ArrivingSchedule<f64>,
@@ -77,7 +78,7 @@ impl MetricSource<f64, 2> for Remembered {
 }
 
 impl Course {
-    /// Walks the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) a step.
+    /// Integrates the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
         self.follow(&self.flow(factors)?, true)
     }
@@ -112,7 +113,7 @@ impl Course {
         })
     }
 
-    /// The evidence for positions that were walked elsewhere, with one factor (a, b, c) a step.
+    /// The evidence for positions from elsewhere, with one factor (a, b, c) for each step.
     pub(crate) fn certify(
         &self,
         positions: &[Position],
@@ -127,7 +128,7 @@ impl Course {
         LyapunovCertificate::new(&path, &metrics, &attractor, self.time_step)
     }
 
-    /// The metrics of all steps; one that is none is named with its step.
+    /// The metrics of all steps. An error names the step of an invalid factor.
     fn metrics(&self, factors: &[[f64; 3]]) -> Result<Vec<CholeskyMetric<f64, 2>>, DynamicsError> {
         let metric = |(step, &[a, b, c]): (usize, &[f64; 3])| {
             CholeskyMetric::planar(a, b, c, self.sigma).map_err(|cause| DynamicsError::Step {
@@ -158,7 +159,7 @@ mod tests {
         }
     }
 
-    /// 3 m in 12 steps of 0.5 s at the velocity that arrives, and L = I, which asks for no departure: straight on.
+    /// 3 m in 12 steps of 0.5 s at the velocity that arrives, with L = I, which causes no departure: a straight line.
     #[test]
     fn straight_on_at_half_a_metre_a_second() {
         let course = course();
@@ -180,10 +181,10 @@ mod tests {
         assert_eq!(certified.motion(), None);
     }
 
-    /// Somebody stands in the way: passed at the distance asked for, and the goal is still neared at every
+    /// The path around a standing pedestrian keeps the clearance, and the distance to the goal still falls at every
     /// step.
     #[test]
-    fn somebody_in_the_way_is_passed() {
+    fn a_pedestrian_in_the_way_is_passed() {
         let (course, factors) = (course(), [[1.0, 0.0, 1.0]; HORIZON]);
         let clearance = Clearance::new(0.5).unwrap();
         let stands = [[1.5, 0.1]; HORIZON];
@@ -204,7 +205,7 @@ mod tests {
     }
 
     proptest! {
-        /// The discs that `Others::near` leaves out for being far away have no effect on the walk.
+        /// Discs that `Others::near` leaves out because of their distance have no effect on the path.
         #[test]
         fn discs_that_are_left_out_change_no_bit(
             others in prop::collection::vec(prop::array::uniform2(-25.0..25.0_f64), 1..40),
@@ -223,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn a_factor_that_is_no_number_is_named_with_its_step() {
+    fn an_invalid_factor_is_named_with_its_step() {
         let mut factors = [[1.0, 0.0, 1.0]; HORIZON];
         factors[7][1] = f64::NAN;
         for error in [

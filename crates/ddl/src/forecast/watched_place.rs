@@ -1,4 +1,4 @@
-//! A place that is watched: what is remembered of it, and whether a memory is of this place at all.
+//! A watched place: its memory, and the test whether a given memory is of this place.
 
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
@@ -7,22 +7,23 @@ use ddl_memory::SceneMemory;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// A pedestrian has walked like another where the squared distance of the motions is below this: 2 m, for instance.
+/// Two motions are alike where their squared distance is below this, which corresponds to 2 m.
 const ALIKE: f64 = 4.0;
-/// Pedestrians on whom a memory is tried.
+/// Number of pedestrians that a memory is tested on.
 const TRIED: usize = 30;
-/// A memory is refused where a smaller share than this of them walk as somebody did in the memory. Of 65 pairs of parts of
-/// recordings of one camera the smallest share was 0.30, of 89 pairs of two cameras 7 in 8 are below 0.15 (docs/memory.md).
+/// A memory is refused if a smaller share of them moves like an earlier pedestrian in the memory. Of 65 pairs of parts
+/// of recordings of one camera the smallest share was 0.30; of 89 pairs of two cameras 7 in 8 are below 0.15
+/// (docs/memory.md).
 const LEAST_SHARE: f64 = 0.15;
-/// With fewer pedestrians a memory is not refused: at the smallest share of one camera, 0.30, none of 12 pedestrians has a similar
-/// trajectory in the memory with a probability of 1.4 %.
+/// A memory is not refused on fewer pedestrians. At 0.30, the smallest share of one camera, none of 12 pedestrians has
+/// a similar trajectory in the memory with a probability of 1.4 %.
 const FEWEST_TRIED: usize = 13;
 
-/// A memory that is fed with what is forecast from: the part of a [`LiveForecaster`](crate::LiveForecaster) that remembers,
-/// for programs that keep tracks themselves.
+/// A memory that observes the frames it is used for: the remembering part of a
+/// [`LiveForecaster`](crate::LiveForecaster), for programs that keep tracks themselves.
 ///
-/// A memory that already holds [`OtherPlace::FEWEST_STRETCHES`] is tried on the first pedestrians. Where it is of another
-/// place, it is [refused](Self::refused), and the place is remembered from then on by an empty one.
+/// A memory of at least [`OtherPlace::FEWEST_STRETCHES`] stretches is tested on the first pedestrians. If it is of
+/// another place, it is [refused](Self::refused), and an empty one replaces it.
 #[derive(Debug, Clone)]
 pub struct WatchedPlace {
     memory: SceneMemory,
@@ -32,7 +33,7 @@ pub struct WatchedPlace {
     refused: Option<OtherPlace>,
 }
 
-/// A memory that was given, as it was, until it is known to be of this place.
+/// The given memory, unchanged, until it is confirmed to be of this place.
 #[derive(Debug, Clone)]
 struct Trial {
     given: SceneMemory,
@@ -40,18 +41,18 @@ struct Trial {
     alike: usize,
 }
 
-/// A memory was given that is not of the place that is watched.
+/// The given memory is of another place than the watched one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct OtherPlace {
-    /// Pedestrians on whom it was tried.
+    /// Number of pedestrians that it was tested on.
     pub tried: usize,
-    /// Of these, who walked where and as somebody did in the memory.
+    /// Number of these that moved like an earlier pedestrian in the memory.
     pub alike: usize,
 }
 
 impl OtherPlace {
-    /// A memory with fewer stretches is not tried: it may be of any place.
+    /// A memory with fewer stretches is not tested: it may be of any place.
     pub const FEWEST_STRETCHES: usize = 500;
 }
 
@@ -60,14 +61,14 @@ impl fmt::Display for OtherPlace {
         let Self { tried, alike } = self;
         write!(
             f,
-            "the memory is of another place, or the camera was moved: of {tried} pedestrians {alike} walked where and as \
-             somebody did in the memory"
+            "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved like \
+             an earlier pedestrian in the memory"
         )
     }
 }
 
 impl WatchedPlace {
-    /// With a memory as it was made or read; tracks that were running in it have ended.
+    /// Starts with an empty memory or one from a file; tracks that were running in it have ended.
     ///
     /// # Errors
     /// When the model has no memory branch.
@@ -88,24 +89,23 @@ impl WatchedPlace {
         })
     }
 
-    /// What is remembered, of the memory that was given and since.
+    /// The memory, given and grown since.
     pub fn memory(&self) -> &SceneMemory {
         &self.memory
     }
 
-    /// Why the memory that was given is no longer used; `None` while it is.
+    /// The reason why the given memory is no longer used; `None` while it is.
     pub fn refused(&self) -> Option<&OtherPlace> {
         self.refused.as_ref()
     }
 
-    /// The number of pedestrians on whom the memory that was given was tried so far, while it may still turn out to be of another
-    /// place; `None` once that is decided.
+    /// The number of pedestrians that the given memory was tested on so far; `None` once the test is decided.
     pub fn on_trial(&self) -> Option<usize> {
         self.trial.as_ref().map(|trial| trial.tried.len())
     }
 
-    /// Ends the trial of the memory by those whom it was tried on so far, where no more are to come. Where these are too few to tell
-    /// that it is of another place, and none of them walk alike, it stays [on trial](Self::on_trial).
+    /// Ends the test of the memory; call it when no more pedestrians will follow. If there were too few to refuse the
+    /// memory, and none of them moved like an earlier one, the test stays [undecided](Self::on_trial).
     pub fn end_trial(&mut self) {
         if let Some(trial) = &self.trial {
             let tried = trial.tried.len();
@@ -117,22 +117,21 @@ impl WatchedPlace {
         }
     }
 
-    /// The tracker starts anew: all tracks end, and any frame may come next.
+    /// Ends all tracks, as when a tracker restarts: any frame may follow.
     pub fn interrupt(&mut self) {
         self.memory.interrupt();
     }
 
-    /// The window with what is remembered for its pedestrians. To be asked before its last frame is
-    /// [observed](Self::observe).
+    /// The window with the memory for its pedestrians. Call it before its last frame is [observed](Self::observe).
     #[must_use]
     pub fn recalling(&self, window: Window) -> Window {
         self.memory.recalling(window, self.count)
     }
 
-    /// Remembers a frame, whose window, if there was one, is forecast from.
+    /// Observes a frame, and tests the memory on its window, if there is one.
     ///
     /// # Errors
-    /// As [`SceneMemory::observe`]. Nothing has changed then.
+    /// As [`SceneMemory::observe`]. The state is then unchanged.
     pub fn observe(
         &mut self,
         frame: i64,
@@ -142,7 +141,7 @@ impl WatchedPlace {
         self.memory.observe(frame, people)?;
         if let (Some(trial), Some(window)) = (&mut self.trial, window) {
             trial.look_at(window);
-            // With so many no later pedestrian can refuse it.
+            // With this many alike, no later pedestrian can cause a refusal.
             let is_certain = trial.alike as f64 >= LEAST_SHARE * TRIED as f64;
             if is_certain || trial.tried.len() >= TRIED {
                 self.end_trial();
@@ -161,7 +160,7 @@ impl WatchedPlace {
 }
 
 impl Trial {
-    /// Each pedestrian counts once, when first seen at 8 steps in a row.
+    /// Each pedestrian counts once, when first observed at 8 consecutive time steps.
     fn look_at(&mut self, window: &Window) {
         for (i, &id) in window.pedestrians().iter().enumerate() {
             let whole = window.made_up(i).is_nothing();

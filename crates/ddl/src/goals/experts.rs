@@ -13,7 +13,7 @@ use std::path::Path;
 const TRACKS: &str = "tracks";
 /// Bytes of a track: 20 positions of two f64.
 const TRACK_BYTES: usize = WINDOW * 2 * 8;
-const MEND: &str = "copy it again, or delete it and run the same training again";
+const REMEDY: &str = "copy it again, or delete it and run the same training again";
 const HEADER_BYTES: u64 = 1 << 20;
 
 pub(crate) fn library(windows: &[Window]) -> Result<ExpertLibrary, DdlError> {
@@ -40,9 +40,9 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
     write_atomically(path, &file)
 }
 
-/// The library of a run of this origin, with as many tracks as its configuration says.
+/// Loads the library of a run of this origin. The configuration of the run gives its number of `tracks`.
 pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<ExpertLibrary, DdlError> {
-    // Nothing more is read, and no room made, than the library of the run takes.
+    // Reads and allocates at most the size of the run's library.
     let most = (tracks as u64)
         .saturating_mul(TRACK_BYTES as u64)
         .saturating_add(HEADER_BYTES);
@@ -52,13 +52,12 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         .read_to_end(&mut bytes)
         .map_err(|error| DdlError::io(path, error))?;
     if bytes.len() as u64 > most {
-        let problem =
-            format!("is longer than {most} bytes, which is all that {tracks} tracks take");
+        let problem = format!("is longer than {most} bytes, the size of {tracks} tracks");
         return Err(DdlError::run(path, problem));
     }
     let broken = |error: safetensors::SafeTensorError| {
         let problem = format!(
-            "is not a whole safetensors file ({error}); delete it and run the same training again"
+            "is not a complete safetensors file ({error}); delete it and run the same training again"
         );
         DdlError::run(path, problem)
     };
@@ -68,8 +67,8 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         return Err(DdlError::run(
             path,
             format!(
-                "belongs to another run than the config.json beside it: its {difference}; put back the file, or \
-             the config.json, that it was made with"
+                "belongs to another run than the config.json beside it: its {difference}; restore the file or the \
+                 config.json that it was made with"
             ),
         ));
     }
@@ -78,10 +77,10 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         .map_err(|error| DdlError::run(path, error.to_string()))?;
     let view = file
         .tensor(TRACKS)
-        .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {MEND}")))?;
+        .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {REMEDY}")))?;
     if view.dtype() != Dtype::F64 || view.shape() != [tracks, WINDOW, 2] {
         let problem = format!(
-            "has {:?} {:?} for `{TRACKS}`, expected {tracks} f64 tracks of {WINDOW} positions; {MEND}",
+            "has {:?} {:?} for `{TRACKS}`, expected {tracks} f64 tracks of {WINDOW} positions; {REMEDY}",
             view.dtype(),
             view.shape()
         );
@@ -94,16 +93,16 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
     ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| unusable(&error, path))
 }
 
-/// The error about a library of the right shape that goals cannot be retrieved from: tracks that nobody can have walked, or too few.
+/// The error for a library of the right shape that is unusable: impossible tracks, or too few tracks.
 pub(crate) fn unusable(error: &dyn std::error::Error, path: &Path) -> DdlError {
-    DdlError::run(path, format!("cannot be used: {error}; {MEND}"))
+    DdlError::run(path, format!("cannot be used: {error}; {REMEDY}"))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// A library of two pedestrians, read from a file without the SHA-256 that would tell of any change.
+    /// A library of two tracks, read from a file without the SHA-256 that would reveal the change.
     fn read(change: impl FnOnce(&mut [f64])) -> Result<ExpertLibrary, DdlError> {
         let mut numbers: Vec<f64> = (0..2 * WINDOW * 2).map(|i| 0.25 * i as f64).collect();
         change(&mut numbers);
@@ -120,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn a_library_that_nobody_can_have_walked_is_named() {
+    fn a_library_of_impossible_tracks_is_refused() {
         assert_eq!(read(|_| ()).unwrap().len(), 2);
         for (number, part) in [
             (f64::NAN, "position 3 is (NaN"),
@@ -128,7 +127,7 @@ mod tests {
         ] {
             let error = read(|numbers| numbers[6] = number).unwrap_err().to_string();
             assert!(error.contains("experts.safetensors"), "{error}");
-            assert!(error.contains(part) && error.contains(MEND), "{error}");
+            assert!(error.contains(part) && error.contains(REMEDY), "{error}");
         }
     }
 }

@@ -23,15 +23,15 @@ use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEnds, Prop
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Estimates where the pedestrians of a window are going, from the 8 observed frames and nothing else.
+/// Estimates goals for the pedestrians of a window, from the 8 observed frames and the memory of the place.
 #[derive(Debug)]
 pub struct GoalModel {
     source: ModelSource,
     config: RunConfig,
     origin: GoalOrigin,
-    /// Goals a pedestrian.
+    /// Goals for each pedestrian.
     clusters: usize,
-    /// What it was trained on, by which motions are familiar; `None` where too little is known of them.
+    /// The training motions that familiarity is measured against; `None` where too few are known.
     motions: Option<TrainingMotions>,
 }
 
@@ -39,12 +39,12 @@ pub struct GoalModel {
 enum GoalOrigin {
     Retrieved(GoalEstimator),
     Proposed(Box<dyn ProposeEnds>),
-    /// Both, the retrieved goals with this share of the probability.
+    /// Both; the retrieved goals have this share of the probability.
     Both(Box<dyn ProposeEnds>, GoalEstimator, f64),
 }
 
 impl GoalModel {
-    /// Loads the goals' part of the run at `path`, whose forecasting network need not be trained yet, or of a packed model.
+    /// Loads the goals of the run at `path`, or of a packed model. The forecasting network of the run may be untrained.
     ///
     /// # Errors
     /// As [`GoalModel::open`].
@@ -52,11 +52,10 @@ impl GoalModel {
         Self::open(&ModelSource::at(path), device)
     }
 
-    /// The same from any source of models.
+    /// Loads the goals from any source of models.
     ///
     /// # Errors
-    /// When there is no run, its goals are not trained, one of the files is broken, or the device
-    /// cannot be had.
+    /// When there is no run, its goals are not trained, one of the files is broken, or the device is unavailable.
     pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
         let Some(run) = source.run() else {
             let bytes = packed::bytes(source)?;
@@ -66,7 +65,7 @@ impl GoalModel {
         };
         let config = run.config()?;
         if !run.has_goals(&config.goals) {
-            let problem = "has no goals yet; run the same `ddl train` command again to go on";
+            let problem = "has no goals yet; run the same `ddl train` command again to continue";
             return Err(source.wrong(problem));
         }
         source.check(&config)?;
@@ -92,7 +91,7 @@ impl GoalModel {
         Self::with_network(run, config, network)
     }
 
-    /// The goals of a run with this proposal network, which need not be the one that is in its file.
+    /// The goals of a run with this proposal network instead of the one in its file.
     pub(crate) fn with_network(
         run: RunDirectory,
         config: RunConfig,
@@ -123,7 +122,7 @@ impl GoalModel {
         })
     }
 
-    /// The goals of a packed model, and what else it holds.
+    /// The goals of a packed model, and its remaining contents.
     pub(crate) fn of_packed(
         source: &ModelSource,
         unpacked: Unpacked,
@@ -145,22 +144,22 @@ impl GoalModel {
         Ok((goals, network))
     }
 
-    /// What decided the run.
+    /// The configuration of the run.
     pub fn config(&self) -> &RunConfig {
         &self.config
     }
 
-    /// Where the model was taken from.
+    /// The source that the model was loaded from.
     pub fn source(&self) -> &ModelSource {
         &self.source
     }
 
-    /// How the goals were trained; whether all of it is at hand, [`words`](Self::words) says.
+    /// How the goals were trained. [`words`](Self::words) tells which parts of it are available.
     pub fn recipe(&self) -> &GoalRecipe {
         &self.config.goals
     }
 
-    /// Where the goals come from, in words.
+    /// The origin of the goals, in words.
     pub fn words(&self) -> String {
         match &self.origin {
             GoalOrigin::Proposed(_) => self.recipe().words_without_library(),
@@ -168,12 +167,13 @@ impl GoalModel {
         }
     }
 
-    /// Goals a pedestrian, at most.
+    /// Goals for each pedestrian, at most.
     pub fn clusters(&self) -> usize {
         self.clusters
     }
 
-    /// The retrieval of similar pedestrians, which sees the observed positions alone; `None` where there is no expert library.
+    /// The retrieval of similar pedestrians, which reads the observed positions only; `None` where there is no expert
+    /// library.
     pub fn estimator(&self) -> Option<&GoalEstimator> {
         match &self.origin {
             GoalOrigin::Proposed(_) => None,
@@ -188,12 +188,12 @@ impl GoalModel {
         }
     }
 
-    /// Whether the goals would be others without the expert library, and there would be some.
+    /// Whether the goals of a proposal network are pooled with those of an expert library.
     pub(crate) fn has_library_beside_network(&self) -> bool {
         matches!(self.origin, GoalOrigin::Both(..))
     }
 
-    /// Numbers learned by the proposal network; 0 without one.
+    /// Number of learned parameters of the proposal network; 0 without one.
     pub fn parameter_count(&self) -> usize {
         self.recipe()
             .proposal
@@ -201,7 +201,7 @@ impl GoalModel {
             .map_or(0, |recipe| recipe.network.parameter_count())
     }
 
-    /// The windows with what is remembered of their places, for windows of the dataset's recordings.
+    /// The windows of the dataset's recordings with the memory of their places.
     ///
     /// # Errors
     /// When the model has no memory branch.
@@ -229,15 +229,15 @@ impl GoalModel {
         remembering(&recordings, windows, of_place, playback, count)
     }
 
-    /// How many earlier pedestrians its memory branch is given for each pedestrian.
+    /// Number of earlier pedestrians that the memory branch receives for each pedestrian.
     ///
     /// # Errors
-    /// When it has no memory branch.
+    /// When the model has no memory branch.
     pub fn remembered_at_once(&self) -> Result<usize, DdlError> {
         let memory = self.memory().ok_or_else(|| {
             self.source.wrong(
-                "has no memory branch, without which nothing of a place can be remembered; train a model whose goals are proposed, \
-                 with this version of the program",
+            "has no memory branch, so it cannot use a memory of the place; train a model with proposed goals, with \
+             this version of the program",
             )
         })?;
         Ok(memory.remembered)
@@ -253,37 +253,37 @@ impl GoalModel {
         Ok(Some(fold.set_apart(&data.validation_recordings)?))
     }
 
-    /// Whether `fair` and `single` forecasts remember training recordings of the place of the test recordings.
+    /// Whether `fair` and `single` forecasts remember training recordings from the place of the test recordings.
     pub(crate) fn remembers_place(&self, dataset: &Dataset) -> Result<bool, DdlError> {
         let fold = self.fold_with_places(dataset)?;
         let confirmed = fold.is_some_and(|fold| !fold.place_memory_confirmed_by().is_empty());
         Ok(confirmed && self.memory().is_some())
     }
 
-    /// The memory branch of its proposal network, if there is one.
+    /// The memory branch of its proposal network, if present.
     pub(crate) fn memory(&self) -> Option<&MemoryConfig> {
         self.config.goals.proposal.as_ref()?.network.memory.as_ref()
     }
 
-    /// The goals of every pedestrian of every window, from the observed frames and what the windows remember.
+    /// The goals of every pedestrian of every window, from the observed frames and the memory of the windows.
     ///
-    /// On the CPU a pedestrian's goals have the same bits alone and among others.
+    /// On the CPU, the goals of a pedestrian have the same bits however the windows are grouped.
     ///
     /// # Errors
     /// When positions are so far apart that distances leave the range of `f64`, or libtorch fails.
     pub fn goals(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let sets = match &self.origin {
             GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows)?,
-            GoalOrigin::Proposed(network) => self.standing_for_ends(&**network, None, windows)?,
+            GoalOrigin::Proposed(network) => self.representatives(&**network, None, windows)?,
             GoalOrigin::Both(network, estimator, share) => {
-                self.standing_for_ends(&**network, Some((estimator, *share)), windows)?
+                self.representatives(&**network, Some((estimator, *share)), windows)?
             }
         };
-        Ok(self.plausible(windows, sets))
+        Ok(self.within_reach(windows, sets))
     }
 
-    /// The sets with goals beyond reach drawn in, and weights as flat as the trust in the motion asks for.
-    fn plausible(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
+    /// Pulls goals beyond reach back within it, and flattens the weights where the observed motion is unfamiliar.
+    fn within_reach(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
         let time_step = self.config.star.time_step;
         let of_window = |(window, sets)| {
             let sets = reach::within(window, sets, time_step).into_iter();
@@ -294,8 +294,8 @@ impl GoalModel {
         windows.iter().zip(sets).map(of_window).collect()
     }
 
-    /// How much the observed motion of each pedestrian of a window is like those that the model was trained on: the share of training
-    /// motions kept apart that are at least as unusual, in (0, 1]. 1 where nothing is known of these.
+    /// Familiarity of the observed motion of each pedestrian of a window: the share of held-out training motions that
+    /// are at least as unusual, in (0, 1]. It is 1 where no training motions are known.
     #[must_use]
     pub fn familiarity(&self, window: &Window) -> Vec<f64> {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
@@ -305,7 +305,7 @@ impl GoalModel {
         self.motions.as_ref()
     }
 
-    /// The goals that the model would have without its expert library; its own where none of them are proposed.
+    /// The goals of the model without its expert library; unchanged where none of them are proposed.
     pub(crate) fn goals_without_library(
         &self,
         windows: &[Window],
@@ -313,14 +313,14 @@ impl GoalModel {
         match self.proposal_network() {
             None => self.goals(windows),
             Some(network) => {
-                let sets = self.standing_for_ends(network, None, windows)?;
-                Ok(self.plausible(windows, sets))
+                let sets = self.representatives(network, None, windows)?;
+                Ok(self.within_reach(windows, sets))
             }
         }
     }
 
-    /// Goals that stand for the network's ends, and for retrieved goals where they have a share.
-    fn standing_for_ends(
+    /// Goals that represent the endpoints of the network, and the retrieved goals where they have a share.
+    fn representatives(
         &self,
         network: &dyn ProposeEnds,
         retrieval: Option<(&GoalEstimator, f64)>,
@@ -377,10 +377,13 @@ impl GoalModel {
             .collect())
     }
 
-    /// Where pedestrians whose future is known are led in training: to the proposed goal nearest the true end, or to the
-    /// true end where nothing is proposed. What is retrieved is left out: the library holds the very pedestrians that are
-    /// learned from (`docs/goals.md`, training).
-    pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
+    /// The goals of pedestrians in training: the proposed goal nearest the true endpoint, or the true endpoint without
+    /// a proposal network. Retrieved goals are left out, because the library holds the training pedestrians themselves
+    /// (`docs/goals.md`, training).
+    pub(crate) fn training_goals(
+        &self,
+        windows: &[Window],
+    ) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
         if self.proposal_network().is_none() {
             let ends = |window: &Window| (0..window.len()).map(|i| end(window, i)).collect();
@@ -404,12 +407,12 @@ impl GoalModel {
             .collect())
     }
 
-    /// The published estimator: under the protocol `published` its query reads the first future frame.
+    /// The published estimator: under the protocol `published`, its query reads the first future frame.
     pub(crate) fn published_estimator(&self, query: QuerySpan) -> Result<GoalEstimator, DdlError> {
         let Some(estimator) = self.estimator() else {
             return Err(self.source.wrong(
-                "has no expert library, from which the protocol `published` takes its goals; measure it under `fair` and \
-                 `single`, or measure the run that it was packed from",
+                "has no expert library, from which the protocol `published` takes its goals; evaluate it under `fair` \
+                 and `single`, or evaluate the run that it was packed from",
             ));
         };
         let library: ExpertLibrary = estimator.library().clone();

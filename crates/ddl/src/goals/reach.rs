@@ -2,8 +2,7 @@ use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
 
-/// The goal sets of a window with goals beyond reach drawn in: to the distance that the pedestrian covers at
-/// its top speed until the horizon.
+/// Pulls goals beyond reach back to the distance that the pedestrian covers at its top speed until the horizon.
 pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec<GoalSet> {
     let each = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);

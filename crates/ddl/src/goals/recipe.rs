@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GoalRecipe {
-    /// Retrieval of similar pedestrians; also says how many goals there are.
+    /// Retrieval of similar pedestrians; it also sets the number of goals.
     pub retrieval: GoalEstimatorParams,
-    /// The proposal network whose ends are pooled with the retrieved goals; without one these are all.
+    /// The proposal network, whose endpoints are pooled with the retrieved goals; `None`: all goals are retrieved.
     pub proposal: Option<ProposalRecipe>,
 }
 
@@ -17,12 +17,12 @@ pub struct GoalRecipe {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProposalRecipe {
-    /// Its shape.
+    /// The shape of the network.
     pub network: ProposalConfig,
-    /// Its training.
+    /// The training of the network.
     pub training: ProposalTraining,
-    /// Share of the probability given to the retrieved goals, which are pooled with the network's ends before K goals are
-    /// chosen to stand for both.
+    /// Probability of the retrieved goals. They are pooled with the endpoints of the network before K goals are chosen
+    /// to represent both.
     pub retrieved_share: f64,
 }
 
@@ -44,7 +44,7 @@ impl ProposalRecipe {
         } = self;
         let (members, steps) = (network.members, training.steps);
         let memory = match network.memory {
-            Some(_) => format!(" and {} more for what is remembered", training.memory.steps),
+            Some(_) => format!(" and {} more for the memory branch", training.memory.steps),
             None => String::new(),
         };
         format!("proposed by {members} networks trained {steps} steps{memory}")
@@ -75,7 +75,7 @@ impl GoalRecipe {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// Naming the first that is out of range.
+    /// The first parameter that is out of range.
     pub fn check(&self) -> Result<(), DdlError> {
         self.retrieval.clone().check()?;
         if let Some(proposal) = &self.proposal {
@@ -88,16 +88,18 @@ impl GoalRecipe {
         Ok(())
     }
 
-    /// Where the goals come from when the expert library is not at hand, in words.
+    /// The origin of the goals without the expert library, in words.
     #[must_use]
     pub fn words_without_library(&self) -> String {
         match &self.proposal {
-            None => "none: they would be retrieved, and there is no expert library".to_owned(),
+            None => {
+                "none: goals are retrieved from the expert library, which is missing".to_owned()
+            }
             Some(proposal) => format!("{}, no expert library", proposal.words()),
         }
     }
 
-    /// Where the goals come from, in words.
+    /// The origin of the goals, in words.
     #[must_use]
     pub fn words(&self) -> String {
         match &self.proposal {

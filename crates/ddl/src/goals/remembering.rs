@@ -1,22 +1,23 @@
-//! Windows with what is remembered of their places.
+//! Windows with the memory of their places.
 
 use crate::error::DdlError;
 use ddl_data::{Recording, Window};
 use ddl_memory::{Playback, SceneMemory};
 use std::collections::BTreeMap;
 
-/// What is remembered of a place when a window of it is forecast.
+/// The recordings of a place that the forecast of a window may remember.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Remembering {
     /// The training recordings of the same place.
     Place,
-    /// The recording of the window before its last observed frame and, where
-    /// [confirmed](ddl_data::Fold::place_memory_confirmed_by), the training recordings of the same place.
+    /// The recording of the window before its last observed frame. The training recordings of the same place are added
+    /// where they are [confirmed](ddl_data::Fold::place_memory_confirmed_by).
     Online,
 }
 
-/// The windows, in their order, each with at most `count` earlier pedestrians for each of its pedestrians: of the
-/// recordings that `of_place` gives for the name of its own recording and, with a playback, of this one until then.
+/// Adds to each pedestrian of the windows at most `count` earlier pedestrians. They come from the recordings that
+/// `of_place` gives for the name of the window's recording and, with a playback, from the window's own recording before
+/// its last observed frame.
 pub(crate) fn remembering<'a>(
     recordings: &[&'a Recording],
     windows: &[Window],

@@ -1,4 +1,4 @@
-//! Goals of whole windows, as the network and the straight lines need them.
+//! Goals of whole windows, for the network and the straight-line forecasts.
 
 use ddl_data::{Position, Window};
 use ddl_eval::ForecastError;
@@ -7,8 +7,7 @@ use ddl_goal::{GoalEstimator, GoalSet};
 
 /// The retrieved goal sets of every pedestrian of every window.
 ///
-/// The estimator sees the observed positions alone, unless it is the published one, whose query
-/// reads one future position.
+/// The estimator reads the observed positions only. The published one also reads one future position.
 pub(crate) fn retrieved(
     estimator: &GoalEstimator,
     windows: &[Window],
@@ -31,7 +30,7 @@ pub(crate) fn retrieved(
         .collect())
 }
 
-/// Goal sets as the evaluation's baselines take them.
+/// Goal sets in the form that the baselines of the evaluation take.
 pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>, ForecastError> {
     let one = |set: &GoalSet| WeightedGoals::new(set.goals().to_vec(), set.weights().to_vec());
     sets.iter()
@@ -39,8 +38,8 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
         .collect()
 }
 
-/// The central goal of each pedestrian. Positions before a pedestrian was first seen continue the
-/// first ones seen in a straight line: they say nothing of how even a motion is.
+/// The central goal of each pedestrian. Positions before the first observation extrapolate the first observed positions
+/// in a straight line, so they tell nothing about how even a motion is.
 pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
         let pedestrians = sets.iter().enumerate();
@@ -51,7 +50,7 @@ pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec
     windows.iter().zip(sets).map(of_window).collect()
 }
 
-/// The one estimated goal nearest the TRUE end, a pedestrian: the published protocol's oracle.
+/// For each pedestrian, the estimated goal nearest the TRUE endpoint: the oracle of the published protocol.
 pub(crate) fn nearest_true_end(
     estimator: &GoalEstimator,
     windows: &[Window],

@@ -1,19 +1,20 @@
-//! What a proposal network sees of the pedestrians of a window.
+//! The input of a proposal network for the pedestrians of a window.
 
 use ddl_data::{OBSERVED, Places, Position, Remembered, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, motion_unit};
 
-/// A pedestrian's own frame and unit of length, and what is seen from it.
+/// A pedestrian's own frame, its unit of length, and the view from it.
 #[derive(Debug)]
 pub(crate) struct Seen {
     pub(crate) frame: HeadingFrame,
-    /// Metres a unit of the view.
+    /// Metres in a unit of the view.
     pub(crate) unit: f64,
     pub(crate) view: PedestrianView,
 }
 
-/// Every pedestrian of a window with its `neighbours` nearest others, from the observed frames, `time_step` seconds apart.
+/// Views of every pedestrian of a window with its `neighbours` nearest others, from the observed frames (`time_step` in
+/// seconds).
 pub(crate) fn of_window(
     window: &Window,
     neighbours: usize,
@@ -46,7 +47,7 @@ pub(crate) fn of_window(
         .collect()
 }
 
-/// Every pedestrian of the windows with its future, to learn from; windows without one are left out.
+/// Training examples: every pedestrian of the windows with its future. Windows without a future are left out.
 pub(crate) fn examples(
     windows: &[Window],
     neighbours: usize,

@@ -2,15 +2,16 @@ use crate::error::DdlError;
 use std::fmt;
 use std::str::FromStr;
 
-/// A model that comes with the program, named by the scene of ETH/UCY that it was trained without.
+/// A model that comes with the program, named after the ETH/UCY scene that it was trained without.
 ///
-/// The five are those of the benchmark, in the `star` convention, packed: goals are proposed, there is no expert library. What each
-/// reached on the scene that it has not seen stands in `models/reported.json` of this crate.
+/// The five are the models of the benchmark in the `star` convention, packed: goals are proposed, without an expert
+/// library. `models/reported.json` of this crate holds the scores of each on its unseen scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BuiltinModel {
     /// Trained without the scene `eth`.
     Eth,
-    /// Trained without the scene `hotel`, the smallest: the model that has seen the most pedestrians, and so the one for new places.
+    /// Trained without the scene `hotel`, the smallest. This model has seen the most pedestrians and is the choice for
+    /// new places.
     #[default]
     Hotel,
     /// Trained without the scenes `univ`.
@@ -42,7 +43,7 @@ impl BuiltinModel {
     }
 }
 
-/// The packed models, in the order of the variants. A static, so that the program holds each once.
+/// The packed models, in the order of the variants. A static, so that the program holds each model once.
 static BYTES: [&[u8]; 5] = [
     include_bytes!("../../models/eth.safetensors"),
     include_bytes!("../../models/hotel.safetensors"),
@@ -65,7 +66,7 @@ impl FromStr for BuiltinModel {
         named.ok_or_else(|| DdlError::Model {
             model: text.to_owned(),
             problem: format!(
-                "does not come with the program; those that do are {}",
+                "is not a built-in model; the built-in models are {}",
                 Self::ALL.map(Self::name).join(", ")
             ),
         })
@@ -78,11 +79,11 @@ mod tests {
     use crate::{Ddl, DeviceChoice, Variant};
     use ddl_data::Convention;
 
-    /// What a repository can bear, and a reader of a page wait for.
+    /// Keeps the repository and web pages with a model small.
     const MOST_BYTES: usize = 2_000_000;
 
     #[test]
-    fn each_is_of_the_fold_it_is_named_after_small_and_without_tracks() {
+    fn each_model_is_of_its_fold_small_and_without_tracks() {
         for model in BuiltinModel::ALL {
             let config = model.config().unwrap();
             assert_eq!(config.data.fold, model.name());
@@ -92,7 +93,7 @@ mod tests {
             let loaded = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
             assert_eq!(loaded.config(), &config);
             assert!(loaded.goal_model().estimator().is_none());
-            // Two bytes a number, names, configuration: there is no room for anything else.
+            // Two bytes for each weight, names and configuration: no space is left for tracks.
             let numbers = loaded.parameter_count() + loaded.goal_model().parameter_count();
             assert!(model.bytes().len() < 2 * numbers + 20_000, "{model}");
             assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);

@@ -18,14 +18,15 @@ use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 
 /// A trained model, ready to forecast.
 ///
-/// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each
-/// of the K = 20 goals, weighted as the goals are, each rolled out along a flow whose distance to the
-/// goal falls at every step. Under `single` it is asked for [one forecast](Self::forecast_one) alone. It reads the 8 observed frames and nothing else.
+/// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each of the K = 20 goals, with the
+/// weight of the goal. Each hypothesis follows a flow whose distance to the goal falls at every step. The protocol
+/// `single` calls [`forecast_one`](Self::forecast_one). The model reads the 8 observed frames and the memory of the
+/// window, if it has one.
 ///
 /// # Numerics
-/// The network computes in `f32` and shapes the metric P of each step; the variants with dynamics walk in `f64`, by
-/// steps whose guarantee holds for the computed numbers. [`forecast_certified`](Self::forecast_certified) hands out the
-/// evidence.
+/// The network computes in `f32` and shapes the metric P of each step. The variants with dynamics integrate in `f64`,
+/// by steps whose guarantee holds for the computed numbers. [`forecast_certified`](Self::forecast_certified) returns
+/// the evidence.
 ///
 /// # Examples
 /// ```
@@ -38,7 +39,7 @@ use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 /// let window = Window::new("yard", 0, 1, vec![PedestrianId(1)], vec![walk])?;
 /// let forecast = model.forecast(&window)?;
 /// let one = forecast.hypothesis(0, forecast.representative(0)); // 12 positions, metres
-/// assert!(one[11][0] > 3.5, "further on");
+/// assert!(one[11][0] > 3.5, "the pedestrian continues");
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
@@ -51,7 +52,7 @@ pub struct Ddl {
 }
 
 impl Ddl {
-    /// The same model, whose pedestrians keep clear of each other.
+    /// The same model, with a clearance that its pedestrians keep from each other.
     ///
     /// # Errors
     /// [`DdlError::NoFlow`] for the variants without dynamics.
@@ -66,11 +67,11 @@ impl Ddl {
         })
     }
 
-    /// The same model, whose network has its feed-forward blocks computed in that precision. Where the pedestrians go from what
-    /// it emits is computed in `f64` as ever: the guarantee does not depend on it.
+    /// The same model, with the feed-forward blocks of its network in this precision. The dynamics are still integrated
+    /// in `f64`: the guarantee does not depend on the precision.
     ///
     /// # Errors
-    /// For `bf16` elsewhere than on the CPU.
+    /// For `bf16` on any device but the CPU.
     pub fn in_precision(self, precision: Precision) -> Result<Self, DdlError> {
         if precision != Precision::F32 && self.device != Device::CPU {
             return Err(DdlError::Network(NetworkError::Config {
@@ -90,22 +91,22 @@ impl Ddl {
         })
     }
 
-    /// What decided the model.
+    /// The configuration of the model.
     pub fn config(&self) -> &RunConfig {
         self.goals.config()
     }
 
-    /// Where the model was taken from.
+    /// The source that the model was loaded from.
     pub fn source(&self) -> &ModelSource {
         self.goals.source()
     }
 
-    /// The directory of its run; `None` for a packed model, which keeps nothing but what it takes to forecast.
+    /// The directory of its run; `None` for a packed or built-in model.
     pub fn run(&self) -> Option<&RunDirectory> {
         self.source().run()
     }
 
-    /// Where it computes.
+    /// The device that it computes on.
     pub fn device(&self) -> Device {
         self.device
     }
@@ -118,17 +119,17 @@ impl Ddl {
         }
     }
 
-    /// How far its pedestrians keep from each other; `None` where each walks as if alone.
+    /// The clearance that its pedestrians keep from each other; `None` where they ignore each other.
     pub fn clearance(&self) -> Option<Clearance> {
         self.clearance
     }
 
-    /// Numbers learned by the forecasting network.
+    /// Number of learned parameters of the forecasting network.
     pub fn parameter_count(&self) -> usize {
         self.parameters
     }
 
-    /// Where its goals come from.
+    /// The model of its goals.
     pub fn goal_model(&self) -> &GoalModel {
         &self.goals
     }
@@ -140,13 +141,13 @@ impl Ddl {
         Ok((self.network.copy_weights()?, proposal))
     }
 
-    /// Forecasts the windows, with the evidence for every hypothesis that it goes to its goal.
+    /// Forecasts the windows, with evidence for every hypothesis that it approaches its goal.
     ///
     /// # Errors
-    /// As [`forecast_all`](Forecaster::forecast_all); for the variants without dynamics, `star` and
-    /// `no-dynamics`, [`CertificateError::NoFlow`](crate::CertificateError::NoFlow), and
-    /// [`CertificateError::Walk`](crate::CertificateError::Walk) where what the network emitted shapes
-    /// no flow, both inside [`ForecastError::Model`].
+    /// As [`forecast_all`](Forecaster::forecast_all). Inside [`ForecastError::Model`]:
+    /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow) for the variants without dynamics, `star` and
+    /// `no-dynamics`; [`CertificateError::Walk`](crate::CertificateError::Walk) where the output of the network does
+    /// not shape a flow.
     pub fn forecast_certified(
         &self,
         windows: &[Window],
@@ -159,12 +160,12 @@ impl Ddl {
             .collect()
     }
 
-    /// One forecast a pedestrian: the neutral motion to the central goal of its goal set ([`GoalSet::central`]), in
-    /// which the forecasting network has no part; the variant without goals makes noise samples. `Forecast::certified`
-    /// holds the verdict of each walk.
+    /// One hypothesis for each pedestrian: the neutral motion to the central goal of its goal set
+    /// ([`GoalSet::central`]). The forecasting network is not used. The variant without goals makes noise samples.
+    /// `Forecast::certified` holds the verdict on each path.
     ///
     /// # Shapes
-    /// A forecast a window: one hypothesis of 12 positions (m) a pedestrian.
+    /// One forecast for each window, with one hypothesis of 12 positions (m) for each pedestrian.
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all).
@@ -173,7 +174,7 @@ impl Ddl {
         self.forecast_neutral(windows, goals, self.clearance)
     }
 
-    /// [`forecast_one`](Self::forecast_one) with the evidence for every walk that it goes to its goal.
+    /// [`forecast_one`](Self::forecast_one) with evidence for every path that it approaches its goal.
     ///
     /// # Errors
     /// As [`forecast_one`](Self::forecast_one); for the variant without goals
@@ -192,7 +193,8 @@ impl Ddl {
             .collect()
     }
 
-    /// One neutral walk for every pedestrian, to the one goal of its set; for the variant without goals, noise samples.
+    /// One neutral path for every pedestrian, to the single goal of its set; for the variant without goals, noise
+    /// samples.
     pub(crate) fn forecast_neutral(
         &self,
         windows: &[Window],
@@ -232,8 +234,8 @@ impl Ddl {
         })
     }
 
-    /// One hypothesis a goal for every pedestrian, with the goal's weight; for the variant without
-    /// goals, one a noise vector, all equally likely.
+    /// For every pedestrian, one hypothesis for each goal, with the weight of the goal. The variant without goals makes
+    /// one for each noise vector, all equally likely.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],
@@ -261,7 +263,6 @@ impl Forecaster for Ddl {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let mut forecasts = self.forecast_all(std::slice::from_ref(window))?;
-        // one window in, one forecast out
         Ok(forecasts.remove(0))
     }
 

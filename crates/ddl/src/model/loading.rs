@@ -1,4 +1,4 @@
-//! A model from the files of a run, a packed file or the program, and into a packed file.
+//! Loads a model from a run, a packed file or the program, and packs it.
 
 use crate::device::Device;
 use crate::error::DdlError;
@@ -18,7 +18,7 @@ use ddl_network::{DeviceChoice, ForecastWindows};
 use std::path::Path;
 
 impl Ddl {
-    /// Loads the finished run at `path`, or the packed model in that file.
+    /// Loads the finished run in the directory `path`, or the packed model in the file `path`.
     ///
     /// # Errors
     /// As [`Ddl::open`].
@@ -26,10 +26,10 @@ impl Ddl {
         Self::open(&ModelSource::at(path), device)
     }
 
-    /// A model that comes with the program: works at once, without any file.
+    /// Loads a built-in model, which needs no file.
     ///
     /// # Errors
-    /// When the device cannot be had.
+    /// When the device is unavailable.
     pub fn builtin(model: BuiltinModel, device: DeviceChoice) -> Result<Self, DdlError> {
         Self::open(&ModelSource::Builtin(model), device)
     }
@@ -37,13 +37,13 @@ impl Ddl {
     /// Loads a model from any source of models.
     ///
     /// # Errors
-    /// When there is no finished run, one of its files is broken, or the device cannot be had.
+    /// When the run is missing or unfinished, one of its files is broken, or the device is unavailable.
     pub fn open(source: &ModelSource, device: DeviceChoice) -> Result<Self, DdlError> {
         Self::on(Device::open(device)?, source)
     }
 
-    /// Loads a model whose networks libtorch computes on the CPU: the reference that the kernels are held to. Its
-    /// forecasts differ from those of [`Ddl::open`] by rounding.
+    /// Loads a model whose networks libtorch computes on the CPU: the reference for the kernels. Its forecasts differ
+    /// from those of [`Ddl::open`] by rounding.
     ///
     /// # Errors
     /// As [`Ddl::open`].
@@ -85,10 +85,10 @@ impl Ddl {
         if !run.is_trained() {
             let problem = if run.has_goals(&config.goals) {
                 "is not finished: its goals are trained, its network is not (no model.safetensors); run \
-                 the same `ddl train` command again, without --only-goals, to go on"
+                 the same `ddl train` command again, without --only-goals, to continue"
             } else {
                 "is not finished: it has no model.safetensors; run the same `ddl train` command again to \
-                 go on"
+                 continue"
             };
             return Err(DdlError::run(run.path(), problem));
         }
@@ -97,7 +97,7 @@ impl Ddl {
         Self::with(GoalModel::of_run(run, config, device)?, device, network)
     }
 
-    /// The network, with the weights that the run kept after `epoch`.
+    /// The network with the weights that the run saved after `epoch`.
     pub(crate) fn network_of_epoch(
         &self,
         run: &RunDirectory,
@@ -106,11 +106,13 @@ impl Ddl {
         load_network(self.config(), self.device, &run.epoch(epoch))
     }
 
-    /// Writes what it takes to forecast into one small file, which [`Ddl::load`] reads: both networks' weights in half precision and
-    /// the run's configuration. The expert library, which is trajectory data, is left out: goals are then proposed alone.
+    /// Writes a forecast-only copy of the model into one small file, which [`Ddl::load`] reads. It holds the weights of
+    /// both networks in half precision and the configuration of the run. The expert library, which is trajectory data,
+    /// is left out: the packed model proposes all of its goals.
     ///
     /// # Errors
-    /// When all goals come from the expert library, a weight is out of the range of half precision, or the file cannot be written.
+    /// When all goals come from the expert library, a weight is out of the range of half precision, or the file cannot
+    /// be written.
     pub fn pack(&self, file: &Path) -> Result<(), DdlError> {
         write_atomically(file, &packing::pack(&*self.network, &self.goals)?)
     }
@@ -128,10 +130,10 @@ fn load_network(
 }
 
 impl ModelSource {
-    /// What the model was made with, without making its networks: cheap, also for a file that may be no model at all.
+    /// The configuration of the model. This is cheap: it does not make the networks.
     ///
     /// # Errors
-    /// When there is no run, or the file is no whole packed model.
+    /// When there is no run, or the file is not a complete packed model.
     pub fn config(&self) -> Result<RunConfig, DdlError> {
         match self {
             Self::Run(run) => run.config(),
@@ -141,19 +143,20 @@ impl ModelSource {
 }
 
 impl BuiltinModel {
-    /// What decided it.
+    /// The configuration of the model.
     ///
     /// # Errors
-    /// Never, as long as the program was built from files that belong together; a test holds that.
+    /// Never, as long as the program was built from matching files; a test ensures this.
     pub fn config(self) -> Result<RunConfig, DdlError> {
         ModelSource::Builtin(self).config()
     }
 
-    /// How much the observed motions of these windows are like those that the model was trained on, one list a window: as
-    /// [`GoalModel::familiarity`](crate::GoalModel::familiarity), without loading the networks.
+    /// Familiarity of the observed motions of these windows, as
+    /// [`GoalModel::familiarity`](crate::GoalModel::familiarity) but without loading the networks. One list for each
+    /// window, one value for each pedestrian.
     ///
     /// # Errors
-    /// Never, as long as the program was built from files that belong together; a test holds that.
+    /// Never, as long as the program was built from matching files; a test ensures this.
     pub fn familiarity(self, windows: &[Window]) -> Result<Vec<Vec<f64>>, DdlError> {
         let source = ModelSource::Builtin(self);
         let (config, motions) = packed::motions(self.bytes(), &source)?;

@@ -1,6 +1,6 @@
-//! A model in one small safetensors file: the learned tensors of both networks in half precision, each under the name
-//! of its network, and in the header, as one entry, the `config.json` of the run with a SHA-256 of all of it. The
-//! expert library is trajectory data and stays where it is.
+//! A model in one small safetensors file. It holds the learned tensors of both networks in half precision, each
+//! prefixed by the name of its network. One entry of the header holds the `config.json` of the run and a SHA-256 of the
+//! contents. The expert library is trajectory data and is not packed.
 
 use crate::device::Device;
 use crate::error::DdlError;
@@ -21,20 +21,20 @@ use std::path::Path;
 /// Version of the file's layout.
 pub(super) const LAYOUT: u32 = 3;
 pub(super) const ENTRY: &str = "ddl";
-/// Heads the names of the forecasting network's tensors.
+/// Prefix of the names of the forecasting network's tensors.
 pub(super) const NETWORK: &str = "network.";
-/// Heads the names of the proposal network's tensors.
+/// Prefix of the names of the proposal network's tensors.
 pub(super) const PROPOSAL: &str = "proposal.";
-/// More than any network takes whose configuration is allowed and that anybody would want to hand on.
+/// More than any realistic network takes.
 const MOST_BYTES: u64 = 1 << 28;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Header {
     pub(super) layout: u32,
-    /// The run's `config.json`, as a text, so that its digest does not depend on how JSON is written.
+    /// The run's `config.json` as a string, so that its digest does not depend on JSON formatting.
     pub(super) config: String,
-    /// The training motions, as JSON, by which motions are familiar.
+    /// The training motions that familiarity is measured against, as JSON.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) motions: Option<String>,
     pub(super) sha256: String,
@@ -63,7 +63,7 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
         .read_to_end(&mut bytes)
         .map_err(io)?;
     if bytes.len() as u64 > MOST_BYTES {
-        let problem = format!("is longer than {MOST_BYTES} bytes, and no packed model is");
+        let problem = format!("is longer than {MOST_BYTES} bytes, the limit of a packed model");
         return Err(ModelSource::Packed(path.to_owned()).wrong(problem));
     }
     Ok(bytes)
@@ -71,11 +71,11 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
 
 type Contents = (RunConfig, Option<TrainingMotions>, Vec<HalfTensor>);
 
-/// The configuration of a packed model, its training motions and its tensors, which belong together.
+/// The configuration, training motions and tensors of a packed model, after its digest is checked.
 fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     let damaged = |error: &dyn std::fmt::Display| {
         source.wrong(format!(
-            "is no whole packed model ({error}); copy it again, or make it anew with `ddl pack`"
+            "is not a complete packed model ({error}); copy it again, or pack its run again with `ddl pack`"
         ))
     };
     let file = SafeTensors::deserialize(bytes).map_err(|error| damaged(&error))?;
@@ -83,8 +83,8 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     let entry = metadata.metadata().as_ref().and_then(|m| m.get(ENTRY));
     let Some(entry) = entry else {
         return Err(source.wrong(
-            "is a file of weights, but no packed model: its header has no configuration; name the directory of the run, or \
-             pack that with `ddl pack`",
+            "holds weights, but is not a packed model: its header has no configuration; give the directory of the \
+             run, or pack the run with `ddl pack`",
         ));
     };
     let Header {
@@ -95,7 +95,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     } = serde_json::from_str(entry).map_err(|error| damaged(&error))?;
     if layout != LAYOUT {
         return Err(source.wrong(format!(
-            "has layout {layout}, this program reads {LAYOUT}; pack its run anew"
+            "has layout {layout}, this program reads {LAYOUT}; pack its run again"
         )));
     }
     let mut tensors = Vec::new();
@@ -110,16 +110,16 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
             bytes: view.data().to_vec(),
         });
     }
-    // Before anything is made by what the configuration says.
+    // Check the digest before using the configuration.
     let parts = [config.as_str(), motions.as_deref().unwrap_or_default()];
     if digest(parts, &tensors) != sha256 {
         return Err(damaged(
-            &"its SHA-256 is not that of its configuration and weights",
+            &"its SHA-256 does not match its configuration and weights",
         ));
     }
     let other = |error: &dyn std::fmt::Display| {
         source.wrong(format!(
-            "was packed by another version of this program ({error}); pack its run anew"
+            "was packed by another version of this program ({error}); pack its run again"
         ))
     };
     let ConfigFormat { format } = serde_json::from_str(&config).map_err(|error| other(&error))?;
@@ -135,7 +135,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     let motions: Option<TrainingMotions> = motions.map_err(|error| other(&error))?;
     if motions.as_ref().is_some_and(|motions| !motions.is_valid()) {
         return Err(
-            source.wrong("has training motions with numbers that cannot be; pack its run anew")
+            source.wrong("has training motions with impossible numbers; pack its run again")
         );
     }
     Ok((config, motions, tensors))
@@ -145,7 +145,7 @@ pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, Dd
     contents(bytes, source).map(|(config, ..)| config)
 }
 
-/// The configuration and the training motions, without making networks.
+/// The configuration and the training motions, without making the networks.
 pub(crate) fn motions(
     bytes: &[u8],
     source: &ModelSource,
@@ -172,7 +172,7 @@ pub(crate) fn unpack(
             (&mut of_proposal, name.to_owned())
         } else {
             return Err(source.wrong(format!(
-                "holds {}, which belongs to neither network; make it anew with `ddl pack`",
+                "holds {}, which belongs to neither network; pack its run again with `ddl pack`",
                 tensor.name
             )));
         };
@@ -180,11 +180,11 @@ pub(crate) fn unpack(
     }
     let unfit = |error: DdlError| match error {
         DdlError::Network(error @ NetworkError::Weights { .. }) => source.wrong(format!(
-            "does not fit the networks it describes ({error}); pack its run anew"
+            "does not fit the networks it describes ({error}); pack its run again"
         )),
         other => other,
     };
-    // Networks are made only of sizes that the file itself has weights for.
+    // Allocate only networks whose sizes match the weights in the file.
     for (tensors, least) in [
         (&of_network, config.star.least_numbers()),
         (&of_proposal, recipe.network.least_numbers()),
@@ -193,7 +193,8 @@ pub(crate) fn unpack(
         let numbers = bytes as u64 / 2;
         if numbers < least {
             return Err(source.wrong(format!(
-                "does not fit the networks it describes ({numbers} weights where they have more than {least}); pack its run anew"
+                "does not fit the networks it describes ({numbers} weights, but the networks have more than {least}); \
+                 pack its run again"
             )));
         }
     }
@@ -215,13 +216,13 @@ pub(crate) fn unpack(
     })
 }
 
-/// SHA-256 of the header's texts and of every tensor's name, shape and bytes, the tensors by name.
+/// SHA-256 of the strings of the header and of the name, shape and bytes of every tensor, in the order of the names.
 pub(super) fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
     let mut by_name: Vec<&HalfTensor> = tensors.iter().collect();
     by_name.sort_by(|one, other| one.name.cmp(&other.name));
     let mut hasher = Sha256::new();
     let mut part = |bytes: &[u8]| {
-        // with its length, so that no part can pass for the beginning of the next
+        // The length goes in front, so that no part can be read as the beginning of the next.
         hasher.update((bytes.len() as u64).to_le_bytes());
         hasher.update(bytes);
     };

@@ -10,8 +10,8 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
     let source = goals.source();
     let Some(proposal) = goals.proposal_network() else {
         return Err(source.wrong(
-            "cannot be packed: its goals come from its expert library alone, which is trajectory data and stays behind; \
-             train one with --goals proposed",
+            "cannot be packed: all of its goals come from the expert library, which is trajectory data and is not \
+             packed; train a model with --goals proposed",
         ));
     };
     let mut tensors = Vec::new();

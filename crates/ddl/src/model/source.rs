@@ -5,7 +5,7 @@ use crate::run::directory::RunDirectory;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Where a model is taken from.
+/// The place that a model is loaded from.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ModelSource {
@@ -18,7 +18,7 @@ pub enum ModelSource {
 }
 
 impl ModelSource {
-    /// What lies at `path`: a packed model if it is a file, else the directory of a run.
+    /// The source at `path`: a packed model if it is a file, else the directory of a run.
     #[must_use]
     pub fn at(path: &Path) -> Self {
         if path.is_file() {
@@ -28,7 +28,7 @@ impl ModelSource {
         }
     }
 
-    /// What a user calls so: what lies at that path or, where nothing does, the built-in model of that name.
+    /// The source of this name: a file or directory of this path or, if there is none, the built-in model of this name.
     #[must_use]
     pub fn named(name: &Path) -> Self {
         let builtin = name.to_str().and_then(|name| name.parse().ok());
@@ -38,17 +38,17 @@ impl ModelSource {
         }
     }
 
-    /// Checks what the networks and goals of the model are made by.
+    /// Checks the configuration of the networks and goals.
     pub(crate) fn check(&self, config: &RunConfig) -> Result<(), DdlError> {
         let star = config.star.check().map_err(DdlError::from);
         star.and_then(|()| config.goals.check()).map_err(|error| {
             self.wrong(format!(
-                "has a configuration that no model can be made by ({error}); put back the file as it was written"
+                "has an invalid configuration ({error}); restore the file as it was written"
             ))
         })
     }
 
-    /// The directory of the run, if it is one.
+    /// The directory of the run, if the source is one.
     #[must_use]
     pub fn run(&self) -> Option<&RunDirectory> {
         match self {

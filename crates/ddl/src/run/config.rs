@@ -17,7 +17,7 @@ pub(crate) struct ConfigFormat {
     pub(crate) format: u32,
 }
 
-/// Everything that decides what a run computes.
+/// Everything that determines the result of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunConfig {
@@ -25,54 +25,55 @@ pub struct RunConfig {
     pub format: u32,
     /// The network.
     pub star: StarConfig,
-    /// How it is trained.
+    /// The training of the network.
     pub training: TrainingConfig,
-    /// What the goals come from.
+    /// The origin of the goals.
     pub goals: GoalRecipe,
-    /// What it is trained on.
+    /// The training data.
     pub data: TrainingData,
-    /// Weights are kept after every so many epochs.
+    /// Weights are saved after every `keep_every` epochs.
     pub keep_every: usize,
-    /// Training ends early when the validation error has not fallen for so many epochs, and the best epoch is the model; `None`: all epochs,
-    /// and the last is the model.
+    /// Training ends early when the validation error has not fallen for this many epochs, and the best epoch becomes
+    /// the model. `None`: train all epochs, and the last becomes the model.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
-    /// The model whose weights both networks began with; `None`: random ones.
+    /// The model whose weights both networks started with; `None`: random weights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub from: Option<StartingModel>,
-    /// What the numbers of own recordings mean, as far as training was told: they are measured on by the same, unless something else is said.
+    /// The units of own recordings as given to training. Evaluation uses the same units by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<TrackUnits>,
-    /// Commit of the program that began it, as far as known.
+    /// Commit of the program that began the run, if known.
     pub commit: String,
-    /// libtorch that it was begun with.
+    /// Version of libtorch that began the run.
     pub libtorch: String,
-    /// Device it was begun on; it may have gone on elsewhere.
+    /// Device that began the run; it may have continued on another.
     pub device: String,
 }
 
 impl RunConfig {
-    /// What the weights of the forecasting network, and the state of its training, are of.
+    /// The settings that the weights and training state of the forecasting network depend on.
     #[must_use]
     pub fn network_origin(&self) -> Origin {
         match self.training.objective {
             Objective::NextStep => {
                 self.origin_of(&["format", "star", "training", "data", "patience", "from"])
             }
-            // Who has learned walks to the proposed goals has learned from these.
+            // Training on whole paths leads to the proposed goals, and so depends on these.
             Objective::Walk => self.origin_of(&[
                 "format", "star", "training", "data", "goals", "patience", "from",
             ]),
         }
     }
 
-    /// What the expert library and the proposal network are of.
+    /// The settings that the expert library and the proposal network depend on.
     #[must_use]
     pub fn goals_origin(&self) -> Origin {
         self.origin_of(&["format", "goals", "data", "from"])
     }
 
-    /// What the run is of: everything but commit, libtorch and device, which may change while it is trained, and units, which the windows show.
+    /// The settings that identify the run: all except commit, libtorch and device, which may change during training,
+    /// and units, which show in the windows.
     #[must_use]
     pub fn origin(&self) -> Origin {
         self.origin_of(&[
@@ -87,10 +88,10 @@ impl RunConfig {
         ])
     }
 
-    /// Some parts of `config.json`, each leaf under its path, such as `training.seed`.
+    /// Some parts of `config.json`, each leaf with its path, such as `training.seed`.
     fn origin_of(&self, parts: &[&str]) -> Origin {
         let mut leaves = Vec::new();
-        // Plain data always becomes JSON; what did not would agree with nothing that did.
+        // Plain data always converts to JSON; a failure would match nothing.
         if let Ok(Value::Object(fields)) = serde_json::to_value(self) {
             for (name, value) in fields {
                 if parts.contains(&name.as_str()) {
@@ -102,10 +103,10 @@ impl RunConfig {
     }
 }
 
-/// The leaves of plain data, each under its path, which begins with `name`.
+/// The leaves of plain data, each with its path, which begins with `name`.
 pub(crate) fn leaves(name: &str, data: &impl Serialize) -> Origin {
     let mut leaves = Vec::new();
-    // Plain data always becomes JSON; what did not would agree with nothing that did.
+    // Plain data always converts to JSON; a failure would match nothing.
     if let Ok(value) = serde_json::to_value(data) {
         push_leaves(name.to_owned(), &value, &mut leaves);
     }
@@ -124,28 +125,29 @@ fn push_leaves(path: String, value: &Value, leaves: &mut Vec<(String, String)>) 
     }
 }
 
-/// What a run is trained on.
+/// The training data of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingData {
-    /// Data convention.
+    /// The data convention.
     pub convention: Convention,
     /// The fold whose test scene was left out.
     pub fold: String,
-    /// Rule that cut the training windows.
+    /// The rule that cut the training windows.
     pub window_rule: WindowRule,
     /// Share of the training recordings' time, at their ends, kept for validation; 0 for none.
     pub validation: f64,
-    /// Training recordings kept for validation whole.
+    /// Training recordings kept for validation as a whole.
     pub validation_recordings: Vec<String>,
     /// Training windows.
     pub windows: usize,
-    /// Pedestrians in them, each counted once a window.
+    /// Pedestrians in them, each counted once for each window.
     pub pedestrians: usize,
     /// SHA-256 of their positions.
     pub sha256: String,
-    /// The own recordings that were trained or validated on, by name, with the SHA-256 of their frames, people and positions: none of these names, and none of
-    /// these contents under another name, is a test. Empty for recordings whose folds are known.
+    /// The own recordings that were trained or validated on: their names, each with the SHA-256 of its frames,
+    /// pedestrians and positions. A recording with one of these names or contents is not a test. Empty for recordings
+    /// with fixed folds.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub recordings: BTreeMap<String, String>,
 }
@@ -155,7 +157,7 @@ mod tests {
     use crate::BuiltinModel;
 
     #[test]
-    fn the_origin_is_what_decides_the_numbers() {
+    fn the_origin_holds_the_settings_that_determine_the_numbers() {
         let first = BuiltinModel::default().config().unwrap();
         let mut other = first.clone();
         other.commit = "another".to_owned();

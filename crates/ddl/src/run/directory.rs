@@ -1,19 +1,19 @@
-//! The directory of one run: which file is where, and how each is written.
+//! The directory of one run: its files, and how each is written.
 //!
 //! | file | content |
 //! |---|---|
-//! | `config.json` | everything that decides the result ([`RunConfig`]) |
-//! | `metrics.jsonl` | one line an epoch |
-//! | `optimizer.safetensors` | weights, Adam's state and progress of a run under way |
+//! | `config.json` | everything that determines the result ([`RunConfig`]) |
+//! | `metrics.jsonl` | one line for each epoch |
+//! | `optimizer.safetensors` | weights, Adam's state and progress of an unfinished run |
 //! | `epochs/NNN.safetensors` | weights after some of the epochs |
 //! | `experts.safetensors` | tracks of the expert library |
-//! | `proposal.safetensors` | weights of the proposal network; there only when it is trained |
-//! | `proposal-state.safetensors` | weights, Adam's state and progress of its training under way |
-//! | `model.safetensors` | the final weights; there only when training is finished |
+//! | `proposal.safetensors` | weights of the proposal network; present once it is trained |
+//! | `proposal-state.safetensors` | weights, Adam's state and progress of its unfinished training |
+//! | `model.safetensors` | the final weights; present once training is finished |
 //! | `report.json` | results of the evaluation |
 //! | `moments.json` | moments of the evaluation, to look at |
-//! | `evaluation.json` | which evaluation that was |
-//! | `.lock` | empty; held by the process that trains, or writes results |
+//! | `evaluation.json` | the conditions of that evaluation |
+//! | `.lock` | empty; locked by the process that trains or writes results |
 //!
 //! Every file is written under a temporary name and renamed.
 
@@ -30,13 +30,13 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// No JSON file of a run is as long: a moment takes some kilobytes, a configuration two.
+/// Limit of a JSON file of a run: a moment takes some kilobytes, a configuration two.
 const MOST_JSON_BYTES: u64 = 1 << 28;
 
-/// A run under way is saved at least this often.
+/// An unfinished run is saved at least this often.
 pub(crate) const SAVE_EVERY: Duration = Duration::from_secs(30);
 
-/// Path of a run, and of the files in it.
+/// Path of a run, and of its files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunDirectory(PathBuf);
 
@@ -56,7 +56,7 @@ impl RunDirectory {
         self.0.join("model.safetensors")
     }
 
-    /// State of a run under way.
+    /// State of an unfinished run.
     pub fn optimizer(&self) -> PathBuf {
         self.0.join("optimizer.safetensors")
     }
@@ -75,8 +75,8 @@ impl RunDirectory {
         self.0.join("proposal-state.safetensors")
     }
 
-    /// Takes over the trained goals of another run that is to have the same, so that they are not trained again. Whether they are
-    /// the same shows when they are loaded: files of other goals are refused then.
+    /// Copies the trained goals of another run, so that they are not trained again. Loading them checks that they are
+    /// of the same configuration.
     ///
     /// # Errors
     /// When a file cannot be read or written.
@@ -133,7 +133,7 @@ impl RunDirectory {
         }
     }
 
-    /// Writes `moments.json`: positions by the thousand, not for people to read.
+    /// Writes `moments.json`, compact because it holds thousands of positions.
     pub(crate) fn write_moments(&self, moments: &[Moment]) -> Result<(), DdlError> {
         let path = self.moments();
         write_atomically(&path, serialise(&path, &moments, false)?.as_bytes())
@@ -171,13 +171,14 @@ impl RunDirectory {
         Ok(epochs)
     }
 
-    /// The weights of the epoch that metrics.jsonl says is the best.
+    /// The weights of the best epoch according to metrics.jsonl.
     pub(crate) fn best_epoch(&self, epoch: usize) -> Result<PathBuf, DdlError> {
         let best = self.epoch(epoch);
         if best.is_file() {
             return Ok(best);
         }
-        let problem = "is not there, but it is the best epoch by metrics.jsonl; put the file back, or remove the directory and train anew";
+        let problem = "is missing, but it is the best epoch according to metrics.jsonl; restore the file, or remove \
+                       the directory and train again";
         Err(DdlError::run(&best, problem))
     }
 
@@ -191,8 +192,8 @@ impl RunDirectory {
         Ok(())
     }
 
-    /// Claims the directory for a run: makes it, or checks that what it holds is the same run. It is claimed until what is
-    /// returned is dropped, or the process ends.
+    /// Claims the directory for a run: creates it, or checks that it holds the same run. The claim ends when the
+    /// returned lock is dropped or the process ends.
     pub(crate) fn claim(&self, config: &RunConfig) -> Result<RunLock, DdlError> {
         let epochs = self.0.join("epochs");
         std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(&epochs, error))?;
@@ -201,12 +202,12 @@ impl RunDirectory {
         if has_config && let Some(difference) = self.config()?.origin().difference(&config.origin())
         {
             let hint = if difference.starts_with("data.") {
-                " (other recordings, or the same read otherwise: rate, homography)"
+                " (other recordings, or the same recordings with another rate or homography)"
             } else {
                 ""
             };
             let problem = format!(
-                "holds another run: its {difference} as asked for{hint}; choose another directory, or remove this one"
+                "holds another run: its {difference} as requested{hint}; choose another directory, or remove this one"
             );
             return Err(DdlError::run(&self.0, problem));
         }
@@ -222,39 +223,40 @@ impl RunDirectory {
     /// Reads `config.json`.
     ///
     /// # Errors
-    /// [`DdlError::Run`] when it is missing or not understood.
+    /// [`DdlError::Run`] when it is missing or cannot be parsed.
     pub fn config(&self) -> Result<RunConfig, DdlError> {
         let path = self.config_file();
         if !path.is_file() {
             let inside = self.0.join("run");
             let problem = if !self.0.exists() {
                 format!(
-                    "is not there: there is neither a run (`ddl train --out` makes one) nor a packed file nor a built-in model of that name (those are {})",
+                    "is missing: there is neither a run of that name (`ddl train --out` makes one), nor a packed file, \
+                     nor a built-in model (the built-in models are {})",
                     BuiltinModel::ALL.map(BuiltinModel::name).join(", ")
                 )
             } else if inside.join("config.json").is_file() {
                 format!(
-                    "has no config.json, but {} has one: name that",
+                    "has no config.json, but {} has one: give that directory",
                     inside.display()
                 )
             } else {
-                "has no config.json; it is not the directory of a run (`ddl train --out` makes one)"
+                "has no config.json, so it is not the directory of a run (`ddl train --out` makes one)"
                     .to_owned()
             };
             return Err(DdlError::run(&self.0, problem));
         }
         let damaged = |error: serde_json::Error| {
             let problem = format!(
-                "is damaged ({error}); put the file back as it was, or remove the directory and train anew"
+                "is damaged ({error}); restore the file, or remove the directory and train again"
             );
             DdlError::run(&path, problem)
         };
-        // The layout first: what another one holds may not be understood.
+        // Check the layout first: the rest may differ in another version.
         let text = read_text(&path)?;
         let ConfigFormat { format } = serde_json::from_str(&text).map_err(damaged)?;
         if format != FORMAT {
             let problem =
-                format!("has layout {format}, this program reads {FORMAT}; train it anew");
+                format!("has layout {format}, this program reads {FORMAT}; train it again");
             return Err(DdlError::run(&self.0, problem));
         }
         serde_json::from_str(&text).map_err(damaged)
@@ -263,7 +265,7 @@ impl RunDirectory {
     /// Reads `metrics.jsonl`; empty when no epoch is done.
     ///
     /// # Errors
-    /// [`DdlError::Run`] naming the line that is not understood.
+    /// [`DdlError::Run`] with the line that cannot be parsed.
     pub fn metrics(&self) -> Result<Vec<EpochReport>, DdlError> {
         let path = self.metrics_file();
         if !path.is_file() {
@@ -274,7 +276,14 @@ impl RunDirectory {
             .enumerate()
             .map(|(index, line)| {
                 serde_json::from_str(line)
-                    .map_err(|error| DdlError::run(&path, format!("line {} is damaged ({error}); put the file back as it was; without it a run whose best epoch is chosen has to be trained anew, others go on", index + 1)))
+                    .map_err(|error| {
+                        let problem = format!(
+                            "line {} is damaged ({error}); restore the file. Without it, train a run with --patience \
+                             again; any other run can be continued",
+                            index + 1
+                        );
+                        DdlError::run(&path, problem)
+                    })
             })
             .collect()
     }
@@ -289,7 +298,7 @@ impl RunDirectory {
     }
 }
 
-/// Reads a text file of a run, which must not be endless.
+/// Reads a text file of a run, up to a limit.
 fn read_text(path: &Path) -> Result<String, DdlError> {
     let io = |error| DdlError::io(path, error);
     let file = std::fs::File::open(path).map_err(io)?;
@@ -298,8 +307,7 @@ fn read_text(path: &Path) -> Result<String, DdlError> {
         .read_to_string(&mut text)
         .map_err(io)?;
     if text.len() as u64 > MOST_JSON_BYTES {
-        let problem =
-            format!("is longer than {MOST_JSON_BYTES} bytes, and no such file of a run is");
+        let problem = format!("is longer than {MOST_JSON_BYTES} bytes, the limit of this file");
         return Err(DdlError::run(path, problem));
     }
     Ok(text)
@@ -333,7 +341,7 @@ fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String
 /// Writes a file under a temporary name in its folder and renames it.
 ///
 /// # Errors
-/// When the file cannot be written; an earlier one is then left as it was.
+/// When the file cannot be written; an earlier one is unchanged.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
     write_whole(path, bytes).map_err(|error| DdlError::io(path, error))
 }

@@ -1,5 +1,5 @@
-//! Whether a file can hold the weights of a network, before the network is made: what a damaged configuration asks for may be larger
-//! than the memory.
+//! Checks that a file can hold the weights of a network before the network is made, because a damaged configuration may
+//! describe a network larger than the memory.
 
 use crate::error::DdlError;
 use std::path::Path;
@@ -7,7 +7,7 @@ use std::path::Path;
 /// Bytes of a weight in the files of a run.
 const BYTES: u64 = 4;
 
-/// Refuses a file that is too short for so many weights. Whether one is there at all is for its reader to say.
+/// Refuses a file that is too short for this many weights. A missing file is left to its reader.
 pub(crate) fn require(path: &Path, least_numbers: u64) -> Result<(), DdlError> {
     let Ok(file) = std::fs::metadata(path) else {
         return Ok(());
@@ -16,8 +16,9 @@ pub(crate) fn require(path: &Path, least_numbers: u64) -> Result<(), DdlError> {
         return Ok(());
     }
     let problem = format!(
-        "is {} bytes long, too short for the network of the config.json beside it, which has more than {least_numbers} weights; put back \
-         the file, or the config.json, that it was made with, or delete it and run the same `ddl train` command again",
+        "is {} bytes long, too short for the network of the config.json beside it, which has more than {least_numbers} \
+         weights; restore the matching file or config.json, or delete it and run the same `ddl train` command \
+         again",
         file.len()
     );
     Err(DdlError::run(path, problem))

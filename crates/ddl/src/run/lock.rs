@@ -1,36 +1,37 @@
-//! One process works in a run, or writes a file, at a time.
+//! Locks that let one process at a time work in a run or write a file.
 
 use crate::error::DdlError;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Name of the file that is locked. It stays, empty: whoever removed it would take it from under one who waits.
+/// Name of the locked file. It stays, empty: removing it would break the lock of a waiting process.
 const FILE: &str = ".lock";
 
-/// The right to write into the directory of a run, or to a file, given back when dropped; the system holds it for the process. `None`
-/// inside is a directory in which nothing can be written anyway, or a file system that knows no locks.
+/// The right to write into the directory of a run, or to a file. It is released when dropped; the system holds it for
+/// the process. `None` inside stands for a read-only directory, or for a file system without locks.
 #[derive(Debug)]
 pub struct RunLock(#[expect(dead_code, reason = "held, never read")] Option<File>);
 
 impl RunLock {
-    /// Takes the directory, at once or not at all.
+    /// Locks the directory without waiting.
     ///
     /// # Errors
-    /// [`DdlError::Run`] when another process has it.
+    /// [`DdlError::Run`] when another process holds the lock.
     pub fn take(folder: &Path) -> Result<Self, DdlError> {
-        let taken = "another process is at work in this directory; wait until it is done, or choose another one";
+        let taken = "another process works in this directory; wait until it is done, or choose another directory";
         Self::take_by(&folder.join(FILE), || DdlError::run(folder, taken))
     }
 
-    /// Takes one file, at once or not at all, by a file beside it whose name has `.lock` besides.
+    /// Locks one file without waiting, through a file beside it with the suffix `.lock`.
     ///
     /// # Errors
-    /// [`DdlError::Run`] when another process has it.
+    /// [`DdlError::Run`] when another process holds the lock.
     pub fn take_file(path: &Path) -> Result<Self, DdlError> {
         let mut beside = path.as_os_str().to_owned();
         beside.push(FILE);
-        let taken = "another process writes this file, or a watch of this one that was not closed; wait until it is done, or choose another one";
+        let taken = "another process, or a watch of this process that was not closed, writes this file; wait until it \
+                     is done, or choose another file";
         Self::take_by(Path::new(&beside), || DdlError::run(path, taken))
     }
 
@@ -45,7 +46,7 @@ impl RunLock {
         }
     }
 
-    /// Takes the directory as soon as nobody else has it, to write results of work that is done.
+    /// Waits for the lock of the directory, to write results of finished work.
     pub(crate) fn wait(folder: &Path) -> Result<Self, DdlError> {
         let file = open(&folder.join(FILE))?;
         Ok(Self(file.filter(|file| file.lock().is_ok())))
@@ -60,7 +61,7 @@ fn open(path: &Path) -> Result<Option<File>, DdlError> {
         .open(path);
     match file {
         Ok(file) => Ok(Some(file)),
-        // a finished run may lie where nothing can be written, and is still finished
+        // A finished run in a read-only directory is still usable.
         Err(error)
             if matches!(
                 error.kind(),

@@ -1,4 +1,4 @@
-//! A SHA-256 as it is written down.
+//! A SHA-256 in hexadecimal.
 
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;

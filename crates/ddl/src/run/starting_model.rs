@@ -2,17 +2,17 @@ use crate::goals::recipe::GoalRecipe;
 use ddl_network::{TrainingConfig, Variant};
 use serde::{Deserialize, Serialize};
 
-/// Which weights a run began with, as its `config.json` records it.
+/// The weights that a run started with, as its `config.json` records them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StartingModel {
-    /// The model, as it was named.
+    /// The model as given by the user.
     pub model: String,
     /// SHA-256 of the weights of both networks.
     pub sha256: String,
 }
 
-/// How the forecasting network of a trained model is trained further, on few recordings: smaller steps, fewer of them.
+/// The training of a trained model's forecasting network on few more recordings: fewer steps with a smaller step size.
 #[must_use]
 pub fn training_further(variant: Variant) -> TrainingConfig {
     TrainingConfig {
@@ -22,8 +22,8 @@ pub fn training_further(variant: Variant) -> TrainingConfig {
     }
 }
 
-/// How the proposal network of a trained model is trained further: smaller steps, fewer of them, and each from the nearest end alone, because
-/// the ends have parted already.
+/// The training of a trained model's proposal network on few more recordings: fewer steps with a smaller step size.
+/// Only the nearest endpoint of each pedestrian is trained, because the endpoints are already spread.
 #[must_use]
 pub fn goals_trained_further(seed: u64) -> GoalRecipe {
     let mut recipe = GoalRecipe::proposed(seed);

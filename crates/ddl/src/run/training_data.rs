@@ -10,10 +10,10 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     }
 }
 
-/// The fold of that name; of own recordings also the one that leaves none out ([`Fold::WHOLE`]).
+/// The fold of that name. For own recordings this includes the fold that leaves none out ([`Fold::WHOLE`]).
 ///
 /// # Errors
-/// When there is none; the message lists those there are.
+/// When it is missing; the message lists the existing folds.
 pub fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
     if dataset.convention() == Convention::Own && name == Fold::WHOLE {
         Ok(dataset.whole())
@@ -27,7 +27,7 @@ pub(crate) fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a R
     learned.chain(fold.recordings_set_apart()).copied()
 }
 
-/// SHA-256 of a recording's frames, people and positions; its name does not matter.
+/// SHA-256 of a recording's frames, pedestrians and positions; its name does not matter.
 pub(crate) fn digest_of_recording(recording: &Recording) -> String {
     let mut hasher = Sha256::new();
     for seen in recording.observations() {

@@ -2,12 +2,12 @@ use ddl_data::{Convention, Fold, Recording, Window};
 
 /// Share of the time of own recordings, at their ends, that is kept for validation.
 const SHARE: f64 = 0.2;
-/// Ends that hold a smaller share than this of all pedestrian-windows are too little to choose by.
+/// The ends are too short for validation if they hold a smaller share of all pedestrian-windows than this.
 const LEAST_AT_THE_ENDS: f64 = 0.05;
-/// Of so many recordings one is kept whole.
-const RECORDINGS_A_WHOLE_ONE: usize = 5;
+/// One in this many recordings is kept whole.
+const WHOLE_EVERY: usize = 5;
 
-/// The part of recordings that is kept out of training, for choices to be made on.
+/// The part of recordings that is kept out of training for validation.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ValidationPart {
     /// Share of the recordings' time, at their ends; 0 for none.
@@ -17,8 +17,8 @@ pub struct ValidationPart {
 }
 
 impl ValidationPart {
-    /// What is kept of own recordings unless it is said: the last fifth of each; where these ends hold next to no
-    /// windows, a fifth of the recordings whole, at least one, spread evenly over those that hold windows.
+    /// The default validation part of own recordings: the last fifth of each. If these ends hold too few windows, it is
+    /// a fifth of the recordings as a whole, at least one, spread evenly over those with windows.
     #[must_use]
     pub fn of_own(fold: &Fold<'_>) -> Self {
         let ends = Self {
@@ -39,11 +39,11 @@ impl ValidationPart {
             .iter()
             .filter(with_windows)
             .collect();
-        // Of a single recording nothing would be left to learn from.
+        // A single recording cannot be kept whole: none would be left for training.
         if recordings.len() < 2 {
             return ends;
         }
-        let count = recordings.len().div_ceil(RECORDINGS_A_WHOLE_ONE);
+        let count = recordings.len().div_ceil(WHOLE_EVERY);
         let in_the_middle_of = |part: usize| (2 * part + 1) * recordings.len() / (2 * count);
         Self {
             share: 0.0,

@@ -1,6 +1,6 @@
 use ddl_network::EpochReport;
 
-/// The epoch with the least validation error, the first of them; `None` where none was measured.
+/// The first epoch with the smallest validation error; `None` if none was measured.
 #[must_use]
 pub fn best_epoch(epochs: &[EpochReport]) -> Option<&EpochReport> {
     let measured = epochs.iter().filter(|epoch| epoch.validation.is_some());
@@ -11,7 +11,7 @@ pub fn best_epoch(epochs: &[EpochReport]) -> Option<&EpochReport> {
     })
 }
 
-/// Whether so many epochs have passed since the best one.
+/// Whether at least `patience` epochs have passed since the best one.
 #[cfg(any(test, feature = "torch"))]
 pub(crate) fn is_over(epochs: &[EpochReport], patience: usize) -> bool {
     match (best_epoch(epochs), epochs.last()) {

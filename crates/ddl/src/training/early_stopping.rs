@@ -1,4 +1,4 @@
-//! The validation windows of a training under way: how good each epoch is.
+//! The validation error of each epoch during training.
 
 use super::starting_weights::StartingWeights;
 use crate::device::Device;
@@ -16,10 +16,10 @@ use ddl_goal::GoalSet;
 use ddl_network::weights::Weights;
 use ddl_network::{EpochReport, ForecastWindows};
 
-/// Validation pedestrians that each epoch is measured on, at least, where there are so many.
+/// Least number of validation pedestrians that each epoch is measured on, if available.
 const PEDESTRIANS: usize = 1000;
 
-/// Windows that were kept for validation, with their goals, and for how many epochs a better one is waited for.
+/// Validation windows with their goals, and the number of epochs without improvement that ends the training.
 #[derive(Debug)]
 pub(crate) struct EarlyStopping {
     patience: usize,
@@ -31,7 +31,7 @@ pub(crate) struct EarlyStopping {
 }
 
 impl EarlyStopping {
-    /// With the validation windows of the fold, or a seeded part of them; `None` where the run trains all epochs.
+    /// The validation windows of the fold, or a seeded part of them; `None` if the run trains all epochs.
     pub(crate) fn of(goals: &GoalModel, fold: &Fold<'_>) -> Result<Option<Self>, DdlError> {
         let config = goals.config();
         let (data, Some(patience)) = (&config.data, config.patience) else {
@@ -52,7 +52,7 @@ impl EarlyStopping {
         }))
     }
 
-    /// minADE over the pedestrians, metres: the best hypothesis of each, as under the protocol `fair`.
+    /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
         let (windows, led) = (
             &self.windows,
@@ -68,20 +68,19 @@ impl EarlyStopping {
         Ok(sum / pedestrians as f64)
     }
 
-    /// The first epoch that is measured: number 0 is the network before its first step, which counts where it is a trained one.
+    /// The first epoch to measure. Epoch 0, before the first step, counts if training starts from a trained network.
     pub(crate) fn first_epoch(&self) -> usize {
         usize::from(!self.starts_trained)
     }
 
-    /// Whether no better epoch is to be expected.
+    /// Whether the last `patience` epochs brought no improvement.
     pub(crate) fn is_over(&self, epochs: &[EpochReport]) -> bool {
         is_over(epochs, self.patience)
     }
 }
 
-/// The better proposal network for a training that begins with another model's weights: that model's own, or what has
-/// become of it, by which the untrained forecasting network comes nearer the truth; without early stopping the trained
-/// one.
+/// For a training that starts from another model: its own proposal network or the retrained one, whichever gives the
+/// untrained forecasting network the smaller error. Without early stopping, the retrained one.
 pub(crate) fn better_goals(
     start: StartingWeights,
     trained: Weights,

@@ -1,4 +1,4 @@
-//! The first stage of a training: what the goals come from.
+//! The first stage of a training: the goals.
 
 use crate::error::DdlError;
 use crate::goals::experts;
@@ -15,8 +15,8 @@ use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// Writes the expert library and trains the proposal network, whatever of it is not there yet; from the weights of `start` where there is one, and then
-/// the network that is kept is the one of `choose`.
+/// Writes the expert library and trains the proposal network, except what already exists. Training starts from the
+/// weights of `start` if given; `choose` then selects the network to keep.
 pub(crate) fn train(
     recipe: Option<&ProposalRecipe>,
     (start, choose): (
@@ -75,7 +75,7 @@ pub(crate) fn train(
     }
     let weights = choose(trainer.into_network()?.parameters().to_weights()?)?;
     save_weights(&weights, origin, &run.proposal())?;
-    // of no use any more; a file that cannot be removed does no harm
+    // The state is no longer needed; failing to remove it is harmless.
     let _ = std::fs::remove_file(&state);
     Ok(())
 }

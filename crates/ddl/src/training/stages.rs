@@ -1,4 +1,4 @@
-//! The stages of a training, one after the other: what goals come from, then the forecasting network.
+//! The stages of a training in order: the goals, then the forecasting network.
 
 use super::early_stopping::{EarlyStopping, better_goals};
 use super::starting_weights::StartingWeights;
@@ -32,7 +32,7 @@ pub(super) fn train(
     dataset: &Dataset,
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
-    // Everything is checked before the directory is claimed: a mistake must not leave a run behind.
+    // Check everything before claiming the directory, so that a mistake leaves no run behind.
     request.star.check()?;
     request.training.check()?;
     request.training.check_for(request.star.variant)?;
@@ -88,7 +88,7 @@ pub(super) fn train(
         },
     )?;
     if run.is_trained() {
-        // Finished is what can be loaded: a file that was damaged since is named.
+        // A finished run must load: this reports a file that has been damaged since.
         return Ddl::load(run.path(), request.device).map(drop);
     }
     if request.until == TrainingStage::Goals {
@@ -114,7 +114,7 @@ pub(super) fn train(
     run_epochs(&mut trainer, (run, &origin), (kept, min_ade), observe)
 }
 
-/// What a run's `config.json` says: the request, what is learned from, and what it is computed with.
+/// The `config.json` of a run, from the request, the training data and the device.
 fn config_of(
     request: &TrainingRequest,
     dataset: &Dataset,
@@ -157,7 +157,7 @@ fn config_of(
     }
 }
 
-/// Early stopping needs something to measure epochs on.
+/// Early stopping needs a validation part.
 fn ensure_patience(
     request: &TrainingRequest,
     fold: &Fold<'_>,
@@ -181,7 +181,7 @@ fn ensure_patience(
     Ok(())
 }
 
-/// Evaluation runs the published estimator too, which needs as many tracks as it retrieves.
+/// Evaluation also runs the published estimator, which retrieves this many tracks.
 fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), DdlError> {
     let published = goals.retrieval.clone().into_published().check()?;
     let retrieval = goals.retrieval.clone().check()?;
@@ -189,7 +189,7 @@ fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), Dd
         windows.iter().map(Window::len).sum::<usize>(),
         match retrieval.frame {
             RetrievalFrame::World => published.experts.max(retrieval.experts),
-            // a smaller library is used whole
+            // a smaller library is used as a whole
             RetrievalFrame::Heading => published.experts,
         },
     );
@@ -199,7 +199,7 @@ fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), Dd
     Ok(())
 }
 
-/// The training of the forecasting network: on single steps, or on walks to goals that those of the run estimate.
+/// The training of the forecasting network, on single steps or on whole paths to the goals of the run.
 fn trainer(
     config: &RunConfig,
     windows: Vec<Window>,
@@ -211,13 +211,13 @@ fn trainer(
         Objective::NextStep => Trainer::new(network, windows, training)?,
         Objective::Walk => {
             let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
-            let lessons = goals.lessons(&with_future)?;
-            Trainer::towards(network, with_future, lessons, training)?
+            let training_goals = goals.training_goals(&with_future)?;
+            Trainer::towards(network, with_future, training_goals, training)?
         }
     })
 }
 
-/// The model is chosen by the record: with a hole in it, it would be chosen among some of the epochs.
+/// Checks that the record is complete: the best epoch is chosen from it.
 fn ensure_every_epoch_is_recorded(
     epochs: &[EpochReport],
     mut measured: RangeInclusive<usize>,
@@ -232,14 +232,14 @@ fn ensure_every_epoch_is_recorded(
         Some(epoch) => Err(DdlError::run(
             run.path(),
             format!(
-                "has no record of epoch {epoch} in metrics.jsonl, by which the best epoch is chosen; put the file back, or remove the directory and \
-                 train anew"
+                "has no record of epoch {epoch} in metrics.jsonl, from which the best epoch is chosen; restore the \
+                 file, or remove the directory and train again",
             ),
         )),
     }
 }
 
-/// Trains to the end, saving what a later call needs to go on.
+/// Trains to the end, saving the state that a later call needs to continue.
 fn run_epochs(
     trainer: &mut Trainer,
     (run, origin): (&RunDirectory, &Origin),
@@ -255,7 +255,7 @@ fn run_epochs(
         && stopping.first_epoch() == 0
         && trainer.steps().0 == 0
     {
-        // Before the first step the network is the one that it began with.
+        // Epoch 0 holds the weights that training starts from.
         save_weights(&trainer.weights()?, origin, &run.epoch(0))?;
         epochs = vec![EpochReport {
             epoch: 0,
@@ -301,10 +301,10 @@ fn run_epochs(
     }
     let mut weights = trainer.weights()?;
     if let Some(best) = best_epoch(&epochs) {
-        // Read as any weights are, so that a file that was damaged since is named, before others are removed.
+        // Read the file before the others are removed, to report one that has been damaged since.
         weights = load_weights(weights.layout(), origin, &run.best_epoch(best.epoch)?)?;
         run.remove_epochs_but(best.epoch)?;
     }
-    // Last: with a model the run is finished, and nothing of this is done again.
+    // Last, because the model file marks the run as finished.
     Ok(save_weights(&weights, origin, &run.model())?)
 }

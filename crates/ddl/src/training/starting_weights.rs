@@ -12,7 +12,7 @@ use sha2::{Digest as _, Sha256};
 #[derive(Debug)]
 pub(crate) struct StartingWeights {
     pub(crate) network: Weights,
-    /// None where goals are retrieved alone.
+    /// `None` if all goals are retrieved.
     pub(crate) proposal: Option<Weights>,
     pub(crate) record: StartingModel,
 }
@@ -34,8 +34,8 @@ impl StartingWeights {
         let of_goals = || of_proposal(&config.goals).difference(&of_proposal(goals));
         if let Some(difference) = of_network.or_else(of_goals) {
             return Err(source.wrong(format!(
-                "cannot be trained further here: its {difference} as asked for; leave out the options that ask for another network, or train from \
-                 random weights (--from none)"
+            "cannot be trained further here: its {difference} as requested; leave out the options that require another \
+             network, or train from random weights (--from none)"
             )));
         }
         let (network, proposal) = model.weights()?;

@@ -1,8 +1,8 @@
-//! A training in words, as results name it.
+//! Descriptions of a training for the results.
 
 use ddl_network::TrainingConfig;
 
-/// How it was trained, in words; `goals` are those of where its goals come from.
+/// How the network was trained; `goals` describes the origin of its goals.
 pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {
     let (pedestrians, rate) = (training.batch_pedestrians, training.learning_rate);
     let schedule = training.learning_rate_schedule;
@@ -11,7 +11,7 @@ pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {
     )
 }
 
-/// Which epoch is the model, in words.
+/// How the epoch of the model was chosen.
 pub(crate) fn selection(patience: Option<usize>) -> &'static str {
     match patience {
         None => "last epoch",
@@ -19,7 +19,7 @@ pub(crate) fn selection(patience: Option<usize>) -> &'static str {
     }
 }
 
-/// How much of the training set an epoch sees, in words; `None` for all of it.
+/// The part of the training set that an epoch sees; `None` for all of it.
 pub(crate) fn subset(training: &TrainingConfig) -> Option<String> {
     training.pedestrians_per_epoch.map(|pedestrians| {
         format!("about {pedestrians} pedestrians an epoch, going round a seeded order of all")

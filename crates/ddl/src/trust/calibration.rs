@@ -1,5 +1,6 @@
-//! How far a model is trusted: constants that are the same for all models, chosen as `docs/accuracy.md` tells. The
-//! example `calibrate` writes the regions in `calibration.json`, from places that no model was trained on.
+//! Constants that determine how far a model is trusted. They are the same for all models; `docs/accuracy.md` describes
+//! how they were chosen. The example `calibrate` writes the regions in `calibration.json`, from places that no model
+//! was trained on.
 
 use crate::run::sha256;
 use ddl_data::{HORIZON, Position};
@@ -15,19 +16,19 @@ use std::sync::{Arc, LazyLock};
 pub struct Calibration {
     /// Familiarity at which a model is half trusted.
     pub half_trust: f64,
-    /// Share of the network's metric in what shapes a step, of a motion that is fully trusted.
+    /// Share of the network's metric in the metric of a step, for a fully trusted motion.
     pub share: f64,
     /// Power of the goals' weights without and with full trust.
     pub weight_power: [f64; 2],
     /// Share of the probability that is divided equally among the goals.
     pub uniform_share: f64,
-    /// Least spread about a hypothesis, metres.
+    /// Least spread around a hypothesis, metres.
     pub least_spread: f64,
     /// Spread at the horizon for each m/s of the mean observed speed, seconds.
     pub spread_of_speed: f64,
-    /// Spread at the horizon for each metre of the goals' standard deviation (no unit).
+    /// Spread at the horizon for each metre of the goals' standard deviation (dimensionless).
     pub spread_of_goals: f64,
-    /// Power of the share of the horizon by which the spread grows.
+    /// Exponent of the fraction of the horizon by which the spread grows.
     pub spread_growth: f64,
     /// Quantiles of the regions' scores.
     pub regions: RegionTable,
@@ -42,7 +43,7 @@ impl Calibration {
     /// The constants that come with the program.
     ///
     /// # Panics
-    /// Never: that they can be read is tested.
+    /// Never: a test reads the file.
     #[must_use]
     pub fn fitted() -> &'static Self {
         #[expect(
@@ -65,7 +66,7 @@ impl Calibration {
         Arc::clone(&REGIONS)
     }
 
-    /// How far a motion of this familiarity is trusted, 0 to 1.
+    /// Trust in a motion of this familiarity, 0 to 1.
     fn trust(&self, familiarity: f64) -> f64 {
         familiarity / (familiarity + self.half_trust)
     }
@@ -74,15 +75,15 @@ impl Calibration {
         self.share * self.trust(familiarity)
     }
 
-    /// The goals with weights as flat as the trust in a motion of this familiarity asks for.
+    /// The goals with weights flattened for a motion of this familiarity.
     pub(crate) fn tempered(&self, goals: GoalSet, familiarity: f64) -> GoalSet {
         let [without, with] = self.weight_power;
         let power = without + (with - without) * self.trust(familiarity);
         goals.tempered(power, self.uniform_share)
     }
 
-    /// Standard deviations about the positions of the hypotheses, one a step (m), of a pedestrian observed at these positions (m),
-    /// `time_step` seconds apart, with these goals.
+    /// Standard deviations around the positions of the hypotheses, one for each step (m). The pedestrian was observed
+    /// at these positions (m), `time_step` seconds apart, and has these goals.
     pub(crate) fn spread(
         &self,
         observed: &[Position],
@@ -102,7 +103,7 @@ impl Calibration {
     }
 }
 
-/// Standard deviation of weighted positions along one axis, mean of all directions, metres.
+/// Standard deviation of weighted positions along an axis, averaged over all directions (root mean square), metres.
 fn deviation((positions, weights): (&[Position], &[f64])) -> f64 {
     let weighted = || positions.iter().zip(weights);
     let mean = weighted().fold([0.0; 2], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);
@@ -125,9 +126,9 @@ mod tests {
         assert!(fitted.weight_power.iter().all(|power| *power > 0.0));
     }
 
-    /// Ends 3 m to either side: a deviation of 3 m along one axis and none along the other, so sqrt(9 / 2).
+    /// Endpoints 3 m to either side: a deviation of 3 m along one axis and 0 along the other, so sqrt(9 / 2).
     #[test]
-    fn spread_by_hand() {
+    fn spread_of_two_opposite_endpoints() {
         let calibration = Calibration {
             least_spread: 0.0,
             spread_of_speed: 0.1,

@@ -1,48 +1,50 @@
-//! How much an observed motion is like those that a model was trained on.
+//! Familiarity: how similar an observed motion is to the training motions of a model.
 //!
-//! Five numbers sum up a motion; its distance from the training motions is that of Mahalanobis. Familiarity is the
-//! share of training motions kept apart that lie at least as far out. Beyond all of them it falls exponentially, and so
-//! it does with the speed beyond the fastest of them: standing pedestrians widen the distribution of log speeds so much
-//! that the distance alone would hardly tell a runner.
+//! Five features describe a motion, and the Mahalanobis distance measures how far it is from the training motions.
+//! Familiarity is the share of held-out training motions that are at least as far. Beyond all of them it falls
+//! exponentially. It also falls exponentially with the speed beyond the fastest training motions. Standing pedestrians
+//! widen the distribution of log speeds so much that the distance alone would hardly detect a runner.
 
 use ddl_data::{OBSERVED, Position, Window};
 use nalgebra::{SMatrix, SVector};
 use serde::{Deserialize, Serialize};
 
-/// Numbers that sum up a motion.
+/// Number of features of a motion.
 const FEATURES: usize = 5;
-/// Parts of equal probability that the distances of motions kept apart are divided into.
+/// Intervals of equal probability that the distances of held-out motions are divided into.
 const PARTS: usize = 100;
-/// Motions in a row that are kept apart, or not: neighbours in the library show the same pedestrian.
+/// Consecutive motions that are held out, or not: neighbours in the library show the same pedestrian.
 const BLOCK: usize = 100;
-/// One block in so many is kept apart.
-const APART: usize = 5;
-/// Speed (m/s) above that of the fastest training motions at which familiarity is less by a factor e.
-const FASTER: f64 = 1.0;
-/// The least there is, so that it is never 0.
+/// One block in this many is held out.
+const HELD_OUT_EVERY: usize = 5;
+/// Excess of speed (m/s) over the fastest training motions that reduces familiarity by a factor e.
+const EXCESS_SPEED: f64 = 1.0;
+/// Lower bound, so that familiarity is never 0.
 const LEAST: f64 = 1e-9;
-/// Familiarity below which a user is told: fewer than one in a hundred training motions are as unusual.
+/// Below this familiarity the user is warned: fewer than one in a hundred training motions are as unusual.
 pub const UNFAMILIAR: f64 = 0.01;
 
-/// Speeds (m/s) and lengths (m) below which logarithms tell little apart.
+/// Speeds (m/s) and lengths (m) below which logarithms carry little information.
 const SPEED: f64 = 0.1;
-const TREMBLE: f64 = 0.005;
+const LENGTH: f64 = 0.005;
 
-/// The training motions, as far as familiarity goes: no tracks.
+/// The statistics of the training motions that familiarity needs, without tracks.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct TrainingMotions {
     mean: [f64; FEATURES],
     /// The inverse of the covariance, row by row.
     precision: [[f64; FEATURES]; FEATURES],
-    /// Distances of motions kept apart, rising: the first is the least, the last the largest.
+    /// Distances of held-out motions in ascending order, from the least to the largest.
     distances: Vec<f64>,
-    /// Mean speed (m/s) that one in a thousand exceeds; not the largest, which may be that of two pedestrians taken for one.
+    /// Mean speed (m/s) that one in a thousand exceeds. The largest could be an error that joins two pedestrians into
+    /// one.
     fastest: f64,
 }
 
 impl TrainingMotions {
-    /// Of tracks whose first 8 positions (m) are `time_step` seconds apart; `None` for too few or too equal ones.
+    /// Learns from tracks whose first 8 positions (m) are `time_step` seconds apart; `None` for too few or too similar
+    /// tracks.
     pub(crate) fn learn(tracks: &[Vec<Position>], time_step: f64) -> Option<Self> {
         let features = |track: &Vec<Position>| features(track.get(..OBSERVED)?, time_step);
         let all: Vec<SVector<f64, FEATURES>> =
@@ -52,7 +54,7 @@ impl TrainingMotions {
         }
         let (mut learned, mut apart) = (Vec::new(), Vec::new());
         for (block, motions) in all.chunks(BLOCK).enumerate() {
-            let to = if block % APART == APART - 1 {
+            let to = if block % HELD_OUT_EVERY == HELD_OUT_EVERY - 1 {
                 &mut apart
             } else {
                 &mut learned
@@ -64,7 +66,7 @@ impl TrainingMotions {
         let mean = learned.iter().sum::<SVector<f64, FEATURES>>() / count;
         let spread = learned.iter().map(|x| (x - mean) * (x - mean).transpose());
         let covariance = spread.sum::<SMatrix<f64, FEATURES, FEATURES>>() / count;
-        // So that motions that are all alike in one respect still have a covariance.
+        // Keeps the covariance invertible if all motions agree in a feature.
         let covariance = covariance + SMatrix::identity() * 1e-6;
         let precision = covariance.try_inverse()?;
         let mut speeds: Vec<f64> = all.iter().map(mean_speed).collect();
@@ -84,13 +86,13 @@ impl TrainingMotions {
         motions.is_valid().then_some(motions)
     }
 
-    /// The familiarity of each pedestrian of a window; 1 if the training motions are not known.
+    /// The familiarity of each pedestrian of a window; 1 if the training motions are unknown.
     pub(crate) fn of_window(motions: Option<&Self>, window: &Window, time_step: f64) -> Vec<f64> {
         let of = |i: usize| motions.map_or(1.0, |m| m.familiarity(window.observed(i), time_step));
         (0..window.len()).map(of).collect()
     }
 
-    /// Whether its numbers can have come from motions.
+    /// Whether its numbers are possible.
     pub(crate) fn is_valid(&self) -> bool {
         let numbers = self.mean.iter().chain(self.precision.as_flattened());
         numbers.chain(&self.distances).all(|x| x.is_finite())
@@ -123,7 +125,7 @@ impl TrainingMotions {
             let below = ((above - 1) as f64 + part) / PARTS as f64;
             (1.0 - below) * (1.0 - tail) + tail
         };
-        let faster = (mean_speed(&features) - self.fastest).max(0.0) / FASTER;
+        let faster = (mean_speed(&features) - self.fastest).max(0.0) / EXCESS_SPEED;
         (share * (-faster).exp()).clamp(LEAST, 1.0)
     }
 
@@ -134,12 +136,12 @@ impl TrainingMotions {
     }
 }
 
-/// The mean speed (m/s) of a motion that is summed up so.
+/// The mean speed (m/s) of a motion with these features.
 fn mean_speed(features: &SVector<f64, FEATURES>) -> f64 {
     features[0].exp() - SPEED
 }
 
-/// What sums up a motion; `None` for fewer than 5 positions, and where they are too far apart for numbers.
+/// The features of a motion; `None` for fewer than 5 positions, or if their distances overflow.
 fn features(observed: &[Position], time_step: f64) -> Option<SVector<f64, FEATURES>> {
     let way = |a: Position, b: Position| [b[0] - a[0], b[1] - a[1]];
     let length = |[x, y]: [f64; 2]| x.hypot(y);
@@ -160,7 +162,7 @@ fn features(observed: &[Position], time_step: f64) -> Option<SVector<f64, FEATUR
     let straight = speed(way(first, last), steps.len()) / (mean + SPEED);
     let features = SVector::from([
         (mean + SPEED).ln(),
-        (tremble + TREMBLE).ln(),
+        (tremble + LENGTH).ln(),
         relative(speed(*steps.last()?, 1), mean),
         relative(after, before),
         straight,
@@ -175,7 +177,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Walks of 0.3 to 1.8 m/s that tremble by up to 5 cm; the numbers are those of a linear congruence.
+    /// Paths of 0.3 to 1.8 m/s with noise of up to 5 cm, from a linear congruential generator.
     fn tracks() -> Vec<Vec<Position>> {
         let mut state = 7_u64;
         let mut draw = || {
@@ -199,7 +201,7 @@ mod tests {
             .collect()
     }
 
-    /// Of motions like the training's, a share p has a familiarity below p: what calibration means.
+    /// A share p of motions like those of training has a familiarity below p.
     #[test]
     fn familiarity_is_calibrated() {
         let all = tracks();
@@ -234,7 +236,7 @@ mod tests {
     }
 
     proptest! {
-        /// A number in (0, 1] for every finite motion, and one that changes little with the speed.
+        /// Familiarity is in (0, 1] for every finite motion, and changes little with the speed.
         #[test]
         fn familiarity_is_a_smooth_share(
             track in prop::collection::vec([-1e6..1e6f64, -1e6..1e6f64], 8),
@@ -243,7 +245,8 @@ mod tests {
             let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
             let share = motions.familiarity(&track, 0.4);
             prop_assert!(share > 0.0 && share <= 1.0);
-            let at = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)]).collect::<Vec<_>>();
+            let position = |speed: f64, t: i32| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)];
+            let at = |speed: f64| (0..8).map(|t| position(speed, t)).collect::<Vec<_>>();
             let step = (motions.familiarity(&at(speed), 0.4) - motions.familiarity(&at(speed + 1e-3), 0.4)).abs();
             prop_assert!(step < 0.05, "{step}");
         }

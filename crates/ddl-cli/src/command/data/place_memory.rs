@@ -1,4 +1,4 @@
-//! What the memory of a place holds, told and drawn.
+//! Summary and picture of the memory of a place.
 
 use super::many;
 use crate::output::{ensure_not_input, write_output};
@@ -13,7 +13,7 @@ use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
-/// Bytes by which a memory is told from tracks.
+/// Bytes that distinguish a memory from tracks.
 const FIRST: u64 = 16;
 
 pub(super) struct PlaceMemory {
@@ -21,15 +21,15 @@ pub(super) struct PlaceMemory {
     memory: SceneMemory,
 }
 
-/// Where the picture of a memory goes.
+/// The file for the picture of a memory.
 #[derive(Debug, Args)]
 pub(super) struct MemoryPicture {
-    /// Draw the memory of a place as SVG: where many walk, and where they come and go
+    /// Draw the memory of a place as SVG: where many pedestrians walk, appear and disappear
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
 }
 
-/// Whether a file holds a memory. Pipes do not: what is read of them is gone.
+/// Whether a file holds a memory. Pipes are not tested: reading consumes them.
 pub(super) fn is_in(file: &Path) -> bool {
     let mut first = Vec::new();
     let read = |file: File| file.take(FIRST).read_to_end(&mut first);
@@ -73,7 +73,7 @@ impl PlaceMemory {
         })
     }
 
-    /// How much it holds, and of what.
+    /// The size of the memory and of the observations in it.
     fn numbers(&self) -> String {
         let summary = self.memory.summary();
         format!(
@@ -105,7 +105,7 @@ impl Display for PlaceMemory {
         writeln!(f, "  {}", self.numbers())?;
         write!(f, "  {} frames a step of 0.4 s; ", self.memory.frame_step())?;
         match self.memory.summary().extent {
-            None => write!(f, "nobody was seen"),
+            None => write!(f, "no pedestrian was observed"),
             Some([low, high]) => write!(
                 f,
                 "x from {:.2} to {:.2} m, y from {:.2} to {:.2} m",
@@ -122,9 +122,10 @@ impl MemoryPicture {
         };
         let [PlaceMemory { file, memory }] = memories else {
             bail!(
-                "--svg draws the memory of one place, and {} given; name one file that `ddl forecast - --memory FILE` wrote",
+                "--svg draws the memory of one place, but {} given; give one file that `ddl forecast - --memory FILE` \
+                 wrote",
                 match memories.len() {
-                    0 => "none was".to_owned(),
+                    0 => "0 were".to_owned(),
                     count => format!("{count} were"),
                 }
             );

@@ -1,4 +1,4 @@
-//! `ddl evaluate --forecasts`: what another program forecast, scored beside the baselines.
+//! `ddl evaluate --forecasts`: scores the forecasts of another program beside the baselines.
 
 use super::super::RecordingsAt;
 use super::super::test_windows::{TestWindows, ensure_scene_of_star};
@@ -11,12 +11,12 @@ use ddl::report::{Report, gallery};
 use ddl::{BuiltinModel, Protocol, Results};
 use std::path::{Path, PathBuf};
 
-/// A file of forecasts and what it is to be measured on.
+/// A file of forecasts, and the windows to score it on.
 #[derive(Debug, Args)]
 pub(crate) struct OtherProgram {
-    /// Instead of a model: forecasts that another program made of the lines of `ddl windows` (docs/your-model.md)
+    /// Instead of a model: another program's forecasts of the lines of `ddl windows` (docs/your-model.md)
     ///
-    /// The extension tells the format: jsonl, csv, or ndjson for TrajNet++.
+    /// The extension selects the format: jsonl, csv, or ndjson for TrajNet++.
     #[arg(
         long,
         value_name = "FILE",
@@ -30,11 +30,10 @@ pub(crate) struct OtherProgram {
     /// Name of the other program in tables [default: the file's name]
     #[arg(long, requires = "forecasts")]
     name: Option<String>,
-    /// Score the pedestrians that are both in the windows and in the file, and say so in the results
+    /// Score only the pedestrians that are both in the windows and in the file, and note this in the results
     #[arg(long, requires = "forecasts")]
     intersection: bool,
-    /// Folder to write the report to: report.html to look at, report.md, report.tex, report.json, moments.json and
-    /// figures
+    /// Folder for the report: report.html, report.md, report.tex, report.json, moments.json and figures
     #[arg(long, value_name = "FOLDER")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -52,7 +51,7 @@ impl OtherProgram {
     pub(crate) fn written(&self) -> String {
         match &self.out {
             Some(folder) => format!("all metrics: {}", folder.join("report.html").display()),
-            None => "all metrics, as a page and as files: with --out FOLDER".to_owned(),
+            None => "for all metrics as a page and as files, add --out FOLDER".to_owned(),
         }
     }
 
@@ -101,7 +100,7 @@ impl OtherProgram {
     }
 }
 
-/// Where file and windows are not of the same pedestrians, which windows these were and which option scores the rest.
+/// Adds to an error about missing pedestrians the windows used and the option that scores the common ones.
 fn named(
     error: external::ExternalError,
     (convention, fold, rule): &(Convention, &String, WindowRule),
@@ -112,7 +111,8 @@ fn named(
     );
     if differ {
         anyhow::anyhow!(
-            "{error} (the windows are those of --convention {convention} --fold {fold}, rule {rule}; --intersection scores the pedestrians in both)"
+            "{error} (windows of --convention {convention} --fold {fold}, rule {rule}; --intersection scores only the \
+             pedestrians in both)"
         )
     } else {
         error.into()

@@ -1,4 +1,4 @@
-//! Forecasts as JSON lines: an object a pedestrian, in the format that `ddl evaluate --forecasts` reads.
+//! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads.
 
 use super::Moment;
 use crate::clock::FrameNumber;
@@ -10,14 +10,14 @@ use serde::Serialize;
 struct Line<'a> {
     observed_until: FrameNumber,
     pedestrian: PedestrianName,
-    /// Positions before the first that was seen, and in holes.
+    /// Number of made-up positions: before the first observation, and in holes.
     padded: usize,
     filled: usize,
     frames: Vec<FrameNumber>,
-    /// How much the observed motion is like those of the training, 0 to 1.
+    /// Familiarity of the observed motion, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     familiarity: Option<f64>,
-    /// Standard deviation about the right hypothesis at each step, metres.
+    /// Standard deviation around the right hypothesis at each step, metres.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     spread: Vec<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -25,7 +25,7 @@ struct Line<'a> {
     hypotheses: Vec<Hypothesis<'a>>,
 }
 
-/// Where the pedestrian is with this probability: at each step in one of some discs, x, y and radius (m).
+/// A region that contains the pedestrian with this probability: the union of discs at each step, x, y and radius (m).
 #[derive(Serialize)]
 struct Region {
     probability: f64,

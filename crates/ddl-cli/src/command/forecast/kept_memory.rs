@@ -1,4 +1,4 @@
-//! The memory of a place in its file: read when a stream begins, and written as frames come.
+//! The file of a place's memory: read when a stream begins, and written while frames arrive.
 
 use crate::interrupt::Interrupt;
 use crate::telling::{tell, words};
@@ -9,23 +9,23 @@ use ddl::{Ddl, DdlError, MemoryFile, WatchedPlace};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// The memory that `--memory` names, or nothing. Ctrl-C writes it too, from a thread of its own.
+/// The memory of `--memory`, if given. Ctrl-C also writes it, from a separate thread.
 pub(super) struct KeptMemory(Option<Arc<Mutex<Kept>>>);
 
 type SeenFrame = (i64, Vec<(PedestrianId, Position)>);
 
 struct Kept {
     file: MemoryFile,
-    /// What was in the file, until it is known how many frames make a step.
+    /// The memory in the file, until the number of frames in a step is known.
     read: Option<SceneMemory>,
     place: Option<WatchedPlace>,
-    /// The frames seen until then.
+    /// The frames until then.
     early: Vec<SeenFrame>,
     is_refusal_told: bool,
 }
 
 impl KeptMemory {
-    /// Reads the file, if there is one. What would keep it from being written is found here.
+    /// Reads the file if it exists, and checks that it can be written.
     pub(super) fn open(path: Option<&Path>, model: &Ddl) -> anyhow::Result<Self> {
         let Some(path) = path else {
             return Ok(Self(None));
@@ -46,7 +46,7 @@ impl KeptMemory {
         self.0.as_deref().map(lock)
     }
 
-    /// Begins to remember, as soon as it is known how many frames make a step.
+    /// Starts to remember, once the number of frames in a step is known.
     pub(super) fn begin(&self, model: &Ddl, frame_step: Option<i64>) -> anyhow::Result<()> {
         match (self.kept(), frame_step) {
             (Some(mut kept), Some(step)) => kept.begin(model, step),
@@ -54,7 +54,7 @@ impl KeptMemory {
         }
     }
 
-    /// The window with what was remembered before this frame, in which it ends; then the frame is remembered.
+    /// Adds the memory before this frame to the window that ends in it, then remembers the frame.
     pub(super) fn watch(
         &self,
         frame: &SeenFrame,
@@ -66,14 +66,14 @@ impl KeptMemory {
         }
     }
 
-    /// Writes the file where a minute has passed. Where that fails, forecasts go on.
+    /// Writes the file if a minute has passed. If that fails, forecasts continue.
     pub(super) fn write_when_due(&self) {
         let Some(mut kept) = self.kept().filter(|kept| kept.file.is_due()) else {
             return;
         };
         if let Err(error) = kept.write() {
             tell(format_args!(
-                "warning: {}; it is tried again",
+                "warning: {}; the next attempt follows",
                 words(&error)
             ));
         }
@@ -85,7 +85,7 @@ impl KeptMemory {
     }
 }
 
-/// After a panic of the other thread too: a memory is whole after every call.
+/// Also after a panic of the other thread: a memory is consistent after every call.
 fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
     kept.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -137,7 +137,8 @@ impl Kept {
         place.observe(*number, people, window.as_ref())?;
         if let (Some(other), false) = (place.refused(), self.is_refusal_told) {
             tell(format_args!(
-                "warning: {}: {other}; the file stays as it is, and what is seen now is not kept in it: give another --memory FILE for this place",
+                "warning: {}: {other}; the file is unchanged, and this watch is not saved in it: give another --memory \
+                 FILE for this place",
                 self.file.path().display()
             ));
             self.is_refusal_told = true;

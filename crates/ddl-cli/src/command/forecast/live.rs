@@ -1,4 +1,4 @@
-//! `ddl forecast -`: from a tracker's lines, a forecast a frame.
+//! `ddl forecast -`: forecasts from every frame of a tracker's lines.
 
 use super::kept_memory::KeptMemory;
 use super::{Forecast, Onward};
@@ -16,15 +16,15 @@ use std::fs::File;
 use std::io::{Write as _, stdin, stdout};
 use std::path::Path;
 
-/// Frames apart that are believed to be 0.4 s: more may be a hole, or a clock.
+/// Largest number of frames assumed to be 0.4 s: more may be a hole, or timestamps.
 const LONGEST_STEP: i64 = 1000;
 
-/// Forecasts from every frame as soon as it is whole, until standard input ends or nobody reads on.
+/// Forecasts from every frame once it is complete, until standard input ends or the output is closed.
 pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     let model = forecast.model()?;
     let memory = KeptMemory::open(forecast.memory.as_deref(), &model)?;
     let answered = answer(forecast, &model, &memory);
-    // however the stream ended, what was seen is kept
+    // Keep the memory however the stream ended.
     let kept = memory.end();
     if let (Err(_), Err(error)) = (&answered, &kept) {
         tell(format_args!("error: {}", words(error)));
@@ -47,7 +47,7 @@ fn answer(forecast: &Forecast, model: &Ddl, memory: &KeptMemory) -> anyhow::Resu
     while wrong.is_none() {
         memory.write_when_due();
         let frame = frames.next_frame().or_else(|error| {
-            // what came before the bad line is not lost
+            // keep the frames before the bad line
             wrong = Some(error);
             Ok::<_, anyhow::Error>(frames.unfinished())
         })?;
@@ -70,7 +70,8 @@ fn answer(forecast: &Forecast, model: &Ddl, memory: &KeptMemory) -> anyhow::Resu
             .write(&text)
             .with_context(|| match &forecast.output {
                 Some(path) => format!(
-                    "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces them)",
+                    "cannot continue to write {0}, which holds the forecasts so far (another run with --output {0} \
+                     replaces them)",
                     path.display()
                 ),
                 None => "cannot write to standard output".to_owned(),
@@ -81,26 +82,29 @@ fn answer(forecast: &Forecast, model: &Ddl, memory: &KeptMemory) -> anyhow::Resu
     }
     if empty {
         bail!(
-            "standard input holds no tracks: the first line is frame,pedestrian,x,y, then a row for each person and frame"
+            "standard input holds no tracks: the first line must be frame,pedestrian,x,y, followed by a row for each \
+             pedestrian and frame"
         );
     }
     if !onward.headed {
         bail!(
-            "standard input: nobody was seen long enough to be forecast; give --fps where frame numbers are not 0.4 s apart, or --frame-step"
+            "standard input: no pedestrian was observed long enough to be forecast; give --fps or --frame-step if \
+                 frame numbers are not 0.4 s apart"
         );
     }
     Ok(())
 }
 
 struct Output {
-    /// Standard output where there is none.
+    /// `None` for standard output.
     file: Option<File>,
-    /// Whether a forecast was written: a file from before is replaced by the first, not by an input that has none.
+    /// Whether a forecast was written. The first forecast replaces an existing file; an input without forecasts does
+    /// not.
     begun: bool,
 }
 
 impl Output {
-    /// Opened before there is a forecast: whoever connects a tracker learns at once that it cannot be written to.
+    /// Opens the output before the first forecast, so that an error shows at once.
     fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let mut options = File::options();
         let options = options.write(true).create(true).truncate(false);
@@ -129,7 +133,7 @@ impl Output {
     }
 }
 
-/// Says what looks wrong with the speeds of the first people that were seen whole; whether there were any.
+/// Warns if the speeds in the first complete window look wrong; returns whether it warned.
 fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
     let whole = (0..window.len()).filter(|&i| window.made_up(i) == MadeUp::default());
     let seen: Vec<Observation> = whole
@@ -143,7 +147,7 @@ fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
         return Ok(false);
     }
     let recording = Recording::new("standard input", window.frame_step(), seen)?;
-    // A jump is no matter of units, and somebody may be slow for 3.2 s.
+    // A jump does not point to wrong units, and a pedestrian may be slow for 3.2 s.
     if let Some(doubt @ Doubt::Fast { .. }) = &recording.speed_doubt() {
         recordings::warn_of(doubt);
     }
@@ -163,7 +167,7 @@ fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::R
     Ok(frame)
 }
 
-/// Live tracks whose frame step may have to be learned from the first two frames.
+/// Live tracks whose frame step may be unknown until the first two frames.
 struct Tracking {
     completion: Completion,
     units: Units,
@@ -185,12 +189,13 @@ impl Tracking {
         })
     }
 
-    /// Raw frames in a step, as soon as that is known.
+    /// Raw frames in a step, once known.
     fn frame_step(&self) -> Option<i64> {
         self.tracks.as_ref().map(LiveTracks::frame_step)
     }
 
-    /// Adds a frame; the window that ends there, if anybody can be forecast. `rate`: frames that follow each other in a second, where the lines say so.
+    /// Adds a frame; returns the window that ends there, if it has pedestrians to forecast. `rate`: frames per second
+    /// according to the lines.
     fn push(&mut self, frame: Frame, rate: Option<f64>) -> anyhow::Result<Option<Window>> {
         if let Some(tracks) = &mut self.tracks {
             return Ok(tracks.push(frame.number, frame.people)?);
@@ -201,7 +206,8 @@ impl Tracking {
         };
         let (step, reason) = self.step(frame.number - first.number, rate)?;
         tell(format_args!(
-            "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read them differently"
+            "note: frame numbers are assumed to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step if this \
+             is wrong"
         ));
         let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
         let tracks = self.tracks.insert(tracks);
@@ -209,22 +215,27 @@ impl Tracking {
         Ok(tracks.push(frame.number, frame.people)?)
     }
 
-    /// Frame numbers in a step where no option gives them, and why so many; `apart`: those between the first two frames.
+    /// Frame numbers in a step that no option gives, with the reason; `apart`: difference of the first two frame
+    /// numbers.
     fn step(&self, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
         if let Some(rate) = rate {
             let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
-                format!("standard input: the scenes give {rate} frames a second, and the first two frames are {apart} apart")
+                format!(
+                    "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} \
+                     apart"
+                )
             })?;
-            return Ok((step, format!("by the fps of the scenes, {rate}")));
+            return Ok((step, format!("from the fps of the scenes, {rate}")));
         }
         if let Some(remembered) = self.units.remembered_live_frame_step()? {
             return Ok(remembered);
         }
         if apart > LONGEST_STEP {
             bail!(
-                "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are in 0.4 s"
+                "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps \
+                 or --frame-step"
             );
         }
-        Ok((apart, "as the first two are".to_owned()))
+        Ok((apart, "the difference of the first two frames".to_owned()))
     }
 }

@@ -1,4 +1,4 @@
-//! Forecasts as csv: a row a position.
+//! Forecasts as csv: one row for each position.
 
 use super::Moment;
 use crate::clock::FrameNumber;
@@ -13,7 +13,7 @@ struct Row {
     pedestrian: PedestrianName,
     hypothesis: usize,
     weight: f64,
-    /// Empty where the model has no goals.
+    /// Empty for a model without goals.
     goal_x: Option<f64>,
     goal_y: Option<f64>,
     frame: FrameNumber,
@@ -21,7 +21,7 @@ struct Row {
     y: f64,
     padded: usize,
     filled: usize,
-    /// Empty where the model does not say.
+    /// Empty if the model does not tell.
     familiarity: Option<f64>,
 }
 
@@ -39,10 +39,10 @@ const COLUMNS: [&str; 12] = [
     "filled",
     "familiarity",
 ];
-/// Further columns: what its certificate says of a position.
+/// Further columns for the certificate of a position.
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
-/// The table of these moments, with a column for the radius of each of the regions asked for.
+/// The table of these moments, with a column of radii for each requested region.
 pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
     let mut writer = csv::WriterBuilder::new()
         .has_headers(false)
@@ -62,7 +62,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
             for hypothesis in 0..moment.forecast.hypotheses() {
                 let certificate = moment.certificate(i, hypothesis);
                 let holds = certificate.is_some_and(|certificate| certificate.holds().is_ok());
-                // the first distance is that of the last observed position
+                // the first distance belongs to the last observed position
                 let mut distances = certificate.map(|certificate| certificate.potentials().skip(1));
                 let positions = moment.forecast.hypothesis(i, hypothesis);
                 let goal = moment.forecast.goal(i, hypothesis);

@@ -1,4 +1,4 @@
-//! The models of a finished benchmark, packed, with what each reached: those that come with the program.
+//! Packs the models of a finished benchmark together with their results, as the built-in models.
 
 use super::super::benchmark::{Method, Plan, Profile, Task};
 use super::super::recipe::Recipe;
@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 const FORECASTER: &str = "DDL without an expert library";
-/// What a repository can bear for each.
+/// The largest size of each that the repository should hold.
 const MOST_BYTES: usize = 2_000_000;
 
 #[derive(Debug, PartialEq, Serialize)]
@@ -22,7 +22,7 @@ struct Reported {
     min_ade: f64,
     min_fde: f64,
     pedestrians: usize,
-    /// `--test-pedestrians` of that evaluation; none is all.
+    /// `--test-pedestrians` of that evaluation; `None` for all.
     test_pedestrians: Option<usize>,
     seed: u64,
     commit: String,
@@ -39,13 +39,13 @@ pub(super) fn pack(
     for task in &tasks {
         let file = task.run_folder(benchmark).join("report.json");
         let result = Report::load(&file)
-            .context("is the benchmark finished?")
+            .context("cannot read the results; finish the benchmark first")
             .and_then(|report| reported(&report, task, plan.settings.test_pedestrians))
             .with_context(|| format!("in {}", file.display()))?;
         reached.insert(task.fold.as_str(), result);
     }
-    // Nothing is replaced before everything is there.
-    let work = tempfile::tempdir().context("no temporary folder can be made")?;
+    // Make all files before replacing any.
+    let work = tempfile::tempdir().context("cannot create a temporary folder")?;
     let mut packed = Vec::new();
     for task in &tasks {
         let name = format!("{}.safetensors", task.fold);
@@ -54,14 +54,14 @@ pub(super) fn pack(
         let bytes = std::fs::read(work.path().join(&name))?;
         ensure!(
             bytes.len() <= MOST_BYTES,
-            "{}, packed, is {} bytes long, and what comes with the program has at most {MOST_BYTES}; train a narrower network \
-             (`--feed-forward-width`)",
+            "the packed model {} is {} bytes long, but a built-in model may have at most {MOST_BYTES}; train a \
+             narrower network (`--feed-forward-width`)",
             run.display(),
             bytes.len()
         );
         packed.push((out.join(name), bytes, numbers));
     }
-    std::fs::create_dir_all(out).with_context(|| format!("cannot make {}", out.display()))?;
+    std::fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
     let write = |file: &Path, bytes: &[u8]| {
         write_whole(file, bytes).with_context(|| format!("cannot write {}", file.display()))
     };
@@ -78,21 +78,21 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
     let settings = &plan.settings;
     ensure!(
         settings.convention == Convention::Star,
-        "the models that come with the program are trained on star data, and that benchmark is of {} data",
+        "the built-in models are trained on star data, but this benchmark is of {} data",
         settings.convention
     );
     ensure!(
         settings.recipe.name == Recipe::Recommended
             && settings.profile == Profile::Paper
             && settings.train_pedestrians.is_none(),
-        "the models that come with the program are of the whole recommended recipe (--profile paper), and that benchmark is of profile \
+        "the built-in models are of the whole recommended recipe (--profile paper), but this benchmark is of profile \
          {}, recipe {}{}",
         settings.profile,
         settings.recipe.name,
         settings
             .train_pedestrians
             .map_or(String::new(), |pedestrians| format!(
-                ", {pedestrians} pedestrians an epoch"
+                ", {pedestrians} pedestrians per epoch"
             )),
     );
     let full = || {
@@ -106,7 +106,7 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
             full()
                 .find(|task| task.fold == fold && Some(task.seed) == seed)
                 .with_context(|| {
-                    format!("the benchmark has no run of the fold {fold}, variant full; run it with all folds")
+                    format!("the benchmark has no run of fold {fold}, variant full; run it with all folds")
                 })
         })
         .collect()
@@ -128,8 +128,8 @@ fn reported(
     });
     let row = row.with_context(|| {
         format!(
-            "there is no row `{FORECASTER}` under {convention}, {window_rule}, {protocol}; run the benchmark again, which measures anew what is \
-             older than this row"
+            "no row `{FORECASTER}` under {convention}, {window_rule}, {protocol}; run the benchmark again to add the \
+             missing row"
         )
     })?;
     Ok(Reported {

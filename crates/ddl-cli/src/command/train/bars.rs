@@ -1,4 +1,4 @@
-//! How far a training is: a bar a stage, and where it stood when it was interrupted.
+//! Progress of a training: a bar for each stage, and the position when it was interrupted.
 
 use crate::progress::{Progress, ProgressMode};
 use ddl::{TrainingProgress, TrainingStep};
@@ -8,7 +8,7 @@ pub(super) struct TrainingBars {
     goals: Option<Progress>,
     network: Option<Progress>,
     stood: String,
-    /// Of the last step whose loss was read: on CUDA not every step's is.
+    /// The last loss that was read; on CUDA it is not read at every step.
     loss: String,
 }
 
@@ -29,7 +29,7 @@ impl TrainingBars {
         match &now.step {
             TrainingStep::Goals(step) => {
                 self.stood = format!("after {done} of {total} batches of goals");
-                let message = format!("batches, ends within {:.2} m", step.distance);
+                let message = format!("batches, endpoint error {:.2} m", step.distance);
                 let bar = self
                     .goals
                     .get_or_insert_with(|| Progress::new("goals", mode));
@@ -50,7 +50,7 @@ impl TrainingBars {
         }
     }
 
-    /// Takes the bars away; where the training stood.
+    /// Removes the bars, and returns the position of the training.
     pub(super) fn close(self) -> String {
         self.stood
     }

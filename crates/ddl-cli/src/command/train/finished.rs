@@ -1,4 +1,4 @@
-//! What is said when `ddl train` has come to its end, and whether a training on own recordings was worth it.
+//! The output at the end of `ddl train`, and the comparison with the built-in model on own recordings.
 
 use super::super::{RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
@@ -8,7 +8,7 @@ use ddl::data::{Convention, Dataset, Fold};
 use ddl::{BuiltinModel, Comparison, Ddl, TrainingRequest, TrainingStage, best_epoch};
 use serde_json::json;
 
-/// Gain or loss, as a share of the built-in model's error, that a sentence without an interval calls one.
+/// Smallest difference, as a share of the built-in model's error, that counts without an interval.
 const LEAST: f64 = 0.02;
 
 pub(super) fn print(
@@ -44,11 +44,12 @@ pub(super) fn print(
         _ if only_goals => "the goals are trained".to_owned(),
         None => format!("trained, {epochs}"),
         Some((_, 0)) => format!(
-            "trained, {epochs}; no epoch was better than the weights that the forecasting network began with: these are kept, only the goals were learned"
+            "trained, {epochs}; no epoch was better than the starting weights of the forecasting network: they are \
+             kept, and only the goals were trained"
         ),
         Some((error, epoch)) => {
             let error = match compared {
-                // the whole part says it below
+                // The comparison below tells it.
                 Some(_) => String::new(),
                 None => format!(": minADE of 20 hypotheses {error:.3} m on the validation part"),
             };
@@ -95,8 +96,8 @@ fn facts(compared: &Comparison) -> serde_json::Value {
     })
 }
 
-/// Measures both; `None` where nothing was kept, or the network is not trained. The built-in model's error is that of a model that has learned
-/// from these recordings where they are of ETH/UCY.
+/// Evaluates both models; `None` without a validation part or a trained network. On ETH/UCY the built-in model may have
+/// been trained on these recordings.
 pub(super) fn compare_with_builtin(
     request: &TrainingRequest,
     dataset: &Dataset,
@@ -127,8 +128,8 @@ fn compared_words(compared: &Comparison) -> String {
     } = compared;
     let builtin = BuiltinModel::default();
     format!(
-        "on the validation part ({pedestrians} pedestrian-windows), minADE/minFDE of 20 in metres: this model {:.3}/{:.3}, the built-in model {builtin} \
-         {:.3}/{:.3}\n{}",
+        "on the validation part ({pedestrians} pedestrian-windows), minADE/minFDE of 20 in metres: this model \
+         {:.3}/{:.3}, the built-in model {builtin} {:.3}/{:.3}\n{}",
         run.min_ade,
         run.min_fde,
         other.min_ade,
@@ -143,28 +144,29 @@ fn verdict(compared: &Comparison) -> String {
     let Some(paired) = compared.difference else {
         let share = gain / compared.other.min_ade.max(f64::MIN_POSITIVE);
         let so_far = if share >= LEAST {
-            format!("training seems worth it: {gain:.3} m less minADE")
+            format!("training seems to help: {gain:.3} m less minADE")
         } else if share <= -LEAST {
             format!(
-                "training was not worth it: use the built-in model {builtin}, or train on more recordings"
+                "training did not help: use the built-in model {builtin}, or train on more recordings"
             )
         } else {
             format!("training made no clear difference: {gain:.3} m less minADE")
         };
         return format!(
-            "{so_far} (fewer than 10 stretches of 20 s to validate on: too little to say how sure that is)"
+            "{so_far} (the validation part has fewer than 10 blocks of 20 s: too few for a confidence interval)"
         );
     };
     let (low, high) = (-paired.difference.high, -paired.difference.low);
     let interval = format!("{gain:.3} m less minADE, 95 % interval {low:.3} to {high:.3}");
     if low > 0.0 {
-        format!("training was worth it: {interval}")
+        format!("training helped: {interval}")
     } else if high < 0.0 {
         format!(
-            "training was not worth it: {:.3} m more minADE, 95 % interval {:.3} to {:.3}; use the built-in model {builtin}, or train on more recordings",
+            "training made the forecasts worse: {:.3} m more minADE, 95 % interval {:.3} to {:.3}; use the built-in \
+             model {builtin}, or train on more recordings",
             -gain, -high, -low
         )
     } else {
-        format!("training made no difference that is more than chance: {interval}")
+        format!("training made no significant difference: {interval}")
     }
 }
