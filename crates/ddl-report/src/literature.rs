@@ -103,6 +103,17 @@ pub fn table_one() -> Table {
     published_table(&LITERATURE.table_one, 2)
 }
 
+/// The published system of a convention with the least ADE + FDE, means of five folds, best of 20.
+pub(crate) fn best(convention: Convention) -> Option<&'static PublishedRow> {
+    let rows = match convention {
+        Convention::Star => &LITERATURE.star_convention,
+        Convention::SocialGan => &LITERATURE.social_gan_convention,
+        Convention::Simulated | Convention::Own => return None,
+    };
+    let error = |row: &PublishedRow| row.mean.iter().sum::<f64>();
+    rows.iter().min_by(|a, b| error(a).total_cmp(&error(b)))
+}
+
 /// The best published systems in the `star` convention.
 pub fn star_convention_table() -> Table {
     published_table(&LITERATURE.star_convention, 2)

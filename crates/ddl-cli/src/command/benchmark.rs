@@ -6,11 +6,12 @@ mod display;
 mod fixture;
 mod method;
 mod plan;
+mod processor;
 mod profile;
 mod publish;
-mod readme;
 mod record;
 mod report;
+mod section;
 mod slurm;
 mod work;
 
@@ -26,6 +27,7 @@ use anyhow::{Context as _, bail, ensure};
 use choice::Choice;
 use clap::{Args, ValueEnum};
 use ddl::data::remove_half_written;
+use ddl::report::Report;
 use ddl::{DdlError, RunLock};
 use display::Display;
 use publish::Making;
@@ -79,8 +81,8 @@ pub(crate) struct Benchmark {
     /// and `runs/CONVENTION-PROFILE-published` with the protocol published]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the report, with what made it, to docs/benchmark.md of the checkout in this folder, and its tables into README.md;
-    /// profiles but paper, conventions but star and the paper's recipe have pages of their own, named after them
+    /// Also write the main numbers, with what made them, into the section of the convention in docs/results.md of the
+    /// checkout in this folder, and those of the whole benchmark in star into README.md
     #[arg(long, value_name = "DIR")]
     publish: Option<PathBuf>,
     #[command(flatten)]
@@ -103,6 +105,9 @@ impl Benchmark {
             "--publish describes a run of one machine: it needs `--executor local`"
         );
         let plan = self.choice.plan()?;
+        if let Some(checkout) = &self.publish {
+            publish::check(checkout, &plan)?;
+        }
         let out = self
             .out
             .clone()
@@ -156,6 +161,8 @@ impl Benchmark {
             commit: &self.reporting.commit,
             took: start.elapsed(),
             at: time::OffsetDateTime::now_utc(),
+            cores: self.cores(),
+            processor: processor::name(),
         };
         for file in publish::publish(checkout, plan, &report, &making)? {
             tell(format_args!("published: {file}"));
@@ -222,7 +229,7 @@ impl Benchmark {
     }
 
     /// The report of the tasks that are finished; an error where some are not.
-    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<String> {
+    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<Report> {
         let (finished, missing): (Vec<&Task>, Vec<&Task>) = plan
             .tasks
             .iter()

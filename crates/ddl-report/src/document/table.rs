@@ -81,8 +81,12 @@ fn escape(cell: &str) -> String {
     cell.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
+/// A markdown table, its columns padded to one width each; without padding as `{:#}`.
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if f.alternate() {
+            return self.write_unpadded(f);
+        }
         let mut table = comfy_table::Table::new();
         table
             .load_style(ASCII_MARKDOWN)
@@ -108,6 +112,22 @@ impl std::fmt::Display for Table {
                 line
             };
             writeln!(f, "{line}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Table {
+    fn write_unpadded(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let line = |cells: &[String]| {
+            let cells = cells.iter().map(|cell| format!(" {} |", escape(cell)));
+            format!("|{}", cells.collect::<String>())
+        };
+        let rule = self.text.iter().map(|&text| if text { "---|" } else { "--:|" });
+        writeln!(f, "{}", line(&self.header))?;
+        writeln!(f, "|{}", rule.collect::<String>())?;
+        for row in &self.rows {
+            writeln!(f, "{}", line(row))?;
         }
         Ok(())
     }
@@ -140,6 +160,10 @@ mod tests {
                 "| x y  |   |       |",
                 "| 1    | 2 | three |"
             ]
+        );
+        assert_eq!(
+            format!("{table:#}"),
+            "| a\\|b | c | d |\n|---|--:|---|\n| x y |  |  |\n| 1 | 2 | three |\n"
         );
     }
 }

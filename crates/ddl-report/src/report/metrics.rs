@@ -2,7 +2,8 @@
 
 use super::{
     cells::{self, NOTHING},
-    group::ResultGroup,
+    group::{ResultGroup, TableLine},
+    spread::SeedSpread,
 };
 use crate::document::{Part, Table};
 use ddl_eval::Scores;
@@ -97,13 +98,31 @@ fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
         let present = line.present(&folds);
         let named = cells::folds(&present, &folds);
         let cells = metrics.iter().map(|&(_, decimals, of)| {
-            // A metric that a fold lacks is NaN there, and so is its mean.
-            let spread = line.over_folds(&present, |s| of(s).unwrap_or(f64::NAN));
-            let text = spread.map(|spread| format!("{spread:.decimals$}"));
-            text.filter(|text| !text.contains("NaN"))
-                .unwrap_or_else(|| NOTHING.to_owned())
+            let spread = over_folds(line, &present, of);
+            spread.map_or(NOTHING.to_owned(), |spread| format!("{spread:.decimals$}"))
         });
         table.row([label, named].into_iter().chain(cells));
     }
     table
+}
+
+/// The mean of the metric with this column name over the folds, without its deviation over the seeds.
+pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
+    let mut columns = FURTHER.iter().chain(&WHOLE);
+    let column = columns.find(|(column, ..)| *column == name);
+    let mean = column.and_then(|&(_, decimals, of)| {
+        let mean = over_folds(line, folds, of)?.mean();
+        Some(format!("{mean:.decimals$}"))
+    });
+    mean.unwrap_or_else(|| NOTHING.to_owned())
+}
+
+/// `None` where a fold lacks the metric.
+fn over_folds(
+    line: &TableLine<'_>,
+    folds: &[&str],
+    of: fn(&Scores) -> Option<f64>,
+) -> Option<SeedSpread> {
+    let spread = line.over_folds(folds, |s| of(s).unwrap_or(f64::NAN));
+    spread.filter(|spread| !spread.mean().is_nan())
 }

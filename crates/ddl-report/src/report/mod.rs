@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, document::Document};
+use ddl_data::Convention;
 use ddl_eval::ResultRow;
 
 mod ablation;
@@ -19,9 +20,11 @@ mod recordings;
 mod section;
 mod significance;
 mod spread;
+mod summary;
 mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
+pub use summary::Summary;
 
 const FORMAT: u32 = 1;
 
@@ -98,6 +101,11 @@ impl Report {
     /// The report as a document, to be rendered as markdown, HTML or LaTeX.
     pub fn document(&self) -> Document {
         content::document(&self.title, &self.rows)
+    }
+
+    /// The main numbers of a convention under its headline window rule; `None` where the report has no such results.
+    pub fn summary(&self, convention: Convention) -> Option<Summary> {
+        summary::of(&self.rows, convention)
     }
 
     /// Error over watching time, a figure for each table of that name: names and SVG files.

@@ -47,10 +47,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         .par_iter()
         .map(|(measured, label)| {
             let mut cells = vec![label.clone(), cells::folds(&measured.names(), &folds)];
-            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
-                let interval = mean_interval(&measured.slices(), metric);
-                cells.push(interval.map_or(NOTHING.to_owned(), in_words));
-            }
+            cells.extend(measured.intervals());
             for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
                 cells.extend(difference(measured, reference, metric));
             }
@@ -67,6 +64,12 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
             group.conditions_in_words()
         ))),
     ]
+}
+
+/// The mean minADE and minFDE of a line over its folds, each with its 95 % interval.
+pub(super) fn intervals(line: &TableLine<'_>, folds: &[&str]) -> [String; 2] {
+    let measured = MeasuredLine::of(line, folds);
+    measured.map_or([NOTHING; 2].map(str::to_owned), |line| line.intervals())
 }
 
 struct MeasuredLine<'a> {
@@ -89,6 +92,13 @@ impl<'a> MeasuredLine<'a> {
 
     fn slices(&self) -> Vec<&[BlockErrors]> {
         self.folds.iter().map(|(_, blocks)| &blocks[..]).collect()
+    }
+
+    fn intervals(&self) -> [String; 2] {
+        [BlockMetric::MinAde, BlockMetric::MinFde].map(|metric| {
+            let interval = mean_interval(&self.slices(), metric);
+            interval.map_or(NOTHING.to_owned(), in_words)
+        })
     }
 
     fn names(&self) -> Vec<&str> {

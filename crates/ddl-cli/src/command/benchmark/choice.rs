@@ -5,7 +5,6 @@ use super::super::recipe::Recipe;
 use super::method::Method;
 use super::plan::{Plan, Settings, Training};
 use super::profile::Profile;
-use super::publish;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -166,7 +165,10 @@ impl Choice {
 /// Where the results of a plan go when nothing else is said.
 pub(super) fn usual_folder(plan: &Plan) -> PathBuf {
     let settings = &plan.settings;
-    let suffix = publish::suffix(settings.recipe.name);
+    let suffix = match settings.recipe.name {
+        Recipe::Recommended => "",
+        Recipe::Published => "-published",
+    };
     let name = format!("{}-{}{suffix}", settings.convention, settings.profile);
     Path::new("runs").join(name)
 }

@@ -6,6 +6,7 @@ use crate::output;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
 use ddl::data::{Convention, Dataset, locate};
+use ddl::report::Report;
 use ddl::{Protocol, Results};
 use std::path::{Path, PathBuf};
 
@@ -14,17 +15,17 @@ pub(super) fn write(
     runs: Vec<PathBuf>,
     out: &Path,
     reporting: &Reporting,
-) -> anyhow::Result<String> {
-    if runs.is_empty() {
-        return Ok(String::new());
-    }
+) -> anyhow::Result<Report> {
     let settings = &plan.settings;
-    let mut folders = runs;
-    folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
     let title = format!(
         "Benchmark: {}, {}, recipe {}",
         settings.convention, settings.profile, settings.recipe.name
     );
+    if runs.is_empty() {
+        return Ok(Report::new(title, [])?);
+    }
+    let mut folders = runs;
+    folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
     let results = Results::of(title, &folders)?;
     results.save(out)?;
     let text = results.report.to_markdown();
@@ -42,7 +43,7 @@ pub(super) fn write(
     ] {
         tell(format_args!("{what:12} {}", out.join(name).display()));
     }
-    Ok(text)
+    Ok(results.report)
 }
 
 /// The baselines in the recorded convention that the plan is not in, if its recordings are there: how far apart the two are is seen
