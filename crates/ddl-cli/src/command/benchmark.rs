@@ -69,7 +69,7 @@ pub(crate) struct Benchmark {
     #[arg(long, value_name = "N", requires = "out", conflicts_with_all = ["Choice", "executor", "jobs", "publish", "collect"])]
     task: Option<usize>,
     /// Make the report of the plan in --out from the tasks that are finished, and nothing else
-    #[arg(long, requires = "out", conflicts_with_all = ["Choice", "executor", "jobs", "publish"])]
+    #[arg(long, requires = "out", conflicts_with_all = ["Choice", "executor", "jobs"])]
     collect: bool,
     /// Processes side by side, which share the cores [default: one a core; on cuda all tasks, at most five; with slurm all tasks]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
@@ -101,8 +101,8 @@ impl Benchmark {
             return self.do_task(index, out);
         }
         ensure!(
-            self.publish.is_none() || self.executor == Executor::Local,
-            "--publish describes a run of one machine: it needs `--executor local`"
+            self.publish.is_none() || self.executor != Executor::None,
+            "--publish needs results: with `--executor none`, publish when the tasks are finished, by `--collect --publish DIR`"
         );
         let plan = self.choice.plan()?;
         if let Some(checkout) = &self.publish {
@@ -148,23 +148,15 @@ impl Benchmark {
         }
         let report = self.report(plan, out)?;
         tell(format_args!("wall time: {}", human(start.elapsed())));
+        self.publish(plan, &report, out)
+    }
+
+    fn publish(&self, plan: &Plan, report: &Report, out: &Path) -> anyhow::Result<()> {
         let Some(checkout) = &self.publish else {
             return Ok(());
         };
-        ensure!(
-            !ends.contains(&End::Kept),
-            "--publish describes one whole run, but some tasks were kept from an earlier one: \
-             delete {} or choose another --out",
-            out.display()
-        );
-        let making = Making {
-            commit: &self.reporting.commit,
-            took: start.elapsed(),
-            at: time::OffsetDateTime::now_utc(),
-            cores: self.cores(),
-            processor: processor::name(),
-        };
-        for file in publish::publish(checkout, plan, &report, &making)? {
+        let making = Making::of(plan, report, out);
+        for file in publish::publish(checkout, plan, report, &making)? {
             tell(format_args!("published: {file}"));
         }
         Ok(())
@@ -225,7 +217,12 @@ impl Benchmark {
     fn collect(&self, out: &Path) -> anyhow::Result<()> {
         let _claimed = RunLock::take(out)?;
         remove_half_written(out);
-        self.report(&Plan::read(out)?, out).map(drop)
+        let plan = Plan::read(out)?;
+        if let Some(checkout) = &self.publish {
+            publish::check(checkout, &plan)?;
+        }
+        let report = self.report(&plan, out)?;
+        self.publish(&plan, &report, out)
     }
 
     /// The report of the tasks that are finished; an error where some are not.

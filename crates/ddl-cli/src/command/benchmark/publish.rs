@@ -5,11 +5,13 @@ use super::choice::usual_folder;
 use super::method::Method;
 use super::plan::Plan;
 use super::profile::Profile;
+use super::record::Record;
 use super::section;
 use crate::telling::human;
 use anyhow::{Context as _, ensure};
 use ddl::data::{Convention, write_whole};
 use ddl::report::{Report, Summary};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::time::Duration;
@@ -18,12 +20,38 @@ use time::OffsetDateTime;
 const PAGE: &str = "docs/results.md";
 const README: &str = "README.md";
 
-pub(super) struct Making<'a> {
-    pub(super) commit: &'a str,
-    pub(super) took: Duration,
-    pub(super) at: OffsetDateTime,
-    pub(super) cores: usize,
-    pub(super) processor: String,
+/// What made the results, as the finished tasks and their results say.
+pub(super) struct Making {
+    commits: Vec<String>,
+    tasks: usize,
+    took: Duration,
+    processors: Vec<String>,
+    at: OffsetDateTime,
+}
+
+impl Making {
+    pub(super) fn of(plan: &Plan, report: &Report, out: &Path) -> Self {
+        let tasks = plan.tasks.iter();
+        let records: Vec<Record> = tasks.filter_map(|task| Record::of(task, out)).collect();
+        let conditions = report.rows().iter().map(|row| &row.conditions);
+        let trained = conditions.filter(|of| of.epochs.is_some());
+        let processor = |record: &Record| {
+            let name = record.processor.as_deref();
+            name.unwrap_or("an unknown processor").to_owned()
+        };
+        Self {
+            commits: unique(trained.map(|of| of.commit.clone())),
+            tasks: records.len(),
+            took: Duration::from_secs_f64(records.iter().map(|record| record.seconds).sum()),
+            processors: unique(records.iter().map(processor)),
+            at: OffsetDateTime::now_utc(),
+        }
+    }
+}
+
+fn unique<T: Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
+    let set: BTreeSet<T> = values.collect();
+    set.into_iter().collect()
 }
 
 /// Fails where [`publish`] would fail after the benchmark.
@@ -41,7 +69,7 @@ pub(super) fn publish(
     checkout: &Path,
     plan: &Plan,
     report: &Report,
-    making: &Making<'_>,
+    making: &Making,
 ) -> anyhow::Result<Vec<&'static str>> {
     let convention = plan.settings.convention;
     let summary = report
@@ -86,31 +114,32 @@ fn is_whole(plan: &Plan) -> bool {
         && settings.convention.fold_names().all(full)
 }
 
-fn text(plan: &Plan, summary: &Summary, making: &Making<'_>) -> String {
+fn text(plan: &Plan, summary: &Summary, making: &Making) -> String {
     let settings = &plan.settings;
     let scored = settings.test_pedestrians.map_or_else(
         || "all test windows".to_owned(),
         |pedestrians| format!("{pedestrians} pedestrians of the test windows"),
     );
-    let (at, cores) = (making.at, making.cores);
+    let at = making.at;
     format!(
         "```sh\n{}\n```\n\n\
-         Commit {}, seeds {}, recipe `{}`, {} epochs; {} {:02}:{:02} UTC,\n\
-         {} on {cores} {} of {}, device {}. Window rule `{}`, {scored}.\n\
+         Commit {}, seeds {}, recipe `{}`, {} epochs; published {} {:02}:{:02} UTC.\n\
+         {} tasks took {} in sum on {}, device {}.\n\
+         Window rule `{}`, {scored}.\n\
          Full tables: `report.md` and `report.html`, which the command writes into `{}`.\n\n\
          minADE/minFDE in metres:\n\n{:#}\n\
          Mean over the folds, with 95 % intervals:\n\n{:#}",
         command(plan),
-        making.commit,
+        making.commits.join(", "),
         seeds(plan).join(", "),
         settings.recipe.name,
         settings.epochs,
         at.date(),
         at.hour(),
         at.minute(),
+        making.tasks,
         human(making.took),
-        if cores == 1 { "core" } else { "cores" },
-        making.processor,
+        making.processors.join(", "),
         settings.device,
         settings.convention.headline_rule(),
         usual_folder(plan).display(),
@@ -119,33 +148,26 @@ fn text(plan: &Plan, summary: &Summary, making: &Making<'_>) -> String {
     )
 }
 
-fn short_text(plan: &Plan, summary: &Summary, making: &Making<'_>) -> String {
+fn short_text(plan: &Plan, summary: &Summary, making: &Making) -> String {
     format!(
         "minADE/minFDE in metres; convention `star`, window rule `published`, all test windows; seeds {}; commit {}.\n\
          Command, machine and further results: [{PAGE}]({PAGE}).\n\n{:#}",
         seeds(plan).join(", "),
-        making.commit,
+        making.commits.join(", "),
         summary.comparison
     )
 }
 
 fn seeds(plan: &Plan) -> Vec<String> {
-    let mut seeds: Vec<u64> = plan.tasks.iter().map(|task| task.seed).collect();
-    seeds.sort_unstable();
-    seeds.dedup();
+    let seeds = unique(plan.tasks.iter().map(|task| task.seed));
     seeds.iter().map(u64::to_string).collect()
 }
 
 /// Lines of a shell that do the same on another machine: they name no folder of this one.
 fn command(plan: &Plan) -> String {
     let settings = &plan.settings;
-    let unique = |mut names: Vec<&str>| {
-        names.sort_unstable();
-        names.dedup();
-        names.join(",")
-    };
-    let folds = plan.tasks.iter().map(|task| task.fold.as_str()).collect();
-    let methods = plan.tasks.iter().map(|task| task.variant.name()).collect();
+    let folds = unique(plan.tasks.iter().map(|task| task.fold.as_str()));
+    let methods = unique(plan.tasks.iter().map(|task| task.variant.name()));
     let protocols = settings.protocols.iter().map(ToString::to_string);
     let pedestrians = [
         ("train", settings.train_pedestrians),
@@ -161,8 +183,8 @@ fn command(plan: &Plan) -> String {
          --seeds {} --epochs {} --device {} --cargo-profile {}{} --publish",
         settings.profile,
         settings.convention,
-        unique(folds),
-        unique(methods),
+        folds.join(","),
+        methods.join(","),
         protocols.collect::<Vec<_>>().join(","),
         seeds(plan).join(","),
         settings.epochs,

@@ -6,13 +6,13 @@ use ddl::eval::{Conditions, ResultRow, Scores};
 
 const WHOLE_FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 
-fn making() -> Making<'static> {
+fn making() -> Making {
     Making {
-        commit: "0123456789ab",
+        commits: vec!["0123456789ab".to_owned()],
+        tasks: 4,
         took: Duration::from_secs(61),
+        processors: vec!["Abacus 9".to_owned()],
         at: OffsetDateTime::UNIX_EPOCH,
-        cores: 2,
-        processor: "Abacus 9".to_owned(),
     }
 }
 
@@ -142,8 +142,8 @@ fn a_section_says_what_made_it_and_names_no_folder_of_this_machine() {
             "cargo xtask benchmark --profile quick --convention star --folds eth,hotel \\\n  \
              --variants full --protocol fair,single,online,online-single \\\n  \
              --seeds 1,2 --epochs 4 --device cpu --cargo-profile release",
-            "Commit 0123456789ab, seeds 1, 2, recipe `recommended`, 4 epochs; 1970-01-01 00:00 UTC,\n\
-             1 min 1 s on 2 cores of Abacus 9, device cpu. Window rule `published`",
+            "Commit 0123456789ab, seeds 1, 2, recipe `recommended`, 4 epochs; published 1970-01-01 00:00 UTC.\n\
+             4 tasks took 1 min 1 s in sum on Abacus 9, device cpu.\nWindow rule `published`",
             "`runs/star-quick`",
         ]) {
             assert!(page.contains(piece), "{piece} is not in {page}");
