@@ -22,10 +22,7 @@ mod tests {
     #[test]
     fn the_model_is_found_where_linux_names_it() {
         let intel = "processor\t: 0\nmodel\t\t: 143\nmodel name\t: Intel(R) Xeon(R) Gold 6430\n";
-        assert_eq!(
-            model_name(intel).as_deref(),
-            Some("Intel Xeon Gold 6430")
-        );
+        assert_eq!(model_name(intel).as_deref(), Some("Intel Xeon Gold 6430"));
         assert_eq!(model_name("processor\t: 0\nBogoMIPS\t: 50.00\n"), None);
         assert!(!name().is_empty());
     }

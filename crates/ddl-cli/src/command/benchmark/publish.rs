@@ -63,8 +63,8 @@ pub(super) fn check(checkout: &Path, plan: &Plan) -> anyhow::Result<()> {
     with_section(checkout, plan.settings.convention, "").map(drop)
 }
 
-/// Writes the section of the plan's convention into the results page of the `checkout`, and into its README a short table
-/// where it has a place for one and the plan is of all folds and windows of `star`. Returns what was written.
+/// Writes the section of the plan's convention into the results page of the `checkout`, and into its README a short
+/// table where it has a place for one and the plan is of all folds and windows of `star`. Returns what was written.
 pub(super) fn publish(
     checkout: &Path,
     plan: &Plan,

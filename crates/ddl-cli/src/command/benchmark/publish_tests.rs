@@ -169,7 +169,10 @@ fn the_readme_shows_the_whole_benchmark_where_it_has_a_place_for_it() {
 #[test]
 fn what_cannot_be_published_is_refused_before_the_work() {
     for (settings, words) in [
-        (whole(Convention::Simulated), "no section for results in simulated"),
+        (
+            whole(Convention::Simulated),
+            "no section for results in simulated",
+        ),
         (settings(Recipe::Published), "leave out --publish"),
     ] {
         let plan = plan(settings, &["one"], &[Method::FULL], &[1]).unwrap();
