@@ -54,10 +54,8 @@ enum Executor {
 /// Each model is trained in a process of its own. After Ctrl-C the processes save their state, and the same command
 /// resumes. In a checkout, `cargo xtask benchmark` first fetches libtorch and the recordings and builds this program.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-        ddl benchmark\n  \
-        ddl benchmark --convention simulated --profile smoke --out runs/smoke\n  \
-        ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron\n  \
+#[command(after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
+        runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron\n  \
         SBATCH_TIMELIMIT=2:00:00 ddl benchmark --executor slurm --threads 4")]
 pub(crate) struct Benchmark {
     #[command(flatten)]
@@ -182,8 +180,7 @@ impl Benchmark {
             ensure!(
                 Plan::read(out)? == *plan,
                 "jobs of another plan run in {}: wait for their end, cancel them with `scancel {ids}`, or choose \
-                 another \
-                 --out",
+                 another --out",
                 out.display()
             );
             tell(format_args!(

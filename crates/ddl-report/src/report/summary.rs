@@ -39,8 +39,8 @@ pub struct Summary {
     pub errors: Table,
     /// Of the same rows, over the folds measured: the mean errors with their 95 % intervals, and further metrics.
     pub metrics: Table,
-    /// Of the rows of `errors` those of the first trained forecaster under each protocol and of constant velocity, and the
-    /// best published system of the convention.
+    /// Of the rows of `errors` those of the first trained forecaster under each protocol and of constant velocity, and
+    /// the best published system of the convention.
     pub comparison: Table,
 }
 
@@ -58,7 +58,11 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
     let columns = [&["forecaster", "protocol"], &folds[..], &["mean"]].concat();
     let mut errors = Table::new(columns.clone()).text_column("protocol");
     let mut comparison = Table::new(columns).text_column("protocol");
-    let columns = [&["forecaster", "protocol", "minADE m", "minFDE m"][..], &METRICS].concat();
+    let columns = [
+        &["forecaster", "protocol", "minADE m", "minFDE m"][..],
+        &METRICS,
+    ]
+    .concat();
     let mut others = Table::new(columns).text_column("protocol");
 
     let pedestrians = folds.iter().map(|fold| counts(shown[0].pedestrians(fold)));
@@ -92,7 +96,10 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
         }
     }
     if let Some(best) = literature::best(convention) {
-        let start = [format!("{}, the best published", best.method), "best of 20".to_owned()];
+        let start = [
+            format!("{}, the best published", best.method),
+            "best of 20".to_owned(),
+        ];
         let cells = best.folds.iter().chain([&best.mean]);
         let cells = cells.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"));
         comparison.row(start.into_iter().chain(cells));
@@ -100,10 +107,15 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
     if let Some(baseline) = baseline {
         comparison.row(baseline);
     }
-    Some(Summary { errors, metrics: others, comparison })
+    Some(Summary {
+        errors,
+        metrics: others,
+        comparison,
+    })
 }
 
-/// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with it.
+/// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with
+/// it.
 fn error_cells(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
     let rounded = |spread: SeedSpread| format!("{:.3}", spread.mean());
     let mut cells = Vec::new();

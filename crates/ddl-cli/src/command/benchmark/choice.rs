@@ -116,8 +116,7 @@ impl Choice {
         if name == Recipe::Published && protocols.iter().any(|protocol| protocol.shows_past()) {
             bail!(
                 "the protocol published needs the paper's recipe, whose models have no memory of a place: leave out \
-                 published, or \
-                 online and online-single"
+                 published, or online and online-single"
             );
         }
         let work = self.profile.work(name);

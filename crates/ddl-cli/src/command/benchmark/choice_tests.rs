@@ -64,20 +64,17 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         (
             &format!("{all} quick"),
             "star-quick-published 5 2500: --epochs 10 --train-pedestrians 4000 --recipe published --batch-pedestrians \
-             16 \
-             --learning-rate 0.001 --learning-rate-schedule cosine",
+             16 --learning-rate 0.001 --learning-rate-schedule cosine",
         ),
         (
             &format!("{all} evening"),
             "star-evening-published 5 all: --epochs 60 --recipe published --batch-pedestrians 256 --learning-rate \
-             0.0015 \
-             --learning-rate-schedule cosine",
+             0.0015 --learning-rate-schedule cosine",
         ),
         (
             "--profile paper --protocol published",
             "star-paper-published 5 all: --epochs 200 --recipe published --batch-pedestrians 256 --learning-rate \
-             0.0015 \
-             --learning-rate-schedule constant",
+             0.0015 --learning-rate-schedule constant",
         ),
     ] {
         assert_eq!(planned(words), expected, "{words}");

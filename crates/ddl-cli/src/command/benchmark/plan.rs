@@ -246,8 +246,7 @@ impl Plan {
                 ensure!(
                     format == FORMAT,
                     "{} holds results of another version of the benchmark (its plan has layout {format}, this version \
-                     writes \
-                     {FORMAT}): choose another --out, or delete it",
+                     writes {FORMAT}): choose another --out, or delete it",
                     out.display()
                 );
                 let before: Self = serde_json::from_slice(&text).with_context(damaged)?;
