@@ -1,7 +1,8 @@
-//! Writes the report page of the simulated crowds: `report_page FOLDER` makes `page.html`, `figures/*.svg`, and the data
-//! they show, `report.json` and `moments.json`; and `viewer.html`, the player alone, of people who go out of sight.
+//! Writes the report page of simulated crowds: `report_page FOLDER` makes `page.html`, `figures/*.svg` and their data
+//! (`report.json`, `moments.json`), and `viewer.html`, the player alone, with pedestrians that leave the view.
 //!
-//! The forecaster is a stand-in with 20 weighted goals, the training curves are made up, and both say so on the page.
+//! The forecaster is a stand-in with 20 weighted goals, and the training curves are invented; the page names both as
+//! such.
 
 use std::{error::Error, f64::consts::TAU, path::Path};
 
@@ -60,11 +61,11 @@ impl GoalSource for Fan {
     }
 }
 
-/// Walks on as before and bends to the goal, which is nearly reached at the end. Shown the future, it takes the goal
-/// nearest the true end and twenty ways there.
+/// Starts with the observed velocity and bends to the goal, which it nearly reaches. If the future is visible, it takes
+/// the goal nearest the true endpoint, with 20 paths to it.
 struct Bending;
 
-/// The way from where the pedestrian is, with its velocity, to the goal; `bend` moves its middle aside, m.
+/// A path from the current position and velocity to the goal; `bend` moves its middle aside, m.
 fn way(observed: &[Position], goal: Position, bend: f64) -> Vec<Position> {
     let (before, last) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
     let (dx, dy) = (goal[0] - last[0], goal[1] - last[1]);
@@ -72,7 +73,7 @@ fn way(observed: &[Position], goal: Position, bend: f64) -> Vec<Position> {
     (1..=HORIZON)
         .map(|t| {
             let s = t as f64 / HORIZON as f64;
-            // A parabola that leaves with the pedestrian's velocity, faded into the straight line.
+            // A parabola that starts with the pedestrian's velocity, blended into the straight line.
             let fade = s * s * (3.0 - 2.0 * s);
             let aside = bend * (std::f64::consts::PI * s).sin() / length;
             let along = 1.0 - (1.0 - s).powf(1.15);
@@ -147,7 +148,7 @@ fn rows(
                 windows,
             )?);
         }
-        // Two seeds of what is random; what is not is the same twice, and kept once.
+        // Two seeds; rows of forecasters without randomness are equal and kept once.
         for seed in [1, 2] {
             rows.extend(baseline::measure(&named(String::new()), windows, seed)?);
         }
@@ -235,7 +236,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::write(folder.join("page.html"), page.to_html()?)?;
     let crowd = dataset.folds()[0].test_windows(WindowRule::Published);
     let viewer = Viewer {
-        title: "People who go out of sight",
+        title: "Pedestrians that leave the view",
         lead: "A simulated crowd, and a stand-in for a forecaster.",
         notes: &[],
         moments: &under_way(&crowd)?,

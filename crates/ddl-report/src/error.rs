@@ -1,11 +1,11 @@
-//! Why a report cannot be put together.
+//! Errors of reports.
 
 use std::path::PathBuf;
 
-/// A report cannot be put together or read.
+/// A report cannot be made or read.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ReportError {
     #[error(
         "two results of `{row}` on fold `{fold}` name the same conditions but differ \

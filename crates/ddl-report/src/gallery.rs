@@ -1,4 +1,4 @@
-//! Which cases are shown, and why: the moments of a fold and typical cases of each kind, chosen by rule.
+//! Selection of moments: evenly spread moments of a fold, and a typical case of each kind.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -16,12 +16,12 @@ use ddl_eval::{
     },
 };
 
-/// Moments shown of each recording, besides those that are picked.
+/// Evenly spread moments of each recording.
 const MOMENTS_A_RECORDING: usize = 8;
-/// Who converges has gone this far and is this near to the goal, m.
+/// A converging pedestrian has moved at least this far and ends at most this far from its goal, m.
 const GONE: f64 = 2.0;
 const ARRIVED: f64 = 0.2;
-/// Who keeps distance does not touch the other: twice the radius of a pedestrian, m.
+/// Least distance of pedestrians who keep distance: twice the radius of a pedestrian, m.
 const APART: f64 = 0.4;
 
 /// What a case shows.
@@ -31,18 +31,18 @@ const APART: f64 = 0.4;
 pub enum Show {
     /// A pedestrian who reaches the goal of the representative hypothesis.
     Convergence,
-    /// People who walk together.
+    /// Pedestrians who walk together.
     Group,
     /// A pedestrian who slows down.
     SlowingDown,
-    /// People who pass each other and keep their distance.
+    /// Pedestrians who pass each other and keep their distance.
     KeepingDistance,
     /// A pedestrian who turns.
     Turning,
 }
 
 impl Show {
-    /// Every one, in the order in which they are shown.
+    /// All kinds, in the order in which they are shown.
     pub const ALL: [Self; 5] = [
         Self::Convergence,
         Self::Group,
@@ -64,7 +64,7 @@ impl fmt::Display for Show {
     }
 }
 
-/// Why a moment is shown, and whom to look at.
+/// The reason to show a moment, and the pedestrians it is about.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Pick {
@@ -73,7 +73,7 @@ pub struct Pick {
     /// Indices of the pedestrians it is about, in the order of the moment.
     #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<usize>,
-    /// By which rule it was picked, in words, with its numbers.
+    /// The rule that picked it, in words, with its numbers.
     pub rule: String,
 }
 
@@ -88,9 +88,9 @@ impl Pick {
     }
 }
 
-/// What to show of the forecasts of one fold, one a window, in order of recording and time.
+/// Moments to show of the forecasts of one fold (one forecast for each window), in order of recording and time.
 ///
-/// For each [`Show`] the moment of the pedestrian of median minADE; of each recording 8 moments evenly spread.
+/// For each [`Show`] the moment of the pedestrian with the median minADE; for each recording 8 evenly spread moments.
 ///
 /// # Errors
 /// A window has no future, or a forecast is not of its window's pedestrians.
@@ -208,7 +208,8 @@ fn converges(scene: &Scene<'_>, i: usize) -> bool {
             .is_some_and(|goal| distance(end, goal) <= ARRIVED)
 }
 
-/// Of those with whom pedestrian `i` has an interaction of this kind the one whose true future is nearest, and how near.
+/// Among the pedestrians that interact with pedestrian `i` in this way, the one whose true future comes nearest, and
+/// its least distance (m).
 fn nearest(
     window: &Window,
     i: usize,
@@ -226,7 +227,7 @@ fn mean_distance(a: &[Position], b: &[Position]) -> f64 {
     sum / a.len() as f64
 }
 
-/// Indices of windows evenly spread over those of each recording: the middles of 8 equal parts.
+/// Indices of windows spread evenly over each recording: the middles of 8 equal parts.
 fn spread_over_time(windows: &[Window]) -> BTreeSet<usize> {
     let mut of_recording: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, window) in windows.iter().enumerate() {

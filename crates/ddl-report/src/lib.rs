@@ -13,5 +13,5 @@ mod training_curve;
 pub use error::ReportError;
 pub use figure::FigureError;
 pub use moment::{Moment, MomentHypothesis, MomentPedestrian};
-pub use report::Report;
+pub use report::{Report, Summary};
 pub use training_curve::{EpochPoint, TrainingCurve};

@@ -17,7 +17,7 @@ pub static LITERATURE: LazyLock<Literature> = LazyLock::new(|| {
     serde_json::from_str(include_str!("literature.json")).expect("the file is part of this crate")
 });
 
-/// Every number of others, and those of this project that none of its models made.
+/// Published numbers of others, and reference values of baselines measured by this project.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Literature {
@@ -48,7 +48,7 @@ pub struct PublishedRow {
     pub source: String,
     /// Data convention of the measurement; `None` where it is neither or could not be verified.
     pub convention: Option<Convention>,
-    /// What a reader must know before comparing.
+    /// Caution for comparisons.
     pub remark: Option<String>,
     /// ADE and FDE (m) of each fold, in the order of [`FOLDS`].
     pub folds: [[f64; 2]; 5],
@@ -88,9 +88,9 @@ pub struct AblationRow {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MeasuredRow {
-    /// What was measured.
+    /// Name of the baseline.
     pub method: String,
-    /// What it reads or chooses that a forecaster cannot.
+    /// Use of the true future, if any.
     pub remark: Option<String>,
     /// ADE of each fold, metres; `None` for rows that are errors of goals.
     pub ade: Option<[f64; 5]>,
@@ -101,6 +101,17 @@ pub struct MeasuredRow {
 /// Table I of the DDL paper, with the source and the convention of each row.
 pub fn table_one() -> Table {
     published_table(&LITERATURE.table_one, 2)
+}
+
+/// The published system of a convention with the least ADE + FDE, means of five folds, best of 20.
+pub(crate) fn best(convention: Convention) -> Option<&'static PublishedRow> {
+    let rows = match convention {
+        Convention::Star => &LITERATURE.star_convention,
+        Convention::SocialGan => &LITERATURE.social_gan_convention,
+        Convention::Simulated | Convention::Own => return None,
+    };
+    let error = |row: &PublishedRow| row.mean.iter().sum::<f64>();
+    rows.iter().min_by(|a, b| error(a).total_cmp(&error(b)))
 }
 
 /// The best published systems in the `star` convention.
@@ -215,7 +226,7 @@ mod tests {
         }
     }
 
-    /// The number of rows of each table, and of those in each convention; the sums of all cells, typed in anew from the papers.
+    /// The number of rows of each table and convention, and the sums of all cells, typed separately from the papers.
     #[test]
     fn the_file_holds_the_rows_of_the_papers() {
         let all = &*LITERATURE;

@@ -1,4 +1,4 @@
-//! One moment of a recording and what was forecast then, as data for galleries and the player.
+//! One moment of a recording with its forecast, as data for galleries and the player.
 
 use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position, Window};
 use serde::{Deserialize, Serialize};
@@ -13,44 +13,45 @@ use ddl_eval::{
 const KEPT: f64 = 1e3;
 const REGION: f64 = 0.9;
 
-/// What was observed, what was forecast and what then happened, at one moment of a recording.
+/// Observation, forecast and true future at one moment of a recording.
 ///
-/// Positions are metres rounded to the millimetre, weights to a thousandth; verdicts are of the unrounded forecast.
+/// Positions are in metres, rounded to the millimetre; weights are rounded to a thousandth. `falls` and `certified`
+/// belong to the unrounded forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Moment {
-    /// The fold whose test scene it is from.
+    /// The fold whose test scene holds it.
     pub fold: String,
-    /// Who forecast.
+    /// Name of the forecaster.
     pub forecaster: String,
     /// The recording.
     pub recording: String,
     /// Raw number of the last observed frame.
     pub frame: i64,
-    /// Raw frames a step of 0.4 s.
+    /// Raw frames in a step of 0.4 s.
     pub frame_step: i64,
-    /// Everybody in the window.
+    /// The pedestrians of the window.
     #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<MomentPedestrian>,
-    /// What the moment was chosen to show; empty when it was chosen for its place in time alone.
+    /// The reasons to show the moment; empty for an evenly spread one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub picks: Vec<Pick>,
 }
 
-/// One person of a [`Moment`].
+/// One pedestrian of a [`Moment`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct MomentPedestrian {
-    /// The person's number or word in the recording.
+    /// Number or name of the pedestrian in the recording.
     pub pedestrian: PedestrianName,
     /// 8 observed positions, m.
     pub observed: Vec<Position>,
-    /// What then happened: 12 true positions, m; the first of them where no more were seen.
+    /// True future: 12 positions, m, or only the first of them where no more were observed.
     pub truth: Vec<Position>,
-    /// How many of the observed positions were made up; `None` where all were seen.
+    /// Number of observed positions that were filled in; `None` where all were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub made_up: Option<MadeUp>,
-    /// How much the observed motion is like those of the training, 0 to 1; `None` where the forecaster does not say.
+    /// Similarity of the observed motion to the training data, 0 to 1; `None` where the forecaster does not give it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub familiarity: Option<f64>,
     /// K hypotheses.
@@ -65,23 +66,23 @@ pub struct MomentHypothesis {
     pub weight: f64,
     /// 12 positions, m.
     pub positions: Vec<Position>,
-    /// Radii of its discs in the region that holds the pedestrian with a probability of 90 %, one a step, m; 0 where it has none, no radii for
-    /// forecasts without regions.
+    /// Radii of its discs in the 90 % region, one for each step, m: 0 where it has no disc, empty for forecasts without
+    /// regions.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub radii: Vec<f64>,
-    /// Where it heads, m; `None` for forecasts without goals.
+    /// Its goal, m; `None` for forecasts without goals.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub goal: Option<Position>,
     /// Whether the distance to the goal, Phi, falls at every step; `None` without a goal.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub decreasing: Option<bool>,
-    /// Whether the forecaster's certificate holds; `None` where there is none.
+    /// Whether the forecaster's certificate holds; `None` without a certificate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified: Option<bool>,
 }
 
 impl MomentPedestrian {
-    /// The hypothesis shown as the forecast: [`Forecast::representative`], of the rounded paths and weights kept here.
+    /// Index of the hypothesis shown as the forecast: [`Forecast::representative`] of the rounded paths and weights.
     pub(crate) fn representative(&self) -> usize {
         let weights: Vec<f64> = self.hypotheses.iter().map(|h| h.weight).collect();
         let path = |k: usize| &self.hypotheses[k].positions;
@@ -110,12 +111,12 @@ impl Moment {
         ))
     }
 
-    /// The moment of a window without a future, such as one of tracks that are still going on.
+    /// The moment of a window without a future, such as the last one of a recording.
     ///
-    /// `seen[i]` is what then happened to pedestrian i as far as it was seen, m: the first of the 12 positions, or none.
+    /// `seen[i]`: the true positions of pedestrian `i` as far as they were observed, m; 0 to 12 of them.
     ///
     /// # Errors
-    /// The forecast or `seen` is not of the window's pedestrians, or more than 12 positions of somebody are there.
+    /// The forecast or `seen` is not of the window's pedestrians, or `seen` has more than 12 positions of a pedestrian.
     pub fn under_way(
         forecaster: impl Into<String>,
         window: &Window,
@@ -162,7 +163,7 @@ impl Moment {
         }
     }
 
-    /// The same moment, chosen to show something.
+    /// The same moment with reasons to show it.
     #[must_use]
     pub fn picked(self, picks: Vec<Pick>) -> Self {
         Self { picks, ..self }

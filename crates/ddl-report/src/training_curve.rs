@@ -1,4 +1,4 @@
-//! How a training went, for the page.
+//! Training curves.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +11,9 @@ pub struct TrainingCurve {
     pub variant: String,
     /// Seed of the training.
     pub seed: u64,
-    /// What the loss is, with its unit, for the axis.
+    /// Name of the loss with its unit, for the axis.
     pub loss: String,
-    /// One a finished epoch, in order.
+    /// The finished epochs, in order.
     pub epochs: Vec<EpochPoint>,
 }
 
@@ -24,8 +24,8 @@ pub struct EpochPoint {
     pub epoch: usize,
     /// Mean training loss of its batches.
     pub loss: f64,
-    /// Error on the validation split, m, where one was kept.
+    /// Error on the validation split, m; `None` without a split.
     pub validation: Option<f64>,
-    /// Seconds it took.
+    /// Duration in seconds.
     pub seconds: f64,
 }

@@ -6,11 +6,12 @@ mod display;
 mod fixture;
 mod method;
 mod plan;
+mod processor;
 mod profile;
 mod publish;
-mod readme;
 mod record;
 mod report;
+mod section;
 mod slurm;
 mod work;
 
@@ -26,6 +27,7 @@ use anyhow::{Context as _, bail, ensure};
 use choice::Choice;
 use clap::{Args, ValueEnum};
 use ddl::data::remove_half_written;
+use ddl::report::Report;
 use ddl::{DdlError, RunLock};
 use display::Display;
 use publish::Making;
@@ -36,51 +38,56 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use work::{End, Workers, side_by_side};
 
-/// Who does the tasks.
+/// Where the tasks run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Executor {
     /// This machine
     Local,
-    /// Slurm: an array of jobs, and one that makes the report; this program watches them
+    /// Slurm: an array of jobs, and one job that makes the report; this program watches them
     Slurm,
-    /// Others, by --task and --collect: only the plan is written
+    /// Elsewhere, by --task and --collect: this command writes the plan only
     None,
 }
 
 /// Train and measure a model of every fold, and write the report
 ///
-/// Each model is a process of its own. Ctrl-C lets them save what they have; the same command goes on from there. `cargo xtask benchmark`
-/// in a checkout brings in libtorch and the recordings, and builds this program, first.
+/// Each model is trained in a process of its own. After Ctrl-C the processes save their state, and the same command
+/// resumes. In a checkout, `cargo xtask benchmark` first fetches libtorch and the recordings and builds this program.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  \
-        ddl benchmark\n  \
-        ddl benchmark --convention simulated --profile smoke --out runs/smoke\n  \
-        ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron\n  \
+#[command(after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
+        runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron\n  \
         SBATCH_TIMELIMIT=2:00:00 ddl benchmark --executor slurm --threads 4")]
 pub(crate) struct Benchmark {
     #[command(flatten)]
     choice: Choice,
-    /// Who does the tasks; with slurm the variables of `sbatch` (`SBATCH_PARTITION`, `SBATCH_ACCOUNT`, `SBATCH_TIMELIMIT`, ...) count too
+    /// Where the tasks run; with slurm the variables of `sbatch` (`SBATCH_PARTITION`, `SBATCH_ACCOUNT`,
+    /// `SBATCH_TIMELIMIT`, ...) apply
     #[arg(long, value_enum, default_value_t = Executor::Local)]
     executor: Executor,
-    /// Do task N of the plan in --out, counted from 0, and nothing else, as in `--task "$JOB_COMPLETION_INDEX"`
-    #[arg(long, value_name = "N", requires = "out", conflicts_with_all = ["Choice", "executor", "jobs", "publish", "collect"])]
+    /// Run only task N of the plan in --out, counted from 0, as in `--task "$JOB_COMPLETION_INDEX"`
+    #[arg(
+        long,
+        value_name = "N",
+        requires = "out",
+        conflicts_with_all = ["Choice", "executor", "jobs", "publish", "collect"]
+    )]
     task: Option<usize>,
-    /// Make the report of the plan in --out from the tasks that are finished, and nothing else
-    #[arg(long, requires = "out", conflicts_with_all = ["Choice", "executor", "jobs", "publish"])]
+    /// Only make the report of the plan in --out, from the tasks that are finished
+    #[arg(long, requires = "out", conflicts_with_all = ["Choice", "executor", "jobs"])]
     collect: bool,
-    /// Processes side by side, which share the cores [default: one a core; on cuda all tasks, at most five; with slurm all tasks]
+    /// Processes that run at the same time and share the cores [default: one for each core; on cuda all tasks, at most
+    /// five; with slurm all tasks]
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     jobs: Option<usize>,
-    /// Cores to use; with slurm those of one task [default: what Slurm grants, or else all; with slurm 1]
+    /// Cores to use; with slurm for each task [default: those that Slurm grants, or else all; with slurm 1]
     #[arg(long, value_name = "N", value_parser = at_least_one, env = "SLURM_CPUS_PER_TASK")]
     threads: Option<usize>,
-    /// Folder of the results; one that is there is gone on with [default: `runs/CONVENTION-PROFILE`,
-    /// and `runs/CONVENTION-PROFILE-published` with the protocol published]
+    /// Folder of the results; a benchmark in it is resumed [default: `runs/CONVENTION-PROFILE`, and
+    /// `runs/CONVENTION-PROFILE-published` with the protocol published]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the report, with what made it, to docs/benchmark.md of the checkout in this folder, and its tables into README.md;
-    /// profiles but paper, conventions but star and the paper's recipe have pages of their own, named after them
+    /// Also write the main numbers, with what made them, into the section of the convention in docs/results.md of the
+    /// checkout in this folder, and those of the whole benchmark in star into README.md
     #[arg(long, value_name = "DIR")]
     publish: Option<PathBuf>,
     #[command(flatten)]
@@ -99,17 +106,21 @@ impl Benchmark {
             return self.do_task(index, out);
         }
         ensure!(
-            self.publish.is_none() || self.executor == Executor::Local,
-            "--publish describes a run of one machine: it needs `--executor local`"
+            self.publish.is_none() || self.executor != Executor::None,
+            "--publish needs results: with `--executor none`, publish when the tasks are finished, by `--collect \
+             --publish DIR`"
         );
         let plan = self.choice.plan()?;
+        if let Some(checkout) = &self.publish {
+            publish::check(checkout, &plan)?;
+        }
         let out = self
             .out
             .clone()
             .unwrap_or_else(|| choice::usual_folder(&plan));
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let claimed = RunLock::take(&out)?;
-        // In the folders of tasks a process of an earlier benchmark may still be at work.
+        // Not in the folders of tasks: a process of an earlier benchmark may still write there.
         remove_half_written(&out);
         match self.executor {
             Executor::Local => self.run_here(&plan, &out),
@@ -118,7 +129,7 @@ impl Benchmark {
                 plan.write(&out)?;
                 let of = format!("ddl benchmark --out {}", shell_word(&out));
                 tell(format_args!(
-                    "plan: {} tasks, of which `{of} --task N` does one (N from 0 to {}); then `{of} --collect` makes the report",
+                    "plan: {} tasks; `{of} --task N` runs one (N from 0 to {}), then `{of} --collect` makes the report",
                     plan.tasks.len(),
                     plan.tasks.len() - 1
                 ));
@@ -134,36 +145,30 @@ impl Benchmark {
         if ends.contains(&End::Interrupted) {
             let took = human(start.elapsed());
             let finished = plan.tasks.iter().filter(|t| Record::of(t, out).is_some());
-            let stood = format!(
+            let progress = format!(
                 "{} of {} tasks are finished, after {took}",
                 finished.count(),
                 ends.len()
             );
-            return Err(anyhow::Error::new(DdlError::Interrupted).context(stood));
+            return Err(anyhow::Error::new(DdlError::Interrupted).context(progress));
         }
         let report = self.report(plan, out)?;
         tell(format_args!("wall time: {}", human(start.elapsed())));
+        self.publish(plan, &report, out)
+    }
+
+    fn publish(&self, plan: &Plan, report: &Report, out: &Path) -> anyhow::Result<()> {
         let Some(checkout) = &self.publish else {
             return Ok(());
         };
-        ensure!(
-            !ends.contains(&End::Kept),
-            "--publish describes one whole run, but some tasks were kept from an earlier one: \
-             delete {} or choose another --out",
-            out.display()
-        );
-        let making = Making {
-            commit: &self.reporting.commit,
-            took: start.elapsed(),
-            at: time::OffsetDateTime::now_utc(),
-        };
-        for file in publish::publish(checkout, plan, &report, &making)? {
+        let making = Making::of(plan, report, out);
+        for file in publish::publish(checkout, plan, report, &making)? {
             tell(format_args!("published: {file}"));
         }
         Ok(())
     }
 
-    /// Submits what is not finished, unless jobs of the folder are alive, and watches until none is.
+    /// Submits the unfinished tasks, unless jobs of the folder are in the queue, and watches until all jobs have ended.
     fn run_on_slurm(&self, plan: &Plan, out: &Path, claimed: RunLock) -> anyhow::Result<()> {
         let slurm = Slurm::new(out, &self.reporting.commit)?;
         let live = slurm.queue()?;
@@ -174,15 +179,15 @@ impl Benchmark {
             let ids = slurm::ids(&live);
             ensure!(
                 Plan::read(out)? == *plan,
-                "jobs of another plan are alive in {}: wait until they are done, cancel them with `scancel {ids}`, or choose \
+                "jobs of another plan run in {}: wait for their end, cancel them with `scancel {ids}`, or choose \
                  another --out",
                 out.display()
             );
             tell(format_args!(
-                "jobs {ids} of this folder are alive: they are watched, and nothing is submitted"
+                "jobs {ids} of this folder are in the queue: this command watches them and submits nothing"
             ));
         }
-        // The job that makes the report takes it.
+        // The job that makes the report takes the lock.
         drop(claimed);
         let interrupt = Interrupt::catch()?;
         let display = Display::new(&plan.tasks, self.reporting.telling.progress);
@@ -196,7 +201,7 @@ impl Benchmark {
         let plan = Plan::read(out)?;
         let task = plan.tasks.get(index).with_context(|| {
             format!(
-                "there is no task {index}: the plan of {} has {}, counted from 0",
+                "no task {index}: the plan of {} has {} tasks, counted from 0",
                 out.display(),
                 plan.tasks.len()
             )
@@ -218,11 +223,19 @@ impl Benchmark {
     fn collect(&self, out: &Path) -> anyhow::Result<()> {
         let _claimed = RunLock::take(out)?;
         remove_half_written(out);
-        self.report(&Plan::read(out)?, out).map(drop)
+        let plan = Plan::read(out)?;
+        if let Some(checkout) = &self.publish {
+            publish::check(checkout, &plan)?;
+        }
+        let report = self.report(&plan, out)?;
+        self.publish(&plan, &report, out)
     }
 
-    /// The report of the tasks that are finished; an error where some are not.
-    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<String> {
+    /// Makes the report of the finished tasks.
+    ///
+    /// # Errors
+    /// Also, after the report is written, when tasks are not finished.
+    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<Report> {
         let (finished, missing): (Vec<&Task>, Vec<&Task>) = plan
             .tasks
             .iter()
@@ -232,7 +245,8 @@ impl Benchmark {
         let names: Vec<&str> = missing.iter().map(|task| task.id.as_str()).collect();
         ensure!(
             names.is_empty(),
-            "{} of {} tasks are not finished: {}; log.txt in the folder of each says why, and the same command tries them again",
+            "{} of {} tasks are not finished: {}; log.txt in the folder of each says why; the same command runs them \
+             again",
             names.len(),
             plan.tasks.len(),
             names.join(", ")
@@ -271,17 +285,17 @@ impl Benchmark {
     }
 }
 
-/// Ctrl-C (or a termination signal) stops the tasks cleanly, a second one at once; with the third this process ends too,
-/// whatever it is at.
+/// The first Ctrl-C (or termination signal) stops the tasks cleanly, a second one at once; the third ends this process
+/// at any point.
 fn catch() -> anyhow::Result<Interrupt> {
     Interrupt::catch_until(3, |wishes| match wishes {
         1 => tell(format_args!(
-            "\nstopping: running tasks save what they have (again: stop at once)"
+            "\nstopping: running tasks save their state (Ctrl-C again: stop at once)"
         )),
         _ => tell(format_args!("\nstopping at once")),
     })
 }
 
 fn this_program() -> anyhow::Result<PathBuf> {
-    std::env::current_exe().context("this program does not know where it lies")
+    std::env::current_exe().context("cannot find the path of this program")
 }

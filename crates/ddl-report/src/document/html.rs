@@ -11,7 +11,8 @@ pub(crate) struct ContentsEntry {
 }
 
 impl Document {
-    /// HTML for the body of a page: lead, title and parts, each section with an `id` of its heading; text is escaped.
+    /// HTML for the body of a page: lead, title and parts. Each section has an `id` made from its heading; text is
+    /// escaped.
     pub fn to_html(&self) -> String {
         format!(
             "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n{}",
@@ -21,7 +22,8 @@ impl Document {
         )
     }
 
-    /// The parts as HTML, without title and lead, and the sections they make, of class `warned` where they hold one.
+    /// The parts as HTML, without title and lead, and the list of sections; those with a warning have the class
+    /// `warned`.
     pub(crate) fn sections(&self) -> (String, Vec<ContentsEntry>) {
         let mut body = String::new();
         let mut contents: Vec<ContentsEntry> = Vec::new();
@@ -95,7 +97,7 @@ fn warns(parts: &[Part]) -> bool {
         .any(|part| matches!(part, Part::Warning(_)))
 }
 
-/// Wide tables scroll within a box of their own, which the keyboard can reach.
+/// The table in a box that scrolls and that the keyboard can reach.
 fn render(table: &Table) -> String {
     let caption = table.caption().map_or(String::new(), |caption| {
         format!("<caption>{}</caption>\n", inline(caption))
@@ -140,7 +142,7 @@ pub(crate) fn inline(text: &str) -> String {
     rendered.collect()
 }
 
-/// Text that cannot be taken for markup, also inside an attribute.
+/// Text with escaped markup characters, also for attributes.
 pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {

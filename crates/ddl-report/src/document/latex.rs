@@ -31,7 +31,7 @@ impl Document {
                         None => format!("{}.", headings.join(": ")),
                     };
                     let comment = one_line(&headings.join(": "));
-                    // What follows a table at once is under which conditions its lines came about.
+                    // A list right after a table gives the conditions of its lines.
                     let notes = match parts.peek() {
                         Some(Part::List(items)) => items.join(" "),
                         _ => String::new(),
@@ -72,7 +72,8 @@ fn float(
     format!(
         "\\begin{{table*}}\n  \\centering\\small\n  \\caption{{{}{warning}}}\\label{{tab:ddl-{number}}}\n  \
          \\begin{{adjustbox}}{{max width=\\textwidth}}\n  \\begin{{tabular}}{{{columns}}}\n    \
-         \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n  \\end{{adjustbox}}\n{notes}\\end{{table*}}\n",
+         \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n  \
+         \\end{{adjustbox}}\n{notes}\\end{{table*}}\n",
         inline(caption),
         line(table.header()),
         table.rows().iter().map(|row| line(row)).collect::<String>(),
@@ -109,7 +110,7 @@ fn escape(text: &str) -> String {
     escaped
 }
 
-/// A comment must not end before its text does.
+/// One line, because a line break would end the comment.
 fn one_line(text: &str) -> String {
     text.replace(['\n', '\r'], " ")
 }

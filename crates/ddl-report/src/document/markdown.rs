@@ -3,7 +3,7 @@
 use super::parts::{Document, Part, unfolded};
 
 impl Document {
-    /// Markdown that reads well both as text and rendered; tables of pipes.
+    /// The document as markdown with pipe tables.
     pub fn to_markdown(&self) -> String {
         let head = format!("{}\n\n# {}\n", self.lead, self.title);
         let parts = unfolded(&self.parts).map(render);
@@ -17,7 +17,7 @@ fn render(part: &Part) -> String {
         Part::Paragraph(text) => format!("{text}\n"),
         Part::Warning(text) => format!("> **Warning.** {text}\n"),
         Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
-        // Unfolded above.
+        // `unfolded` has replaced details by their parts.
         Part::Details { .. } => String::new(),
         Part::Table(table) => match table.caption() {
             Some(caption) => format!("{caption}\n\n{table}"),

@@ -1,4 +1,4 @@
-//! A page of results before it has a form: what is said in which order, to be rendered as markdown, HTML or LaTeX.
+//! A page of results as a list of parts, rendered as markdown, HTML or LaTeX.
 
 mod html;
 mod latex;

@@ -1,43 +1,43 @@
-//! What a document is made of.
+//! The parts of a document.
 
 use super::table::Table;
 
-/// Headings, paragraphs, warnings and tables in the order in which they are read.
+/// Headings, paragraphs, warnings and tables in reading order.
 ///
-/// In every text, `words between backticks` are code; nothing else is marked up.
+/// In every text, `words between backticks` are code; there is no other markup.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Document {
-    /// What must be known before anything else is read: the first line.
+    /// The first line: what a reader must know before the numbers.
     pub lead: String,
     /// The title.
     pub title: String,
-    /// Everything else.
+    /// The content below the title.
     pub parts: Vec<Part>,
 }
 
 /// A piece of a [`Document`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Part {
-    /// A heading; level 1 stands below the title.
+    /// A heading; level 1 is the level below the title.
     Heading {
-        /// 1, 2, ...
+        /// Level, from 1.
         level: usize,
-        /// The words.
+        /// The text.
         text: String,
     },
     /// Running text.
     Paragraph(String),
     /// Items of a list.
     List(Vec<String>),
-    /// What a reader must not miss.
+    /// A warning.
     Warning(String),
-    /// Numbers.
+    /// A table.
     Table(Table),
-    /// Parts for those who want to know more: folded away where the form allows it.
+    /// Further parts, folded away in HTML.
     Details {
-        /// What is in them.
+        /// The visible line that names the content.
         summary: String,
-        /// The parts; not of level 1, and no details themselves.
+        /// The parts: no heading of level 1, no details.
         parts: Vec<Part>,
     },
 }

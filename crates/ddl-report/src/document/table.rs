@@ -1,8 +1,8 @@
-//! A table of text and numbers; as text, a markdown table.
+//! A table of text and numbers, and its markdown form.
 
 use comfy_table::{CellAlignment, presets::ASCII_MARKDOWN};
 
-/// A table whose first column is text, and whose others are numbers unless [`text_column`](Self::text_column) says so.
+/// A table. The first column is text; the others hold numbers, unless marked by [`text_column`](Self::text_column).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
     caption: Option<String>,
@@ -12,7 +12,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with these column names and no row yet.
+    /// A table with these column names and no rows.
     pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
         let header: Vec<_> = header.into_iter().map(Into::into).collect();
         let text = (0..header.len()).map(|column| column == 0).collect();
@@ -24,7 +24,7 @@ impl Table {
         }
     }
 
-    /// Makes the columns of this name text.
+    /// Marks the columns of this name as text.
     #[must_use]
     pub fn text_column(mut self, name: &str) -> Self {
         for (text, _) in self
@@ -38,7 +38,7 @@ impl Table {
         self
     }
 
-    /// The table with words of its own about what its numbers are: convention, unit, what was averaged.
+    /// The table with a caption: data convention, unit, what was averaged.
     #[must_use]
     pub fn captioned(self, caption: impl Into<String>) -> Self {
         Self {
@@ -76,13 +76,17 @@ impl Table {
     }
 }
 
-/// A cell must not end its column or its line.
+/// A cell in which `|` and line breaks do not end the column or the row.
 fn escape(cell: &str) -> String {
     cell.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
+/// A markdown table, its columns padded to one width each; without padding as `{:#}`.
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if f.alternate() {
+            return self.write_unpadded(f);
+        }
         let mut table = comfy_table::Table::new();
         table
             .load_style(ASCII_MARKDOWN)
@@ -108,6 +112,25 @@ impl std::fmt::Display for Table {
                 line
             };
             writeln!(f, "{line}")?;
+        }
+        Ok(())
+    }
+}
+
+impl Table {
+    fn write_unpadded(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let line = |cells: &[String]| {
+            let cells = cells.iter().map(|cell| format!(" {} |", escape(cell)));
+            format!("|{}", cells.collect::<String>())
+        };
+        let rule = self
+            .text
+            .iter()
+            .map(|&text| if text { "---|" } else { "--:|" });
+        writeln!(f, "{}", line(&self.header))?;
+        writeln!(f, "|{}", rule.collect::<String>())?;
+        for row in &self.rows {
+            writeln!(f, "{}", line(row))?;
         }
         Ok(())
     }
@@ -140,6 +163,10 @@ mod tests {
                 "| x y  |   |       |",
                 "| 1    | 2 | three |"
             ]
+        );
+        assert_eq!(
+            format!("{table:#}"),
+            "| a\\|b | c | d |\n|---|--:|---|\n| x y |  |  |\n| 1 | 2 | three |\n"
         );
     }
 }

@@ -8,15 +8,15 @@ use super::{
     scale::{round_step, ticks},
 };
 
-/// A scene where everybody stands still is shown this wide, metres.
+/// Least width of the shown area, metres: that of a scene in which all pedestrians stand still.
 const LEAST_SPAN: f64 = 4.0;
 
 /// Sizes of one kind of plot, pixels.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlotLayout {
-    /// Neither side of the plot is smaller: across, up.
+    /// Least size of the plot: width, height.
     pub(super) smallest: [f64; 2],
-    /// The plot fills at most this much: across, up.
+    /// Largest size of the plot: width, height.
     pub(super) largest: [f64; 2],
     /// Space to the left of the plot and above it.
     pub(super) before: [f64; 2],
@@ -24,11 +24,11 @@ pub(super) struct PlotLayout {
     pub(super) after: [f64; 2],
     /// Margin around the points within the plot, share of the span.
     pub(super) margin: f64,
-    /// Steps on the longer side, about.
+    /// Approximate number of grid steps on the longer side.
     pub(super) steps: f64,
 }
 
-/// One scene; the legend stands on the right.
+/// One scene; the legend is on the right.
 pub(super) const SCENE: PlotLayout = PlotLayout {
     smallest: [360.0, 270.0],
     largest: [720.0, 560.0],
@@ -38,14 +38,14 @@ pub(super) const SCENE: PlotLayout = PlotLayout {
     steps: 10.0,
 };
 
-/// One place; two lines of text stand above it, the legend on the right.
+/// One place; two lines of text are above it, the legend is on the right.
 pub(super) const PLACE: PlotLayout = PlotLayout {
     before: [62.0, 66.0],
     after: [278.0, 56.0],
     ..SCENE
 };
 
-/// One of several plots of the same size; two lines of title and one of text stand above it.
+/// One of several plots of the same size, with two lines of title and one line of text above.
 pub(super) const PANEL: PlotLayout = PlotLayout {
     smallest: [300.0; 2],
     largest: [300.0; 2],
@@ -66,7 +66,7 @@ pub(super) struct Axes {
 
 impl Axes {
     pub(super) fn around(points: &[Position], layout: &'static PlotLayout) -> Self {
-        // Without points there is nothing to show but empty axes.
+        // Without points only empty axes are drawn.
         let [low, high] = bounds(points.iter().copied()).unwrap_or([[0.0; 2]; 2]);
         let centre = [0, 1].map(|axis| f64::midpoint(low[axis], high[axis]));
         let fitting = |axis: usize| {
@@ -93,7 +93,7 @@ impl Axes {
         self
     }
 
-    /// Size of the space that plot and lettering have together, pixels.
+    /// Size of plot and lettering together, pixels.
     pub(super) fn size(&self) -> [f64; 2] {
         let [from, to] = self.frame();
         [0, 1]

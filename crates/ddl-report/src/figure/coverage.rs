@@ -1,4 +1,4 @@
-//! The share of true positions that regions hold, over the time of several recordings, a panel each.
+//! Coverage of forecast regions over time, one panel for each recording.
 
 use super::{
     error::FigureError,
@@ -6,27 +6,27 @@ use super::{
 };
 
 const MOST_PANELS: usize = 9;
-/// Shares that are shown where all fit.
+/// Range of the vertical axis if all values lie in it.
 const LOWEST: f64 = 0.7;
 
-/// Shares of one recording.
+/// Coverage in one recording: the share of true positions inside their regions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoveragePanel {
     /// The recording.
     pub name: String,
-    /// What stands beside the name, in the colours of the curves: fixed and adaptive.
+    /// Two notes beside the name, in the colours of the curves: fixed and adaptive.
     pub notes: [String; 2],
-    /// Of regions that stay as they are: time (minutes, rising) and share (0 to 1).
+    /// Of fixed regions: time (minutes, ascending) and share (0 to 1).
     pub fixed: Vec<[f64; 2]>,
-    /// Of regions that follow what is seen.
+    /// Of adaptive regions, which follow the observed errors.
     pub adaptive: Vec<[f64; 2]>,
 }
 
-/// Draws the shares of 1 to 9 recordings over time, with the probability asked for and a band of 2 % about it, as the
+/// Draws the coverage of 1 to 9 recordings over time, with the nominal probability and a band of 2 % around it, as the
 /// text of an SVG file. The same input gives the same bytes.
 ///
 /// # Errors
-/// There is no panel or there are more than 9.
+/// There are no panels, or more than 9.
 pub fn coverage(
     title: &str,
     probability: f64,

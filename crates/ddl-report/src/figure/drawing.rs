@@ -1,4 +1,4 @@
-//! A picture of known size, made of shapes that carry classes and no colours.
+//! A picture of fixed size whose shapes have classes instead of colours.
 
 use svg::{
     Document, Node,
@@ -29,7 +29,7 @@ impl Drawing {
         }
     }
 
-    /// Something a script wants to know of the picture: the attribute `data-NAME`.
+    /// Data of the picture for scripts: the attribute `data-NAME`.
     pub(crate) fn data(&mut self, name: &str, value: impl Into<String>) {
         self.data.push((format!("data-{name}"), value.into()));
     }
@@ -120,12 +120,12 @@ impl Drawing {
         self.add(window.add(inside));
     }
 
-    /// Markup to stand in a page that has the rules of [`STYLE`]; `class` is added to that of the picture.
+    /// Markup for a page that has the rules of [`STYLE`]; `class` is added to the class of the picture.
     pub(crate) fn inline(&self, class: &str) -> String {
         self.document(&format!("figure {class}"), None).to_string()
     }
 
-    /// A file of its own: rules with the colours for white, and the white itself. `rules` are added to those of [`STYLE`].
+    /// A separate file on a white background, with the rules for it; `rules` are added to those of [`STYLE`].
     pub(crate) fn to_file(&self, rules: &str) -> String {
         let style = on_white(STYLE) + &on_white(rules);
         let document = self.document("figure", Some(&style));
@@ -154,9 +154,9 @@ impl Drawing {
     }
 }
 
-/// Width of a text in pixels, about, of letters of this size: fonts differ, and the reader's is not known.
+/// Approximate width of a text in pixels at this font size; the font of the reader is unknown.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    // A letter of a wide sans-serif is about 0.56 of its size wide.
+    // A letter of a wide sans-serif font is about 0.56 of the font size wide.
     0.56 * size * text.chars().count() as f64
 }
 
@@ -167,7 +167,7 @@ fn text(class: &str, at: [f64; 2], words: impl Into<String>) -> Text {
         .set("y", px(at[1]))
 }
 
-/// XML has no control characters, and titles come from users.
+/// Titles come from users, and XML does not allow control characters.
 fn printable(words: impl Into<String>) -> String {
     words.into().replace(char::is_control, " ")
 }
@@ -180,12 +180,12 @@ fn outline(points: &[[f64; 2]]) -> String {
     points.iter().enumerate().map(step).collect()
 }
 
-/// Tenths of a pixel are fine enough for lines, and keep the page small.
+/// Rounds to tenths of a pixel, which keeps the page small.
 fn px(value: f64) -> f64 {
     (value * 10.0).round() / 10.0
 }
 
-/// The rules with `var(--name, COLOUR)` replaced by the colour: not every program that shows SVG knows variables.
+/// The rules with `var(--name, COLOUR)` replaced by the colour, since some SVG viewers do not support variables.
 fn on_white(rules: &str) -> String {
     let mut resolved = String::with_capacity(rules.len());
     let mut rest = rules;

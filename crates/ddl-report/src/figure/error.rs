@@ -1,9 +1,9 @@
-//! Why a picture cannot be drawn.
+//! Errors of figures.
 
 /// A figure cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum FigureError {
     #[error("the window holds {expected} pedestrians, the forecast {found}")]
     Pedestrians { expected: usize, found: usize },
@@ -24,8 +24,8 @@ pub(super) enum GoalCaseProblem {
     #[error("expert {index} must hold 20 positions, found {found}")]
     ExpertLength { index: usize, found: usize },
     #[error(
-        "{what} is {position:?}, which is no place within 1000 km of the last observed position; are \
-         these metres, in the coordinates of the track?"
+        "{what} is {position:?}, which is not within 1000 km of the last observed position; give metres in the \
+         coordinates of the track"
     )]
     Place { what: String, position: [f64; 2] },
     #[error("goal {goal} has the weight {weight}, which is not between 0 and 1")]

@@ -5,10 +5,10 @@ use ddl_data::{OBSERVED, Position, WINDOW};
 use super::error::{FigureError, GoalCaseProblem};
 use ddl_eval::{Forecast, baseline::WeightedGoals, metric::displacement::distance};
 
-/// Places farther from the pedestrian are taken for a mistake (m): at such a scale nothing is seen anyway.
+/// Positions farther from the pedestrian are an error (m).
 const FARTHEST: f64 = 1e6;
 
-/// What was seen of a pedestrian, how it went on, and where it was thought to be going.
+/// The observed and the true future track of a pedestrian, and its estimated goals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoalCase {
     title: String,
@@ -26,7 +26,7 @@ impl GoalCase {
     ///
     /// # Errors
     /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed
-    /// position; weights that are no probabilities or do not sum to 1.
+    /// position; weights outside [0, 1], or that do not sum to 1.
     pub fn new(
         title: impl Into<String>,
         track: &[Position],
@@ -46,10 +46,10 @@ impl GoalCase {
         })
     }
 
-    /// The same case with the pedestrians that the goals come from, in any order.
+    /// The same case with the tracks of the expert library that the goals come from, in any order.
     ///
     /// # Shapes
-    /// Each expert: 20 positions (m), carried over to this pedestrian, in the coordinates of its track. The last
+    /// Each expert: 20 positions (m), transformed to this pedestrian, in the coordinates of its track. The last
     /// 12 are drawn.
     ///
     /// # Errors
@@ -84,12 +84,12 @@ impl GoalCase {
         &self.goals
     }
 
-    /// Index of the goal nearest the true end: of equally near ones the likeliest, of these the first.
+    /// Index of the goal nearest the true endpoint; among equally near goals the most probable one, then the first.
     pub fn nearest_goal(&self) -> usize {
         self.nearest
     }
 
-    /// Distance of the nearest goal from the true end, metres.
+    /// Distance of the nearest goal from the true endpoint, metres.
     pub fn error(&self) -> f64 {
         distance(self.goals.goals()[self.nearest], self.track[WINDOW - 1])
     }
@@ -142,7 +142,7 @@ fn check_near(
     places: &[Position],
     name: impl Fn(usize) -> String,
 ) -> Result<(), GoalCaseProblem> {
-    // Not a number is not near.
+    // NaN is not near.
     let near = |place: &Position| distance(*place, here) <= FARTHEST;
     match places.iter().position(|place| !near(place)) {
         None => Ok(()),

@@ -1,4 +1,4 @@
-//! Estimated goals of several pedestrians, a panel each.
+//! Estimated goals of several pedestrians, one panel for each.
 
 use ddl_data::Position;
 
@@ -24,16 +24,16 @@ const BELOW_TITLE: f64 = 10.0;
 /// Size of the letters above a panel, and the height of a line of them.
 const LETTERS: f64 = 12.0;
 const LINE: f64 = 17.0;
-/// Lines that a title may take, be it of a panel or of the picture.
+/// Most lines of a title, of a panel or of the picture.
 const TITLE_LINES: usize = 2;
 
-/// Draws 1 to 9 pedestrians with their estimated goals, a panel each, as the text of an SVG file.
+/// Draws 1 to 9 pedestrians with their estimated goals, one panel for each, as the text of an SVG file.
 ///
-/// Each panel is in metres from the pedestrian's last observed position, at one scale for both axes. The area of a ring
-/// is the goal's probability, but for the smallest. The same input gives the same bytes.
+/// Each panel shows metres from the pedestrian's last observed position, at one scale for both axes. The area of a ring
+/// is proportional to the goal's probability, down to a least size. The same input gives the same bytes.
 ///
 /// # Errors
-/// There is no case or there are more than 9.
+/// There are no cases, or more than 9.
 pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, FigureError> {
     if !(1..=MOST_CASES).contains(&cases.len()) {
         let (found, most) = (cases.len(), MOST_CASES);
@@ -88,7 +88,7 @@ fn entries(cases: &[GoalCase]) -> Vec<LegendEntry> {
     entries
 }
 
-/// One pedestrian in metres from its last observed position: recordings may lie far from their origin.
+/// One pedestrian, relative to its last observed position, because a recording may be far from its origin.
 struct GoalPanel<'a> {
     case: &'a GoalCase,
     observed: Vec<Position>,
@@ -133,7 +133,7 @@ impl<'a> GoalPanel<'a> {
         drawing.line("miss", plan.px(goal), plan.px(end));
         nearest_goal(drawing, plan.px(goal), weights[nearest]);
         drawing.path("seen", &plan.path(&self.observed));
-        // The true end lies on top: it is small, and a goal that hits it has its ticks around it.
+        // The true endpoint is drawn last: it is small, and the ticks of a goal that hits it are around it.
         pedestrian::track(drawing, plan, &self.observed, &self.truth);
     }
 }
@@ -145,7 +145,7 @@ fn from(here: Position, positions: &[Position]) -> Vec<Position> {
 
 fn draw_heading(drawing: &mut Drawing, axes: &Axes, case: &GoalCase) {
     let [[left, top], [right, _]] = axes.frame();
-    // Beyond its frame there is space before that of the next panel.
+    // There is space between the frames of two panels.
     let width = right - left + PANEL.after[0] + EDGE;
     let mut lines = wrapped(case.title(), LETTERS, width, TITLE_LINES);
     lines.push(format!("nearest goal {:.2} m off", case.error()));

@@ -1,4 +1,4 @@
-//! What the shapes mean: as a column beside a plot or in rows above several.
+//! The legend: a column beside a plot, or rows above several plots.
 
 use super::{
     drawing::{Drawing, text_width},
@@ -13,7 +13,7 @@ const GAP: f64 = 16.0;
 /// Space between two entries of a row, pixels.
 const BETWEEN: f64 = 30.0;
 const LETTERS: f64 = 12.0;
-/// Probabilities whose rings are shown as samples, and where, from the left.
+/// Probabilities of the sample rings, and their positions from the left.
 const PROBABILITIES: [(f64, f64); 3] = [(0.01, 3.0), (0.05, 14.0), (0.2, 32.0)];
 
 #[derive(Debug, Clone, Copy)]

@@ -1,9 +1,9 @@
-//! Shapes that mean something: stars, arrows, and goals as rings whose area is their probability.
+//! Stars, arrows, and goals as rings whose area is their probability.
 
 use super::drawing::Drawing;
 
 const CERTAIN: f64 = 24.0;
-/// No ring is smaller: goals of no weight are seen as well.
+/// Least radius, so that goals of small weight are visible.
 const SMALLEST: f64 = 2.4;
 /// Length of the ticks around the nearest goal, pixels.
 const TICK: f64 = 6.0;
@@ -22,7 +22,7 @@ pub(crate) fn star([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// An arrow as two strokes: shaft, and head of both sides; `None` when it is too short to be seen.
+/// An arrow as two strokes, shaft and head; `None` when it is too short to be visible.
 pub(crate) fn arrow(from: [f64; 2], to: [f64; 2]) -> Option<[Vec<[f64; 2]>; 2]> {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
     let length = dx.hypot(dy);
@@ -49,7 +49,7 @@ pub(super) fn goal_ring(drawing: &mut Drawing, at: [f64; 2], weight: f64) {
     drawing.circle("goal weighted", at, radius(weight));
 }
 
-/// The goal nearest the true end: a bold ring on a white rim, with four ticks around it.
+/// The goal nearest the true endpoint: a bold ring on a white rim, with four ticks around it.
 pub(super) fn nearest_goal(drawing: &mut Drawing, [x, y]: [f64; 2], weight: f64) {
     let radius = radius(weight);
     drawing.circle("rim", [x, y], radius);

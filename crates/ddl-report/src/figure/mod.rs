@@ -1,7 +1,11 @@
-//! Pictures as SVG, which need neither a display nor a font file.
-//! One scene ([`scene()`]), where the tracks of a place lead ([`place()`]), or estimated goals, a pedestrian a panel
-//! ([`goals()`], [`GoalCase`]), chosen by [`typical_pedestrians`]: metres on both axes, at one scale; or shares over time
-//! ([`coverage()`]). Colours are those of the [page](crate::page).
+//! Figures as SVG, which need neither a display nor a font file.
+//!
+//! - [`scene()`]: one scene with its forecasts;
+//! - [`place()`]: the tracks of a place;
+//! - [`goals()`]: estimated goals, one panel for each pedestrian ([`GoalCase`], chosen by [`typical_pedestrians`]);
+//! - [`coverage()`]: coverage of regions over time.
+//!
+//! Maps show metres at one scale for both axes. Colours are those of the [page](crate::page).
 
 mod axes;
 mod coverage;

@@ -1,4 +1,4 @@
-//! Two curves over the time of several recordings, a panel each.
+//! Two curves over time, one panel for each recording.
 
 use super::{
     drawing::{Drawing, PLOT_STYLE},
@@ -7,10 +7,10 @@ use super::{
 };
 
 const COLUMNS: usize = 3;
-/// Space around everything, and between the panels, across and up, pixels.
+/// Margin of the picture, and horizontal and vertical space between panels, pixels.
 const EDGE: f64 = 20.0;
 const BETWEEN: [f64; 2] = [56.0, 66.0];
-/// The plot of a panel, and what stands to the left of it, pixels.
+/// Size of the plot of a panel, and width of the labels on its left, pixels.
 const PLOT: [f64; 2] = [270.0, 150.0];
 const LEFT: f64 = 40.0;
 /// Height of heading and legend, pixels.
@@ -21,22 +21,22 @@ const NOTE: f64 = 92.0;
 /// Classes of the two curves.
 const CLASSES: [&str; 2] = ["c1", "c0"];
 
-/// Curves of several recordings, a panel each.
+/// Curves of several recordings, one panel for each.
 #[derive(Debug)]
 pub(crate) struct OverTime<'a> {
     pub(crate) title: &'a str,
-    /// What the two curves of each panel are.
+    /// Names of the two curves.
     pub(crate) keys: [&'a str; 2],
     pub(crate) values: Values,
     pub(crate) panels: Vec<TimePanel>,
 }
 
-/// What is drawn upwards.
+/// The quantity on the vertical axis.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Values {
-    /// Shares from the lowest to 1, with a band of 2 % about an aim.
+    /// Shares from the lowest to 1, with a band of 2 % around a nominal share.
     Shares { lowest: f64, aim: f64 },
-    /// Errors in metres, from 0, each panel on a scale of its own.
+    /// Errors in metres, from 0; each panel has its own scale.
     Metres,
 }
 
@@ -44,9 +44,9 @@ pub(crate) enum Values {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TimePanel {
     pub(crate) name: String,
-    /// What stands beside the name, in the colours of the curves.
+    /// Two notes beside the name, in the colours of the curves.
     pub(crate) notes: [String; 2],
-    /// Time (minutes, rising) and value.
+    /// Time (minutes, ascending) and value.
     pub(crate) curves: [Vec<[f64; 2]>; 2],
 }
 

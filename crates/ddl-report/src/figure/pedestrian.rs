@@ -1,4 +1,4 @@
-//! What was seen and forecast of one pedestrian: the same in every picture.
+//! The observed track and the forecast of one pedestrian, drawn alike in every picture.
 
 use ddl_data::{OBSERVED, Position, TIME_STEP};
 
@@ -10,7 +10,7 @@ use super::{
 use crate::{MomentHypothesis, MomentPedestrian};
 
 const ARROW_EVERY: usize = 3;
-/// An arrow is as long as the way of this time, s: its length is proportional to the speed.
+/// Time of the displacement that an arrow of velocity shows, s.
 const ARROW_SECONDS: f64 = 0.8;
 
 fn from_last<'a>(
@@ -31,7 +31,7 @@ pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &Mom
     );
 }
 
-/// Every hypothesis but the representative: the heavier, the clearer.
+/// All hypotheses except the representative one; a larger weight gives a darker line.
 pub(crate) fn other_hypotheses(
     drawing: &mut Drawing,
     plan: &PlanView,
@@ -69,7 +69,7 @@ pub(crate) fn representative_goal(
     }
 }
 
-/// The hypothesis that stands for all, with arrows of its velocity where they are asked for.
+/// The representative hypothesis, optionally with arrows of its velocity.
 pub(crate) fn representative(
     drawing: &mut Drawing,
     plan: &PlanView,
@@ -93,7 +93,7 @@ pub(crate) fn representative(
     }
 }
 
-/// Dots where somebody was observed, and a line to a full dot along what then happened.
+/// Dots at the observed positions, and a line along the true future to a full dot.
 pub(crate) fn track(
     drawing: &mut Drawing,
     plan: &PlanView,

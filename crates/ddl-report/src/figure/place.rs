@@ -1,4 +1,4 @@
-//! What a place has taught: where many walk, and where they come and go.
+//! A map of a place: the density of tracks, and where tracks begin and end.
 
 use ddl_data::Position;
 
@@ -10,25 +10,25 @@ use super::{
     wrap::wrapped,
 };
 
-/// Side of a square where it is large enough to be seen (m).
+/// Side of a square (m), if it is large enough in pixels.
 const SIDE: f64 = 0.5;
-/// No square is smaller than this many pixels.
+/// Least side of a square, pixels.
 const SMALLEST: f64 = 4.0;
 /// Shades, from few tracks to many.
 const SHADES: usize = 5;
 /// Radius of a mark for the most tracks that begin or end in a square, pixels.
 const LARGEST_MARK: f64 = 15.0;
-/// No mark is smaller: one track is seen as well.
+/// Least radius of a mark, so that one track is visible.
 const SMALLEST_MARK: f64 = 2.2;
 /// Height of a row of the legend, and width of a sample in it, pixels.
 const ROW: f64 = 26.0;
 const SAMPLE: f64 = 28.0;
 
-/// Draws the tracks of one place as the text of an SVG file: how many lead over each square of the ground, and where
-/// they begin and end. The same input gives the same bytes.
+/// Draws the tracks of one place as the text of an SVG file: how many cross each square of the ground, and where they
+/// begin and end. The same input gives the same bytes.
 ///
 /// # Shapes
-/// `title` and `numbers` are lines above the picture; each track holds positions in metres, in order of time.
+/// `title` and `numbers` are lines above the picture; each track holds positions in metres, in temporal order.
 pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     let axes = Axes::around(&tracks.concat(), &PLACE);
     let smallest = SMALLEST / axes.plan().scale;
@@ -76,7 +76,7 @@ fn shades(most: usize) -> Vec<usize> {
     least
 }
 
-/// The class of a shade; the most tracks are the darkest, however many shades there are.
+/// The class of a shade; the shade of the most tracks is the darkest, for any number of shades.
 fn shade_class(shade: usize, shades: &[usize]) -> String {
     format!("walked w{}", shade + SHADES - shades.len())
 }
@@ -94,7 +94,7 @@ fn draw_squares(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, shades: &
 
 fn draw_ends(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, most: usize) {
     let mut ends: Vec<_> = traffic.ends.iter().collect();
-    // the largest first, so that none hides a smaller one
+    // The largest first, so that a mark does not hide a smaller one.
     ends.sort_by_key(|(_, ends)| std::cmp::Reverse(ends.begun.max(ends.ended)));
     for (square, ends) in ends {
         let middle = square.map(|number| (number as f64 + 0.5) * 2.0 * traffic.side);
@@ -102,7 +102,8 @@ fn draw_ends(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, most: usize)
     }
 }
 
-/// Two half discs whose areas are the numbers, but for the smallest: on the left who comes, on the right who goes.
+/// Two half discs whose areas are proportional to the counts, down to a least size: tracks that begin on the left,
+/// tracks that end on the right.
 fn draw_mark(drawing: &mut Drawing, at: [f64; 2], ends: Ends, most: usize) {
     for (class, count, side) in [("come", ends.begun, -1.0), ("leave", ends.ended, 1.0)] {
         if count > 0 {
@@ -123,11 +124,11 @@ fn half_disc([x, y]: [f64; 2], radius: f64, side: f64) -> Vec<[f64; 2]> {
     (0..=12).map(corner).collect()
 }
 
-/// A column of samples with their words.
+/// A column of samples with their labels.
 struct Legend<'a> {
     drawing: &'a mut Drawing,
     left: f64,
-    /// The middle of the next row.
+    /// Vertical centre of the next row.
     y: f64,
 }
 

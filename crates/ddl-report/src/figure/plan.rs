@@ -1,14 +1,14 @@
-//! Places seen from above: metres to pixels at one scale for both axes, y up.
+//! Ground coordinates to pixels: one scale for both axes, y up.
 
 use ddl_data::Position;
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlanView {
-    /// The place in the middle, metres.
+    /// The ground position in the middle, metres.
     pub(crate) centre: Position,
-    /// Where it is drawn, pixels.
+    /// Its position in the picture, pixels.
     pub(crate) middle: [f64; 2],
-    /// Pixels a metre.
+    /// Pixels per metre.
     pub(crate) scale: f64,
 }
 
@@ -23,7 +23,7 @@ impl PlanView {
     }
 }
 
-/// Lower left and upper right corner of what must be seen, metres; `None` where there is nothing.
+/// Lower left and upper right corner of the points, metres; `None` without points.
 pub(crate) fn bounds(places: impl IntoIterator<Item = Position>) -> Option<[Position; 2]> {
     places.into_iter().fold(None, |bounds, place| {
         let [low, high] = bounds.unwrap_or([place; 2]);

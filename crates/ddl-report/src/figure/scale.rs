@@ -22,7 +22,7 @@ impl Scale {
         }
     }
 
-    /// From 0 as long as the values are of one size; logarithmic when they span more than a factor of 12.
+    /// Linear from 0, or logarithmic when the values span more than a factor of 12.
     pub(crate) fn of(values: &[f64], pixels: [f64; 2]) -> Self {
         let least = values.iter().copied().fold(f64::INFINITY, f64::min);
         let largest = values.iter().copied().fold(0.0, f64::max);
@@ -70,7 +70,7 @@ pub(crate) fn ticks(low: f64, high: f64, step: f64) -> impl Iterator<Item = (f64
     (first..=last).map(move |n| (n as f64 * step, label(n as f64 * step, step)))
 }
 
-/// 1, 2 or 5 times a power of ten, not below `least` by much.
+/// 1, 2 or 5 times a power of ten, at least about `least`.
 pub(crate) fn round_step(least: f64) -> f64 {
     let power = 10.0_f64.powf(least.log10().floor());
     let digit = [1.0, 2.0, 5.0, 10.0]

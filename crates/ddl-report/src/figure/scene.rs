@@ -1,4 +1,4 @@
-//! One scene: everybody's past, future and forecast.
+//! One scene: past, future and forecast of each pedestrian.
 
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_eval::Forecast;
@@ -12,7 +12,8 @@ use super::{
 };
 use crate::{Moment, MomentPedestrian};
 
-/// Draws everybody of a window with its forecast as the text of an SVG file. The same input gives the same bytes.
+/// Draws the pedestrians of a window with their forecasts as the text of an SVG file. The same input gives the same
+/// bytes.
 ///
 /// # Errors
 /// The forecast is not of the window's pedestrians.

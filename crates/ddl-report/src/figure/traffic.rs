@@ -1,13 +1,13 @@
-//! Where the tracks of a place lead: how many cross each square, and where they begin and end.
+//! Counts of tracks: how many cross each square of a place, begin in it and end in it.
 
 use std::collections::BTreeMap;
 
 use ddl_data::Position;
 
-/// Positions farther apart (m) have a hole between them, in which nobody was seen.
+/// Two positions farther apart (m) are not joined: the track has a gap between them.
 const LONGEST_STEP: f64 = 1.5;
 
-/// A square of the ground, counted in sides from the origin.
+/// A square of the ground, by its index from the origin.
 pub(super) type Square = [i64; 2];
 
 /// Tracks that begin and that end in a square.
@@ -17,12 +17,12 @@ pub(super) struct Ends {
     pub(super) ended: usize,
 }
 
-/// What is counted of tracks, by square.
+/// Counts of tracks by square.
 #[derive(Debug)]
 pub(super) struct Traffic {
-    /// Side of the squares in which tracks cross (m); those of the ends are twice as long.
+    /// Side of the squares of crossing tracks (m); the squares of ends are twice as large.
     pub(super) side: f64,
-    /// Tracks that cross a square; who comes back counts once.
+    /// Tracks that cross a square; a track that returns counts once.
     pub(super) crossed: BTreeMap<Square, usize>,
     pub(super) ends: BTreeMap<Square, Ends>,
 }
@@ -58,7 +58,7 @@ impl Traffic {
     }
 }
 
-/// Places on the straight line from one position to the next, so close that no square is missed but at its corner.
+/// Points on the straight line between two positions, so dense that a square is missed only at its corner.
 fn between(from: Position, to: Position, side: f64) -> impl Iterator<Item = Position> {
     let apart = (to[0] - from[0]).hypot(to[1] - from[1]);
     let parts = if apart <= LONGEST_STEP {

@@ -1,11 +1,11 @@
-//! Which pedestrians to show: of each kind of motion one with an ordinary error.
+//! Typical pedestrians: for each kind of motion the one with the median error.
 
 use ddl_eval::MotionKind;
 
-/// Picks a pedestrian of each kind of motion whose error is the median of its kind.
+/// Picks for each kind of motion the pedestrian whose error is the median of its kind.
 ///
-/// The pedestrians of a kind are ordered by their error (m), and the middle one, the lower of two, is picked. Indices
-/// are in the order of [`MotionKind::ALL`]; errors that are not finite are left out.
+/// Errors are in metres; of two middle ones the lower is taken, and errors that are not finite are ignored. The indices
+/// are in the order of [`MotionKind::ALL`].
 pub fn typical_pedestrians(pedestrians: &[(MotionKind, f64)]) -> Vec<usize> {
     MotionKind::ALL
         .into_iter()
@@ -46,7 +46,8 @@ mod tests {
             let first = |i: &usize| pedestrians.iter().position(|w| *w == pedestrians[*i]) == Some(*i);
             prop_assert!(picked.iter().all(first));
             let kinds: Vec<_> = picked.iter().map(|&i| pedestrians[i].0).collect();
-            let present = MotionKind::ALL.into_iter().filter(|k| pedestrians.iter().any(|w| w.0 == *k && w.1.is_finite()));
+            let has = |kind| pedestrians.iter().any(|w| w.0 == kind && w.1.is_finite());
+            let present = MotionKind::ALL.into_iter().filter(|&kind| has(kind));
             prop_assert!(present.eq(kinds));
             for i in picked {
                 let (kind, error) = pedestrians[i];

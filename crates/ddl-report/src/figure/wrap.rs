@@ -1,8 +1,8 @@
-//! Titles in lines that fit into a width.
+//! Line breaks of titles.
 
 use super::drawing::text_width;
 
-/// A text in at most `most` lines (at least one); what does not fit into them is cut.
+/// A text in at most `most` lines (at least one); the rest is cut.
 pub(super) fn wrapped(text: &str, size: f64, width: f64, most: usize) -> Vec<String> {
     let fits = |line: &str| text_width(line, size) <= width;
     let at_pauses = broken(text, fits, most, true);
@@ -34,7 +34,7 @@ fn broken(text: &str, fits: impl Fn(&str) -> bool, most: usize, at_pauses: bool)
             continue;
         }
         let (full, rest) = match line.rfind([',', ':']) {
-            // Not the comma of a number.
+            // A comma inside a number is not a break.
             Some(pause) if at_pauses && line[pause + 1..].starts_with(' ') => {
                 let (full, rest) = line.split_at(pause + 1);
                 (full.to_owned(), format!("{} {word}", rest.trim_start()))

@@ -1,15 +1,15 @@
-//! Why a page cannot be made.
+//! Errors of pages.
 
 use crate::ReportError;
 
 /// A page cannot be made.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum PageError {
     #[error(transparent)]
     Report(#[from] ReportError),
-    #[error("the data of the page cannot be written as JSON: {0}")]
+    #[error("cannot write the data of the page as JSON: {0}")]
     Json(#[from] serde_json::Error),
     #[error("moment {index} (recording `{recording}`, frame {frame}): {problem}")]
     Moment {
@@ -42,7 +42,8 @@ pub(super) enum MomentProblem {
         found: usize,
     },
     #[error(
-        "pedestrian {pedestrian} has the coordinate {value} m in `{field}`; coordinates must be within 1000 km of the origin"
+        "pedestrian {pedestrian} has the coordinate {value} m in `{field}`; coordinates must be within 1000 km of the \
+         origin"
     )]
     Coordinate {
         pedestrian: usize,
@@ -59,9 +60,7 @@ pub(super) enum MomentProblem {
     },
     #[error("{0}")]
     Empty(&'static str),
-    #[error(
-        "the pick `{show}` names pedestrian {pedestrian}, and there are {pedestrians}, counted from 0"
-    )]
+    #[error("the pick `{show}` names pedestrian {pedestrian} of {pedestrians}, counted from 0")]
     Pick {
         show: crate::gallery::Show,
         pedestrian: usize,

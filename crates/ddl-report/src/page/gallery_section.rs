@@ -17,14 +17,14 @@ use crate::{
 };
 
 const SCENE: [f64; 2] = [360.0, 300.0];
-/// Free space around what must be seen, px.
+/// Margin around the shown tracks, px.
 const MARGIN: f64 = 22.0;
-/// A smaller scene is not magnified further, m.
+/// Least width of the shown area, m.
 const LEAST_SPAN: f64 = 3.0;
 /// Heights of title and key of a file, px.
 const STRIPS: [f64; 2] = [30.0, 44.0];
 
-/// The pedestrians of the pick, and everybody else in grey; `alone` adds a title and a key, for a file.
+/// The pedestrians of the pick, and the others in grey; `alone` adds a title and a key, for a file.
 fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
     let title = format!(
         "{}: {}, frame {}",
@@ -149,7 +149,7 @@ fn key(drawing: &mut Drawing, y: f64) {
     for stroke in strokes.into_iter().flatten() {
         drawing.path("velocity", &stroke);
     }
-    drawing.text("small", [199.0, y], "velocity (way of 0.8 s)");
+    drawing.text("small", [199.0, y], "velocity (move in 0.8 s)");
 }
 
 fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
@@ -165,11 +165,11 @@ fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
 fn meaning(show: Show) -> &'static str {
     match show {
         Show::Convergence => "A pedestrian who reaches the goal of the representative hypothesis.",
-        Show::Group => "People who walk together.",
+        Show::Group => "Pedestrians who walk together.",
         Show::SlowingDown => {
             "A pedestrian who slows down; where the forecast does too, its arrows grow shorter."
         }
-        Show::KeepingDistance => "People who pass each other and keep their distance.",
+        Show::KeepingDistance => "Pedestrians who pass each other and keep their distance.",
         Show::Turning => "A pedestrian who turns.",
     }
 }
@@ -202,7 +202,8 @@ pub(super) fn html(moments: &[Moment]) -> String {
             html,
             "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code>{}, \
              frame {}; forecast by {}.</p>\n<p class=\"rule\">Why this one: {}.</p>\n<button type=\"button\" \
-             data-moment=\"{at}\" data-pedestrian=\"{pedestrian}\">Play this moment</button>\n</figcaption>\n</figure>\n",
+             data-moment=\"{at}\" data-pedestrian=\"{pedestrian}\">Play this \
+             moment</button>\n</figcaption>\n</figure>\n",
             capitalised(&pick.show.to_string()),
             meaning(pick.show),
             capitalised(&format!("{plural} {}", who.join(", "))),

@@ -1,4 +1,4 @@
-//! The first screen: what was measured, on what, the best result with its conditions, and what it is compared with.
+//! The first screen: what was measured, the best result with its conditions, and the comparison.
 
 use std::fmt::Write as _;
 
@@ -25,7 +25,8 @@ pub(super) fn headline(report: &Report) -> String {
         );
     }
     let caption = format!(
-        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses a pedestrian, the best of which is scored. {} Every number stands in the tables below.",
+        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses of each pedestrian, of \
+         which the best is scored. {} The tables below hold every number.",
         standing.in_words,
         shown_of(standing.lines.len())
     );
@@ -66,7 +67,7 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> String {
         ),
         (None, _, Some((fold, pair))) => (
             pair,
-            format!("on `{fold}`, for it lacks other folds that are measured here"),
+            format!("on `{fold}`, because it lacks other folds of this report"),
         ),
         (None, _, None) => return String::new(),
     };
@@ -92,7 +93,7 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> String {
     )
 }
 
-/// Where the line stands by minADE among those of as many hypotheses that have the same folds.
+/// Rank of the line by minADE among lines with the same folds and equally many hypotheses, in words.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
     let ranked: Vec<&StandingLine> = standing.comparable(subject).collect();
     let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {
@@ -106,9 +107,9 @@ fn rank(standing: &Standing, subject: &StandingLine) -> String {
     match best.mean {
         Some([ade, fde]) if best.label != subject.label => {
             let label = escape(&best.label);
-            format!("Of {of_all}, {label} errs least ({ade:.3}/{fde:.3} m).")
+            format!("Of {of_all}, {label} has the least error ({ade:.3}/{fde:.3} m).")
         }
-        _ if ranked.len() > 1 => format!("It errs least of {of_all}."),
+        _ if ranked.len() > 1 => format!("It has the least error of {of_all}."),
         _ => String::new(),
     }
 }

@@ -1,17 +1,17 @@
-//! The comparison at the head of the page: every forecaster on every fold, errors as dots.
+//! The chart at the head of the page: the errors of every forecaster on every fold, as dots.
 
 use crate::{
     figure::{drawing::Drawing, scale::Scale},
     page::standing::{Standing, StandingLine},
 };
 
-/// At most this many lines: more are in the tables.
+/// Most lines of the chart; the tables hold all.
 pub(crate) const MOST_LINES: usize = 10;
 const LINE: f64 = 26.0;
 
-/// Room behind the dots for the number, px.
+/// Space for the number after the dots, px.
 const NUMBER: f64 = 46.0;
-/// Ticks are at least so far apart, px.
+/// Least distance of two ticks, px.
 const TICKS_APART: f64 = 26.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,7 +20,7 @@ pub(crate) enum Shape {
     Narrow,
 }
 
-/// For each fold a column of dumbbells: the full dot is minADE, the hollow one minFDE, m.
+/// One column for each fold; in it each line has a full dot at minADE and a hollow one at minFDE, m.
 pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
     let lines = &standing.lines[..standing.lines.len().min(MOST_LINES)];
     let chart = Chart {
@@ -116,7 +116,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     let block = 56.0 + line_height * lines.len() as f64;
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
     chart.key(&mut drawing, [0.0, 12.0]);
-    // The mean first: the folds are a long way to scroll.
+    // The mean comes first, because the folds may need scrolling.
     for (place, name) in names
         .iter()
         .cycle()

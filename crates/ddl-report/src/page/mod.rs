@@ -1,4 +1,4 @@
-//! The report as one HTML page that needs nothing else: no network, no other file.
+//! The report as one HTML page, which needs no network and no other file.
 //! Its numbers come from the `report.json` that is embedded in it; tables are those of
 //! [`Report::document`](crate::Report::document).
 

@@ -2,18 +2,18 @@
 //!
 //! ```text
 //! observed  [x0, y0, dx, dy, ...]   the first position, then steps             mm
-//! truth     [dx, dy, ...]           steps from the last observed position      mm; fewer than 12 where no more was seen
-//! paths     [[dx, dy, ...], ...]    the same, one a hypothesis                 mm
+//! truth     [dx, dy, ...]           steps from the last observed position      mm; at most 12
+//! paths     [[dx, dy, ...], ...]    the same for each hypothesis               mm
 //! goals     [[dx, dy] or null, ...] from the last observed position            mm
 //! weights   [...]                   thousandths
-//! radii     [[...], ...]            of the discs of the region of 90 %, one a step, mm; left out where there are no regions
-//! familiarity                       thousandths; left out where nothing is known
-//! representative                    index of the hypothesis that stands for all
-//! falls, certified                  one letter a hypothesis: y, n, - (nothing known)
-//! made_up                           how many observed positions were; left out where none was
+//! radii     [[...], ...]            of the discs of the 90 % region, by step, mm; absent without regions
+//! familiarity                       thousandths; absent where unknown
+//! representative                    index of the representative hypothesis
+//! falls, certified                  one letter for each hypothesis: y, n, - (unknown)
+//! made_up                           number of observed positions that were filled in; absent where it is 0
 //! ```
 //!
-//! Moments hold whole millimetres, so that nothing is lost: `x / 1000` is the number that was there.
+//! Moments hold whole millimetres, so that the encoding is exact: `x / 1000` is the original number.
 
 use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
@@ -21,7 +21,7 @@ use serde::Serialize;
 use super::error::{MomentProblem, PageError};
 use crate::{Moment, MomentHypothesis, MomentPedestrian, gallery::Pick};
 
-/// Beyond this nothing is a place, m: millimetres stay far from the largest whole number of an `f64`.
+/// Largest absolute coordinate, m: millimetres stay far below the largest whole number of an `f64`.
 const REACH: f64 = ddl_data::COORDINATE_LIMIT;
 
 #[derive(Serialize)]
@@ -56,12 +56,12 @@ struct PedestrianData<'a> {
     made_up: Option<MadeUp>,
 }
 
-/// How much of what then happened must be there.
+/// The part of the true future that must be there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Truth {
-    /// All of it: errors are shown.
+    /// All positions, because errors are shown.
     Whole,
-    /// As far as it was seen.
+    /// Any number of positions.
     AsSeen,
 }
 

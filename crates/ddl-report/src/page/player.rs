@@ -1,4 +1,4 @@
-//! What every page with a player has: its head, the player, the scripts.
+//! Parts of every page with a player: head, player, scripts.
 
 use super::template::fill;
 use crate::{Moment, document::escape, figure::drawing};
@@ -7,7 +7,7 @@ const HEAD: &str = include_str!("head.html");
 pub(super) const THEME_BUTTON: &str = include_str!("theme_button.html");
 const PLAYER: &str = include_str!("player.html");
 const STYLE: &str = include_str!("style.css");
-/// Of the player. Run in this order, inside one function.
+/// Scripts of the player, run in this order inside one function.
 pub(super) const PLAYER_SCRIPTS: [&str; 12] = [
     include_str!("script/theme.js"),
     include_str!("script/print.js"),

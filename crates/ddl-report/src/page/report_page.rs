@@ -17,13 +17,13 @@ use crate::{
 };
 
 const TEMPLATE: &str = include_str!("page.html");
-/// Of what is on this page besides the player; run after its scripts.
+/// Scripts of the rest of this page, run after those of the player.
 const REPORT_SCRIPTS: [&str; 2] = [
     include_str!("script/curves.js"),
     include_str!("script/report_file.js"),
 ];
 
-/// A page of results under way: the report, and what to show besides.
+/// Content of a page: the report, moments and training curves.
 #[derive(Debug, Clone, Copy)]
 pub struct Page<'a> {
     /// The results.
@@ -45,10 +45,10 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// The page, to be written into a file and opened in a browser.
+    /// The HTML text of the page.
     ///
     /// # Errors
-    /// A moment is not whole, or the epochs of a curve do not ascend; the message names it.
+    /// A moment is incomplete, or the epochs of a curve do not ascend; the error names it.
     pub fn to_html(&self) -> Result<String, PageError> {
         self.check()?;
         let document = self.report.document();
@@ -79,7 +79,7 @@ impl<'a> Page<'a> {
         ))
     }
 
-    /// Every figure as an SVG file: its name and its content. They stand alone on white.
+    /// Every figure as a separate SVG file on white: its name and its content.
     ///
     /// # Errors
     /// As [`to_html`](Self::to_html).

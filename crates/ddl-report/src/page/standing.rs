@@ -1,4 +1,4 @@
-//! The comparison at the head of the page: rows that may be compared, and which of them is best.
+//! The ranking at the head of the page: comparable rows, and the best of them.
 
 use ddl_data::WindowRule;
 
@@ -10,7 +10,7 @@ use ddl_eval::{Conditions, Scores};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standing {
-    /// What all lines share; fold and forecaster are those of one row.
+    /// The conditions that all lines share; fold and forecaster are those of one row.
     pub(super) shared: Conditions,
     pub(super) in_words: String,
     pub(super) folds: Vec<String>,
@@ -33,8 +33,8 @@ pub(super) struct StandingLine {
 }
 
 impl Standing {
-    /// The forecaster that the report is about: the best trained one, without its variations ("DDL" for "DDL without an
-    /// expert library"); else that of another program; else the best of all.
+    /// The forecaster that the report is about: the best trained one, but not its variations ("DDL", not "DDL without
+    /// an expert library"); without trained ones that of another program; otherwise the best one.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
@@ -49,7 +49,7 @@ impl Standing {
             .or(self.lines.first())
     }
 
-    /// The lines that can be ranked against one: as many hypotheses, and every fold measured; the best first.
+    /// The lines that can be ranked against `line`: equally many hypotheses, and every fold measured; the best first.
     pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
         let hypotheses = to.hypotheses;
         let is_comparable =
@@ -58,11 +58,11 @@ impl Standing {
     }
 }
 
-/// The results that the page begins with: under `fair` if there are any, else `single`, else `published`; of these, those
-/// by the published window rule on all test windows if there are any.
+/// The results that the page begins with: those under `fair`, otherwise `single`, otherwise `published`; among them
+/// those of the published window rule on all test windows, if there are any.
 pub(super) fn standing(report: &Report) -> Option<Standing> {
     let groups = groups(report.rows());
-    // Groups stand in the order of conventions and rules already; the first of equals is taken.
+    // Groups are sorted by convention and rule; the first of equals is taken.
     let rank = |group: &&ResultGroup<'_>| {
         let other_rule = group.window_rule != WindowRule::Published;
         (order(group.protocol), group.convention, other_rule)
@@ -74,7 +74,7 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
         .labelled()
         .map(|(line, label)| StandingLine::of(line, label, &folds))
         .collect();
-    // Lines without a mean stand last; the sort is stable.
+    // Lines without a mean come last; the sort is stable.
     let order = |line: &StandingLine| line.mean.map_or(f64::INFINITY, |mean| mean[0]);
     lines.sort_by(|a, b| order(a).total_cmp(&order(b)));
     Some(Standing {

@@ -1,6 +1,6 @@
-//! Texts with `{{slots}}`, filled once, and what JSON must look like to stand in one.
+//! Templates with `{{slots}}`, and JSON that is safe inside an HTML page.
 
-/// Replaces every `{{name}}` that `slots` knows; what is filled in is never looked at again.
+/// Replaces every `{{name}}` by its slot, once: slots in the inserted text are not replaced.
 pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
     let mut filled = String::with_capacity(template.len());
     let mut rest = template;
@@ -18,7 +18,7 @@ pub(super) fn fill(template: &str, slots: &[(&str, &str)]) -> String {
     filled
 }
 
-/// JSON that can stand in a `<script type="application/json">`: nothing in it ends the element.
+/// JSON for a `<script type="application/json">` that cannot end the element.
 pub(super) fn json_in_script(json: &str) -> String {
     let mut escaped = String::with_capacity(json.len());
     let mut rest = json;
@@ -28,7 +28,7 @@ pub(super) fn json_in_script(json: &str) -> String {
         match characters.next() {
             Some('\u{2028}') => escaped.push_str("\\u2028"),
             Some('\u{2029}') => escaped.push_str("\\u2029"),
-            // What `</script`, `<!--` and `<script` begin with.
+            // `</script`, `<!--` and `<script` begin with it.
             _ if rest[at + 1..].starts_with(['/', '!', 's', 'S']) => {
                 escaped.push_str("\\u003c");
             }

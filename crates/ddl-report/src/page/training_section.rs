@@ -1,4 +1,4 @@
-//! How the trainings went: a panel for each fold and quantity, variants named at the ends of their lines.
+//! Training curves: one panel for each fold and quantity, variants named at the ends of their lines.
 
 use std::fmt::Write as _;
 
@@ -14,7 +14,7 @@ const LEFT: f64 = 46.0;
 const RIGHT: f64 = 110.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 36.0;
-/// Height of a label, px: nearer ones are moved apart.
+/// Height of a label, px; closer labels are moved apart.
 const LABEL: f64 = 14.0;
 const COLOURS: usize = 5;
 
@@ -33,7 +33,7 @@ struct Series<'a> {
     points: Vec<(usize, f64)>,
 }
 
-/// Losses in one panel a fold and kind of loss, then validation errors where there are any.
+/// One panel for each fold and kind of loss, then the validation errors, if any.
 fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
     let variants = distinct(curves.iter().map(|curve| curve.variant.as_str()));
     let validation = values(curves.iter(), |point| point.validation);
@@ -42,7 +42,7 @@ fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
         let of_fold = || curves.iter().filter(move |curve| curve.fold == fold);
         for loss in distinct(of_fold().map(|curve| curve.loss.as_str())) {
             let of_loss = of_fold().filter(|curve| curve.loss == loss);
-            // All folds share one scale.
+            // All folds have the same scale.
             let same_loss = curves.iter().filter(|curve| curve.loss == loss);
             let all = values(same_loss, |point| Some(point.loss));
             let series = series(of_loss, &variants, |point| Some(point.loss));
@@ -160,7 +160,7 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Opti
     })
 }
 
-/// Each variant once, beside the end of its lines; labels that would overlap are moved apart.
+/// Names each variant once, beside the end of its lines; labels that would overlap are moved apart.
 fn labels(series: &[Series<'_>], up: &Scale, [top, bottom]: [f64; 2]) -> Vec<(usize, f64, String)> {
     let mut labels: Vec<(usize, f64, String)> = Vec::new();
     for variant in distinct(series.iter().map(|s| s.curve.variant.as_str())) {

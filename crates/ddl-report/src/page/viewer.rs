@@ -1,4 +1,4 @@
-//! The player alone, on a page of its own: for forecasts that there is nothing to measure with.
+//! A page with the player alone, for forecasts without known errors.
 
 use super::{
     error::PageError,
@@ -10,24 +10,24 @@ use crate::{Moment, document::escape};
 
 const TEMPLATE: &str = include_str!("viewer.html");
 
-/// A page that plays forecasts of somebody's own tracks: one file that needs nothing else, no network, no other file.
+/// Content of a page that plays forecasts of own tracks: one file, which needs no network and no other file.
 #[derive(Debug, Clone, Copy)]
 pub struct Viewer<'a> {
     /// The title.
     pub title: &'a str,
-    /// What it shows, in a sentence or two.
+    /// A description of one or two sentences.
     pub lead: &'a str,
-    /// What is to be known besides, below the player: a paragraph a note.
+    /// Paragraphs below the player.
     pub notes: &'a [String],
-    /// The moments that it plays.
+    /// The moments to play.
     pub moments: &'a [Moment],
 }
 
 impl Viewer<'_> {
-    /// The page, to be written into a file and opened in a browser.
+    /// The HTML text of the page.
     ///
     /// # Errors
-    /// A moment is not whole; the message names it.
+    /// A moment is incomplete; the error names it.
     pub fn to_html(&self) -> Result<String, PageError> {
         moment_data::check(self.moments, Truth::AsSeen)?;
         let moments = json_in_script(&moment_data::to_json(self.moments)?);

@@ -1,4 +1,4 @@
-//! The ablation: what the goal and the dynamics each add, beside the paper's Table II.
+//! The ablation: the contributions of the goal and of the dynamics, and the paper's Table II.
 
 use super::{
     cells::{NOTHING, errors},
@@ -10,7 +10,7 @@ use crate::{
 };
 use ddl_eval::Conditions;
 
-/// One table a group that has a variant without one of the two components, then the paper's.
+/// One table for each group that has a variant without one of the two components, then the paper's table.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let ablated: Vec<&ResultGroup<'_>> = groups.iter().filter(|g| has_ablated_variant(g)).collect();
     if ablated.is_empty() {
@@ -19,9 +19,9 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let mut parts = vec![
         Part::heading("Ablation: goal shift and dynamics"),
         Part::Paragraph(
-            "Goal shift: positions enter the network relative to the goal, which it does not see otherwise. Dynamics: the network \
-             shapes a flow to the goal instead of emitting positions. Without either it is plain STAR, which has no goals and draws 20 \
-             noise samples."
+            "Goal shift: positions enter the network relative to the goal; the network has no other input of the goal. \
+             Dynamics: the network shapes a flow to the goal instead of emitting positions. Without both it is plain \
+             STAR, which has no goals and draws 20 noise samples."
                 .to_owned(),
         ),
     ];
@@ -31,8 +31,8 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
         parts.push(Part::Paragraph(if alike(group) {
             "The variants have the same folds, seeds, epochs, recipe and commit.".to_owned()
         } else {
-            "The variants were NOT made alike: folds, seeds, epochs, recipe or commit differ (see the conditions beside the table of this \
-             protocol), and so differences are not those of the components alone."
+            "The variants were NOT made alike: folds, seeds, epochs, recipe or commit differ (see the conditions below \
+             the table of this protocol), so the components alone do not explain the differences."
                 .to_owned()
         }));
         parts.push(Part::Table(measured(group).captioned(format!(
@@ -79,11 +79,11 @@ fn alike(group: &ResultGroup<'_>) -> bool {
     lines.all(|line| Some(made(line)) == first)
 }
 
-/// The row of Table II that a line corresponds to: a variant as it is, walked as the protocol has it.
+/// The row of Table II that a line corresponds to: an unchanged variant under the integrator of the protocol.
 fn variant(line: &TableLine<'_>) -> Option<&'static AblationRow> {
     let conditions = line.conditions();
     let name = conditions.variant.as_deref()?;
-    // "DDL with plain Euler steps" and the like are no variants of their own.
+    // Lines such as "DDL with plain Euler steps" are not variants.
     let mut rows = LITERATURE.ablation.iter();
     rows.find(|row| conditions.forecaster == "DDL" && row.variant == name)
 }

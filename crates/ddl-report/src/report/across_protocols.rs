@@ -1,5 +1,5 @@
-//! The same forecaster under every protocol: what choosing with the truth is worth.
-//! The one table in which protocols meet. It is there to show that their numbers must not be compared, and says so.
+//! The same forecaster under every protocol: the effect of choosing with the truth.
+//! This is the only table with several protocols. It shows, and says, that their numbers are not comparable.
 
 use super::{
     cells::{NOTHING, errors},
@@ -8,14 +8,14 @@ use super::{
 use crate::document::{Part, Table};
 use ddl_eval::Protocol;
 
-const NOTE: &str = "The same windows and folds in every line, from the published pipeline to the honest one. Under `published` the goal of \
-    each pedestrian is chosen with the true end among those of the published estimator, whose query reads one future frame; then the \
-    best of 20 noise samples on it is kept, of the epoch that is best on test pedestrians; steps are plain Euler's. The line with the \
-    published goals, all 20 kept, under `fair` has the same estimator without that frame, and nothing is chosen but the best of its 20 \
-    hypotheses. The other lines under `fair` go to the forecaster's own goals, and under `single` to one that stands for them. Which \
-    training each line had stands beside the tables above.";
+const NOTE: &str = "Every line has the same windows and folds. Under `published` the goal of each pedestrian is chosen \
+    with the true end, among the goals of the published estimator, whose query reads one future frame. Then the best \
+    of 20 noise samples on it is kept, of the epoch that is best on test pedestrians; steps are plain Euler steps. \
+    Under `fair`, the line with the published goals, all 20 kept, has the same estimator without the future frame, and \
+    only the best of its 20 hypotheses is chosen. The other lines under `fair` have the forecaster's own goals, and \
+    under `single` one representative goal. The conditions below the tables above name the training of each line.";
 
-/// The lines of forecasters that head for goals, protocol by protocol, beside `published` on the same windows.
+/// The lines of forecasters with goals, by protocol, together with `published` on the same windows.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let mut parts = Vec::new();
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
@@ -23,7 +23,7 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
             .iter()
             .filter(|g| g.same_windows(oracle) && !g.protocol.shows_past())
             .collect();
-        // From the published pipeline to the honest one.
+        // `published` first.
         comparable.sort_by_key(|g| g.protocol != Protocol::Published);
         if comparable.len() < 2 {
             continue;
@@ -37,8 +37,8 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
         ]);
         parts.extend(oracle.warning());
         parts.push(Part::Table(table(&comparable).captioned(format!(
-            "minADE/minFDE in metres by protocol. NOT comparable with one another: see the warning. Data convention `{}`, \
-             window rule `{}`; scored: {}.",
+            "minADE/minFDE in metres by protocol. NOT comparable with one another: see the warning. Data convention \
+             `{}`, window rule `{}`; scored: {}.",
             oracle.convention,
             oracle.window_rule,
             oracle.test_subset.unwrap_or("all test windows")

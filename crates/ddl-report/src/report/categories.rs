@@ -7,12 +7,14 @@ use super::{
 use crate::document::{Part, Table};
 use ddl_eval::{CategoryScores, category::Category};
 
-pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres, mean over the pedestrians of the folds named, which all \
-    forecasters of the table have (not over the folds: some hold few pedestrians of a kind). First the pedestrian's own motion, then the \
-    types of TrajNet++ (static, linear, interacting, non-interacting), then the kinds of interaction, of which a pedestrian may have \
-    several. Categories are told with the true future, after the forecasts are made.";
+pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres, mean over the pedestrians of the \
+    folds named, which all forecasters of the table have (not over the folds, some of which hold few pedestrians of a \
+    kind). First the pedestrian's own motion, then the types of TrajNet++ (static, linear, interacting, \
+    non-interacting), then the kinds of interaction, of which a pedestrian may have several. The categories are \
+    computed from the true future, after the forecasts are made.";
 
-/// One table with a line a category and a column a forecaster; nothing where no row knows its categories, or no fold is shared.
+/// One table with a line a category and a column a forecaster; nothing where no row knows its categories, or no fold is
+/// shared.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let known: Vec<(&TableLine<'_>, String)> = group
         .labelled()
@@ -62,7 +64,7 @@ struct Pooled {
 }
 
 impl Pooled {
-    /// Seeds are averaged on each fold first; `None` where nobody is of the category.
+    /// Seeds are averaged on each fold first; `None` without pedestrians of the category.
     fn of(line: &TableLine<'_>, folds: &[&str], category: Category) -> Option<Self> {
         let (mut pedestrians, mut ade, mut fde) = (0, 0.0, 0.0);
         for fold in folds {

@@ -1,10 +1,10 @@
-//! What stands in the cells of the tables.
+//! Cells of the tables.
 
 use super::group::TableLine;
 
 pub(super) const NOTHING: &str = "-";
 
-/// `ADE/FDE`, where there are both.
+/// `ADE/FDE`, if both are known.
 pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> String {
     match (ade, fde) {
         (Some(ade), Some(fde)) => format!("{ade}/{fde}"),
@@ -37,7 +37,7 @@ pub(super) fn counts(mut counts: Vec<usize>) -> String {
     counts.join(" or ")
 }
 
-/// The folds that a number is of, of those there are.
+/// The folds of a number in words.
 pub(super) fn folds(present: &[&str], all: &[&str]) -> String {
     if present.len() == all.len() {
         "all".to_owned()

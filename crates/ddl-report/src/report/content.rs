@@ -1,4 +1,4 @@
-//! What a report says, in which order.
+//! The parts of a report and their order.
 
 use ddl_data::Convention;
 
@@ -51,8 +51,7 @@ fn first_line(groups: &[ResultGroup<'_>]) -> String {
         [] => "Data convention: none, this report holds no results.".to_owned(),
         [one] => format!("Data convention: {one}."),
         several => format!(
-            "Data conventions: {}. Numbers of different conventions are not comparable and stand in \
-             separate tables.",
+            "Data conventions: {}. Numbers of different conventions are not comparable and are in separate tables.",
             several.join("; ")
         ),
     }

@@ -1,4 +1,4 @@
-//! Which rows may stand in one table, and which make one line of it.
+//! Groups of rows: those of one table, and those of one line of it.
 
 use ddl_data::{Convention, WindowRule};
 
@@ -6,7 +6,7 @@ use super::spread::SeedSpread;
 use crate::document::Part;
 use ddl_eval::{Conditions, Protocol, ResultRow, Scores, significance::BlockErrors};
 
-/// Rows whose numbers are comparable: one table.
+/// Comparable rows: one table.
 pub(crate) struct ResultGroup<'a> {
     pub(crate) convention: Convention,
     pub(crate) window_rule: WindowRule,
@@ -15,12 +15,12 @@ pub(crate) struct ResultGroup<'a> {
     pub(crate) lines: Vec<TableLine<'a>>,
 }
 
-/// Results that differ in fold and seed alone: one line of a table.
+/// Results that differ only in fold and seed: one line of a table.
 pub(crate) struct TableLine<'a> {
     pub(crate) rows: Vec<&'a ResultRow>,
 }
 
-/// Sorts rows into tables: by convention, the published window rule first, the headline protocol first.
+/// Groups rows into tables, sorted by convention, the published window rule first, the headline protocol first.
 pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     let mut groups: Vec<ResultGroup<'_>> = Vec::new();
     for row in rows {
@@ -55,7 +55,7 @@ pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     groups
 }
 
-/// Of protocols: the headline one first, the one that chooses with the truth last.
+/// Order of protocols: the headline one first, the one that chooses with the truth last.
 pub(crate) fn order(protocol: Protocol) -> usize {
     match protocol {
         Protocol::Fair => 0,
@@ -81,7 +81,7 @@ impl ResultGroup<'_> {
         )
     }
 
-    /// Whether both groups score the same windows of the same data, under whatever protocol.
+    /// Whether both groups score the same windows of the same data, under any protocols.
     pub(crate) fn same_windows(&self, other: &Self) -> bool {
         (self.convention, self.window_rule, self.test_subset)
             == (other.convention, other.window_rule, other.test_subset)
@@ -94,7 +94,7 @@ impl ResultGroup<'_> {
         )
     }
 
-    /// Protocol, window rule, convention and scored part: what a caption must name.
+    /// Protocol, window rule, convention and scored part, for captions.
     pub(crate) fn conditions_in_words(&self) -> String {
         format!(
             "Data convention `{}`, window rule `{}`, protocol `{}`; scored: {}.",
@@ -168,7 +168,7 @@ impl<'a> TableLine<'a> {
             .filter(move |row| row.conditions.fold == fold)
     }
 
-    /// The errors by block on one fold, mean over the seeds; `None` unless all have them of the same windows.
+    /// The errors by block on one fold, mean over the seeds; `None` unless all seeds have the same windows.
     pub(crate) fn blocks(&self, fold: &str) -> Option<Vec<BlockErrors>> {
         let rows: Vec<&ResultRow> = self.on(fold).collect();
         let count = rows.len() as f64;
@@ -199,7 +199,7 @@ impl<'a> TableLine<'a> {
         seeds
     }
 
-    /// A number on one fold, over the seeds.
+    /// A metric on one fold, over the seeds.
     pub(crate) fn on_fold(&self, fold: &str, of: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
         SeedSpread::of(&self.on(fold).map(|row| of(&row.scores)).collect::<Vec<_>>())
     }
@@ -222,7 +222,7 @@ impl<'a> TableLine<'a> {
         SeedSpread::of(&means?)
     }
 
-    /// Under what conditions the line came about, in words: seeds, training, device, commit.
+    /// The conditions of the line in words: seeds, training, device, commit.
     pub(crate) fn settings(&self) -> String {
         let c: &Conditions = self.conditions();
         let known = |text: &str| {
@@ -233,10 +233,11 @@ impl<'a> TableLine<'a> {
             }
         };
         let commit = known(&c.commit);
-        // What made the forecasts of another program is known to it alone.
+        // Training and seed of another program are unknown.
         if let (None, Some(origin)) = (c.epochs, &c.selection) {
             return format!(
-                "{origin}; its seed, its training and what it saw of the future are not known here; scored at commit {commit}"
+                "{origin}; its seed, its training and its use of the future are not known here; scored at commit \
+                 {commit}"
             );
         }
         let seeds: Vec<String> = self.seeds().iter().flatten().map(u64::to_string).collect();

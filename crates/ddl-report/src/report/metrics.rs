@@ -1,23 +1,23 @@
-//! Everything that is measured besides minADE and minFDE.
+//! Metrics besides minADE and minFDE.
 
 use super::{
     cells::{self, NOTHING},
-    group::ResultGroup,
+    group::{ResultGroup, TableLine},
+    spread::SeedSpread,
 };
 use crate::document::{Part, Table};
 use ddl_eval::Scores;
 
-/// A metric of the tables after the first: its column, its decimals, and where it is found in the scores.
+/// A metric of the further tables: name of its column, decimals, value.
 type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
-pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the \
-    hypothesis of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every \
-    hypothesis ends more than 0.5 m off; collide: discs of radius 0.2 m overlap between the \
-    forecasts that protocol `single` would take (in brackets: between true futures); goal FDE: nearest goal from the true end; Phi \
-    falls: rollouts that come nearer to their goal at every step; certified: rollouts whose Lyapunov \
-    certificate, the model's evidence of it step by step, holds; to goal: distance left at the end; \
-    turn: largest angle between a step and the goal direction; reverse: rollouts that turn by more \
-    than 90 degrees; K: hypotheses a pedestrian.";
+pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the hypothesis \
+    of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every hypothesis ends more than 0.5 m \
+    off; collide: discs of radius 0.2 m overlap between the forecasts of protocol `single` (in brackets: between true \
+    futures); goal FDE: distance of the nearest goal from the true end; Phi falls: rollouts that come nearer to their \
+    goal at every step; certified: rollouts whose Lyapunov certificate holds, the model's step-by-step evidence; to \
+    goal: distance left at the end; turn: largest angle between a step and the goal direction; reverse: rollouts that \
+    turn by more than 90 degrees; K: hypotheses of each pedestrian.";
 
 const FURTHER: [MetricColumn; 13] = [
     ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
@@ -41,16 +41,16 @@ const FURTHER: [MetricColumn; 13] = [
     ("K", 0, |s| Some(s.hypotheses as f64)),
 ];
 
-pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the folds named. ADE@minFDE: ADE of \
-    the hypothesis of least FDE; expected: errors of all hypotheses, weighted; likely: errors of the \
-    hypothesis of greatest weight; missed 1 m, 2 m: every hypothesis ends farther off; runs into: \
-    forecasts, those that protocol `single` would take, that overlap the TRUE future of another (Col-II; discs of radius 0.2 m); KDE NLL: negative \
-    log-likelihood of the truth under a Gaussian kernel density of the weighted hypotheses, clipped at 20 \
-    nats; AMD: Mahalanobis distance of the truth in deviations of the hypotheses; AMV: largest \
-    eigenvalue of their mean covariance; APD, FPD: mean distance between two hypotheses, over the path and \
-    of the ends. Distributions need several hypotheses, and depend on how many there are.";
+pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the folds named. ADE@minFDE: ADE of the \
+    hypothesis of least FDE; expected: weighted mean error of all hypotheses; likely: error of the hypothesis of \
+    greatest weight; missed 1 m, 2 m: every hypothesis ends farther off; runs into: forecasts of protocol `single` \
+    that overlap the TRUE future of another pedestrian (Col-II; discs of radius 0.2 m); KDE NLL: negative \
+    log-likelihood of the truth under a Gaussian kernel density of the weighted hypotheses, clipped at 20 nats; AMD: \
+    Mahalanobis distance of the truth from the distribution of the hypotheses; AMV: largest eigenvalue of their mean \
+    covariance; APD, FPD: mean distance between two hypotheses, over the path and at the endpoints. These metrics need \
+    several hypotheses and depend on their number.";
 
-/// Of the forecast as a whole: all hypotheses with their weights, not the best one.
+/// Metrics of the forecast as a whole: of all hypotheses with their weights, not of the best one.
 const WHOLE: [MetricColumn; 13] = [
     ("ADE@minFDE m", 3, |s| s.ade_at_min_fde),
     ("expected ADE m", 3, |s| s.expected_ade),
@@ -86,7 +86,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     both.into_iter().flat_map(part).collect()
 }
 
-/// One line a forecaster, one column a metric, mean over the folds that it has.
+/// One line for each forecaster, one column for each metric, mean over its folds.
 fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
     let folds = group.folds();
     let columns = ["forecaster", "folds"]
@@ -97,13 +97,31 @@ fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
         let present = line.present(&folds);
         let named = cells::folds(&present, &folds);
         let cells = metrics.iter().map(|&(_, decimals, of)| {
-            // A metric that a fold lacks is NaN there, and so is its mean.
-            let spread = line.over_folds(&present, |s| of(s).unwrap_or(f64::NAN));
-            let text = spread.map(|spread| format!("{spread:.decimals$}"));
-            text.filter(|text| !text.contains("NaN"))
-                .unwrap_or_else(|| NOTHING.to_owned())
+            let spread = over_folds(line, &present, of);
+            spread.map_or(NOTHING.to_owned(), |spread| format!("{spread:.decimals$}"))
         });
         table.row([label, named].into_iter().chain(cells));
     }
     table
+}
+
+/// The mean of the metric with this column name over the folds, without its deviation over the seeds.
+pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
+    let mut columns = FURTHER.iter().chain(&WHOLE);
+    let column = columns.find(|(column, ..)| *column == name);
+    let mean = column.and_then(|&(_, decimals, of)| {
+        let mean = over_folds(line, folds, of)?.mean();
+        Some(format!("{mean:.decimals$}"))
+    });
+    mean.unwrap_or_else(|| NOTHING.to_owned())
+}
+
+/// `None` where a fold lacks the metric.
+fn over_folds(
+    line: &TableLine<'_>,
+    folds: &[&str],
+    of: fn(&Scores) -> Option<f64>,
+) -> Option<SeedSpread> {
+    let spread = line.over_folds(folds, |s| of(s).unwrap_or(f64::NAN));
+    spread.filter(|spread| !spread.mean().is_nan())
 }

@@ -1,10 +1,11 @@
-//! Results of several runs put together: tables for people, JSON for programs.
+//! Results of several runs: tables, and JSON for programs.
 
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use crate::{ReportError, document::Document};
+use ddl_data::Convention;
 use ddl_eval::ResultRow;
 
 mod ablation;
@@ -19,16 +20,18 @@ mod recordings;
 mod section;
 mod significance;
 mod spread;
+mod summary;
 mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
+pub use summary::Summary;
 
 const FORMAT: u32 = 1;
 
 /// Results of any number of runs.
 ///
 /// Rows are grouped into one table for each data convention, window rule, protocol and test subset,
-/// so that no column mixes numbers that cannot be compared.
+/// so that every column holds comparable numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     format: u32,
@@ -90,22 +93,27 @@ impl Report {
         &self.rows
     }
 
-    /// The report as a page of markdown; its first line names the data convention of the numbers.
+    /// The report as markdown; its first line names the data convention of the numbers.
     pub fn to_markdown(&self) -> String {
         self.document().to_markdown()
     }
 
-    /// The report as a document, to be rendered as markdown, HTML or LaTeX.
+    /// The report as a document, for markdown, HTML or LaTeX.
     pub fn document(&self) -> Document {
         content::document(&self.title, &self.rows)
     }
 
-    /// Error over watching time, a figure for each table of that name: names and SVG files.
+    /// The main numbers of a convention under its headline window rule; `None` where the report has no such results.
+    pub fn summary(&self, convention: Convention) -> Option<Summary> {
+        summary::of(&self.rows, convention)
+    }
+
+    /// Figures of the tables "Error over watching time": names and SVG files.
     pub(crate) fn watching_figures(&self) -> Vec<(String, String)> {
         watching::figures(&self.rows)
     }
 
-    /// The report as JSON, a line a row, from which [`Report::from_json`] makes the same report, bit by bit.
+    /// The report as JSON, one line for each row. [`Report::from_json`] makes the same report from it, bit by bit.
     ///
     /// # Errors
     /// None in practice: scores are finite.

@@ -1,4 +1,4 @@
-//! What others published, as printed by them.
+//! Published numbers of others, as printed by their sources.
 
 use ddl_data::Convention;
 
@@ -12,8 +12,8 @@ pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
     let other = if star || rows.is_empty() {
         ""
     } else {
-        " No result above is in the `star` convention: none is comparable with STAR, DDL or the \
-         reference values below."
+        " No result above is in the `star` convention, so STAR, DDL and the reference values below are not comparable \
+         with them."
     };
     vec![
         Part::heading("Published numbers"),
@@ -34,8 +34,8 @@ pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
         Part::Table(literature::social_gan_convention_table()),
         Part::subheading("One forecast in the `social-gan` convention (ADE/FDE)"),
         Part::Paragraph(
-            "Windows of at least one pedestrian: compare with window rule `social-gan` (at least 1 pedestrians) under `single`, and \
-             leave univ out, whose windows are others."
+            "Windows of at least one pedestrian: compare with window rule `social-gan` (at least 1 pedestrians) under \
+             `single`, and leave univ out, whose windows are others."
                 .to_owned(),
         ),
         Part::Table(literature::social_gan_single_table()),

@@ -1,11 +1,11 @@
-//! Own recordings that were measured together, one by one.
+//! Errors by recording, for own recordings that were measured together.
 
 use super::{cells::pair, group::ResultGroup};
 use crate::document::{Part, Table};
 use ddl_data::Convention;
 use ddl_eval::{RecordingErrors, ResultRow};
 
-/// A table for each set of own recordings: a row a recording and one for all, a column a forecaster.
+/// A table for each set of own recordings: a row for each recording and one for all, a column for each forecaster.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     if group.convention != Convention::Own {
         return Vec::new();
@@ -27,7 +27,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
 
 /// `None` for a single recording.
 fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
-    // of several seeds the first
+    // The first of several seeds.
     let rows = group.lines.iter().map(|line| line.on(fold).next());
     let measured: Vec<(String, &ResultRow, Vec<RecordingErrors>)> = group
         .labels()
@@ -61,7 +61,8 @@ fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
     let start = ["all".to_owned(), first.scores.pedestrians.to_string()];
     table.row(start.into_iter().chain(errors));
     Some(table.captioned(format!(
-        "minADE/minFDE in metres, mean over the pedestrians of each recording, and of all; of several seeds the first. {}",
+        "minADE/minFDE in metres, mean over the pedestrians of each recording, and of all; of several seeds the first. \
+         {}",
         group.conditions_in_words()
     )))
 }

@@ -1,4 +1,4 @@
-//! One table of comparable results: how they were measured, the table, what it cannot show.
+//! The section of one table: its conditions, the table, further tables.
 
 use ddl_data::WindowRule;
 
@@ -24,10 +24,9 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
             format!("Window rule `{}`: {rule}.", group.window_rule),
             format!("Scored: {subset}."),
             "Cells: minADE/minFDE in metres over the hypotheses of each pedestrian, mean over \
-             pedestrians; `mean`: plain mean of the folds, given when all are there; ±: standard \
-             deviation over seeds."
+             pedestrians; `mean`: plain mean of all folds; ±: standard deviation over seeds."
                 .to_owned(),
-            "What the other columns are: see \"How to read the tables\", below.".to_owned(),
+            "The other columns: see \"How to read the tables\", below.".to_owned(),
         ]),
     ];
     parts.extend(group.warning());
@@ -38,7 +37,10 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     more.extend(significance::parts(group));
     more.extend(categories::parts(group));
     parts.push(Part::Details {
-        summary: "Further metrics, the forecast as a whole, how sure the means are, by category of pedestrian".to_owned(),
+        summary:
+            "Further metrics, the forecast as a whole, how sure the means are, by category of \
+            pedestrian"
+                .to_owned(),
         parts: more,
     });
     parts
@@ -78,7 +80,7 @@ fn headline(group: &ResultGroup<'_>) -> Table {
     table
 }
 
-/// Under what conditions each line came about; lines alike are named together.
+/// The conditions of each line; lines with the same conditions are named together.
 fn conditions(group: &ResultGroup<'_>) -> Vec<String> {
     let mut alike: Vec<(String, Vec<String>)> = Vec::new();
     for (line, label) in group.labelled() {

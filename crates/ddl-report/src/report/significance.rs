@@ -1,4 +1,4 @@
-//! How sure the numbers of a table are, and the differences between its lines.
+//! Intervals of the errors, and of the differences between lines.
 
 use rayon::prelude::*;
 
@@ -11,14 +11,16 @@ use ddl_eval::significance::{
     BlockErrors, BlockMetric, Interval, mean_interval, paired_difference,
 };
 
-pub(super) const LEGEND: &str = "How sure the means are: in brackets the 95 % interval over 10,000 resamples of 20 s of recording \
-    (windows overlap and are no independent samples); p: how often chance alone would make as large a difference from the \
-    forecaster named in the head of the column, by changing the sign of the difference of every 20 s at random (a cautious answer where the folds disagree); not corrected for the \
-    number of comparisons. Nothing is said where a fold has fewer than 10 such stretches. Seeds are averaged first: how much they \
-    differ is the ± of the first table and not in these intervals. The intervals speak of other moments in the same places, not of \
-    other places: for that, look at how much the folds differ.";
+pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 95 % interval over 10,000 resamples of \
+    20 s of recording (windows overlap and are not independent samples). p is the probability that chance alone makes \
+    as large a difference from the forecaster in the head of the column: the sign of the difference of every 20 s is \
+    changed at random. It is cautious where the folds disagree, and not corrected for the number of comparisons. \
+    Intervals need at least 10 such stretches in every fold. Seeds are averaged first; their spread is the ± of the \
+    first table, not part of the intervals. The intervals hold for other moments in the same places; for other places, \
+    compare the folds.";
 
-/// Intervals of every line that has errors by block, and its differences from the first trained one of those with the most folds.
+/// Intervals of every line that has errors by block, and its differences from the first trained one of those with the
+/// most folds.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let folds = group.folds();
     let lines: Vec<(MeasuredLine<'_>, String)> = group
@@ -47,10 +49,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         .par_iter()
         .map(|(measured, label)| {
             let mut cells = vec![label.clone(), cells::folds(&measured.names(), &folds)];
-            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
-                let interval = mean_interval(&measured.slices(), metric);
-                cells.push(interval.map_or(NOTHING.to_owned(), in_words));
-            }
+            cells.extend(measured.intervals());
             for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
                 cells.extend(difference(measured, reference, metric));
             }
@@ -67,6 +66,12 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
             group.conditions_in_words()
         ))),
     ]
+}
+
+/// The mean minADE and minFDE of a line over its folds, each with its 95 % interval.
+pub(super) fn intervals(line: &TableLine<'_>, folds: &[&str]) -> [String; 2] {
+    let measured = MeasuredLine::of(line, folds);
+    measured.map_or([NOTHING; 2].map(str::to_owned), |line| line.intervals())
 }
 
 struct MeasuredLine<'a> {
@@ -91,12 +96,19 @@ impl<'a> MeasuredLine<'a> {
         self.folds.iter().map(|(_, blocks)| &blocks[..]).collect()
     }
 
+    fn intervals(&self) -> [String; 2] {
+        [BlockMetric::MinAde, BlockMetric::MinFde].map(|metric| {
+            let interval = mean_interval(&self.slices(), metric);
+            interval.map_or(NOTHING.to_owned(), in_words)
+        })
+    }
+
     fn names(&self) -> Vec<&str> {
         self.folds.iter().map(|(name, _)| name.as_str()).collect()
     }
 }
 
-/// The difference and its p-value as two cells; nothing where the two have other folds or windows, or are the same line.
+/// The difference and its p-value as two cells; `-` where folds or windows differ, or the lines are the same.
 fn difference(
     measured: &MeasuredLine<'_>,
     reference: &MeasuredLine<'_>,
@@ -120,7 +132,7 @@ fn difference(
     }
 }
 
-/// With its sign, unless it rounds to nothing.
+/// With its sign, unless it rounds to 0.
 fn signed(metres: f64) -> String {
     let text = format!("{metres:+.3}");
     match text.as_str() {

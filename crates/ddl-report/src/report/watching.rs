@@ -1,5 +1,5 @@
-//! What watching is worth, by how long a recording has been watched: `online` forecasts beside those that the same model
-//! makes without it.
+//! The value of the memory of a recording over watching time: `online` forecasts beside those of the same model without
+//! it.
 
 use super::group::{ResultGroup, TableLine, groups};
 use crate::document::{Part, Table};
@@ -8,16 +8,16 @@ use ddl_eval::significance::BlockErrors;
 use ddl_eval::{Protocol, ResultRow};
 
 const QUARTERS: usize = 4;
-/// Blocks whose mean is a point of a curve: those of a minute.
+/// Number of blocks whose mean is a point of a curve: one minute.
 const SLIDING: usize = 3;
-/// Of the 20 s in which the windows of a block start, in minutes.
+/// Length of a block in minutes (20 s).
 const BLOCK_MINUTES: f64 = 1.0 / 3.0;
 
-const NOTE: &str = "By quarters of the time from the first to the last window of a recording. In brackets: the change against the same model \
-    without the memory of the recording, on the same windows. The two numbers come from different protocols: the change measures what \
-    the memory of the recording is worth, not an improvement of the method.";
+const NOTE: &str = "By quarters of the time from the first to the last window of a recording. The brackets give the \
+    change against the same model without the memory of the recording, on the same windows. The two numbers come from \
+    different protocols: the change is the value of the memory of the recording, not an improvement of the method.";
 
-/// One model on one recording, with and without the memory of it.
+/// One model on one recording, with and without the memory of the recording.
 struct Watched {
     forecaster: String,
     /// Blocks of the recording, means over seeds.
@@ -40,7 +40,7 @@ impl Watched {
     }
 }
 
-/// The models of an online group on each recording, where they were also scored without watching.
+/// The models of an online group on each recording, if they were also scored without the memory.
 fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> {
     let without = match group.protocol {
         Protocol::Online => Protocol::Fair,
@@ -77,7 +77,7 @@ fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> 
     all
 }
 
-/// A table for each online group: a row for each model and recording, a column for each quarter of the recording.
+/// A table for an online group: a row for each model and recording, a column for each quarter of the recording.
 pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Part> {
     let all = watched(group, groups);
     if all.is_empty() {
@@ -165,7 +165,7 @@ fn by_quarter(blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
     })
 }
 
-/// Minutes since the first window, and the mean minFDE (m) of some blocks until then.
+/// Minutes since the first window, and the mean minFDE (m) of the blocks before.
 fn sliding(blocks: &[BlockErrors]) -> Vec<[f64; 2]> {
     let first = blocks.first().map_or(0, |block| block.block);
     let minutes = |block: &BlockErrors| (block.block - first + 1) as f64 * BLOCK_MINUTES;
@@ -174,7 +174,7 @@ fn sliding(blocks: &[BlockErrors]) -> Vec<[f64; 2]> {
     windows.filter_map(point).collect()
 }
 
-/// Mean minFDE over the pedestrians of some blocks, m.
+/// Mean minFDE over the pedestrians of the blocks, m.
 fn mean<'a>(blocks: impl Iterator<Item = &'a BlockErrors>) -> f64 {
     let sums = blocks.map(|block| (block.pedestrians as f64, block.min_fde));
     let (pedestrians, sum) = sums.fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));

@@ -1,4 +1,4 @@
-//! What pictures of scenes and of estimated goals hold; how they look is for eyes.
+//! The content of pictures of scenes and of estimated goals.
 
 use ddl_data::{PedestrianId, Position, WINDOW, Window};
 use ddl_eval::{
@@ -21,7 +21,7 @@ fn walk(from: Position, step: Position) -> Vec<Position> {
         .collect()
 }
 
-/// Somebody who starts at `from`, with `k` goals beyond the end and as many experts as asked for.
+/// A pedestrian that starts at `from`, with `k` goals beyond the end and some experts.
 fn case(title: &str, from: Position, step: Position, k: usize, experts: usize) -> GoalCase {
     let track = walk(from, step);
     let end = track[WINDOW - 1];
@@ -94,7 +94,7 @@ fn a_goal_of_four_times_the_weight_has_twice_the_radius() {
 #[test]
 fn the_place_in_the_world_does_not_matter() {
     let picture = |from| figure::goals("", &[case("a", from, [0.5, 0.25], 4, 8)]).unwrap();
-    // Powers of two and their sums: no rounding at either place.
+    // Powers of two and their sums, so that no rounding occurs.
     assert_eq!(picture([0.0, 0.0]), picture([524_288.0, -4_194_304.0]));
 }
 
@@ -127,12 +127,12 @@ fn experts_that_lead_far_away_are_cut_and_do_not_shrink_the_pedestrian() {
         lines.filter_map(across).collect()
     };
     assert!(!bare.contains("similar pedestrians") && !bare.contains("class=\"expert\""));
-    // The panel stands as it stood across: only the legend has changed. Its shapes come first.
+    // The panel is unchanged: only the legend, whose shapes come first, is different.
     assert_eq!(
         circles(&svg)[LEGEND_CIRCLES..],
         circles(&bare)[LEGEND_CIRCLES..]
     );
-    // What the expert's line leads to beyond the frame is cut off.
+    // The part of the expert's line beyond the frame is cut off.
     let (_, plot) = svg.split_once("viewBox=\"60 ").unwrap();
     let (plot, after) = plot.split_once("</svg>").unwrap();
     assert_eq!(count(plot, "class=\"expert\""), 1);
@@ -183,7 +183,7 @@ fn every_role_of_a_scene_is_drawn_and_named() {
     ] {
         assert!(svg.contains(text), "no `{text}`");
     }
-    // Text of the user's files must not become markup.
+    // Text from the user's files must be escaped.
     assert!(svg.contains("&lt;corridor&gt; &amp; ") && !svg.contains("<corridor>"));
     // 8 observed dots, a true end and a goal for each of the two, and the legend's 4, 1 and 1.
     assert_eq!(count(&svg, "<circle"), 2 * (8 + 1 + 1) + 4 + 1 + 1);

@@ -1,4 +1,4 @@
-//! What is shown of a fold is chosen by rule.
+//! The selection of moments of a fold.
 
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_eval::{
@@ -81,7 +81,7 @@ fn the_case_shown_is_the_median_one() {
     let error = |window: &Window, i: usize, forecast: &Forecast| {
         average_displacement(forecast.hypothesis(i, 0), window.future(i))
     };
-    // The oracle's lines all arrive; those who go at least two metres are the cases.
+    // The oracle's lines all reach their goals; the cases are the pedestrians that move at least two metres.
     let mut errors: Vec<f64> = Vec::new();
     let mut shown = None;
     for (window, forecast) in windows.iter().zip(&forecasts) {

@@ -1,4 +1,4 @@
-//! The baselines of `ddl-eval` on the real recordings are those that the literature's file says were measured.
+//! The baselines of `ddl-eval` on the real recordings agree with the reference values in `literature.json`.
 
 use ddl_data::{Convention, Dataset, Window, WindowRule, locate};
 use ddl_eval::{
@@ -7,7 +7,7 @@ use ddl_eval::{
 };
 use ddl_report::literature;
 
-/// The test windows of every fold; without recordings tests are skipped, but not in CI.
+/// The test windows of every fold; without recordings the tests are skipped, except in CI.
 fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {
     let star = Convention::Star;
     let windows = |dataset: Dataset| {
@@ -26,8 +26,8 @@ fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {
         Ok(dataset) => Some(windows(dataset)),
         Err(why) => {
             let in_ci = std::env::var_os("CI").is_some();
-            assert!(!in_ci, "in CI the recordings must be there: {why}");
-            eprintln!("skipped, the recordings are not here: {why}");
+            assert!(!in_ci, "CI needs the recordings: {why}");
+            eprintln!("skipped, no recordings: {why}");
             None
         }
     }

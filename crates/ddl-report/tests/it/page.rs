@@ -1,4 +1,4 @@
-//! What the report page holds, and what it refuses. What it does in a browser is checked by `tests/page/check_page.py`.
+//! The content and the errors of the report page. `tests/page/check_page.py` tests it in a browser.
 
 use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
@@ -10,7 +10,7 @@ use ddl_report::{
 use proptest::prelude::*;
 use serde_json::Value;
 
-/// Pedestrians side by side, each with hypotheses that fan out, rounded as a recording would be.
+/// Pedestrians side by side, each with a fan of hypotheses, rounded like a recording.
 fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (Window, Forecast) {
     let track = |i: usize| -> Vec<Position> {
         (0..20)
@@ -101,7 +101,7 @@ fn the_report_is_embedded_bit_for_bit_and_its_tables_are_there() {
     let tables = report.document().to_html();
     let (_, sections) = tables.split_once("</header>\n").unwrap();
     assert!(html.contains(sections));
-    // Every entry of the contents leads somewhere, and what uses the future says so.
+    // Every entry of the contents is a link to a section, and sections that use the future are marked.
     for link in html.split("<a href=\"#").skip(1) {
         let (id, _) = link.split_once('"').unwrap();
         assert_eq!(html.matches(&format!("id=\"{id}\"")).count(), 1, "{id}");
@@ -294,7 +294,7 @@ fn what_is_not_whole_is_refused_by_name() {
         ),
         (
             |m| m.picks = vec![Pick::new(Show::Group, vec![0, 2], "")],
-            "the pick `walking together` names pedestrian 2, and there are 2, counted from 0",
+            "the pick `walking together` names pedestrian 2 of 2, counted from 0",
         ),
     ];
     for (change, expected) in cases {
@@ -341,7 +341,9 @@ fn walked(mut at: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
 
 proptest! {
     #[test]
-    fn positions_survive_their_compact_form(places in prop::collection::vec([-1_000_000_000_i64..=1_000_000_000, -50_000..=50_000], 32)) {
+    fn positions_survive_their_compact_form(
+        places in prop::collection::vec([-1_000_000_000_i64..=1_000_000_000, -50_000..=50_000], 32)
+    ) {
         let metres: Vec<Position> = places.iter().map(|p| p.map(|mm| mm as f64 / 1000.0)).collect();
         let mut moment = moment(1, 1, true);
         let pedestrian = &mut moment.pedestrians[0];

@@ -9,11 +9,11 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// How often a wish to stop and the end of a process are looked for.
+/// Time between two checks for a wish to stop and for the end of a process.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
-/// Runs a process to its end in a process group of its own, which Ctrl-C does not reach: the first wish to stop is
-/// passed on as SIGTERM, which lets it save, any further one as a kill.
+/// Runs a process to its end in a process group of its own, which Ctrl-C does not reach. The first wish to stop is
+/// passed on as SIGTERM, on which the process saves its state; further ones kill it.
 pub(super) fn run(
     command: &mut Command,
     interrupt: &Interrupt,
@@ -25,12 +25,12 @@ pub(super) fn run(
         .stdin(Stdio::null())
         .stdout(Stdio::piped())
         .spawn()
-        .with_context(|| format!("{} cannot be started", command.get_program().display()))?;
+        .with_context(|| format!("cannot start {}", command.get_program().display()))?;
     let output = child.stdout.take().context("a process has no output")?;
     let (sender, lines) = mpsc::channel();
     thread::spawn(move || {
         let lines = BufReader::new(output).lines().map_while(Result::ok);
-        // whoever no longer hears it ends it
+        // The receiver is gone when the process has ended.
         for line in lines {
             if sender.send(line).is_err() {
                 break;
@@ -63,14 +63,14 @@ pub(super) fn run(
     }
 }
 
-/// Asks a process to stop, or kills it. It may have ended this moment, which is as good.
+/// Asks a process to stop, or kills it. That the process has just ended is no error.
 fn stop(child: &mut Child, at_once: bool) {
     #[cfg(unix)]
     if !at_once {
         use rustix::process::{Pid, Signal, kill_process};
         if kill_process(Pid::from_child(child), Signal::TERM).is_err() {
             tell(format_args!(
-                "warning: process {} could not be asked to stop",
+                "warning: cannot send SIGTERM to process {}",
                 child.id()
             ));
         }

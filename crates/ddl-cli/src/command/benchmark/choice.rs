@@ -1,11 +1,10 @@
-//! What is trained and measured, as asked for, and the plan that follows.
+//! The options that choose folds, methods and protocols, and the plan made of them.
 
 use super::super::folder;
 use super::super::recipe::Recipe;
 use super::method::Method;
 use super::plan::{Plan, Settings, Training};
 use super::profile::Profile;
-use super::publish;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -27,8 +26,8 @@ pub(super) struct Choice {
     /// Folds to test on, as in `eth,hotel` [default: the profile's]
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     folds: Vec<String>,
-    /// Variants to train: full, no-goal-shift, no-dynamics, star, perceptron (the full method with a network without attention), or
-    /// all
+    /// Variants to train: full, no-goal-shift, no-dynamics, star, perceptron (the full method on a network without
+    /// attention), or all
     #[arg(
         long,
         value_delimiter = ',',
@@ -36,8 +35,8 @@ pub(super) struct Choice {
         default_value = "full"
     )]
     variants: Vec<String>,
-    /// Protocols to score under: published, fair, single, online, online-single; with published every model is trained by the paper's recipe, without
-    /// it by the recommended one, and the last epoch alone is kept
+    /// Protocols to score under: published, fair, single, online, online-single; with published the models are trained
+    /// by the paper's recipe, otherwise by the recommended one, which keeps only the last epoch
     #[arg(
         long = "protocol",
         value_delimiter = ',',
@@ -45,7 +44,7 @@ pub(super) struct Choice {
         default_value = "fair,single,online,online-single"
     )]
     protocols: Vec<Protocol>,
-    /// Seeds; the report gives means and standard deviations over them
+    /// Seeds of the trainings; the report gives means and standard deviations over them
     #[arg(
         long,
         value_delimiter = ',',
@@ -68,7 +67,7 @@ pub(super) struct Choice {
 }
 
 impl Choice {
-    /// The plan, and where its recordings are said to be chosen.
+    /// The plan; prints the data convention where no option names it.
     pub(super) fn plan(&self) -> anyhow::Result<Plan> {
         let (convention, data) = self.recordings()?;
         self.plan_of(convention, data)
@@ -78,7 +77,8 @@ impl Choice {
         let data = self.data.as_deref();
         let convention = match self.convention {
             Some(Convention::Own) => bail!(
-                "a benchmark is of star, social-gan or simulated data; on your own recordings use `ddl train` and `ddl evaluate`"
+                "--convention of a benchmark is star, social-gan or simulated; for your own recordings use `ddl train` \
+                 and `ddl evaluate`"
             ),
             Some(convention) => convention,
             None => {
@@ -86,7 +86,7 @@ impl Choice {
                 let there = recorded.find(|&convention| locate(convention, data).is_ok());
                 match (there, data) {
                     (Some(convention), _) => convention,
-                    // It is said what the folder lacks.
+                    // The error then names what the folder lacks.
                     (None, Some(_)) => Convention::Star,
                     (None, None) => Convention::Simulated,
                 }
@@ -104,10 +104,10 @@ impl Choice {
 
     fn plan_of(&self, convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Plan> {
         let mut protocols = self.protocols.clone();
-        // How they were asked for makes no other results.
+        // Their order does not change the results.
         protocols.sort_unstable();
         protocols.dedup();
-        // The paper's for the paper's protocol, which compares with the paper.
+        // The protocol `published` compares with the paper, so it needs the paper's recipe.
         let name = if protocols.contains(&Protocol::Published) {
             Recipe::Published
         } else {
@@ -115,8 +115,8 @@ impl Choice {
         };
         if name == Recipe::Published && protocols.iter().any(|protocol| protocol.shows_past()) {
             bail!(
-                "the protocol published measures the paper's recipe, whose models remember nothing of a place: measure online \
-                 and online-single without it"
+                "the protocol published needs the paper's recipe, whose models have no memory of a place: leave out \
+                 published, or online and online-single"
             );
         }
         let work = self.profile.work(name);
@@ -163,22 +163,20 @@ impl Choice {
     }
 }
 
-/// Where the results of a plan go when nothing else is said.
+/// The default folder of the results of a plan.
 pub(super) fn usual_folder(plan: &Plan) -> PathBuf {
     let settings = &plan.settings;
-    let suffix = publish::suffix(settings.recipe.name);
+    let suffix = match settings.recipe.name {
+        Recipe::Recommended => "",
+        Recipe::Published => "-published",
+    };
     let name = format!("{}-{}{suffix}", settings.convention, settings.profile);
     Path::new("runs").join(name)
 }
 
 fn one_of(what: &str, name: &str, known: &[&str]) -> anyhow::Result<usize> {
     let index = known.iter().position(|known| *known == name);
-    index.with_context(|| {
-        format!(
-            "there is no {what} {name:?}: choose from {}",
-            known.join(", ")
-        )
-    })
+    index.with_context(|| format!("unknown {what} {name:?}: choose from {}", known.join(", ")))
 }
 
 #[cfg(test)]

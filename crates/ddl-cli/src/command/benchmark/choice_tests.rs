@@ -63,18 +63,18 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
         ),
         (
             &format!("{all} quick"),
-            "star-quick-published 5 2500: --epochs 10 --train-pedestrians 4000 --recipe published --batch-pedestrians 16 \
-             --learning-rate 0.001 --learning-rate-schedule cosine",
+            "star-quick-published 5 2500: --epochs 10 --train-pedestrians 4000 --recipe published --batch-pedestrians \
+             16 --learning-rate 0.001 --learning-rate-schedule cosine",
         ),
         (
             &format!("{all} evening"),
-            "star-evening-published 5 all: --epochs 60 --recipe published --batch-pedestrians 256 --learning-rate 0.0015 \
-             --learning-rate-schedule cosine",
+            "star-evening-published 5 all: --epochs 60 --recipe published --batch-pedestrians 256 --learning-rate \
+             0.0015 --learning-rate-schedule cosine",
         ),
         (
             "--profile paper --protocol published",
-            "star-paper-published 5 all: --epochs 200 --recipe published --batch-pedestrians 256 --learning-rate 0.0015 \
-             --learning-rate-schedule constant",
+            "star-paper-published 5 all: --epochs 200 --recipe published --batch-pedestrians 256 --learning-rate \
+             0.0015 --learning-rate-schedule constant",
         ),
     ] {
         assert_eq!(planned(words), expected, "{words}");
@@ -86,16 +86,16 @@ fn unknown_names_are_refused_with_the_known_ones() {
     let error = |words: &str| plan_of(words).unwrap_err().to_string();
     assert_eq!(
         error("--variants star,ful"),
-        "there is no variant \"ful\": choose from full, no-goal-shift, no-dynamics, star, perceptron"
+        "unknown variant \"ful\": choose from full, no-goal-shift, no-dynamics, star, perceptron"
     );
     assert_eq!(
         error("--folds plaza"),
-        "there is no fold \"plaza\": choose from eth, hotel, univ, zara1, zara2"
+        "unknown fold \"plaza\": choose from eth, hotel, univ, zara1, zara2"
     );
     assert_eq!(error("--epochs 0"), "training needs at least one epoch");
     let own = parsed("--convention own").recordings().unwrap_err();
     assert!(own.to_string().contains("`ddl train`"), "{own}");
-    // A folder that was named and holds nothing is a mistake, not a reason to simulate.
+    // A named folder without recordings is an error, not a reason to simulate.
     let empty = parsed("--data /nowhere").recordings().unwrap_err();
     assert!(format!("{empty:#}").contains("/nowhere"), "{empty:#}");
 }

@@ -1,4 +1,4 @@
-//! What a task is likely to take on two cores, so that the longest starts first; only proportions matter.
+//! Expected time of a task on two cores, so that the longest starts first; only proportions matter.
 
 use super::super::recipe::Recipe;
 
@@ -13,12 +13,12 @@ const TEST_PEDESTRIANS: [(&str, usize); 5] = [
 
 const TYPICAL_TEST_PEDESTRIANS: usize = 5_000;
 
-/// Pedestrians of all recordings together, of which a fold trains on what it does not test on.
+/// Pedestrians of all recordings together; a fold trains on those that it does not test on.
 const ALL_PEDESTRIANS: usize = 39_398;
 
 const RECOMMENDED_PEDESTRIANS: usize = 5_000;
 
-/// Expected seconds of training and of scoring: so many epochs on so many pedestrians each, then so many pedestrians; none is as many as there are.
+/// Expected seconds of training (epochs, pedestrians of each) and of scoring; `None` stands for all pedestrians.
 pub(super) fn expected(
     fold: &str,
     recipe: Recipe,
@@ -29,8 +29,8 @@ pub(super) fn expected(
     let known = TEST_PEDESTRIANS.iter().find(|(name, _)| *name == fold);
     let test = known.map_or(TYPICAL_TEST_PEDESTRIANS, |(_, pedestrians)| *pedestrians);
     let train = ALL_PEDESTRIANS - test;
-    // Of a pedestrian in one epoch, the training of the goals spread over all of them, and of a pedestrian scored: by the full-size network
-    // under all protocols, and by the narrow one of the recommended recipe under those without the truth.
+    // Seconds for a pedestrian in one epoch (with its share of the training of the goals) and for a pedestrian scored:
+    // by the full-size network under all protocols, by the narrow recommended one under those without the truth.
     let (train_seconds, evaluate_seconds, usual) = match recipe {
         Recipe::Published => (0.007, 0.03, train),
         Recipe::Recommended => (0.000_7, 0.02, RECOMMENDED_PEDESTRIANS),
@@ -49,7 +49,7 @@ mod tests {
     use Recipe::{Published, Recommended};
 
     #[test]
-    fn scoring_everything_is_longest_on_the_crowded_scene_and_caps_shorten() {
+    fn the_crowded_scene_takes_longest_and_limits_shorten_a_task() {
         let cost = |fold, train, test| {
             let (train, test) = expected(fold, Published, 20, train, test);
             train + test
@@ -57,7 +57,7 @@ mod tests {
         let scoring = |fold| cost(fold, Some(100), None);
         assert!(scoring("univ") > scoring("zara2") && scoring("zara2") > scoring("hotel"));
         assert!(cost("eth", Some(10), Some(10)) < cost("eth", None, None));
-        // The recommended recipe takes the same pedestrians in every fold unless told.
+        // By default the recommended recipe trains on equally many pedestrians in every fold.
         let trained = |fold| expected(fold, Recommended, 20, None, None).0.to_bits();
         assert_eq!(trained("eth"), trained("univ"));
     }

@@ -1,4 +1,4 @@
-//! How a plan gets on: bars in a terminal, lines elsewhere, and the time left.
+//! Progress of a plan: bars in a terminal, lines elsewhere, and the time left.
 
 use super::plan::Task;
 use super::work::{End, Event};
@@ -12,11 +12,11 @@ use std::time::{Duration, Instant};
 
 const STEPS: u64 = 1000;
 
-/// Shows progress on standard error, or to programs on standard output.
+/// Shows progress on standard error, or as JSON on standard output.
 #[derive(Debug)]
 pub(super) struct Display {
     mode: ProgressMode,
-    /// None where nobody watches: lines are printed instead.
+    /// `None` outside a terminal, where lines are printed instead.
     bars: Option<MultiProgress>,
     overall: ProgressBar,
     state: Mutex<State>,
@@ -31,7 +31,7 @@ struct State {
 
 #[derive(Debug)]
 struct Progressing {
-    /// Expected share of the work, and which part of it is done.
+    /// Expected share of the work, and the part of it that is done, from 0 to 1.
     cost: f64,
     done: f64,
     bar: ProgressBar,
@@ -83,11 +83,11 @@ impl Display {
         }
     }
 
-    /// Tells a line, where only failures are told only what must be.
+    /// Prints a line; in modes other than `Auto` only if it `must_be` printed.
     pub(super) fn say(&self, line: &str, must_be: bool) {
         match &self.bars {
             _ if self.mode != ProgressMode::Auto && !must_be => {}
-            // The terminal may be gone; the work goes on.
+            // The terminal may be closed, which must not stop the work.
             Some(bars) => drop(bars.println(line)),
             None => tell(format_args!("{line}")),
         }
@@ -161,7 +161,7 @@ impl State {
         task.bar.finish_and_clear();
         task.done = 1.0;
         if *end == End::Kept {
-            // Work of an earlier run tells nothing about the speed of this one.
+            // The work of an earlier run must not count for the speed of this one.
             task.cost = 0.0;
         }
         self.ended += 1;
@@ -184,7 +184,7 @@ impl State {
         if total > 0.0 { done / total } else { 1.0 }
     }
 
-    /// None until enough is done to tell.
+    /// `None` until 1 % of the work is done.
     fn left(&self, elapsed: Duration) -> Option<Duration> {
         let fraction = self.fraction();
         (fraction > 0.01).then(|| elapsed.mul_f64((1.0 - fraction) / fraction))
@@ -193,7 +193,7 @@ impl State {
     fn left_in_words(&self) -> String {
         match self.left(self.start.elapsed()) {
             Some(left) => format!("about {} left", human(left)),
-            None => "time left not known yet".to_owned(),
+            None => "time left unknown".to_owned(),
         }
     }
 }
@@ -217,7 +217,6 @@ mod tests {
         let mut state = State::new([("kept", 99.0), ("long", 3.0), ("short", 1.0)].into_iter());
         let finished = End::Finished { seconds: 1.0 };
         let minute = Duration::from_mins(1);
-        // What an earlier run did does not make this one look fast.
         state.ended("kept", &End::Kept);
         assert_eq!(state.left(minute), None);
         state.ended("long", &finished);

@@ -2,7 +2,7 @@ use ddl::Variant;
 use ddl::network::BackboneKind;
 use serde::{Deserialize, Serialize};
 
-/// The published method, what is left of it without each of its two ideas, and the method with another network.
+/// The published method, its ablations without one or both components, and the method on another network.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub(crate) enum Method {

@@ -37,13 +37,13 @@ pub(crate) struct Settings {
     pub(crate) device: DeviceChoice,
     pub(super) cargo_profile: String,
     pub(super) epochs: usize,
-    /// Pedestrians trained on in each epoch; none is as many as the recipe says.
+    /// Pedestrians trained on in each epoch; `None` for the number of the recipe.
     pub(crate) train_pedestrians: Option<usize>,
-    /// Batches that the proposal network is trained on; none is the program's default.
+    /// Batches that the proposal network is trained on; `None` for the default of `ddl train`.
     pub(super) proposal_steps: Option<u64>,
-    /// Test pedestrians scored; none is all.
+    /// Test pedestrians scored; `None` for all.
     pub(crate) test_pedestrians: Option<usize>,
-    /// Protocols scored under, each once, in the usual order.
+    /// Protocols scored under, each once, in the order of [`Protocol`].
     pub(super) protocols: Vec<Protocol>,
     pub(crate) recipe: Training,
 }
@@ -129,7 +129,7 @@ impl Plan {
                 let id = format!("{fold}-{}-{seed}", variant.name());
                 ensure!(
                     tasks.iter().all(|task| task.id != id),
-                    "{id} is asked for twice"
+                    "the options ask for {id} twice"
                 );
                 tasks.push(Task {
                     id,
@@ -141,8 +141,8 @@ impl Plan {
                 });
             }
         }
-        // The sort is stable: equal tasks stay in the order they were asked for. Goals are those of the first method, and trained
-        // with it.
+        // The first method comes first, because the others take the goals that it trains. The sort is stable: equal
+        // tasks keep their order.
         let first = |task: &Task| methods.first() == Some(&task.variant);
         tasks.sort_by(|one, other| {
             let by_cost = other.cost().total_cmp(&one.cost());
@@ -155,7 +155,7 @@ impl Plan {
         })
     }
 
-    /// The task before this one that trains the same goals.
+    /// The earlier task of the same fold and seed, whose goals this task takes.
     pub(super) fn with_same_goals(&self, task: &Task) -> Option<&Task> {
         let same = |other: &&Task| (&other.fold, other.seed) == (&task.fold, task.seed);
         let first = self.tasks.iter().find(same)?;
@@ -182,7 +182,7 @@ impl Plan {
             .option("--learning-rate", optimiser.map(|of| of.learning_rate))
             .option("--learning-rate-schedule", optimiser.map(|of| of.schedule))
             .path("--out", &task.run_folder(out));
-        // Epochs are chosen, with the truth, under `published` alone.
+        // Only `published` chooses an epoch (with the truth).
         let last_alone = !settings.protocols.contains(&Protocol::Published);
         self.on_machine(words, threads)
             .option("--progress", Some("json"))
@@ -228,7 +228,10 @@ impl Plan {
             .option("--threads", Some(threads))
     }
 
-    /// Writes `plan.json`, where what lies in `out` belongs to the same settings but for folds, variants and seeds.
+    /// Writes `plan.json` into `out`.
+    ///
+    /// # Errors
+    /// Also when `out` holds results of other settings; folds, variants and seeds may differ.
     pub(crate) fn write(&self, out: &Path) -> anyhow::Result<()> {
         let file = out.join("plan.json");
         match fs::read(&file) {
@@ -242,8 +245,8 @@ impl Plan {
                 let Layout { format } = serde_json::from_slice(&text).with_context(damaged)?;
                 ensure!(
                     format == FORMAT,
-                    "{} holds results that another version of the benchmark made (its plan has layout \
-                     {format}, this one {FORMAT}): choose another --out, or delete it",
+                    "{} holds results of another version of the benchmark (its plan has layout {format}, this version \
+                     writes {FORMAT}): choose another --out, or delete it",
                     out.display()
                 );
                 let before: Self = serde_json::from_slice(&text).with_context(damaged)?;
@@ -262,7 +265,7 @@ impl Plan {
         let file = folder.join("plan.json");
         let text = fs::read(&file).with_context(|| {
             format!(
-                "cannot read {}: `ddl benchmark` makes such a folder",
+                "cannot read {}: --out must be a folder that `ddl benchmark` made",
                 file.display()
             )
         })?;
@@ -270,7 +273,7 @@ impl Plan {
     }
 
     fn check_same_settings(&self, before: &Self, out: &Path) -> anyhow::Result<()> {
-        // The recordings are pinned by hash: where they lie makes no difference.
+        // The recordings are pinned by hash: their folder makes no difference.
         let comparable = |settings: &Settings| {
             serde_json::to_value(Settings {
                 data: None,
@@ -289,7 +292,7 @@ impl Plan {
             return Ok(());
         }
         bail!(
-            "{} holds results made under other settings ({}): choose another --out, or delete it",
+            "{} holds results of other settings ({}): choose another --out, or delete it",
             out.display(),
             differences.join(", ")
         )

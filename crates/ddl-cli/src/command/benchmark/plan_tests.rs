@@ -14,7 +14,7 @@ fn every_combination_is_there_once_and_the_longest_comes_first() {
     let methods = [Method::FULL, Method::ALL[3]];
     let plan = published(&["eth", "univ", "zara2"], &methods, &[1, 2]).unwrap();
     assert_eq!(plan.tasks.len(), 12);
-    // Those of the first method come first: the others take their goals.
+    // The tasks of the first method come first: the others take their goals.
     for of_method in plan.tasks.chunks(6) {
         let variant = of_method[0].variant;
         assert!(of_method.iter().all(|task| task.variant == variant));
@@ -38,11 +38,11 @@ fn every_combination_is_there_once_and_the_longest_comes_first() {
     );
     let twice = published(&["eth", "eth"], &[Method::FULL], &[1]);
     let message = twice.unwrap_err().to_string();
-    assert_eq!(message, "eth-full-1 is asked for twice");
+    assert_eq!(message, "the options ask for eth-full-1 twice");
 }
 
 #[test]
-fn the_arguments_are_those_the_program_knows() {
+fn a_task_becomes_arguments_of_the_program() {
     let out = Path::new("runs/x");
     let train = |plan: &Plan| plan.train_arguments(&plan.tasks[0], out, 1).join(" ");
     let mut plan = of_eth();
@@ -53,7 +53,7 @@ fn the_arguments_are_those_the_program_knows() {
          --learning-rate 0.0015 --learning-rate-schedule constant --out runs/x/eth-full-7/run --device cpu --threads 1 \
          --progress json"
     );
-    // Of the recommended recipe nothing is changed that nobody asked to have changed; without `published` no epoch but the last is kept.
+    // Without options the recommended recipe is used unchanged; without `published` only the last epoch is kept.
     let recommended = Settings {
         train_pedestrians: None,
         proposal_steps: None,
@@ -97,7 +97,7 @@ fn a_plan_survives_its_file_and_may_gain_tasks() {
     let message = Plan::read(&folder.path().join("none"))
         .unwrap_err()
         .to_string();
-    assert!(message.contains("`ddl benchmark` makes"), "{message}");
+    assert!(message.contains("that `ddl benchmark` made"), "{message}");
 }
 
 #[test]
@@ -118,7 +118,7 @@ fn results_of_other_settings_or_of_another_version_do_not_mix() {
     ] {
         assert!(message.contains(difference), "{message}");
     }
-    // As the version before wrote it: it knew no protocols.
+    // A plan of layout 2 has no protocols.
     let file = folder.path().join("plan.json");
     let mut old = serde_json::to_value(&before).unwrap();
     old["format"] = 2.into();
@@ -126,7 +126,7 @@ fn results_of_other_settings_or_of_another_version_do_not_mix() {
     fs::write(&file, old.to_string()).unwrap();
     let message = refused(&before);
     assert!(
-        message.contains("its plan has layout 2, this one 3"),
+        message.contains("its plan has layout 2, this version writes 3"),
         "{message}"
     );
     assert_eq!(fs::read_to_string(&file).unwrap(), old.to_string());

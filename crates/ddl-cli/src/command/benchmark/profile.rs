@@ -1,4 +1,4 @@
-//! How much work a benchmark is: a table.
+//! The amount of work of each profile.
 
 use super::super::recipe::Recipe;
 use clap::ValueEnum;
@@ -9,14 +9,14 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Profile {
-    /// Shows that everything works, in a minute; its numbers mean nothing
+    /// A test of the whole chain in a minute; its numbers mean nothing
     Smoke,
     /// Numbers worth reading, in minutes
     Quick,
-    /// Every window, trained until little more is learned: with the protocol published 60 epochs, an hour or two
+    /// Every window; with the protocol published 60 epochs, one or two hours
     Evening,
-    /// As much training as the recipe says, on every window: a quarter of an hour on two cores, with the protocol published (200
-    /// epochs) some hours, or one GPU
+    /// Every window and all epochs of the recipe: a quarter of an hour on two cores for each seed; with the protocol
+    /// published (200 epochs) some hours, or one GPU
     Paper,
 }
 
@@ -28,7 +28,7 @@ impl fmt::Display for Profile {
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Work {
-    /// The first so many folds of a convention.
+    /// Number of folds: the first ones of the convention.
     pub(super) folds: usize,
     pub(super) proposal_steps: Option<u64>,
     pub(super) test_pedestrians: Option<usize>,
@@ -54,7 +54,7 @@ impl Optimiser {
         }
     }
 
-    /// The paper's batches, and step sizes that fade out, so that fewer epochs do.
+    /// The paper's batches with step sizes that decay, which needs fewer epochs.
     fn fading() -> Self {
         Self {
             schedule: LearningRateSchedule::Cosine,
@@ -62,8 +62,8 @@ impl Optimiser {
         }
     }
 
-    /// Small batches, and step sizes that fade out: what learns most of single steps in a few thousand. Chosen on validation splits of
-    /// training recordings (docs/method.md, "The short recipe").
+    /// Small batches and step sizes that decay: the best of single-step training within a few thousand steps. Chosen on
+    /// validation splits of training recordings (docs/method.md, "The short recipe").
     fn short() -> Self {
         Self {
             batch_pedestrians: 16,
@@ -83,7 +83,7 @@ impl Profile {
         let (epochs, train_pedestrians, optimiser) = match (recipe, self) {
             (Recipe::Recommended, Self::Smoke) => (1, Some(600), None),
             (Recipe::Recommended, Self::Quick) => (10, None, None),
-            // the recommended recipe has reached its end by then
+            // The recommended recipe has 20 epochs.
             (Recipe::Recommended, Self::Evening | Self::Paper) => (20, None, None),
             (Recipe::Published, Self::Smoke) => (1, Some(600), Some(Optimiser::published())),
             (Recipe::Published, Self::Quick) => (10, Some(4000), Some(Optimiser::short())),

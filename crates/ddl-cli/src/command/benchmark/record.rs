@@ -1,6 +1,7 @@
-//! What is remembered of a finished task, so that a second run leaves it out.
+//! The file of a finished task, by which a second run skips it.
 
 use super::plan::Task;
+use super::processor;
 use anyhow::Context as _;
 use ddl::data::write_whole;
 use serde::{Deserialize, Serialize};
@@ -14,6 +15,9 @@ const FILE: &str = "finished.json";
 pub(super) struct Record {
     task: String,
     pub(super) seconds: f64,
+    /// `None` in records of version 0.1.
+    #[serde(default)]
+    pub(super) processor: Option<String>,
 }
 
 impl Record {
@@ -26,8 +30,12 @@ impl Record {
 
     pub(super) fn write(task: &Task, out: &Path, seconds: f64) -> anyhow::Result<()> {
         let file = task.folder(out).join(FILE);
-        let task = task.id.clone();
-        let text = serde_json::to_vec(&Self { task, seconds })?;
+        let record = Self {
+            task: task.id.clone(),
+            seconds,
+            processor: Some(processor::name()),
+        };
+        let text = serde_json::to_vec(&record)?;
         write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 }

@@ -1,4 +1,4 @@
-//! The report over all finished runs, with the baselines of the other data convention beside it.
+//! The report of all finished runs, with the baselines in the other data convention.
 
 use super::super::{Reporting, baselines};
 use super::plan::{Plan, Settings};
@@ -6,6 +6,7 @@ use crate::output;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
 use ddl::data::{Convention, Dataset, locate};
+use ddl::report::Report;
 use ddl::{Protocol, Results};
 use std::path::{Path, PathBuf};
 
@@ -14,17 +15,17 @@ pub(super) fn write(
     runs: Vec<PathBuf>,
     out: &Path,
     reporting: &Reporting,
-) -> anyhow::Result<String> {
-    if runs.is_empty() {
-        return Ok(String::new());
-    }
+) -> anyhow::Result<Report> {
     let settings = &plan.settings;
-    let mut folders = runs;
-    folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
     let title = format!(
         "Benchmark: {}, {}, recipe {}",
         settings.convention, settings.profile, settings.recipe.name
     );
+    if runs.is_empty() {
+        return Ok(Report::new(title, [])?);
+    }
+    let mut folders = runs;
+    folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
     let results = Results::of(title, &folders)?;
     results.save(out)?;
     let text = results.report.to_markdown();
@@ -37,16 +38,16 @@ pub(super) fn write(
         ("report", "report.md"),
         ("", "report.json"),
         ("for a paper", "report.tex"),
-        ("to look at", "report.html"),
+        ("page", "report.html"),
         ("figures", "figures"),
     ] {
         tell(format_args!("{what:12} {}", out.join(name).display()));
     }
-    Ok(text)
+    Ok(results.report)
 }
 
-/// The baselines in the recorded convention that the plan is not in, if its recordings are there: how far apart the two are is seen
-/// best where nothing is trained.
+/// The baselines in the other recorded convention, if its recordings are there: rows without training show best how far
+/// the two conventions differ.
 fn baselines_elsewhere(
     settings: &Settings,
     out: &Path,
@@ -57,7 +58,7 @@ fn baselines_elsewhere(
         Convention::SocialGan => Convention::Star,
         Convention::Simulated | Convention::Own => return Ok(None),
     };
-    // A choice with the truth says nothing about baselines: they are measured under the others.
+    // `published` chooses with the truth, which says nothing about baselines.
     let mut protocols = settings.protocols.clone();
     protocols.retain(|protocol| *protocol != Protocol::Published);
     let beside = settings.data.as_deref();

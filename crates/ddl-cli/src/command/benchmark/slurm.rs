@@ -1,5 +1,5 @@
-//! The tasks of a plan as jobs of Slurm. What is finished is seen in the plan's folder, what is alive by `squeue`; a job belongs to the
-//! plan in whose folder it was begun, so that nothing has to be remembered of it. Nothing here needs `sacct`.
+//! The tasks of a plan as jobs of Slurm. The plan's folder shows which tasks are finished, `squeue` which jobs exist. A
+//! job belongs to the plan whose folder is its working folder, so no list of jobs is kept, and `sacct` is not needed.
 
 mod array;
 mod queue;
@@ -26,35 +26,35 @@ use std::time::{Duration, Instant};
 
 pub(super) use queue::ids;
 
-/// How often the scheduler is asked.
+/// Time between two calls of `squeue`.
 const EVERY: Duration = Duration::from_secs(3);
 
-/// How often a wish to stop is looked for.
+/// Time between two checks for a wish to stop.
 const BEAT: Duration = Duration::from_millis(50);
 
 #[derive(Debug)]
 pub(super) struct Slurm {
-    /// The plan's folder, in the one spelling that `squeue` gives back.
+    /// The plan's folder, spelled as `squeue` prints it.
     out: PathBuf,
-    /// What the scripts of all jobs are given: the folder to be in, the program and its arguments.
+    /// Arguments of the scripts of all jobs: the working folder, the program and its arguments.
     arguments: Vec<OsString>,
 }
 
 impl Slurm {
     pub(super) fn new(out: &Path, commit: &str) -> anyhow::Result<Self> {
-        let unreadable = || format!("{} cannot be read", out.display());
+        let unreadable = || format!("cannot read {}", out.display());
         let out = out.canonicalize().with_context(unreadable)?;
-        let here = std::env::current_dir().context("the current folder cannot be read")?;
+        let here = std::env::current_dir().context("cannot read the current folder")?;
         let mut arguments: Vec<OsString> = vec![here.into(), this_program()?.into()];
         arguments.extend(["benchmark", "--commit", commit, "--out"].map(OsString::from));
         arguments.push(out.clone().into());
         Ok(Self { out, arguments })
     }
 
-    /// The jobs of this folder that are not over.
+    /// The jobs of this folder that have not ended.
     pub(super) fn queue(&self) -> anyhow::Result<Vec<Job>> {
         let mut squeue = Command::new("squeue");
-        // Filters that somebody has set for themselves would hide jobs.
+        // Filters that the user has set would hide jobs.
         for (name, _) in std::env::vars_os() {
             if name.to_string_lossy().starts_with("SQUEUE_") {
                 squeue.env_remove(name);
@@ -64,7 +64,7 @@ impl Slurm {
         Ok(queue::jobs_in(&self.out, &answer(&mut squeue)?))
     }
 
-    /// Submits the tasks that are not finished, `jobs` of them at a time, and what makes the report when they are over.
+    /// Submits the unfinished tasks, `jobs` of them at a time, and a job that makes the report after them.
     pub(super) fn submit(
         &self,
         plan: &Plan,
@@ -88,7 +88,7 @@ impl Slurm {
                 format!("--array={}{at_a_time}", array.indices),
                 format!("--cpus-per-task={threads}"),
             ];
-            // At a time: of all arrays together.
+            // The limit holds for all arrays together.
             if let (Some(_), Some(before)) = (jobs, submitted.last()) {
                 options.push(format!("--dependency=afterany:{before}"));
             }
@@ -96,7 +96,9 @@ impl Slurm {
             let script = ("task.sh", include_str!("slurm/task.sh"));
             let id = self.sbatch(&options, script, &first).with_context(|| {
                 let before = submitted.join(" ");
-                let some = format!("not all tasks are submitted (jobs {before} are; the same command later submits the rest)");
+                let some = format!(
+                    "only some tasks are submitted, as jobs {before}; run the same command again later for the rest"
+                );
                 if submitted.is_empty() { "no task is submitted".to_owned() } else { some }
             })?;
             submitted.push(id);
@@ -108,16 +110,21 @@ impl Slurm {
         ];
         let script = ("report.sh", include_str!("slurm/report.sh"));
         let report = self.sbatch(&options, script, &[]);
-        let report = report.context("the tasks are submitted, but not what makes the report: the same command, or `--collect`, does it")?;
+        let report = report.context(
+            "the tasks are submitted, but not the job that makes the report: run the same command again, or use \
+             `--collect`",
+        )?;
         tell(format_args!(
-            "submitted: {} of {} tasks with {threads} threads each as job {}, and job {report}, which then makes the report; logs are in {}",
+            "submitted: {} of {} tasks with {threads} threads each as job {}, and job {report} for the report; logs \
+             are in {}",
             unfinished.len(),
             plan.tasks.len(),
             submitted.join(" "),
             logs.display()
         ));
         tell(format_args!(
-            "Ctrl-C leaves the jobs to themselves, and the same command watches them again; `scancel {} {report}` cancels them",
+            "Ctrl-C does not stop the jobs, and the same command watches them again; `scancel {} {report}` cancels \
+             them",
             submitted.join(" ")
         ));
         Ok(())
@@ -142,19 +149,19 @@ impl Slurm {
             .args(first)
             .args(&self.arguments);
         let told = answer(&mut sbatch)?;
-        // With more than one cluster: `number;cluster`.
+        // On a site with several clusters Slurm prints `number;cluster`.
         let id = told.trim().split(';').next().unwrap_or_default();
         ensure!(
             !id.is_empty() && id.bytes().all(|byte| byte.is_ascii_digit()),
-            "`sbatch` did not print the number of a job, but {told:?}"
+            "`sbatch` printed {told:?} instead of the number of a job"
         );
         Ok(id.to_owned())
     }
 
-    /// Tells what becomes of the tasks until no job of this folder is alive.
+    /// Shows the progress of the tasks until all jobs of this folder have ended.
     ///
     /// # Errors
-    /// [`DdlError::Interrupted`] after a wish to stop, which the jobs do not hear of.
+    /// [`DdlError::Interrupted`] after a wish to stop, which does not stop the jobs.
     pub(super) fn watch(
         &self,
         plan: &Plan,
@@ -168,7 +175,7 @@ impl Slurm {
         loop {
             let live = self.queue();
             if let (Err(error), false) = (&live, is_deaf) {
-                display.say(&format!("{error:#}; asking again"), true);
+                display.say(&format!("{error:#}; trying again"), true);
             }
             is_deaf = live.is_err();
             open.retain(|&index| {
@@ -196,7 +203,7 @@ impl Slurm {
             while asked.elapsed() < EVERY {
                 if interrupt.wishes() > 0 {
                     return Err(anyhow::Error::new(DdlError::Interrupted).context(format!(
-                        "no longer watching {}; its jobs go on, and the same command watches them again",
+                        "no longer watching {}; its jobs continue, and the same command watches them again",
                         shell_word(&self.out)
                     )));
                 }
@@ -206,11 +213,11 @@ impl Slurm {
     }
 }
 
-/// What a program of Slurm prints.
+/// The output of a program of Slurm.
 fn answer(command: &mut Command) -> anyhow::Result<String> {
     let name = command.get_program().display().to_string();
     let output = command.output().with_context(|| {
-        format!("`{name}` cannot be started: `--executor slurm` needs Slurm's programs on the machine it is run on")
+        format!("cannot start `{name}`: `--executor slurm` needs Slurm's programs on this machine")
     })?;
     ensure!(
         output.status.success(),

@@ -1,4 +1,4 @@
-//! The tasks of a plan, worked off side by side in processes of the program.
+//! Runs the tasks of a plan in parallel, in processes of the program.
 
 use super::child::{self, BEAT};
 use super::plan::{Plan, Task};
@@ -18,16 +18,16 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Instant;
 
-/// Tasks that share one graphics card when nobody says how many: the folds of a convention. Their kernels are small
-/// and their memory is a gigabyte or two each.
+/// Default number of tasks that share one graphics card: the folds of a convention. Their kernels are small, and each
+/// needs one or two gigabytes of memory.
 const ON_ONE_CARD: usize = 5;
 
-/// Share of a training that its first stage, the goals, is shown as.
+/// Share of the goals, the first stage, in the progress of a training.
 const GOALS: f64 = 0.15;
 
 const LAST_LINES: usize = 8;
 
-/// Works off up to `jobs` tasks at a time, each in processes with `threads` threads.
+/// Runs up to `jobs` tasks at a time, each in processes with `threads` threads.
 #[derive(Debug)]
 pub(super) struct Workers {
     pub(super) program: Vec<OsString>,
@@ -44,22 +44,22 @@ pub(super) enum End {
     Kept,
     /// With the last lines of the log.
     Failed { reason: String },
-    /// Stopped from outside, or not begun; a later run goes on from here.
+    /// Stopped by a signal, or not begun; a later run resumes it.
     Interrupted,
 }
 
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Event<'a> {
     Started,
-    /// Which part of the task is done, from 0 to 1, and what it is at.
+    /// The part of the task that is done, from 0 to 1, and the current step.
     Advanced(f64, &'a str),
     Ended(&'a End),
 }
 
 pub(super) type Watch<'a> = &'a (dyn Fn(&Task, Event<'_>) + Sync);
 
-/// Processes side by side and the threads of each. When nobody asks for a number: on the CPU one process a core; on CUDA all tasks up to five,
-/// since a training waits for its next launch most of the time.
+/// The number of parallel processes and the threads of each. Default: on the CPU one process for each core; on CUDA all
+/// tasks up to five, since a training mostly waits for its next kernel launch.
 pub(super) fn side_by_side(
     asked: Option<usize>,
     device: DeviceChoice,
@@ -74,7 +74,8 @@ pub(super) fn side_by_side(
 }
 
 impl Workers {
-    /// How each task ended, in the plan's order. After a wish to stop none begins, and running ones are asked to save.
+    /// The end of each task, in the plan's order. After a wish to stop no task starts, and running ones save their
+    /// state.
     pub(super) fn run(
         &self,
         plan: &Plan,
@@ -85,7 +86,7 @@ impl Workers {
         let next = AtomicUsize::new(0);
         let ends = Mutex::new(vec![End::Interrupted; plan.tasks.len()]);
         let work = || {
-            // Tasks lie longest first, so taking them in order fills the cores best.
+            // The tasks are sorted, longest first, which fills the cores best.
             while interrupt.wishes() == 0 {
                 let index = next.fetch_add(1, Ordering::SeqCst);
                 let Some(task) = plan.tasks.get(index) else {
@@ -120,7 +121,7 @@ impl Workers {
             Ok(log) => log,
             Err(error) => return failure(task, out, &format!("{error:#}")),
         };
-        // Whoever killed an earlier benchmark may have left its processes to themselves: they end by themselves.
+        // Processes of an earlier benchmark that was killed may still run; they end by themselves.
         while is_held(&log) {
             if interrupt.wishes() > 0 {
                 return End::Interrupted;
@@ -132,7 +133,7 @@ impl Workers {
         if Record::of(task, out).is_some() {
             return End::Kept;
         }
-        // Nobody else is at work there now; the folder of the run is the program's own.
+        // No other process writes there now; the program itself cleans the folder of the run.
         remove_half_written(&task.folder(out));
         let start = Instant::now();
         if let Some(other) = plan
@@ -159,7 +160,7 @@ impl Workers {
             };
             match self.run_step(&mut log, &arguments, interrupt, &tell) {
                 Ok(status) if status.success() => {}
-                // A process that was asked to stop has saved and left.
+                // A process that was asked to stop has saved its state and ended.
                 _ if interrupt.wishes() > 0 => return End::Interrupted,
                 Ok(status) => {
                     let step = arguments.first().map_or("", String::as_str);
@@ -178,7 +179,8 @@ impl Workers {
         }
     }
 
-    /// Runs the program once; its standard error goes to the task's log, which it so holds until it ends, whatever becomes of this process.
+    /// Runs the program once. Its standard error goes to the task's log, whose lock it thereby holds until it ends,
+    /// even if this process ends before.
     fn run_step(
         &self,
         log: &mut File,
@@ -186,9 +188,9 @@ impl Workers {
         interrupt: &Interrupt,
         tell: &dyn Fn(f64, &str),
     ) -> anyhow::Result<ExitStatus> {
-        writeln!(log, "$ ddl {}", arguments.join(" ")).context("the log cannot be written")?;
-        let errors = log.try_clone().context("the log cannot be shared")?;
-        let (program, leading) = self.program.split_first().context("there is no program")?;
+        writeln!(log, "$ ddl {}", arguments.join(" ")).context("cannot write the log")?;
+        let errors = log.try_clone().context("cannot share the log")?;
+        let (program, leading) = self.program.split_first().context("no program to run")?;
         let mut command = Command::new(program);
         command
             .args(leading)
@@ -199,8 +201,7 @@ impl Workers {
         child::run(&mut command, interrupt, |line| {
             match serde_json::from_str::<ProgressLine<'_>>(line) {
                 Ok(progress) if progress.total > 0 => {
-                    // A program that begins a new stage counts from nothing again; the whole never
-                    // goes back.
+                    // A new stage of the program counts from 0 again; the progress of the task never decreases.
                     let fraction = (progress.done as f64 / progress.total as f64).min(1.0);
                     reached = reached.max(match progress.stage.as_ref() {
                         "goals" => GOALS * fraction,
@@ -209,7 +210,7 @@ impl Workers {
                     });
                     tell(reached, &format!("{} {}", progress.stage, progress.message));
                 }
-                // Anything else is for the log, which may fail without harm to the task.
+                // Other lines go to the log; a failure to write them does not harm the task.
                 _ => drop(writeln!(log, "{line}")),
             }
         })
@@ -220,11 +221,11 @@ fn open_log(folder: &Path) -> anyhow::Result<File> {
     let path = folder.join("log.txt");
     fs::create_dir_all(folder)
         .and_then(|()| OpenOptions::new().create(true).append(true).open(&path))
-        .with_context(|| format!("{} cannot be opened", path.display()))
+        .with_context(|| format!("cannot open {}", path.display()))
 }
 
-/// Whether a process of an earlier benchmark still writes into the log; else it is this process's, and that of the processes it starts: they
-/// share the lock with the file that they write to.
+/// Whether a process of an earlier benchmark still writes into the log. If not, this process has locked it, and the
+/// processes that it starts share the lock with the open file.
 fn is_held(log: &File) -> bool {
     matches!(log.try_lock(), Err(TryLockError::WouldBlock))
 }

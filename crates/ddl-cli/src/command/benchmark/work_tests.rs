@@ -1,4 +1,4 @@
-//! The workers against a stand-in for `ddl`: a shell script that obeys the same protocol.
+//! The workers with a stand-in for `ddl`: a shell script with the same options, output and exit codes.
 #![cfg(unix)]
 
 use super::super::fixture;
@@ -9,9 +9,8 @@ use crate::command::recipe::Recipe;
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Trains in twenty short epochs, each saved; resumes; exits 130 on an interrupt; scores in one
-/// step, measures goals in none. Fold `broken` fails to train, fold `stubborn` ignores the first interrupt, fold `patient` waits for one
-/// halfway, however slow the machine that sends it.
+/// Trains in twenty short epochs, each saved; resumes; exits with 130 on an interrupt; scores in one step. Fold
+/// `broken` fails to train, fold `stubborn` ignores the first interrupt, fold `patient` waits for an interrupt halfway.
 const STAND_IN: &str = r#"#!/bin/sh
 verb=$1; shift
 while [ $# -gt 0 ]; do
@@ -57,8 +56,8 @@ impl Bench {
         let folder = tempfile::tempdir().unwrap();
         let script = folder.path().join("ddl");
         fs::write(&script, STAND_IN).unwrap();
-        // The shell reads the script, nothing executes it: a process that another test starts at
-        // this moment may still hold it open for writing, and such a file cannot be executed.
+        // The shell reads the script. To execute it could fail: a process that another test starts at this moment may
+        // still hold it open for writing.
         let workers = Workers {
             program: vec!["sh".into(), script.into()],
             jobs,
@@ -77,9 +76,9 @@ impl Bench {
     }
 
     fn run(&self, plan: &Plan) -> Vec<End> {
-        let nobody = |_: &Task, _: Event<'_>| {};
+        let ignore = |_: &Task, _: Event<'_>| {};
         self.workers
-            .run(plan, &self.out(), &nobody, &Interrupt::default())
+            .run(plan, &self.out(), &ignore, &Interrupt::default())
     }
 }
 
@@ -118,7 +117,7 @@ fn every_task_is_trained_scored_and_kept_the_second_time() {
     assert!(of_a.is_sorted() && (of_a[20] - 1.0).abs() < 1e-12);
     assert!(bench.log("a-full-1").contains("not json"));
     assert_eq!(bench.run(&plan), [End::Kept, End::Kept, End::Kept]);
-    // Scores that were deleted are made again, from the model that is there.
+    // Deleted scores are made again from the model.
     fs::remove_file(bench.out().join("b-full-1/run/report.json")).unwrap();
     assert_eq!(finished(&bench.run(&plan)), 1);
 }
@@ -142,11 +141,11 @@ fn a_failed_task_shows_its_log_and_lets_the_others_run() {
     let [End::Failed { reason }] = &ends[..] else {
         panic!("{ends:?}")
     };
-    assert!(reason.contains("/no/such/program cannot be started"));
+    assert!(reason.contains("cannot start /no/such/program"));
 }
 
 #[test]
-fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
+fn interrupted_tasks_save_and_a_second_run_resumes_them() {
     let bench = Bench::new(2);
     let plan = plan(&["patient", "b", "c"]);
     let interrupt = Interrupt::default();
@@ -164,7 +163,7 @@ fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
     let saved = fs::read_to_string(bench.out().join("patient-full-1/run/epoch")).unwrap();
     let saved: u32 = saved.trim().parse().unwrap();
     assert!((1..20).contains(&saved), "{saved}");
-    // What was being written when a process was killed is removed.
+    // A half-written file of a killed process is removed.
     let half = bench.out().join("b-full-1/.writing-x");
     fs::write(&half, "half").unwrap();
     assert_eq!(finished(&bench.run(&plan)), 3);
@@ -174,7 +173,7 @@ fn an_interrupt_lets_tasks_save_and_a_second_run_goes_on() {
 }
 
 #[test]
-fn a_second_wish_ends_a_task_that_does_not_listen() {
+fn a_second_interrupt_kills_a_task_that_ignores_the_first() {
     let bench = Bench::new(1);
     let interrupt = Interrupt::default();
     let watch = |_: &Task, event: Event<'_>| {
@@ -194,12 +193,12 @@ fn a_second_wish_ends_a_task_that_does_not_listen() {
         .workers
         .run(&plan(&["stubborn"]), &bench.out(), &watch, &interrupt);
     assert_eq!(ends, [End::Interrupted]);
-    // Left alone, it would have slept a hundred seconds.
+    // Without the second interrupt it would have slept a hundred seconds.
     assert!(start.elapsed() < Duration::from_secs(20));
 }
 
 #[test]
-fn who_writes_into_a_log_holds_it_until_it_ends() {
+fn a_process_that_writes_into_a_log_holds_its_lock() {
     let folder = tempfile::tempdir().unwrap();
     let log = open_log(folder.path()).unwrap();
     assert!(!is_held(&log));
@@ -208,7 +207,7 @@ fn who_writes_into_a_log_holds_it_until_it_ends() {
         .stderr(Stdio::from(log.try_clone().unwrap()))
         .spawn()
         .unwrap();
-    // As when a benchmark is killed: its files are closed, its process goes on.
+    // As when a benchmark is killed: its files are closed, and its process continues.
     drop(log);
     let next = open_log(folder.path()).unwrap();
     assert!(is_held(&next));

@@ -1,5 +1,5 @@
-// The time of the player, in frames from 0 to 19: it runs at twice the speed of life, or frame by frame where motion is
-// to be reduced.
+// The time of the player, in frames from 0 to 19. It runs at twice real time, or frame by frame if the system asks for
+// reduced motion.
 
 const SPEED = 2;
 const PAUSE_AT_END = 1.2;
@@ -13,7 +13,7 @@ function makeClock(onTime, onPlaying) {
 
   function tick(now) {
     if (!playing) return;
-    // The first picture may have been begun before the clock was started; one after a long pause is no leap.
+    // The first picture may have started before the clock; a long pause must not cause a leap.
     const seconds = Math.min(Math.max((now - last) / 1000, 0), 0.25);
     last = now;
     if (rest > 0) {
@@ -54,7 +54,7 @@ function makeClock(onTime, onPlaying) {
     set,
     play,
     toggle: () => play(!playing),
-    // To a whole frame, and stop there.
+    // Moves to a whole frame and stops.
     step: (by) => {
       play(false);
       set(by > 0 ? Math.floor(time + 1e-9) + by : Math.ceil(time - 1e-9) + by);

@@ -1,4 +1,4 @@
-// Training curves: the pointer reads out an epoch.
+// Training curves: the pointer shows the values of an epoch.
 
 {
   const curves = embedded("curves-json");

@@ -1,4 +1,4 @@
-// The keys of the player. They work while something of the player has the focus; `?` works everywhere.
+// The keys of the player. They work while an element of the player has the focus; `?` works everywhere.
 
 const SWITCHES = { t: "truth", h: "hypotheses", g: "goals", a: "region", o: "others", e: "everything", z: "whole" };
 
@@ -21,7 +21,7 @@ function bindKeys(player) {
 
   player.stage.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    // Selects, the slider and scrolling boxes have their own arrows, buttons and check boxes their own space.
+    // Selects, the slider and scrolling boxes use the arrow keys themselves; buttons and check boxes use the space key.
     const on = event.target;
     if (on.matches("select")) return;
     if (on.matches("input[type=range], .table") && /^(Arrow|Home|End)/.test(event.key)) return;
@@ -31,7 +31,7 @@ function bindKeys(player) {
     event.preventDefault();
     action();
   });
-  // Whoever has read the keys, or asked for the player, wants to use them there.
+  // After the list of keys, or a link to the player, the keys must work in the player.
   const toPlayer = () => document.getElementById("play").focus({ preventScroll: true });
   dialog.addEventListener("close", toPlayer);
   document.querySelector('a[href="#player"]')?.addEventListener("click", () => setTimeout(toPlayer));

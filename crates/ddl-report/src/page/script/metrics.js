@@ -6,7 +6,7 @@ function distance(a, b) {
   return Math.hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-// ADE: the mean distance of the 12 positions from the true ones. FDE: that of the last. Null where these were not all seen.
+// ADE: mean distance of the 12 positions from the true ones. FDE: distance of the last. Null without all 12 true positions.
 function displacement(path, truth) {
   if (truth.length < path.length) return { ade: null, fde: null };
   const distances = path.map((place, at) => distance(place, truth[at]));
@@ -14,12 +14,12 @@ function displacement(path, truth) {
   return { ade: sum / distances.length, fde: distances[distances.length - 1] };
 }
 
-// An error in metres; a dash where it is not known.
+// An error in metres; a dash if it is unknown.
 function errorWords(error) {
   return error === null ? "–" : error.toFixed(3);
 }
 
-// minADE and minFDE: two minima over the hypotheses, each of its own.
+// minADE and minFDE: two separate minima over the hypotheses.
 function pedestrianErrors(pedestrian) {
   const each = pedestrian.hypotheses.map((h) => displacement(h.path, pedestrian.truth));
   if (pedestrian.truth.length < HORIZON) return { each, minAde: null, minFde: null };
@@ -36,7 +36,7 @@ function phi(pedestrian, hypothesis) {
   return [pedestrian.observed[OBSERVED - 1], ...hypothesis.path].map((place) => distance(place, hypothesis.goal));
 }
 
-// What is known of the descent of Phi, in words. The verdict is that of the unrounded forecast.
+// The verdict on the descent of Phi, in words. It belongs to the unrounded forecast.
 function verdictWords(pedestrian, hypothesis) {
   const values = phi(pedestrian, hypothesis);
   if (!values) return "no goal, no Φ";

@@ -9,7 +9,7 @@ function embedded(id) {
   return JSON.parse(document.getElementById(id).textContent);
 }
 
-// Steps in millimetres, from a place in millimetres, as an array of [x, y] in metres.
+// Steps in millimetres from a position in millimetres, as an array of [x, y] in metres.
 function walked(from, steps) {
   let [x, y] = from;
   const path = [];
@@ -33,7 +33,7 @@ function decodePedestrian(data) {
       index,
       weight: data.weights[index] / 1000,
       path: walked(last, steps),
-      // Of the region that holds the pedestrian with a probability of 90 %, in metres; 0 where this hypothesis has no disc.
+      // Radii of the discs of the 90 % region, in metres; 0 where this hypothesis has no disc.
       radii: data.radii?.[index].map((radius) => radius / 1000),
       goal: goal && [(last[0] + goal[0]) / 1000, (last[1] + goal[1]) / 1000],
       falls: verdict(data.falls[index]),
@@ -43,7 +43,7 @@ function decodePedestrian(data) {
   return {
     pedestrian: data.pedestrian,
     observed: walked([0, 0], data.observed),
-    // What then happened, as far as it was seen: up to 12 places.
+    // The true future as far as it was observed: up to 12 positions.
     truth: walked(last, data.truth),
     madeUp: data.made_up ?? { padded: 0, filled: 0 },
     hypotheses,
@@ -53,17 +53,17 @@ function decodePedestrian(data) {
   };
 }
 
-// A moment is decoded when it is first shown: a page may hold many.
+// A moment is decoded when it is first shown, because a page may hold many.
 function decodeMoment(data) {
   return { ...data, pedestrians: data.pedestrians.map(decodePedestrian) };
 }
 
-// The last frame, counted from 0, at which it is known where the pedestrian was.
+// The last frame, counted from 0, with a known position of the pedestrian.
 function knownUntil(pedestrian) {
   return OBSERVED - 1 + pedestrian.truth.length;
 }
 
-// The place at a time counted in frames from 0; between two frames on the line between them, after the last one there.
+// The position at a time in frames from 0: interpolated between two frames, the last one after the end.
 function placeAt(observed, ahead, time) {
   const last = OBSERVED - 1 + ahead.length;
   const at = Math.min(Math.max(time, 0), last);
@@ -74,7 +74,7 @@ function placeAt(observed, ahead, time) {
   return [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 }
 
-// The velocity in m/s of the step that the time lies in; of the last step at the end.
+// The velocity in m/s of the step at this time; at the end that of the last step.
 function velocityAt(observed, ahead, time) {
   const frame = Math.min(Math.floor(Math.max(time, 0)), OBSERVED + ahead.length - 2);
   const [a, b] = [placeAt(observed, ahead, frame), placeAt(observed, ahead, frame + 1)];

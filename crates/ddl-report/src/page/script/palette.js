@@ -1,8 +1,8 @@
-// The colours of the page for a canvas, which knows no variables.
+// The colours of the page for a canvas, which does not support CSS variables.
 
 const PALETTE_NAMES = ["ink", "ink-2", "paper", "panel", "rule", "rule-soft", "other", "accent", "accent-deep", "accent-soft", "truth"];
 
-// A probe element resolves what depends on the theme.
+// A probe element resolves the variables of the theme.
 function readPalette() {
   const probe = document.createElement("span");
   probe.hidden = true;

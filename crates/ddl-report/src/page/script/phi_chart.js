@@ -1,4 +1,4 @@
-// Phi over time: one line a hypothesis, with a cursor at the time of the player.
+// Phi over time: one line for each hypothesis, with a cursor at the time of the player.
 
 const PHI = { width: 336, height: 150, left: 34, right: 326, top: 8, bottom: 122 };
 
@@ -22,7 +22,7 @@ function makePhiChart(svg) {
   let up = null;
   const across = (t) => PHI.left + (t / HORIZON) * (PHI.right - PHI.left);
 
-  // Lines of a pedestrian; the hypothesis looked at is drawn last.
+  // Lines of a pedestrian; the selected hypothesis is drawn last.
   function draw(pedestrian, chosen) {
     svg.replaceChildren();
     const lines = pedestrian.hypotheses.map((hypothesis) => phi(pedestrian, hypothesis));
@@ -61,7 +61,7 @@ function makePhiChart(svg) {
     svg.append(cursor, marker);
   }
 
-  // Moves the cursor; before the forecast it waits at its beginning.
+  // Moves the cursor; before the forecast it stays at the start.
   function moveTo(time) {
     if (!cursor) return;
     const t = Math.max(0, time - (OBSERVED - 1));

@@ -1,6 +1,6 @@
-// The player: what is chosen, and everything that follows from it.
+// The player: the selection, and the parts of the page that depend on it.
 
-// The close-up shows a little more than the pedestrian, so that neighbours are seen.
+// The close-up includes the neighbourhood of the pedestrian.
 const CLOSE_UP_ROOM = 1.25;
 
 const byId = (id) => document.getElementById(id);
@@ -31,7 +31,7 @@ function makePlayer(moments) {
   const list = makeHypothesisList(byId("hypotheses"), chooseHypothesis);
   const clock = makeClock(showTime, (playing) => {
     byId("play").setAttribute("aria-pressed", playing);
-    // A screen reader is told where the time stands, not every frame on the way there.
+    // A screen reader gets the time after a stop, not every frame.
     for (const id of ["time-words", "now-words"]) byId(id).setAttribute("aria-live", playing ? "off" : "polite");
     byId("play").setAttribute("aria-label", playing ? "Pause" : "Play");
   });
@@ -42,7 +42,7 @@ function makePlayer(moments) {
     return `${moment.recording}${fold}${who}`;
   }
 
-  // What of the observed steps was not seen.
+  // Observed steps that were filled in.
   function madeUpWords(who) {
     const { padded, filled } = who.madeUp;
     if (padded + filled === 0) return "";
@@ -52,7 +52,7 @@ function makePlayer(moments) {
     return `Of its ${OBSERVED} observed steps ${padded + filled} are made up (${parts.join(", ")}). `;
   }
 
-  // How much the observed motion is like those that the forecaster was trained on.
+  // Similarity of the observed motion to the forecaster's training data.
   function familiarityWords(who) {
     if (who.familiarity === null) return "";
     const share = who.familiarity < 0.01 ? "less than 1" : Math.round(100 * who.familiarity);
@@ -76,7 +76,7 @@ function makePlayer(moments) {
     return moments.map((_, at) => at).filter((at) => recordingName(moments[at]) === name);
   }
 
-  // Draws once before the next picture, however often it is asked.
+  // Draws at most once before the next picture.
   function redraw() {
     if (waiting) return;
     waiting = true;
@@ -132,7 +132,7 @@ function makePlayer(moments) {
     const chosen = chosenHypothesis();
     byId("choose-pedestrian").value = state.pedestrian;
     byId("pedestrian-name").textContent = `Pedestrian ${who.pedestrian}`;
-    // Errors of somebody who was not seen on are not known: no empty places are left for them.
+    // Without a true future there are no errors, and their fields are hidden.
     stage.classList.toggle("unmeasured", errors.minAde === null);
     byId("min-ade").textContent = errorWords(errors.minAde);
     byId("min-fde").textContent = errorWords(errors.minFde);
@@ -156,7 +156,7 @@ function makePlayer(moments) {
   }
 
   function chooseHypothesis(index) {
-    // A second click goes back to the representative.
+    // A second click selects the representative hypothesis.
     state.hypothesis = state.hypothesis === index ? null : index;
     const chosen = chosenHypothesis();
     list.mark(chosen);
@@ -205,7 +205,7 @@ function makePlayer(moments) {
     redraw();
   }
 
-  // The pedestrian whose way, up to now and ahead, passes nearest the pointer.
+  // The pedestrian whose path, past and forecast, is nearest the pointer.
   function nearestPedestrian(event) {
     const box = canvas.getBoundingClientRect();
     const at = [event.clientX - box.left, event.clientY - box.top];
@@ -254,12 +254,12 @@ function makePlayer(moments) {
   new ResizeObserver(fit).observe(canvas);
   if (document.body.dataset.first === "busiest") {
     setShow("whole", true);
-    // Where it is known of most people what they then did; where it is known of nobody, most people.
+    // The moment with the most known futures; without known futures, the one with the most pedestrians.
     const known = moments.map(({ pedestrians }) => pedestrians.filter((who) => who.truth.length === 2 * HORIZON).length);
     const people = moments.map(({ pedestrians }) => pedestrians.length);
     const score = Math.max(...known) > 0 ? known : people;
     const first = score.indexOf(Math.max(...score));
-    // Of these, who went farthest.
+    // Of these, the pedestrian that moved farthest.
     const far = ({ truth }) => (truth.length === HORIZON ? distance(truth[0], truth[HORIZON - 1]) : -1);
     const ways = momentAt(first).pedestrians.map(far);
     chooseMoment(first, ways.indexOf(Math.max(...ways)));
@@ -278,7 +278,7 @@ function makePlayer(moments) {
     toggle: (name) => setShow(name, !state.show[name]),
     sortByWeight: () => list.sort("weight"),
     stage,
-    // For measuring: the time of one drawing, in milliseconds, with everyone's hypotheses.
+    // For measurements: the time of one drawing with all hypotheses, in milliseconds.
     measure: (times) => {
       const before = state.show.everything;
       state.show.everything = true;

@@ -1,4 +1,4 @@
-// On paper nothing can be unfolded: everything is, as long as it is printed.
+// Unfolds all details while the page is printed.
 
 let folded = [];
 

@@ -6,6 +6,6 @@ document.getElementById("save-report").addEventListener("click", () => {
   link.href = URL.createObjectURL(new Blob([text], { type: "application/json" }));
   link.download = "report.json";
   link.click();
-  // The browser reads the address after this click is over.
+  // The browser reads the address after this event.
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
 });

@@ -1,4 +1,4 @@
-// Draws a moment at a time onto a canvas.
+// Draws a moment onto a canvas.
 
 const ARROW_SECONDS = 0.8;
 
@@ -60,7 +60,7 @@ function star(context, [x, y], radius, colour, alpha, rim) {
   }
 }
 
-// As long as the way of 0.8 s: proportional to the speed.
+// The displacement in 0.8 s: its length is proportional to the speed.
 function arrow(context, view, place, velocity, colour, width) {
   const from = view.px(place);
   const to = view.px([place[0] + ARROW_SECONDS * velocity[0], place[1] + ARROW_SECONDS * velocity[1]]);
@@ -106,7 +106,7 @@ function grid(context, view, width, height, palette) {
   words(context, `${metres} m`, [22 + length, y - 1], palette);
 }
 
-// Whole numbers of frames up to a time, and the place at the time itself.
+// The positions of whole frames up to a time, and the position at the time itself.
 function trail(observed, ahead, from, time) {
   const places = [];
   for (let frame = from; frame < time; frame += 1) places.push(placeAt(observed, ahead, frame));
@@ -114,7 +114,7 @@ function trail(observed, ahead, from, time) {
   return places;
 }
 
-// Where a pedestrian is shown to go: as it went, as far as it was seen; else as it is forecast.
+// The path of a pedestrian: the true one as far as it was observed, then the forecast.
 function shownAhead(pedestrian, show, time) {
   return show.truth && time <= knownUntil(pedestrian) ? pedestrian.truth : pedestrian.hypotheses[pedestrian.representative].path;
 }
@@ -138,7 +138,7 @@ function drawOther(context, view, pedestrian, state, palette) {
   dot(context, view.px(placeAt(pedestrian.observed, ahead, time)), 3.4, palette.other, 1, palette.panel);
 }
 
-// Every hypothesis but the one looked at: the heavier, the clearer and the broader.
+// All hypotheses except the selected one; a larger weight gives a darker and broader line.
 function drawHypotheses(context, view, pedestrian, state, palette, strength, chosen = -1) {
   const now = OBSERVED - 1;
   const { heaviest } = pedestrian;
@@ -160,7 +160,7 @@ function drawHypotheses(context, view, pedestrian, state, palette, strength, cho
   }
 }
 
-// The region of 90 % at the step reached: discs about the hypotheses, as one area.
+// The 90 % region at the current step: discs around the hypotheses, as one area.
 function drawRegion(context, view, pedestrian, time, palette) {
   const step = Math.min(Math.ceil(time), FRAMES - 1) - OBSERVED;
   if (step < 0 || !pedestrian.hypotheses[0].radii) return;
@@ -199,7 +199,7 @@ function drawChosen(context, view, pedestrian, state, palette) {
   }
   stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, 0, Math.min(time, now))), palette.ink, 1.2, 0.5);
   pedestrian.observed.forEach((place, frame) => {
-    // Who came late has not been seen there.
+    // A pedestrian that appeared late has no earlier positions.
     if (frame < pedestrian.madeUp.padded) ring(context, view.px(place), 2.2, palette.ink, 1, frame <= time ? 0.6 : 0.25);
     else dot(context, view.px(place), 2.6, palette.ink, frame <= time ? 1 : 0.25);
   });
@@ -217,7 +217,7 @@ function drawChosen(context, view, pedestrian, state, palette) {
   }
 }
 
-// Numbers of the pedestrians beside where they are, the chosen one last; none is written over another.
+// Numbers beside the pedestrians without overlaps, the selected one last.
 function drawNumbers(context, view, moment, state, palette) {
   const taken = [];
   const order = moment.pedestrians.map((_, at) => at).filter((at) => at !== state.pedestrian);

@@ -1,4 +1,4 @@
-// Light, dark, or as the system has it. The choice is kept where the browser lets a file keep one.
+// Light, dark, or as in the system. The choice is stored if the browser allows it for files.
 
 const THEMES = ["auto", "light", "dark"];
 const THEME_WORDS = { auto: "as the system has them", light: "light", dark: "dark" };
@@ -23,7 +23,7 @@ function applyTheme(theme) {
   try {
     theme = localStorage.getItem("ddl-theme") ?? "auto";
   } catch {
-    // Some browsers keep nothing for files: the system's colours it is.
+    // Some browsers store nothing for files: the system's colours are used.
   }
   if (!THEMES.includes(theme)) theme = "auto";
   applyTheme(theme);
@@ -33,7 +33,7 @@ function applyTheme(theme) {
     try {
       localStorage.setItem("ddl-theme", theme);
     } catch {
-      // It holds until the page is closed.
+      // The choice then lasts until the page is closed.
     }
   });
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => themeListeners.forEach((listener) => listener()));

@@ -14,7 +14,7 @@ function boundsOf(places) {
   return { low, high };
 }
 
-// Everything that a pedestrian did, is forecast to do and heads for.
+// All positions of a pedestrian: past, true future, forecast, goals.
 function* placesOf(pedestrian, allHypotheses) {
   yield* pedestrian.observed;
   yield* pedestrian.truth;
@@ -26,12 +26,12 @@ function* placesOf(pedestrian, allHypotheses) {
   }
 }
 
-// The view that shows these places, and `room` times their extent, in a canvas of this size.
+// The view that shows these positions and `room` times their extent, in a canvas of this size.
 function viewOf(places, width, height, room) {
   const { low, high } = boundsOf(places);
   const margin = Math.min(34, 0.09 * Math.min(width, height));
   const fit = (axis, pixels) => (pixels - 2 * margin) / Math.max(room * (high[axis] - low[axis]), LEAST_SPAN);
-  // The stamp above and the scale below keep a little more room.
+  // Space for the stamp above and the scale below.
   const scale = Math.min(fit(0, width), fit(1, height - 40));
   const centre = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2];
   return {

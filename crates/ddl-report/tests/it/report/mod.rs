@@ -1,4 +1,4 @@
-//! What a report shows, and what it never mixes.
+//! The content of a report, and the separation of numbers that are not comparable.
 
 mod wording;
 
@@ -117,7 +117,7 @@ fn cells(line: &str) -> Vec<&str> {
     line.trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// What the first table with that column shows in the line that begins with `start`.
+/// The cell of the first table with that column, in the line that begins with `start`.
 fn shown<'a>(page: &'a str, column: &str, start: &str) -> &'a str {
     let mut lines = page.lines();
     let place = lines.find_map(|line| cells(line).iter().position(|cell| *cell == column));
@@ -144,7 +144,7 @@ fn a_table_names_everything_it_must() {
         assert!(page.contains(named), "no `{named}` in\n{page}");
     }
     assert_eq!(cells(line(&page, "| DDL "))[1..], ["0.250/0.500"; 6]);
-    // The literature's DDL row stands in a table of its own, and the warning where it belongs.
+    // The literature's DDL row is in a separate table, and no warning is shown without the protocol `published`.
     assert!(!page.contains("**Warning.**"));
     assert!(!page.contains("Table II") && !page.contains("Ablation"));
     assert!(!page.contains("By recording"));
@@ -198,7 +198,7 @@ fn several_seeds_give_mean_and_deviation() {
     // Sample deviation of 0.2 and 0.4: 0.1414; of their doubles: 0.2828.
     assert_eq!(cells(line(&page, "| DDL "))[6], "0.300±0.141/0.600±0.283");
     assert!(page.contains("seeds 1, 2"));
-    // A seed that lacks a fold: the fold's cell is still there, the mean is not.
+    // With a seed that lacks a fold, the fold keeps its cell but the mean is left out.
     rows.pop();
     let page = markdown(rows);
     assert_eq!(cells(line(&page, "| DDL "))[5..], ["0.200/0.400", "-"]);
@@ -220,7 +220,7 @@ fn protocols_conventions_rules_and_subsets_never_share_a_table() {
         with(|c| c.test_subset = Some("300 pedestrians a fold".to_owned())),
     ]);
     assert_eq!(page.matches("\n## Protocol").count(), 5, "{page}");
-    // Once with the published results, once where they stand beside the fair ones.
+    // Once with the published results, once in the table beside the fair ones.
     assert_eq!(page.matches("**Warning.**").count(), 2);
     assert!(page.starts_with("Data conventions: `star`"));
     assert!(page.contains("Scored: 300 pedestrians a fold."));
@@ -347,7 +347,8 @@ fn the_ablation_stands_beside_the_papers() {
     assert!(ablation.contains("Table II of the DDL paper"));
 }
 
-/// Over the pedestrians of the folds that all have: 30 and 10 who turn, of errors 0.1 and 0.5 m, are 0.2 m, and 0.3 m over the folds.
+/// Over the pedestrians of the folds that all have: 30 and 10 who turn, of errors 0.1 and 0.5 m, are 0.2 m, and 0.3 m
+/// over the folds.
 #[test]
 fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
     let of = |(fold, pedestrians, min_ade): (&str, usize, f64)| {
@@ -387,7 +388,7 @@ fn own_recordings_have_a_row_each_and_one_for_all() {
     ] {
         assert_eq!(cells(line(&page, &format!("| {} ", row[0]))), row);
     }
-    // One recording is the whole table already.
+    // A single recording has no table by recording.
     measured.blocks.pop();
     assert!(!markdown([measured]).contains("By recording"));
 }
@@ -397,18 +398,19 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
     let alone = five_folds(Protocol::Fair, 1, 0.2);
     let mut online = five_folds(Protocol::Online, 1, 0.1);
     for row in &mut online {
-        // Nothing is known yet in the first three of ten blocks, and one block says nothing.
+        // The first three of ten blocks have no online results.
         for block in &mut row.blocks[..3] {
             block.min_fde = 4.0;
         }
         row.blocks.remove(9);
-        // Other words about what is remembered make no other model.
+        // A different description of the memory is still the same model.
         row.conditions.recipe = Some("with a memory".to_owned());
     }
     let page = markdown(alone.iter().cloned().chain(online.clone()));
     let (before, section) = page.split_once("### Error over watching time").unwrap();
     assert!(before.contains("## Protocol `online`"));
-    // Nine blocks in quarters: 0 to 2, 3 and 4, 5 and 6, 7 and 8; without watching ten: 0 to 2, 3 and 4, 5 to 7, 8 and 9.
+    // Nine blocks in quarters: 0 to 2, 3 and 4, 5 and 6, 7 and 8; without watching ten: 0 to 2, 3 and 4, 5 to 7, 8 and
+    // 9.
     let expected = [
         "0.400 (+0.0 %)",
         "0.200 (-50.0 %)",
@@ -419,14 +421,14 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
         cells(line(section, "| DDL "))[1..],
         [&["eth"], &expected[..]].concat()
     );
-    // And a curve of each is drawn for every recording.
+    // A curve of both is drawn for every recording.
     let report = Report::new("watching", alone.iter().cloned().chain(online.clone())).unwrap();
     let figures = Page::new(&report).figures().unwrap();
     let named = |name: &str| figures.iter().find(|(file, _)| file.starts_with(name));
     let (_, drawn) = named("watching-online").unwrap();
     assert_eq!(drawn.matches("curve c0").count(), 1 + 5);
     assert!(drawn.contains("0.400 m") && !drawn.contains("NaN"));
-    // It stands under its own protocol, and nowhere without something to compare with.
+    // It is in the section of its protocol, and left out without results to compare with.
     assert!(!markdown(online).contains("watching time"));
     assert!(!markdown(alone).contains("watching time"));
 }

@@ -1,4 +1,4 @@
-//! What a report says of rows that are easily taken for more than they are.
+//! Wording of reports where rows could be misread.
 
 use ddl_eval::Protocol;
 use ddl_report::Report;
@@ -52,7 +52,7 @@ fn a_forecaster_without_goals_has_no_twenty_goals_to_choose_from() {
 }
 
 #[test]
-fn variants_that_were_not_made_alike_are_said_not_to_be() {
+fn a_report_names_variants_with_different_training() {
     let variant = |name: &str, epochs| {
         let mut rows = five_folds(Protocol::Published, 1, 0.3);
         for row in &mut rows {
@@ -72,7 +72,7 @@ fn variants_that_were_not_made_alike_are_said_not_to_be() {
     assert!(page(4).contains("were NOT made alike"));
 }
 
-/// Ten blocks a fold are the fewest that intervals are given for.
+/// Intervals need at least ten blocks in each fold.
 #[test]
 fn too_few_blocks_have_no_interval() {
     let mut rows = five_folds(Protocol::Fair, 1, 0.25);

@@ -2,11 +2,11 @@
 
 use anyhow::{Context as _, ensure};
 
-/// Tasks that are one array: those of `indices`, counted from the plan's task `first`.
+/// One array of tasks: its `indices` count from the plan's task `first`.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Array {
     pub(super) first: usize,
-    /// As `sbatch --array` has them, as in `0-3,7`.
+    /// In the form of `sbatch --array`, as in `0-3,7`.
     pub(super) indices: String,
 }
 
@@ -15,18 +15,18 @@ pub(super) fn longest(config: &str) -> anyhow::Result<usize> {
     let mut lines = config.lines().filter_map(|line| line.split_once('='));
     let (_, value) = lines
         .find(|(name, _)| name.trim() == "MaxArraySize")
-        .context("`scontrol show config` does not tell MaxArraySize")?;
+        .context("`scontrol show config` does not print MaxArraySize")?;
     let longest = value.trim().parse().with_context(|| {
-        format!("`scontrol show config` tells MaxArraySize ={value}, which is no number")
+        format!("`scontrol show config` prints MaxArraySize ={value}, which is not a number")
     })?;
     ensure!(
         longest > 0,
-        "this Slurm takes no arrays of jobs (MaxArraySize = 0): let others do the tasks, with `--executor none`"
+        "this Slurm allows no arrays of jobs (MaxArraySize = 0): use `--executor none` and run the tasks by other means"
     );
     Ok(longest)
 }
 
-/// All `tasks`, which are in order.
+/// Arrays that hold all `tasks`, which are in ascending order.
 pub(super) fn arrays(tasks: &[usize], longest: usize) -> Vec<Array> {
     tasks
         .chunk_by(|one, next| one / longest == next / longest)
@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn the_limit_is_read_or_refused_by_name() {
+    fn the_limit_is_read_and_errors_name_it() {
         let config =
             "Configuration data as of 2026\nMaxArraySize            = 1001\nMaxBatchRequeue = 5\n";
         assert_eq!(longest(config).unwrap(), 1001);
@@ -76,7 +76,7 @@ mod tests {
                 "no arrays of jobs (MaxArraySize = 0)",
             ),
             (config.replace("1001", "many"), "MaxArraySize = many"),
-            (String::new(), "does not tell MaxArraySize"),
+            (String::new(), "does not print MaxArraySize"),
         ] {
             let error = longest(&config).unwrap_err().to_string();
             assert!(error.contains(told), "{error}");

@@ -1,23 +1,23 @@
-//! What `squeue` tells of the jobs of one folder.
+//! The jobs of one folder in the output of `squeue`.
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Number of the job or array, index in it, state, reason, nodes, name, folder in which it was begun.
+/// Number of the job or array, index in it, state, reason, nodes, name, working folder.
 pub(super) const FORMAT: &str = "%F|%K|%T|%r|%N|%j|%Z";
 const FIELDS: usize = 7;
 
-/// Names of jobs: of an array of tasks with the plan's index of its first one, and of what makes the report.
+/// Names of jobs: of an array of tasks (followed by the plan's index of its first task), and of the report.
 pub(super) const TASKS: &str = "ddl-";
 pub(super) const REPORT: &str = "ddl-report";
 
-/// Reasons for which every job waits a while.
+/// Ordinary reasons to wait, which are not shown.
 const USUAL: [&str; 3] = ["None", "Priority", "Resources"];
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in super::super) struct Job {
     id: String,
-    /// Index in the plan; none makes the report.
+    /// Index in the plan; `None` for the job that makes the report.
     pub(super) task: Option<usize>,
     state: String,
     reason: String,
@@ -25,7 +25,7 @@ pub(in super::super) struct Job {
 }
 
 impl Job {
-    /// For people.
+    /// The state in words.
     pub(super) fn state(&self) -> String {
         let state = self.state.to_lowercase();
         match (self.nodes.as_str(), self.reason.as_str()) {
@@ -81,7 +81,7 @@ mod tests {
         6|N/A|RUNNING|None|n2|bash|/data/a run\n";
 
     #[test]
-    fn jobs_of_one_folder_are_told_from_others() {
+    fn jobs_of_other_folders_are_left_out() {
         let jobs = jobs_in(Path::new("/data/a run"), LINES);
         let shown: Vec<(Option<usize>, String)> =
             jobs.iter().map(|job| (job.task, job.state())).collect();

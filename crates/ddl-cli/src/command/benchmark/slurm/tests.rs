@@ -1,4 +1,4 @@
-//! The script of a task with stand-ins for `ddl` and `scontrol`. Against a real Slurm: `cargo xtask cluster`.
+//! The script of a task with stand-ins for `ddl` and `scontrol`. `cargo xtask cluster` tests it with a real Slurm.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
@@ -6,7 +6,7 @@ use super::*;
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::{Child, Stdio};
 
-/// Works until it is told to stop; with `code`, ends at once.
+/// Runs until it gets SIGTERM; with `code`, ends at once.
 const PROGRAM: &str = r#"
 [ -n "$code" ] || trap 'exit 130' TERM
 echo "$$ $*" > begun.writing; mv begun.writing begun
@@ -25,7 +25,7 @@ impl Task {
         let put = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
         put("task.sh", include_str!("task.sh"));
         put("program", PROGRAM);
-        // Nothing executes a file that another test's process may hold open: a function stands in for the program.
+        // A file that another test's process may hold open cannot be executed, so a function stands in for the program.
         put(
             "scontrol.sh",
             "scontrol() { echo \"$*\" > \"$folder/asked\"; }\n",
@@ -72,7 +72,7 @@ fn signal(process: i32, signal: Signal) {
 }
 
 #[test]
-fn a_script_does_its_task_and_ends_as_the_program_does() {
+fn the_script_ends_with_the_exit_code_of_the_program() {
     for code in ["0", "1", "130"] {
         let task = Task::begin(&[("code", code)]);
         assert_eq!(task.begun().1, "benchmark --task 1007");
@@ -92,7 +92,7 @@ fn a_warned_task_saves_and_is_queued_again_and_a_cancelled_one_is_not() {
         (Some(0), Some("requeue 42\n")),
         "{told}"
     );
-    // Slurm sends it to every process of a job.
+    // Slurm sends SIGTERM to every process of a job.
     let cancelled = Task::begin(&[]);
     let (program, _) = cancelled.begun();
     signal(cancelled.script.id().cast_signed(), Signal::TERM);
@@ -117,7 +117,7 @@ fn a_time_limit_that_is_too_short_is_named() {
 }
 
 #[test]
-fn programs_that_fail_or_are_not_there_are_named_with_what_they_said() {
+fn an_error_names_the_program_and_repeats_its_message() {
     let mut command = Command::new("sh");
     let error = answer(command.args(["-c", "echo no such partition >&2; exit 3"])).unwrap_err();
     let told = error.to_string();

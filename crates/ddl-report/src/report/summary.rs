@@ -1,0 +1,130 @@
+//! The rows and columns of a report that a results page shows: few enough to be read as a whole.
+
+use ddl_data::Convention;
+
+use super::{
+    cells::{counts, pair},
+    group::{ResultGroup, TableLine, groups},
+    metrics, significance,
+    spread::SeedSpread,
+};
+use crate::{document::Table, literature};
+use ddl_eval::{Protocol, ResultRow};
+
+/// Rows that only the full tables show, by the end of their names.
+const LEFT_OUT: [&str; 3] = [
+    "without an expert library",
+    "on the way that its network shapes",
+    "constant acceleration (bounded)",
+];
+
+/// Columns of the second table, by their names in the full tables.
+const METRICS: [&str; 7] = [
+    "goal FDE m",
+    "missed %",
+    "collide %",
+    "certified %",
+    "KDE NLL nats",
+    "AMD",
+    "AMV m²",
+];
+
+const BASELINE: &str = "constant velocity (last step)";
+
+/// The main numbers of one convention under its headline window rule, without the protocol `published`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Summary {
+    /// minADE/minFDE (m) of each fold, mean over the seeds, then the mean of the folds with the standard deviation over
+    /// the seeds. A row that a second protocol repeats, such as that of a baseline, is given once.
+    pub errors: Table,
+    /// Of the same rows, over the folds measured: the mean errors with their 95 % intervals, and further metrics.
+    pub metrics: Table,
+    /// Of the rows of `errors` those of the first trained forecaster under each protocol and of constant velocity, and
+    /// the best published system of the convention.
+    pub comparison: Table,
+}
+
+pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> {
+    let groups = groups(rows);
+    let shown: Vec<&ResultGroup<'_>> = groups
+        .iter()
+        .filter(|group| {
+            group.convention == convention
+                && group.window_rule == convention.headline_rule()
+                && group.protocol != Protocol::Published
+        })
+        .collect();
+    let folds = shown.first()?.folds();
+    let columns = [&["forecaster", "protocol"], &folds[..], &["mean"]].concat();
+    let mut errors = Table::new(columns.clone()).text_column("protocol");
+    let mut comparison = Table::new(columns).text_column("protocol");
+    let columns = [
+        &["forecaster", "protocol", "minADE m", "minFDE m"][..],
+        &METRICS,
+    ]
+    .concat();
+    let mut others = Table::new(columns).text_column("protocol");
+
+    let pedestrians = folds.iter().map(|fold| counts(shown[0].pedestrians(fold)));
+    let start = ["pedestrians scored".to_owned(), String::new()];
+    errors.row(start.into_iter().chain(pedestrians));
+    let (mut seen, mut baseline) = (Vec::new(), None);
+    for group in &shown {
+        let mut first_trained = true;
+        for (line, label) in group.labelled() {
+            let cells = error_cells(line, &folds);
+            let row = (label, cells);
+            if seen.contains(&row) || LEFT_OUT.iter().any(|name| row.0.ends_with(name)) {
+                continue;
+            }
+            seen.push(row.clone());
+            let (label, cells) = row;
+            let start = [label, group.protocol.to_string()];
+            let intervals = significance::intervals(line, &folds);
+            let present = line.present(&folds);
+            let means = METRICS.map(|name| metrics::mean(line, &present, name));
+            others.row(start.iter().cloned().chain(intervals).chain(means));
+            let whole: Vec<String> = start.into_iter().chain(cells).collect();
+            if line.conditions().epochs.is_some() && first_trained {
+                first_trained = false;
+                comparison.row(whole.clone());
+            }
+            if whole[0] == BASELINE {
+                baseline = baseline.or_else(|| Some(whole.clone()));
+            }
+            errors.row(whole);
+        }
+    }
+    if let Some(best) = literature::best(convention) {
+        let start = [
+            format!("{}, the best published", best.method),
+            "best of 20".to_owned(),
+        ];
+        let cells = best.folds.iter().chain([&best.mean]);
+        let cells = cells.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"));
+        comparison.row(start.into_iter().chain(cells));
+    }
+    if let Some(baseline) = baseline {
+        comparison.row(baseline);
+    }
+    Some(Summary {
+        errors,
+        metrics: others,
+        comparison,
+    })
+}
+
+/// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with
+/// it.
+fn error_cells(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
+    let rounded = |spread: SeedSpread| format!("{:.3}", spread.mean());
+    let mut cells = Vec::new();
+    for fold in folds {
+        let ade = line.on_fold(fold, |s| s.min_ade).map(rounded);
+        let fde = line.on_fold(fold, |s| s.min_fde).map(rounded);
+        cells.push(pair(ade, fde));
+    }
+    let ade = line.over_folds(folds, |s| s.min_ade);
+    cells.push(pair(ade, line.over_folds(folds, |s| s.min_fde)));
+    cells
+}
