@@ -27,7 +27,7 @@ impl GoalSet {
     /// - b = 0.7 (1 - n) exp(-(w / 6 cm)²) |a|² / (|a|² + (w/2)²): how much the last step says, 0 of who stands and trembles;
     /// - x = exp(-(w / 5 mm)²): whether the motion goes on as it is.
     ///
-    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/accuracy.md` tells on which
+    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/tried.md` tells on which
     /// recordings the constants were chosen.
     ///
     /// # Shapes

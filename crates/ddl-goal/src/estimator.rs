@@ -17,7 +17,7 @@ use crate::span::{QuerySpan, velocities};
 ///
 /// In [`RetrievalFrame::Heading`], the default, every pedestrian is described in its [`crate::HeadingFrame`] by its velocities,
 /// divided by its pace; the N tracks of the library, or mirror images of tracks, that moved most alike are the experts,
-/// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on (`docs/goals.md`).
+/// weighted by likeness; and K goals are chosen among how their ends deviate from going straight on (`docs/method.md`).
 ///
 /// In [`RetrievalFrame::World`], the published estimator, velocities are compared in the normalised soft-DTW distance
 /// (equations 4 and 5 of the paper), and k-means of the N nearest tracks' ends (equation 6) gives K goals.

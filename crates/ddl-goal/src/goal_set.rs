@@ -167,7 +167,7 @@ impl GoalSet {
     }
 
     /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings
-    /// (`docs/accuracy.md`).
+    /// (`docs/tried.md`).
     pub const SHARPNESS: f64 = 1.5;
 
     /// Index of the goal nearest to `point` (m), the first of equally near ones: with the true end, the oracle choice

@@ -26,7 +26,7 @@ use crate::{
 /// is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
-/// For balls that stand still (Lemma 6 and Theorem 7 of `docs/stability.md`):
+/// For balls that stand still (Lemma 6 and Theorem 7 of `PROOFS.md`):
 /// - *The distance to the goal still falls* everywhere off the balls: `P' >= share P` is positive definite.
 /// - *No ball is entered*: each is either left or slowed, `|n^T v'| <= sqrt(2 share) lambda_max`.
 /// - *The goal is the only attractor*, if it is outside all balls, the balls do not touch, and the eigenvalues of `P`

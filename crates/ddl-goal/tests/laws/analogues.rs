@@ -1,4 +1,4 @@
-//! The estimator in the heading frame against its definition (docs/goals.md, "Analogues in the pedestrian's own frame"), written down in numpy
+//! The estimator in the heading frame against its definition (docs/method.md, "Analogues"), written down in numpy
 //! outside this project: `reference/analogues.json` has a library of eight, and what of it two pedestrians get: one who walks and turns, and one
 //! with steps below 0.2 m.
 

@@ -379,7 +379,7 @@ impl GoalModel {
 
     /// Where pedestrians whose future is known are led in training: to the proposed goal nearest the true end, or to the
     /// true end where nothing is proposed. What is retrieved is left out: the library holds the very pedestrians that are
-    /// learned from (`docs/goals.md`, training).
+    /// learned from (`docs/method.md`, training).
     pub(crate) fn lessons(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
         if self.proposal_network().is_none() {

@@ -1,4 +1,4 @@
-//! How far a model is trusted: constants that are the same for all models, chosen as `docs/accuracy.md` tells. The
+//! How far a model is trusted: constants that are the same for all models, chosen as `docs/tried.md` tells. The
 //! example `calibrate` writes the regions in `calibration.json`, from places that no model was trained on.
 
 use crate::run::sha256;
