@@ -86,7 +86,8 @@ fn table(rows: &str) -> String {
 fn made_by(commit: &str, time: &str, took: Duration) -> String {
     let cores = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     format!(
-        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU; commit {commit}, {time}, in {} min {} s.",
+        "`cargo xtask faults --publish` made this table: development profile, {cores} cores, CPU;\n\
+         commit {commit}, {time}, in {} min {} s.",
         took.as_secs() / 60,
         took.as_secs() % 60
     )
