@@ -174,7 +174,7 @@ impl GoalSet {
     }
 
     /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings
-    /// (`docs/accuracy.md`).
+    /// (`docs/tried.md`).
     pub const SHARPNESS: f64 = 1.5;
 
     /// Index of the goal nearest to `point` (m), the first of equally near ones. With the true endpoint this is the

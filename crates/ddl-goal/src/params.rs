@@ -59,7 +59,7 @@ pub struct GoalEstimatorParams {
 }
 
 impl Default for GoalEstimatorParams {
-    /// The estimator that did best on validation recordings (docs/goals.md).
+    /// The estimator that did best on validation recordings (docs/tried.md).
     fn default() -> Self {
         Self {
             frame: RetrievalFrame::Heading,

@@ -1,9 +1,11 @@
-//! The built-in models on recordings of places that no model was trained on: `elsewhere FOLDER=FPS ... > docs/elsewhere.md`.
+//! The built-in models on recordings of places that no model was trained on: `elsewhere FOLDER=FPS ...`.
 //!
-//! Folders hold csv files (frame, pedestrian, x, y in metres). Baselines, intervals, certificates, coverage and familiarity stand beside the errors.
+//! Folders hold csv files (frame, pedestrian, x, y in metres). All tables are printed; those of the default model by place
+//! go into `docs/elsewhere.md`.
 
-#![expect(clippy::print_stdout, reason = "a program that prints a page")]
+#![expect(clippy::print_stdout, reason = "a program that prints tables")]
 
+mod page;
 mod places;
 
 use ddl::data::{Dataset, HORIZON, OBSERVED, Position, TIME_STEP, Window};
@@ -23,32 +25,25 @@ const CHUNK: usize = 64;
 const FAST: f64 = 3.0;
 const SEED: u64 = 0;
 
-const HEAD: &str = "# Other places
+const RATIO: &str = "ratio of the minADE";
+/// What is measured of a model, as the columns of its table and the rows of the page.
+const MEASURES: [&str; 12] = [
+    "`fair`",
+    "straight lines to the same goals",
+    RATIO,
+    "`single`",
+    "log loss (nats)",
+    "AMD",
+    "regions of 50 % and 90 %",
+    "radius (m)",
+    "certified",
+    "familiarity",
+    "faster than 3 m/s",
+    "of these `fair`, straight lines",
+];
 
-How the built-in models do where no model was trained: recordings of other places, other cameras and other annotators. Every complete window of
-20 steps of 0.4 s; where a folder holds more than about 3,000 pedestrian-windows, evenly spread ones of it. Errors in metres, means over
-pedestrian-windows: `fair` is minADE/minFDE of 20 hypotheses, `single` ADE/FDE of one. CPU.
-
-Made by `cargo run --release -p ddl --example elsewhere -- FOLDER=FPS ... > docs/elsewhere.md`, folders and frames a second as below. The constants of
-[calibration](accuracy.md#anywhere-people-walk) were chosen and fitted on recordings 1, 3, 5 and so on of each folder, of a single recording on its first half. The tables
-are of the rest: other recordings of the same places; those without a window of 20 steps have no row. The networks have learned from none of them.
-";
-
-const NOTES: &str = "
-*Ratio*: minADE of the model to that of straight lines to the same goals; the interval is that of the paired difference over blocks of 20 s (95 %), divided by the
-minADE of the lines. *Noisy*: 20 samples of constant velocity with an angular noise of 25 degrees. *Log loss* of the weight of the goal nearest to
-the true end, nats; lower is better, equal weights have 2.996. *AMD* ([protocols](protocols.md#4-metrics)): 1.25 is calibrated. *Regions*: share of true positions inside the regions of 50 % and 90 %; *radius* of
-a disc of the same area as the region of 90 % at 4.8 s, metres. *Certified*: share of hypotheses whose certificate holds, bounds of speed, change of speed, deviation and
-arrival included. *Familiarity*: mean; 0.5 where motions are as ordinary as in training. *Faster than 3 m/s*: number of pedestrian-windows whose mean
-observed speed is above 3 m/s; minADE of the model and of straight lines on these.
-
-A region as it was calibrated, which these are, holds its share on average over places like those that it was calibrated on. In a single recording it holds more or less, as
-the tables by recording show; [regions that follow a place](regions.md) come to hold it there too. Familiarity
-tells of single motions; it does not rank recordings by their errors.
-
-*dut*: pedestrians beside a vehicle, filmed from above (Yang et al., *Top-view trajectories*, IV 2019). *edinburgh*: a forum filmed from above (Majecka, *Statistical models
-of pedestrian behaviour in the Forum*, 2009). *sdd*: the Stanford Drone Dataset, pedestrians alone (Robicquet et al., ECCV 2016).
-";
+/// Figures of the default model at one place, with the baselines: name and value.
+type Figures = Vec<(&'static str, String)>;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let places: Vec<Place> = std::env::args()
@@ -59,52 +54,81 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: elsewhere FOLDER=FPS ...".into());
     }
     ddl::prepare(DeviceChoice::Cpu, None)?;
-    println!("{HEAD}");
-    for place in &places {
-        println!(
-            "- **{}**: {}, {} frames a second, {} pedestrian-windows",
-            place.name,
-            match place.recordings.len() {
-                1 => "1 recording".to_owned(),
-                recordings => format!("{recordings} recordings"),
-            },
-            place.rate,
-            count(&place.windows)
-        );
-    }
     let models: Vec<(BuiltinModel, Ddl)> = BuiltinModel::ALL
         .into_iter()
         .map(|model| Ok((model, Ddl::builtin(model, DeviceChoice::Cpu)?)))
         .collect::<Result<_, ddl::DdlError>>()?;
+    let mut of_places = Vec::new();
     for place in &places {
-        println!("\n## {}\n", place.name);
-        print_baselines(place)?;
         println!(
-            "\n| model | `fair` | straight lines | ratio | `single` | log loss | AMD | regions 50 / 90 % | radius | certified | familiarity | faster than 3 m/s |\n\
-             |---|---|---|---|---|---|---|---|---|---|---|---|"
+            "\n# {}: {} recordings, {} frames a second, {} pedestrian-windows\n",
+            place.name,
+            place.recordings.len(),
+            place.rate,
+            count(&place.windows)
         );
-        for (name, model) in &models {
-            print_model(name.name(), model, &place.windows)?;
-        }
-        let default = models
-            .iter()
-            .find(|(name, _)| *name == BuiltinModel::default());
-        if let Some((name, model)) = default {
-            print_recordings(name.name(), model, &place.windows)?;
-            print_watching(name.name(), model, place)?;
+        of_places.push(print_place(place, &models)?);
+    }
+    page::publish("elsewhere.md", &summary(&places, &of_places))
+}
+
+fn print_place(place: &Place, models: &[(BuiltinModel, Ddl)]) -> Result<Figures, Box<dyn Error>> {
+    let mut figures = baselines(&place.windows)?;
+    println!("| baseline | errors |\n|---|---|");
+    for (name, errors) in &figures {
+        println!("| {name} | {errors} |");
+    }
+    println!("\n| model | {} |", MEASURES.join(" | "));
+    println!("|{}", "---|".repeat(MEASURES.len() + 1));
+    let mut ratios = Vec::new();
+    for (name, model) in models {
+        let (ratio, cells) = measure(model, &place.windows)?;
+        println!("| {} | {} |", name.name(), cells.join(" | "));
+        ratios.push(ratio);
+        if *name == BuiltinModel::default() {
+            figures.extend(MEASURES.into_iter().zip(cells));
         }
     }
-    println!("{NOTES}");
-    Ok(())
+    ratios.sort_by(f64::total_cmp);
+    let range = format!("{:.3} to {:.3}", ratios[0], ratios[ratios.len() - 1]);
+    let after = figures.iter().position(|(name, _)| *name == RATIO);
+    figures.insert(
+        after.map_or(0, |at| at + 1),
+        ("that ratio of the five models", range),
+    );
+    let default = models
+        .iter()
+        .find(|(name, _)| *name == BuiltinModel::default());
+    if let Some((name, model)) = default {
+        print_recordings(name.name(), model, &place.windows)?;
+        figures.extend(print_watching(name.name(), model, place)?);
+    }
+    Ok(figures)
+}
+
+/// A column for each place.
+fn summary(places: &[Place], of_places: &[Figures]) -> String {
+    let row = |name: &str, cells: &[String]| format!("| {name} | {} |\n", cells.join(" | "));
+    let of_each = |cell: fn(&Place) -> String| places.iter().map(cell).collect::<Vec<_>>();
+    let mut table = row("", &of_each(|place| place.name.clone()));
+    table += &row("---", &of_each(|_| "---".to_owned()));
+    let recordings = of_each(|place| place.recordings.len().to_string());
+    table += &row("recordings", &recordings);
+    let windows = of_each(|place| count(&place.windows).to_string());
+    table += &row("pedestrian-windows", &windows);
+    for (at, (name, _)) in of_places[0].iter().enumerate() {
+        let cells: Vec<String> = of_places.iter().map(|of| of[at].1.clone()).collect();
+        table += &row(name, &cells);
+    }
+    table
 }
 
 fn count(windows: &[Window]) -> usize {
     windows.iter().map(Window::len).sum()
 }
 
-fn print_baselines(place: &Place) -> Result<(), Box<dyn Error>> {
-    println!("| baseline | errors |\n|---|---|");
-    for (name, forecaster) in [
+fn baselines(windows: &[Window]) -> Result<Figures, Box<dyn Error>> {
+    let forecasters = [
         (
             "constant velocity, last step (`single`)",
             ConstantVelocity::last_step(),
@@ -114,18 +138,20 @@ fn print_baselines(place: &Place) -> Result<(), Box<dyn Error>> {
             ConstantVelocity::mean_observed(),
         ),
         (
-            "noisy constant velocity, 20 samples (`fair`)",
+            "constant velocity, 20 noisy samples (`fair`)",
             ConstantVelocity::angular_noise(SEED),
         ),
-    ] {
-        let forecasts = forecaster.forecast_all(&Protocol::Fair.visible(&place.windows))?;
-        let scores = Scores::evaluate(&place.windows, &forecasts)?;
-        println!("| {name} | {:.3}/{:.3} |", scores.min_ade, scores.min_fde);
-    }
-    Ok(())
+    ];
+    let measured = forecasters.into_iter().map(|(name, forecaster)| {
+        let forecasts = forecaster.forecast_all(&Protocol::Fair.visible(windows))?;
+        let scores = Scores::evaluate(windows, &forecasts)?;
+        Ok((name, format!("{:.3}/{:.3}", scores.min_ade, scores.min_fde)))
+    });
+    measured.collect()
 }
 
-fn print_model(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), Box<dyn Error>> {
+/// The ratio of the model's minADE to that of straight lines, and a cell for each of the [`MEASURES`].
+fn measure(model: &Ddl, windows: &[Window]) -> Result<(f64, Vec<String>), Box<dyn Error>> {
     let (mut ours, mut ones, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for chunk in windows.chunks(CHUNK) {
         let seen = Protocol::Fair.visible(chunk);
@@ -152,23 +178,25 @@ fn print_model(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), Box<dy
         .stability
         .as_ref()
         .and_then(|s: &StabilityScores| s.certified);
-    println!(
-        "| {name} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}{interval} | {:.3}/{:.3} | {:.2} | {:.2} | {half:.1} / {most:.1} % | {:.2} | {:.1} % | {:.2} | {} |",
-        scores.min_ade,
-        scores.min_fde,
-        of_lines.min_ade,
-        of_lines.min_fde,
-        scores.min_ade / of_lines.min_ade,
-        one.min_ade,
-        one.min_fde,
-        number(scores.weight_log_loss),
-        number(scores.amd),
-        scores.region_radius.map_or(f64::NAN, |[_, radius]| radius),
-        100.0 * number(certified),
-        number(scores.familiarity),
-        runners(windows, &ours, &lines)?,
-    );
-    Ok(())
+    let errors = |scores: &Scores| format!("{:.3}/{:.3}", scores.min_ade, scores.min_fde);
+    let ratio = scores.min_ade / of_lines.min_ade;
+    let radius = scores.region_radius.map_or(f64::NAN, |[_, radius]| radius);
+    let [fast, of_fast] = runners(windows, &ours, &lines)?;
+    let cells = vec![
+        errors(&scores),
+        errors(&of_lines),
+        format!("{ratio:.3}{interval}"),
+        errors(&one),
+        format!("{:.2}", number(scores.weight_log_loss)),
+        format!("{:.2}", number(scores.amd)),
+        format!("{half:.1} / {most:.1} %"),
+        format!("{radius:.2}"),
+        format!("{:.1} %", 100.0 * number(certified)),
+        format!("{:.2}", number(scores.familiarity)),
+        fast,
+        of_fast,
+    ];
+    Ok((ratio, cells))
 }
 
 fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), Box<dyn Error>> {
@@ -223,7 +251,7 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
 }
 
 /// The same windows with a memory of their recording until then, as a camera has it that has watched from the start.
-fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<(), Box<dyn Error>> {
+fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<Figures, Box<dyn Error>> {
     let dataset = Dataset::own(place.recordings.clone())?;
     let goals = model.goal_model();
     let online = goals.remembering(&place.windows, &dataset, Remembering::Online)?;
@@ -252,18 +280,20 @@ fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<(), Box<dyn 
         let minutes = format!("{:.1}", minutes(recording));
         print_change(recording, &minutes, model, (alone, watching))?;
     }
-    if of_one().count() > 1 {
-        print_change("all", "", model, (&place.windows, &online))?;
-    }
-    Ok(())
+    let [many, one] = print_change("all", "", model, (&place.windows, &online))?;
+    Ok(vec![
+        ("`online` (change of the minFDE)", many),
+        ("`online-single` (change of the FDE)", one),
+    ])
 }
 
+/// Prints a row. Errors with the memory and their change, under `online` and `online-single`.
 fn print_change(
     recording: &str,
     minutes: &str,
     model: &Ddl,
     (alone, watching): (&[Window], &[Window]),
-) -> Result<(), Box<dyn Error>> {
+) -> Result<[String; 2], Box<dyn Error>> {
     let scored = |windows: &[Window]| {
         let seen = Protocol::Online.visible(windows);
         let scores = [model.forecast_all(&seen)?, model.forecast_one(&seen)?];
@@ -271,30 +301,27 @@ fn print_change(
         Ok::<_, Box<dyn Error>>([many?, one?])
     };
     let (before, after) = (scored(alone)?, scored(watching)?);
-    let cells = before.iter().zip(&after).map(|(before, after)| {
-        format!(
-            "{:.3}/{:.3} | {:.3}/{:.3} | {:+.1} %",
-            before.min_ade,
-            before.min_fde,
-            after.min_ade,
-            after.min_fde,
-            100.0 * (after.min_fde / before.min_fde - 1.0)
-        )
-    });
+    let errors = |scores: &Scores| format!("{:.3}/{:.3}", scores.min_ade, scores.min_fde);
+    let change = |at: usize| 100.0 * (after[at].min_fde / before[at].min_fde - 1.0);
+    let cell = |at: usize| {
+        let [alone, watching] = [&before[at], &after[at]].map(errors);
+        format!("{alone} | {watching} | {:+.1} %", change(at))
+    };
     println!(
-        "| {recording} | {minutes} | {} | {} |",
+        "| {recording} | {minutes} | {} | {} | {} |",
         before[0].pedestrians,
-        cells.collect::<Vec<_>>().join(" | ")
+        cell(0),
+        cell(1)
     );
-    Ok(())
+    Ok([0, 1].map(|at| format!("{} ({:+.1} %)", errors(&after[at]), change(at))))
 }
 
-/// minADE of those who were observed to be faster than 3 m/s on average, and of straight lines to the same goals, with their number.
+/// How many were observed to be faster than 3 m/s on average, and the minADE of the model and of straight lines on these.
 fn runners(
     windows: &[Window],
     ours: &[Forecast],
     lines: &[Forecast],
-) -> Result<String, Box<dyn Error>> {
+) -> Result<[String; 2], Box<dyn Error>> {
     let (mut count, mut sums) = (0, [0.0; 2]);
     for (window, pair) in windows.iter().zip(ours.iter().zip(lines)) {
         let errors = [pair.0, pair.1].map(|forecast| Scene::new(window, forecast));
@@ -305,14 +332,13 @@ fn runners(
             sums = [sums[0] + ours.min_ade(i), sums[1] + lines.min_ade(i)];
         }
     }
-    Ok(match count {
-        0 => "none".to_owned(),
-        _ => format!(
-            "{count}: {:.3}, lines {:.3}",
-            sums[0] / f64::from(count),
-            sums[1] / f64::from(count)
-        ),
-    })
+    let [ours, lines] = sums.map(|sum| sum / f64::from(count));
+    let means = if count > 0 {
+        format!("{ours:.3}, {lines:.3}")
+    } else {
+        "-".to_owned()
+    };
+    Ok([count.to_string(), means])
 }
 
 fn mean_speed(observed: &[Position]) -> f64 {

@@ -1,12 +1,14 @@
 //! The regions of the built-in models over the time of recordings, as they come and as they follow what is seen:
-//! `regions STAR_FOLDER [FOLDER=FPS ...] > docs/regions.md`. It also draws `docs/regions.svg`.
+//! `regions STAR_FOLDER [FOLDER=FPS ...]`. It prints all tables, puts that of the tested recordings into
+//! `docs/regions.md`, and draws `docs/regions.svg`.
 //!
 //! The folder of the convention `star` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The
 //! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on the
 //! two recordings that no fold tests, the constants were chosen.
 
-#![expect(clippy::print_stdout, reason = "a program that prints a page")]
+#![expect(clippy::print_stdout, reason = "a program that prints tables")]
 
+mod page;
 #[allow(dead_code, reason = "whole recordings alone are needed")]
 mod places;
 
@@ -33,31 +35,6 @@ const APART: f64 = 1.0 / 12.0;
 const SHORTEST: f64 = 0.8;
 /// Forecasts of fewer pedestrians make no share of a recording.
 const FEWEST: usize = 1000;
-
-const HEAD: &str = "# Regions that follow a place
-
-A region of 90 % should hold a pedestrian nine times out of ten. The [regions](robots.md#how-far-to-trust-a-forecast) of a model were calibrated on other places. In a new one
-they hold more or less than they say. So `ddl forecast` lets them follow what is seen: when a pedestrian is seen where it was forecast to be, the regions for that step ahead become
-a little smaller, when it is seen elsewhere, larger. A forecast `t` steps ahead is judged `t` steps later, and only then changes later forecasts.
-
-The rule is conformal control of quantiles ([Gibbs and Candes](https://arxiv.org/abs/2106.00170), [Angelopoulos, Candes and Tibshirani](https://arxiv.org/abs/2307.16895)). Each quantile `q` of the table of regions, one for each
-of 12 levels and 12 steps, is multiplied by `exp(s)`, and each frame adds `0.06 w (missed - (1 - level))` to `s`. `missed` is the share of the pedestrians now seen that their regions for now did
-not hold. `w` is the root of their number, at most 3, times the time since the frame before in steps of 0.4 s, at most 1. `s` begins at 0 and stays within ln 64, so that a radius stays within 8 times and
-an 8th of what the weights and the table give. As long as `s` is not at its bound, the mean of `missed`, weighted by `w`, is within `ln 64 / (0.06 sum w)` of the share asked for, whatever people do. It is a statement about all
-people and frames together, not about each person: for somebody who moves unusually a region holds less.
-
-![Share of true positions inside the regions of 90 % over the minutes of six recordings: on four of them fixed regions hold 95 % and more, adaptive ones come to 90 % and are smaller.](regions.svg)
-
-Above each panel: share and mean radius after the first quarter.
-
-Made by `cargo run --release -p ddl --example regions -- STAR_FOLDER sdd=30 edinburgh=9 > docs/regions.md` (figure and tables), with the recordings of ETH/UCY in the convention `star` and those of
-[other places](elsewhere.md) of at least 48 s and 1,000 forecasts of a pedestrian. Model of the fold, which was not trained on the recording; elsewhere `hotel`. Everybody seen at 8 steps in a row is forecast from every frame, as `ddl forecast --whole` does
-(protocol `fair` for positions, `online` for regions: they read the recording up to the last observed frame). Counted are all steps ahead at which the pedestrian was still seen. CPU, no seed.
-
-*later*: forecasts after the first quarter of the recording. *any minute*: least and largest share of a minute, after the first quarter. *radius*: mean radius (m) of a disc as large as the region at 4.8 s, after the first
-quarter. *reliability*: over the levels 10, 20, ... 90 % and the whole recording, 100 % less the mean, and less the largest, difference between the share held and the level. DD-MDN (Hetzel et al.,
-ICRA 2026) prints a mean reliability of this kind, of densities and levels of its own. Shares in per cent.
-";
 
 /// What regions held, of the forecasts of one moment.
 struct Moment {
@@ -98,16 +75,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    println!("{HEAD}\n## Recordings that are tested on\n");
-    print_table(&tested);
-    println!("\n## Recordings that the constants were chosen on\n");
+    let of_tested = table(&tested);
+    println!("# Recordings that are tested on\n\n{of_tested}");
     println!(
-        "Tried were steps of 0.005 to 0.3; the number of people, its root, and 1 as the weight of a frame; and updates shared among the \
-         forecast steps. Steps of 0.04 to 0.1 do about as well here. With more weight for crowds the regions of 50 % swing, because outcomes come late. \
-         To scale the discs of a pedestrian by how its own earlier forecasts did made them no smaller on average. `zara03` and \
-         `uni_examples` are recordings of training.\n"
+        "# Recordings that the constants were chosen on\n\n{}",
+        table(&others)
     );
-    print_table(&others);
+    page::publish("regions.md", &of_tested)?;
     let picture = drawn(&tested)?;
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/regions.svg");
     std::fs::write(file, picture)?;
@@ -256,10 +230,10 @@ fn reliability(moments: &[Moment], kind: usize) -> [f64; 2] {
     [1.0 - sum / LEVELS.len() as f64, 1.0 - most]
 }
 
-fn print_table(recordings: &[Watched]) {
-    println!(
+fn table(recordings: &[Watched]) -> String {
+    let mut table = String::from(
         "| recording (model) | minutes | forecasts | regions | 90 %: whole | later | any minute | radius | 50 %: whole | later | radius | reliability |\n\
-         |---|---|---|---|---|---|---|---|---|---|---|---|"
+         |---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for watched in recordings {
         for (kind, name) in ["fixed", "adaptive"].into_iter().enumerate() {
@@ -293,9 +267,11 @@ fn print_table(recordings: &[Watched]) {
                 100.0 * mean,
                 100.0 * least,
             );
-            println!("{row}");
+            table += &row;
+            table.push('\n');
         }
     }
+    table
 }
 
 fn drawn(recordings: &[Watched]) -> Result<String, ddl::report::FigureError> {

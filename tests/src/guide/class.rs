@@ -6,7 +6,6 @@ use crate::recordings;
 
 const TRAINING: &str = "docs/training.md";
 const PROGRAM: &str = "docs/program.md";
-const PERFORMANCE: &str = "docs/performance.md";
 
 /// Commands that take minutes, by page and beginning; they are only started.
 pub const LONG: &[(&str, &str)] = &[
@@ -29,10 +28,6 @@ pub const LONG: &[(&str, &str)] = &[
 pub const ELSEWHERE: &[(&str, &str)] = &[
     ("docs/gpu.md", ""),
     ("docs/libtorch.md", "export LIBTORCH="),
-    (PERFORMANCE, "eval \"$(cargo xtask env)\""),
-    (PERFORMANCE, "g++"),
-    (PERFORMANCE, "for steps in"),
-    (PERFORMANCE, "tail"),
     ("docs/rust.md", "eval \"$(cargo xtask env)\""),
     ("crates/ddl/README.md", "eval \"$(cargo xtask env)\""),
 ];

@@ -26,7 +26,7 @@ use crate::{
 /// ball is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
-/// For balls that do not move (Lemma 6 and Theorem 7 of `docs/stability.md`):
+/// For balls that do not move (Lemma 6 and Theorem 7 of `PROOFS.md`):
 /// - *The distance to the goal still falls* everywhere outside the balls: `P' >= share P` is positive definite.
 /// - *No ball is entered*: the pedestrian moves away from each ball or is slowed, `|n^T v'| <= sqrt(2 share)
 ///   lambda_max`.

@@ -14,7 +14,7 @@ use crate::{
 ///
 /// # What is guaranteed
 /// Little: with `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a step exactly when `dt <
-/// 2 |e| u^T P u / |P u|^2` (Proposition 2 of `docs/stability.md`). On a distance this fails for every fixed `dt` close
+/// 2 |e| u^T P u / |P u|^2` (Proposition 2 of `PROOFS.md`). On a distance this fails for every fixed `dt` close
 /// to the goal: the pedestrian oscillates around it. [`StableEuler`](super::StableEuler) keeps the guarantee.
 ///
 /// # References

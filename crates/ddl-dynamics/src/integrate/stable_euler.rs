@@ -32,7 +32,7 @@ const ARRIVAL: f64 = 8.0;
 ///   `m > 0`: with `r = (M - m) / (M + m)`, `Phi <= tolerance` after at most
 ///   `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
 ///
-/// The proofs are Theorems 3 and 4 of `docs/stability.md`.
+/// The proofs are Theorems 3 and 4 of `PROOFS.md`.
 ///
 /// # Numerics
 /// The guarantee holds for the *computed* distance, [`Attractor::distance`], in `f32` as in `f64`: every step strictly

@@ -1,4 +1,4 @@
-//! The estimator in the heading frame, against its definition (docs/goals.md, "Analogues in the pedestrian's own
+//! The estimator in the heading frame, against its definition (docs/method.md, "Analogues in the pedestrian's own
 //! frame") evaluated in numpy outside this project. `reference/analogues.json` has a library of eight tracks and the
 //! results for two pedestrians: one that walks and turns, and one with steps below 0.2 m.
 

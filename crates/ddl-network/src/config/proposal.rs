@@ -101,7 +101,7 @@ impl ProposalConfig {
 
 /// How the proposal network is trained.
 ///
-/// The defaults were chosen on validation splits of training recordings (`docs/goals.md`).
+/// The defaults were chosen on validation splits of training recordings (`docs/tried.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProposalTraining {

@@ -102,7 +102,7 @@ impl StarConfig {
         }
     }
 
-    /// The default: in own frames where there are goals (`docs/accuracy.md`), and as small as loses no accuracy
+    /// The default: in own frames where there are goals (`docs/tried.md`), and as small as loses no accuracy
     /// (`docs/performance.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {

@@ -100,7 +100,7 @@ impl TrainingConfig {
         }
     }
 
-    /// The training behind the protocols `fair` and `single` (`docs/accuracy.md`).
+    /// The training behind the protocols `fair` and `single` (`docs/tried.md`).
     pub fn recommended(variant: Variant) -> Self {
         let (objective, jitter) = if variant.uses_goal() {
             (Objective::Walk, 0.06)

@@ -6,6 +6,19 @@
 //! ```console
 //! $ cargo run --release -p ddl-star --example training_steps -- STEPS DROPOUT
 //! ```
+//!
+//! With the library made of `operations.cpp` it counts what libtorch does in a step (docs/performance.md). Views and
+//! allocations do not count. Half the difference of three steps and one is a step:
+//!
+//! ```console
+//! $ eval "$(cargo xtask env)"
+//! $ cd crates/ddl-star/examples/training_steps
+//! $ g++ -O1 -std=c++17 -shared -fPIC -I$LIBTORCH/include operations.cpp -o operations.so -L$LIBTORCH/lib -lc10 -ltorch_cpu
+//! $ cargo build -p ddl-star --example training_steps
+//! $ OPERATIONS=operations-1 LD_PRELOAD=./operations.so ../../../../target/debug/examples/training_steps 1 0
+//! $ OPERATIONS=operations-3 LD_PRELOAD=./operations.so ../../../../target/debug/examples/training_steps 3 0
+//! $ tail -qn 1 operations-1 operations-3
+//! ```
 #![allow(
     clippy::print_stdout,
     reason = "a command-line program answers on standard output"

@@ -379,7 +379,7 @@ impl GoalModel {
 
     /// The goals of pedestrians in training: the proposed goal nearest the true endpoint, or the true endpoint without
     /// a proposal network. Retrieved goals are left out, because the library holds the training pedestrians themselves
-    /// (`docs/goals.md`, training).
+    /// (`docs/method.md`, training).
     pub(crate) fn training_goals(
         &self,
         windows: &[Window],

@@ -27,7 +27,7 @@ pub struct ProposalRecipe {
 }
 
 impl Default for ProposalRecipe {
-    /// Chosen on validation splits of training recordings (`docs/accuracy.md`).
+    /// Chosen on validation splits of training recordings (`docs/tried.md`).
     fn default() -> Self {
         Self {
             network: ProposalConfig::default(),
