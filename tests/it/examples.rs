@@ -8,7 +8,7 @@ use std::path::Path;
 /// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
 const EXAMPLES: [(&str, &[&str]); 9] = [
     (
-        "ddl forecast_csv",
+        "ddl-forecast forecast_csv",
         &[
             "pavement, frame 9: 3 people, 20 hypotheses each\n",
             "pedestrian 3, now at (4.90, -0.30) m, seen at 4 of 8 steps",
@@ -17,11 +17,11 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
         ],
     ),
     (
-        "ddl forecast_csv mine.csv",
+        "ddl-forecast forecast_csv mine.csv",
         &["mine.csv, frame 80: 3 people"],
     ),
     (
-        "ddl live hotel.safetensors mine.csv",
+        "ddl-forecast live hotel.safetensors mine.csv",
         &[
             "frame 60: 3 seen, nobody for 8 frames yet",
             "nearer to its goal at every step",
@@ -62,10 +62,10 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
 /// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
 /// minutes, some of other places, or draw a run's own test scene.
 const ELSEWHERE: [&str; 6] = [
-    "ddl calibrate",
-    "ddl elsewhere",
-    "ddl regions",
-    "ddl draw_forecast",
+    "ddl-forecast calibrate",
+    "ddl-forecast elsewhere",
+    "ddl-forecast regions",
+    "ddl-forecast draw_forecast",
     "ddl-report report_page",
     "ddl-goal goal_validation",
 ];
@@ -115,14 +115,17 @@ fn no_example_is_forgotten() {
         .map(parts);
     let known: BTreeSet<String> = known.map(|(of, name, _)| format!("{of} {name}")).collect();
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
-    let names = std::fs::read_dir(crates)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name());
-    let packages = names.map(|name| name.into_string().unwrap());
-    let found = packages
-        .filter(|package| package != "ddl-star")
-        .flat_map(|package| {
-            let of = example::all_of(&package).into_iter();
+    let folders = std::fs::read_dir(crates).unwrap();
+    let found = folders
+        .map(|entry| entry.unwrap().path())
+        .filter(|folder| !folder.ends_with("ddl-star"))
+        .flat_map(|folder| {
+            let package = if folder.ends_with("ddl") {
+                "ddl-forecast".to_owned()
+            } else {
+                folder.file_name().unwrap().to_str().unwrap().to_owned()
+            };
+            let of = example::all_of(&folder).into_iter();
             of.map(move |name| format!("{package} {name}"))
         });
     assert_eq!(found.collect::<BTreeSet<_>>(), known);

@@ -28,5 +28,6 @@ fn the_example_of_training_makes_its_steps() {
     let output = ddl_tests::example::run("ddl-star", "training_steps", here, "1 0.1");
     assert_eq!(output.succeeds(), "1 steps, dropout 0.1\n");
     // An example that is added is run from then on.
-    assert_eq!(ddl_tests::example::all_of("ddl-star").len(), 1);
+    let folder = ddl_tests::guide::checkout().join("crates/ddl-star");
+    assert_eq!(ddl_tests::example::all_of(&folder).len(), 1);
 }

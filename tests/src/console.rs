@@ -12,7 +12,7 @@ pub struct Command {
     pub line: usize,
     /// What is typed, without the prompt; of several lines where it goes on after `> `.
     pub typed: String,
-    /// The lines below it: some of what is answered, `...` for what is left out.
+    /// The lines below it: what is answered, with lines `...` for what is left out.
     pub answered: Vec<String>,
 }
 

@@ -119,6 +119,7 @@ fn landing(libraries: &[Library]) -> String {
         module,
         package,
         description,
+        ..
     } in libraries
     {
         // Writing to a string cannot fail.

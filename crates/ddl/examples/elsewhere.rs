@@ -29,7 +29,7 @@ How the built-in models do where no model was trained: recordings of other place
 20 steps of 0.4 s; where a folder holds more than about 3,000 pedestrian-windows, evenly spread ones of it. Errors in metres, means over
 pedestrian-windows: `fair` is minADE/minFDE of 20 hypotheses, `single` ADE/FDE of one. CPU.
 
-Made by `cargo run --release -p ddl --example elsewhere -- FOLDER=FPS ... > docs/elsewhere.md`, folders and frames a second as below. The constants of
+Made by `cargo run --release -p ddl-forecast --example elsewhere -- FOLDER=FPS ... > docs/elsewhere.md`, folders and frames a second as below. The constants of
 [calibration](accuracy.md#anywhere-people-walk) were chosen and fitted on recordings 1, 3, 5 and so on of each folder, of a single recording on its first half. The tables
 are of the rest: other recordings of the same places; those without a window of 20 steps have no row. The networks have learned from none of them.
 ";

@@ -1,8 +1,8 @@
 //! Forecasts the people of a csv: where each will be in 4.8 s, with goals, weights and certificates.
 //!
 //! ```text
-//! cargo run --release -p ddl --example forecast_csv
-//! cargo run --release -p ddl --example forecast_csv -- tracks.csv
+//! cargo run --release -p ddl-forecast --example forecast_csv
+//! cargo run --release -p ddl-forecast --example forecast_csv -- tracks.csv
 //! ```
 //! The table has the columns `frame`, `pedestrian`, `x` and `y`: metres, a row each 0.4 s. Without an argument, a small one is made up: two
 //! people who meet on a pavement, and a third who comes late. The model is the one that comes with the crate. The last moment of the table is

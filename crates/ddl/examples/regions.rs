@@ -50,7 +50,7 @@ people and frames together, not about each person: for somebody who moves unusua
 
 Above each panel: share and mean radius after the first quarter.
 
-Made by `cargo run --release -p ddl --example regions -- STAR_FOLDER sdd=30 edinburgh=9 > docs/regions.md` (figure and tables), with the recordings of ETH/UCY in the convention `star` and those of
+Made by `cargo run --release -p ddl-forecast --example regions -- STAR_FOLDER sdd=30 edinburgh=9 > docs/regions.md` (figure and tables), with the recordings of ETH/UCY in the convention `star` and those of
 [other places](elsewhere.md) of at least 48 s and 1,000 forecasts of a pedestrian. Model of the fold, which was not trained on the recording; elsewhere `hotel`. Everybody seen at 8 steps in a row is forecast from every frame, as `ddl forecast --whole` does
 (protocol `fair` for positions, `online` for regions: they read the recording up to the last observed frame). Counted are all steps ahead at which the pedestrian was still seen. CPU, no seed.
 

@@ -67,10 +67,10 @@ fn check_cargo(page: &str, command: &Command) {
     };
     let package = after("-p").unwrap_or_else(|| panic!("{page}:{}: of no package", command.line));
     let of_tests = package == "ddl-tests";
-    let folder = checkout().join(if of_tests {
-        "tests".to_owned()
-    } else {
-        format!("crates/{package}")
+    let folder = checkout().join(match package {
+        "ddl-tests" => "tests".to_owned(),
+        "ddl-forecast" => "crates/ddl".to_owned(),
+        _ => format!("crates/{package}"),
     });
     assert!(
         folder.join("Cargo.toml").is_file(),

@@ -47,7 +47,7 @@ impl Arguments {
             return Ok(());
         }
         // The other side: what libtorch adds.
-        let packages = ["-p", "ddl-star", "-p", "ddl", "-p", "ddl-cli"];
+        let packages = ["-p", "ddl-star", "-p", "ddl-forecast", "-p", "ddl-cli"];
         let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
         cargo_test(workspace, &arguments, &self.rest)?;
         let tests = ["--test", "it_torch", "--test", "faults_torch"];

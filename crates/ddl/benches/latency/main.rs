@@ -1,10 +1,10 @@
-//! What a forecast costs, `cargo bench -p ddl --bench latency`, and with `--features torch` a training step as well.
+//! What a forecast costs, `cargo bench -p ddl-forecast --bench latency`, and with `--features torch` a training step as well.
 //!
 //! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of about
 //! 266 pedestrians with initial weights. Figures are medians of turns, each with empty caches: processor time for one
 //! thread, wall time for two.
 //!
-//! `cargo bench -p ddl --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead,
+//! `cargo bench -p ddl-forecast --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead,
 //! `-- crowd 100 400` of these numbers of them alone.
 
 mod clock;
