@@ -15,7 +15,7 @@ mod units;
 use clap::{CommandFactory as _, Parser, Subcommand};
 use std::ffi::OsString;
 
-/// Forecasts of walking people that converge to their goals.
+/// Pedestrian trajectory forecasts that provably approach their goals.
 // It fits a screen of 24 lines of 80 columns, which a test measures.
 #[derive(Debug, Parser)]
 #[command(
