@@ -4,22 +4,20 @@ use crate::console::Command;
 use crate::page_run::Depth;
 use crate::recordings;
 
+const README: &str = "README.md";
 const TRAINING: &str = "docs/training.md";
 const PROGRAM: &str = "docs/program.md";
 const PERFORMANCE: &str = "docs/performance.md";
 
 /// Commands that take minutes, by page and how they begin: they are begun.
 pub const LONG: &[(&str, &str)] = &[
+    (README, "ddl train --convention simulated"),
+    (README, "ddl evaluate --model runs/plaza"),
     (TRAINING, "ddl train --data recordings --out runs/own"),
     (TRAINING, "ddl train --fold zara1"),
     (TRAINING, "ddl evaluate --model runs/zara1"),
     (PROGRAM, "ddl evaluate --fold zara1"),
-    (PROGRAM, "ddl train --data recordings"),
-    (PROGRAM, "ddl evaluate --model runs/own"),
-    (PROGRAM, "ddl forecast --model runs/own"),
-    (PROGRAM, "ddl evaluate --model runs/without-lobby"),
     (PROGRAM, "ddl train --fold zara1"),
-    (PROGRAM, "ddl train --convention simulated"),
     (PROGRAM, "ddl train --fold eth --only-goals"),
     (PROGRAM, "ddl goals --model runs/eth --measure"),
 ];
@@ -34,7 +32,6 @@ pub const ELSEWHERE: &[(&str, &str)] = &[
     (PERFORMANCE, "for steps in"),
     (PERFORMANCE, "tail"),
     ("docs/rust.md", "eval \"$(cargo xtask env)\""),
-    ("crates/ddl/README.md", "eval \"$(cargo xtask env)\""),
 ];
 
 /// Folds of the recordings, whose commands are begun where there are none.
