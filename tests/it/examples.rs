@@ -5,8 +5,11 @@ use ddl_tests::{example, own_tracks};
 use std::collections::BTreeSet;
 use std::path::Path;
 
+/// The sample recording of the repository, which an example makes.
+const SAMPLE: &str = include_str!("../../datasets/sample.csv");
+
 /// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
-const EXAMPLES: [(&str, &[&str]); 9] = [
+const EXAMPLES: [(&str, &[&str]); 11] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -27,6 +30,8 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
             "nearer to its goal at every step",
         ],
     ),
+    ("ddl-forecast draw_forecast sample.csv 15 forecast.svg", &[]),
+    ("ddl-data sample_recording", &[SAMPLE]),
     (
         "ddl-data tracks_to_windows",
         &[
@@ -60,12 +65,11 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
 ];
 
 /// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
-/// minutes, some of other places, or draw a run's own test scene.
-const ELSEWHERE: [&str; 6] = [
+/// minutes, some of other places.
+const ELSEWHERE: [&str; 5] = [
     "ddl-forecast calibrate",
     "ddl-forecast elsewhere",
     "ddl-forecast regions",
-    "ddl-forecast draw_forecast",
     "ddl-report report_page",
     "ddl-goal goal_validation",
 ];
@@ -83,6 +87,7 @@ fn every_example_runs_and_keeps_its_promise() {
     place.write_tracks("mine.csv", &own_tracks::three_people(9));
     let model = include_bytes!("../../crates/ddl/models/hotel.safetensors");
     place.write("hotel.safetensors", model);
+    place.write("sample.csv", SAMPLE);
     for (line, promises) in EXAMPLES {
         let (package, name, arguments) = parts(line);
         let output = example::run(package, name, place.path(), arguments).succeeds();

@@ -11,7 +11,7 @@ use ddl_data::simulate::CrowdScene;
 const SCENE: CrowdScene = CrowdScene::Plaza;
 const SEED: u64 = 1;
 /// Steps of 0.4 s that are kept.
-const STEPS: std::ops::Range<i64> = 40..75;
+const STEPS: std::ops::Range<i64> = 205..259;
 
 fn main() {
     let crowd = SCENE.simulate(SEED).recording;
