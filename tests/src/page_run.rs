@@ -20,6 +20,15 @@ pub enum Depth {
     Begun,
 }
 
+/// What is wrong with a command of a page.
+#[derive(Debug)]
+pub struct Problem {
+    /// In words.
+    pub text: String,
+    /// What was answered, where the page shows something else and nothing more is wrong.
+    pub answer: Option<String>,
+}
+
 /// What a reader of the page has before the first command.
 #[derive(Debug)]
 pub struct PageFolder {
@@ -59,8 +68,8 @@ impl PageFolder {
         self.folder.path()
     }
 
-    /// Runs commands in one shell; what is wrong is returned, a text for each command.
-    pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<String> {
+    /// Runs commands in one shell; what is wrong is returned, by the place of the command.
+    pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<(usize, Problem)> {
         let notes = tempfile::tempdir().expect("a temporary folder can be made");
         let empty = tempfile::tempdir().expect("a temporary folder can be made");
         let mut script = String::new();
@@ -101,17 +110,15 @@ impl PageFolder {
             .iter()
             .enumerate()
             .filter_map(|(i, (command, depth))| {
+                let (line, typed) = (command.line, &command.typed);
                 let Some(answered) = read(command, &notes.path().join(i.to_string())) else {
-                    return Some(format!(
-                        "line {}: `{}` was not run: {said}",
-                        command.line, command.typed
-                    ));
+                    let text = format!("line {line}: `{typed}` was not run: {said}");
+                    let answer = None;
+                    return Some((i, Problem { text, answer }));
                 };
-                let problem = problem(&answered, command, *depth)?;
-                Some(format!(
-                    "line {}: `{}`: {problem}\n{answered:#?}",
-                    command.line, command.typed
-                ))
+                let (problem, answer) = problem(&answered, command, *depth)?;
+                let text = format!("line {line}: `{typed}`: {problem}\n{answered:#?}");
+                Some((i, Problem { text, answer }))
             });
         judged.collect()
     }
@@ -138,25 +145,31 @@ fn read(command: &Command, at: &Path) -> Option<Finished> {
     })
 }
 
-fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<String> {
+/// What is wrong, and the answer where the page shows another.
+fn problem(
+    finished: &Finished,
+    command: &Command,
+    depth: Depth,
+) -> Option<(String, Option<String>)> {
     let code = finished.code?;
     if depth == Depth::Begun {
         // No recordings, no such run: 1. Interrupted: 130. Wrong arguments: 2.
         let begun = [0, 1, 130].contains(&code);
-        return (!begun).then(|| format!("it cannot be begun: exit code {code}"));
+        return (!begun).then(|| (format!("it cannot be begun: exit code {code}"), None));
     }
     let expected = expected_code(&command.answered);
     if code != expected {
-        return Some(format!("exit code {code}, not {expected}"));
+        return Some((format!("exit code {code}, not {expected}"), None));
     }
     // A command that is shown without an answer is not compared.
     if command.answered.iter().all(String::is_empty) {
         return None;
     }
     let (stdout, stderr) = (&finished.stdout, &finished.stderr);
-    let in_one_order = answer::difference(&command.answered, &format!("{stdout}{stderr}"))?;
+    let answer = format!("{stdout}{stderr}");
+    let in_one_order = answer::difference(&command.answered, &answer)?;
     let in_the_other = answer::difference(&command.answered, &format!("{stderr}{stdout}"));
-    in_the_other.and(Some(in_one_order))
+    in_the_other.and(Some((in_one_order, Some(answer))))
 }
 
 /// A shown error stands for the exit code 1; one of the arguments, which ends with the advice to ask for help, for 2.
@@ -185,7 +198,8 @@ mod tests {
             stdout: stdout.to_owned(),
             stderr: stderr.to_owned(),
         };
-        problem(&finished, &command, depth).unwrap_or_default()
+        let problem = problem(&finished, &command, depth);
+        problem.map_or_else(String::new, |(text, _)| text)
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! Commands that the documentation shows: whatever [`class`] does not name runs to its end and must answer as its page
-//! says. Calls of `cargo xtask` are held to its arguments by a test of xtask (`xtask/src/command/docs.rs`).
+//! says. Calls of `cargo xtask` are held to its arguments by a test of xtask (`xtask/src/command/docs.rs`). With the
+//! variable `DDL_WRITE_SHOWN` the answers of a page are written anew where they differ.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 pub mod class;
+mod shown;
 
 use crate::console::{self, Command};
 use crate::page_run::{Depth, PageFolder};
@@ -49,7 +51,16 @@ pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
             Class::OfXtask | Class::Elsewhere => {}
         }
     }
-    let faults = folder.run(&to_run);
+    let problems = folder.run(&to_run);
+    if std::env::var_os("DDL_WRITE_SHOWN").is_some() {
+        let answers = problems.iter().filter_map(|(i, problem)| {
+            let (command, _) = to_run[*i];
+            Some((command, problem.answer.as_deref()?))
+        });
+        let text = shown::replaced(&text, answers);
+        std::fs::write(checkout().join(page), text).unwrap();
+    }
+    let faults: Vec<String> = problems.into_iter().map(|(_, problem)| problem.text).collect();
     assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
 }
 
