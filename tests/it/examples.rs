@@ -5,11 +5,13 @@ use ddl_tests::{example, own_tracks};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Crate, example and arguments, and texts that its output must contain. An example with the name of a picture draws
-/// it.
-const EXAMPLES: [(&str, &[&str]); 9] = [
+/// The sample recording of the repository, which an example makes.
+const SAMPLE: &str = include_str!("../../datasets/sample.csv");
+
+/// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
+const EXAMPLES: [(&str, &[&str]); 11] = [
     (
-        "ddl forecast_csv",
+        "ddl-forecast forecast_csv",
         &[
             "pavement, frame 9: 3 pedestrians, 20 hypotheses each\n",
             "pedestrian 3, now at (4.90, -0.30) m, observed at 4 of 8 time steps",
@@ -18,16 +20,18 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
         ],
     ),
     (
-        "ddl forecast_csv mine.csv",
+        "ddl-forecast forecast_csv mine.csv",
         &["mine.csv, frame 80: 3 pedestrians"],
     ),
     (
-        "ddl live hotel.safetensors mine.csv",
+        "ddl-forecast live hotel.safetensors mine.csv",
         &[
             "frame 60: 3 pedestrians, none observed at 8 steps yet",
             "closer to its goal at every step",
         ],
     ),
+    ("ddl-forecast draw_forecast sample.csv 15 forecast.svg", &[]),
+    ("ddl-data sample_recording", &[SAMPLE]),
     (
         "ddl-data tracks_to_windows",
         &[
@@ -60,13 +64,12 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     ),
 ];
 
-/// Examples that are not run here: `cargo xtask page` runs `report_page`; the others evaluate recordings for minutes,
-/// some of other places, or draw a run's own test scene.
-const ELSEWHERE: [&str; 6] = [
-    "ddl calibrate",
-    "ddl elsewhere",
-    "ddl regions",
-    "ddl draw_forecast",
+/// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
+/// minutes, some of other places.
+const ELSEWHERE: [&str; 5] = [
+    "ddl-forecast calibrate",
+    "ddl-forecast elsewhere",
+    "ddl-forecast regions",
     "ddl-report report_page",
     "ddl-goal goal_validation",
 ];
@@ -84,6 +87,7 @@ fn every_example_runs_and_prints_the_expected_texts() {
     place.write_tracks("mine.csv", &own_tracks::three_pedestrians(9));
     let model = include_bytes!("../../crates/ddl/models/hotel.safetensors");
     place.write("hotel.safetensors", model);
+    place.write("sample.csv", SAMPLE);
     for (line, promises) in EXAMPLES {
         let (package, name, arguments) = parts(line);
         let output = example::run(package, name, place.path(), arguments).succeeds();
@@ -116,14 +120,17 @@ fn no_example_is_forgotten() {
         .map(parts);
     let known: BTreeSet<String> = known.map(|(of, name, _)| format!("{of} {name}")).collect();
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
-    let names = std::fs::read_dir(crates)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name());
-    let packages = names.map(|name| name.into_string().unwrap());
-    let found = packages
-        .filter(|package| package != "ddl-star")
-        .flat_map(|package| {
-            let of = example::all_of(&package).into_iter();
+    let folders = std::fs::read_dir(crates).unwrap();
+    let found = folders
+        .map(|entry| entry.unwrap().path())
+        .filter(|folder| !folder.ends_with("ddl-star"))
+        .flat_map(|folder| {
+            let package = if folder.ends_with("ddl") {
+                "ddl-forecast".to_owned()
+            } else {
+                folder.file_name().unwrap().to_str().unwrap().to_owned()
+            };
+            let of = example::all_of(&folder).into_iter();
             of.map(move |name| format!("{package} {name}"))
         });
     assert_eq!(found.collect::<BTreeSet<_>>(), known);

@@ -20,7 +20,6 @@ macro_rules! pages {
 
 pages! {
     the_first_page: "docs/index.md",
-    start: "docs/start.md",
     own_data: "docs/own-data.md",
     rust: "docs/rust.md",
     robots: "docs/robots.md",
@@ -29,7 +28,6 @@ pages! {
     your_model: "docs/your-model.md",
     readme: "README.md",
     the_program: "docs/program.md",
-    readme_of_the_facade: "crates/ddl/README.md",
     recordings_page: "docs/recordings.md",
 }
 
@@ -48,7 +46,8 @@ fn pages_of_measurements() -> Vec<String> {
             .into_iter()
             .map(|folder| folder.join("README.md")),
     );
-    pages.extend([root.join("README.md"), root.join("CHANGELOG.md")]);
+    let at_the_root = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"];
+    pages.extend(at_the_root.map(|page| root.join(page)));
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
     let shown = |page: PathBuf| {
         page.strip_prefix(&root)

@@ -12,7 +12,7 @@ pub struct Command {
     pub line: usize,
     /// The typed text, without the prompt; several lines if it continues after `> `.
     pub typed: String,
-    /// The lines below it: a part of the answer, with `...` for omitted text.
+    /// The lines below it: what is answered, with lines `...` for what is left out.
     pub answered: Vec<String>,
 }
 

@@ -13,10 +13,9 @@ pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> F
     Finished::new(format!("{example} {command_line}"), &output)
 }
 
-/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`; empty without the folder.
-pub fn all_of(package: &str) -> BTreeSet<String> {
-    let folder =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../crates/{package}/examples"));
+/// The names of a crate's examples: `examples/NAME.rs` and `examples/NAME/main.rs`; none without a folder of them.
+pub fn all_of(folder: &Path) -> BTreeSet<String> {
+    let folder = folder.join("examples");
     if !folder.is_dir() {
         return BTreeSet::new();
     }

@@ -3,21 +3,25 @@
 use crate::own_tracks::{self, FRAME_STEP, Row, csv};
 use std::path::Path;
 
-/// Writes every file that a page may use: `tracks.csv` and the same as `tracks.ndjson`, at 25 frames per second
-/// (`camera.csv`), in pixels with `H.txt`, with holes, with other column names; `walk.csv`; the folder `recordings`.
+/// The sample recording of the repository.
+const SAMPLE: &str = include_str!("../../datasets/sample.csv");
+
+/// Writes every file that a page may use: `tracks.csv`, which is the sample recording, and the same as `tracks.ndjson`,
+/// at 25 frames a second (`camera.csv`), in pixels with `H.txt`, with holes, under other names; `walk.csv`; the folder
+/// `recordings`.
 pub fn write(folder: &Path) {
-    let tracks = rows("plaza", 40, 70);
+    let tracks = sample();
     let file = |name: &str, text: &str| {
         std::fs::write(folder.join(name), text).expect("a file of a page can be written");
     };
-    file("tracks.csv", &csv(&tracks));
+    file("tracks.csv", SAMPLE);
     file("tracks.ndjson", &own_tracks::ndjson(&tracks));
     file("camera.csv", &csv(&filmed(&tracks, 10)));
     let to_pixels = |&(f, p, x, y): &Row| (f, p, (x + 5.0) / 0.02, (12.0 - y) / 0.02);
     let pixels: Vec<Row> = tracks.iter().map(to_pixels).collect();
     file("pixels.csv", &csv(&pixels));
     file("H.txt", "0.02 0 -5\n0 -0.02 12\n0 0 1\n");
-    // Every fifth frame lacks every other pedestrian.
+    // Every fifth frame sees every other pedestrian.
     let seen = |&&(f, p, _, _): &&Row| f % 5 != 2 || p % 2 == 0;
     let holes: Vec<Row> = tracks.iter().filter(seen).copied().collect();
     file("holes.csv", &csv(&holes));
@@ -37,22 +41,43 @@ pub fn write(folder: &Path) {
         ("lobby", "crossing"),
         ("street", "corridor"),
     ] {
-        let text = csv(&rows(scene, 0, 200));
+        let text = csv(&rows(scene, 200));
         file(&format!("recordings/{name}.csv"), &text);
     }
 }
 
-/// Steps `from` to `until` of a simulated scene, numbered from 0, rounded to centimetres.
-fn rows(scene: &str, from: i64, until: i64) -> Vec<Row> {
-    let cut = own_tracks::of_scene(scene, from * FRAME_STEP..until * FRAME_STEP);
+/// The first steps of a simulated scene, to the centimetre.
+fn rows(scene: &str, steps: i64) -> Vec<Row> {
+    let cut = own_tracks::of_scene(scene, 0..steps * FRAME_STEP);
     let centimetres = |metres: f64| (metres * 100.0).round() / 100.0;
-    let row = |(f, p, x, y)| (f / FRAME_STEP - from, p, centimetres(x), centimetres(y));
+    let row = |(f, p, x, y)| (f / FRAME_STEP, p, centimetres(x), centimetres(y));
     cut.into_iter().map(row).collect()
 }
 
-/// The output of the program `tracker` of the pages: 10 frames per second, 4 per step.
+/// The rows of the sample recording.
+fn sample() -> Vec<Row> {
+    let row = |line: &str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let [frame, pedestrian, x, y] = fields[..] else {
+            return None;
+        };
+        Some((
+            frame.parse().ok()?,
+            pedestrian.parse().ok()?,
+            x.parse().ok()?,
+            y.parse().ok()?,
+        ))
+    };
+    let rows = SAMPLE.lines().skip(1).map(row);
+    rows.collect::<Option<_>>()
+        .expect("every row of the sample has four numbers")
+}
+
+/// What the program `tracker` of the pages writes: the first ten steps of the sample at 10 frames a second, 4 a step.
 pub fn tracker() -> String {
-    csv(&filmed(&rows("plaza", 40, 50), 4))
+    let mut first = sample();
+    first.retain(|row| row.0 < 10);
+    csv(&filmed(&first, 4))
 }
 
 /// The same tracks from a faster camera with `frames` frames per step.

@@ -20,7 +20,16 @@ pub enum Depth {
     Begun,
 }
 
-/// The files and programs that a reader of the page has before the first command.
+/// What is wrong with a command of a page.
+#[derive(Debug)]
+pub struct Problem {
+    /// In words.
+    pub text: String,
+    /// What was answered, where the page shows something else and nothing more is wrong.
+    pub answer: Option<String>,
+}
+
+/// What a reader of the page has before the first command.
 #[derive(Debug)]
 pub struct PageFolder {
     folder: TempDir,
@@ -30,7 +39,7 @@ pub struct PageFolder {
 
 impl PageFolder {
     /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's
-    /// `crates`.
+    /// `crates` and `datasets/sample.csv`.
     pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let bin = tempfile::tempdir().expect("a temporary folder can be made");
@@ -43,6 +52,9 @@ impl PageFolder {
         link(program::path(), here.join("target/release/ddl"));
         link(program::path(), bin.path().join("ddl"));
         link(&checkout.join("crates"), here.join("crates"));
+        std::fs::create_dir(here.join("datasets")).expect("a folder can be made");
+        let sample = "datasets/sample.csv";
+        link(&checkout.join(sample), here.join(sample));
         write_tracker(bin.path());
         Self {
             folder,
@@ -56,8 +68,8 @@ impl PageFolder {
         self.folder.path()
     }
 
-    /// Runs commands in one shell, and returns the faults, one text per faulty command.
-    pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<String> {
+    /// Runs commands in one shell; what is wrong is returned, by the place of the command.
+    pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<(usize, Problem)> {
         let notes = tempfile::tempdir().expect("a temporary folder can be made");
         let empty = tempfile::tempdir().expect("a temporary folder can be made");
         let mut script = String::new();
@@ -98,17 +110,15 @@ impl PageFolder {
             .iter()
             .enumerate()
             .filter_map(|(i, (command, depth))| {
+                let (line, typed) = (command.line, &command.typed);
                 let Some(answered) = read(command, &notes.path().join(i.to_string())) else {
-                    return Some(format!(
-                        "line {}: `{}` was not run: {said}",
-                        command.line, command.typed
-                    ));
+                    let text = format!("line {line}: `{typed}` was not run: {said}");
+                    let answer = None;
+                    return Some((i, Problem { text, answer }));
                 };
-                let problem = problem(&answered, command, *depth)?;
-                Some(format!(
-                    "line {}: `{}`: {problem}\n{answered:#?}",
-                    command.line, command.typed
-                ))
+                let (problem, answer) = problem(&answered, command, *depth)?;
+                let text = format!("line {line}: `{typed}`: {problem}\n{answered:#?}");
+                Some((i, Problem { text, answer }))
             });
         judged.collect()
     }
@@ -135,26 +145,31 @@ fn read(command: &Command, at: &Path) -> Option<Finished> {
     })
 }
 
-fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<String> {
+/// What is wrong, and the answer where the page shows another.
+fn problem(
+    finished: &Finished,
+    command: &Command,
+    depth: Depth,
+) -> Option<(String, Option<String>)> {
     let code = finished.code?;
     if depth == Depth::Begun {
         // No recordings, no such run: 1. Interrupted: 130. Invalid arguments: 2.
         let begun = [0, 1, 130].contains(&code);
-        return (!begun).then(|| format!("it cannot be started: exit code {code}"));
+        return (!begun).then(|| (format!("it cannot be begun: exit code {code}"), None));
     }
     let expected = expected_code(&command.answered);
     if code != expected {
-        return Some(format!("exit code {code}, not {expected}"));
+        return Some((format!("exit code {code}, not {expected}"), None));
+    }
+    // A command that is shown without an answer is not compared.
+    if command.answered.iter().all(String::is_empty) {
+        return None;
     }
     let (stdout, stderr) = (&finished.stdout, &finished.stderr);
-    let answers = [format!("{stdout}{stderr}"), format!("{stderr}{stdout}")];
-    let missing = answers
-        .each_ref()
-        .map(|text| answer::first_missing(&command.answered, text));
-    let [Some(missing), Some(_)] = missing else {
-        return None;
-    };
-    Some(format!("its answer has no line `{missing}` at this place"))
+    let answer = format!("{stdout}{stderr}");
+    let in_one_order = answer::difference(&command.answered, &answer)?;
+    let in_the_other = answer::difference(&command.answered, &format!("{stderr}{stdout}"));
+    in_the_other.and(Some((in_one_order, Some(answer))))
 }
 
 /// A shown error implies exit code 1; an error about arguments, which ends with a hint to `--help`, implies 2.
@@ -183,23 +198,23 @@ mod tests {
             stdout: stdout.to_owned(),
             stderr: stderr.to_owned(),
         };
-        problem(&finished, &command, depth).unwrap_or_default()
+        let problem = problem(&finished, &command, depth);
+        problem.map_or_else(String::new, |(text, _)| text)
     }
 
     #[test]
     fn a_page_that_differs_is_detected() {
         let refused = ["error: e", "For more information, try '--help'."];
         for (shown, code, stdout, stderr, wrong) in [
-            (&["a", "note: ..."][..], 0, "a\nb\n", "note: c\n", ""),
+            (&["a", "...", "note: c"][..], 0, "a\nb\n", "note: c\n", ""),
             (&["warning: c", "a"], 0, "a\n", "warning: c\n", ""),
             (&["error: e"], 1, "", "error: e\n", ""),
             (&refused, 2, "", &refused.join("\n\n"), ""),
+            (&[], 0, "a\n", "", ""),
             (&[], 1, "", "error: e\n", "exit code 1, not 0"),
             (&["error: e"], 0, "", "", "exit code 0, not 1"),
-            (&["b"], 0, "a\n", "", "no line `b`"),
-            (&["c", "a"], 0, "a\nb\nc\n", "", "no line `a`"),
-            (&["a...b...c"], 0, "a1b2c3\n", "", "no line `a...b...c`"),
-            (&["a...b...c"], 0, "a1b2b3c\n", "", ""),
+            (&["b"], 0, "a\n", "", "the page shows \"b\""),
+            (&["a"], 0, "a\nb\n", "", "does not show \"b\""),
         ] {
             let problem = judged(shown, (code, stdout, stderr), Depth::Whole);
             assert_eq!(problem.is_empty(), wrong.is_empty(), "{shown:?}");

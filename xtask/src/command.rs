@@ -1,6 +1,7 @@
 //! The commands, one per file.
 
 mod benchmark;
+mod check;
 mod ci;
 mod cluster;
 mod data;
@@ -47,7 +48,9 @@ pub(crate) enum Command {
     Fuzz(fuzz::Arguments),
     /// Insert faults into the numeric code, one at a time, and count how many the tests find
     Mutants(mutants::Arguments),
-    /// Check the rules of this repository that no other tool checks
+    /// Check format, tidy rules and lints, without libtorch: under a minute once it has been built
+    Check,
+    /// Check rules that no other tool checks: names, sizes, columns, words, links
     Tidy,
     /// Check the dependencies against deny.toml
     Deny,
@@ -73,6 +76,7 @@ impl Command {
             Self::Test(arguments) => arguments.run(workspace),
             Self::Fuzz(arguments) => arguments.run(workspace),
             Self::Mutants(arguments) => arguments.run(workspace),
+            Self::Check => check::run(workspace),
             Self::Tidy => tidy::run(workspace),
             Self::Deny => deny::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),

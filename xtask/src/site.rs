@@ -3,6 +3,7 @@
 
 mod api;
 mod check;
+mod outward;
 mod page;
 
 use std::fmt::Write as _;
@@ -42,7 +43,10 @@ pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
     let site = target.join("site");
     remove(&site)?;
     let libraries = api::libraries(&metadata);
-    render(&mdbook, &workspace.path(BOOK), &site.join("guide"))?;
+    let book = target.join("book");
+    remove(&book)?;
+    outward::copy_book(&workspace.path(BOOK), &book, &libraries, &site)?;
+    render(&mdbook, &book, &site.join("guide"))?;
     api::build(
         workspace,
         &libraries,
@@ -91,7 +95,7 @@ fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
     let said = String::from_utf8_lossy(&output.stderr);
     // mdBook continues after most faults and only logs them.
     if !output.status.success() || said.contains("WARN") || said.contains("ERROR") {
-        bail!("mdbook does not accept {BOOK}:\n{}", said.trim());
+        bail!("mdbook does not accept the pages of {BOOK}:\n{}", said.trim());
     }
     Ok(())
 }
@@ -120,6 +124,7 @@ fn landing(libraries: &[Library]) -> String {
         module,
         package,
         description,
+        ..
     } in libraries
     {
         // Writing to a string cannot fail.

@@ -1,4 +1,67 @@
 #![doc = include_str!("../README.md")]
+//!
+//! ## Tracks of a camera
+//!
+//! Tracks of another rate, in pixels, begun late or with gaps become what a forecast needs:
+//!
+//! ```rust
+//! use ddl_data::{Completion, Format, Homography, LiveTracks, FrameReader, parse_recording};
+//!
+//! // Pixels of a camera at 10 frames a second, 100 a metre: a pedestrian at 1.2 m/s who is lost for a moment.
+//! let mut film = String::from("frame,pedestrian,x,y\n");
+//! for t in (0..13).chain(17..40) {
+//!     film += &format!("{t},7,{},50\n", 12 * t);
+//! }
+//! let ground: Homography = "0.01 0 0\n0 0.01 0\n0 0 1".parse()?;
+//! let recording = ground.on_the_ground(&parse_recording(film.as_bytes(), "film.csv", Format::Table)?)?;
+//! let steps = recording.in_steps(0.1)?.recording; // 4 frames a step
+//! let windows = steps.completed_windows(Completion::USUAL);
+//! let last = windows.last().ok_or("nobody")?;
+//! assert!((last.observed(0)[0][0] - 0.12 * (39.0 - 28.0)).abs() < 1e-9);
+//! assert_eq!(last.made_up(0).filled, 1); // frame 15, on the way from 12 to 17
+//!
+//! // The same as it comes: a window a frame.
+//! let mut tracks = LiveTracks::with_frame_step(4)?.completing(Completion::USUAL);
+//! let mut frames = FrameReader::new(film.as_bytes(), "camera");
+//! while let Some(frame) = frames.next_frame()? {
+//!     if let Some(window) = tracks.push(frame.number, frame.people)? {
+//!         assert_eq!(window.frames()[7], frame.number);
+//!     }
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! ## The ETH/UCY recordings
+//!
+//! ```rust,no_run
+//! use ddl_data::{Convention, Dataset, WindowRule, locate};
+//!
+//! let folder = locate(Convention::Star, None)?; // $DDL_DATASETS, or datasets/eth_ucy
+//! let dataset = Dataset::load(Convention::Star, &folder)?;
+//! for fold in dataset.folds() {
+//!     let windows = fold.test_windows(WindowRule::Published);
+//!     println!("{}: {} pedestrians", fold.name(), windows.iter().map(|w| w.len()).sum::<usize>());
+//! }
+//! # Ok::<(), ddl_data::DataError>(())
+//! ```
+//!
+//! Published tables mix two samplings of ETH/UCY and several ways of cutting windows; their numbers are not comparable.
+//! Each has a name here, which goes with every result:
+//!
+//! | [`Convention`] | |
+//! |---|---|
+//! | `star` | SR-LSTM, STAR, DDL: eth at its original 0.4 s |
+//! | `social-gan` | Social-GAN and most others: eth sampled every 0.667 s, taken for 0.4 s |
+//! | `simulated` | five social-force crowds, for machines without the recordings |
+//!
+//! | [`WindowRule`] | |
+//! |---|---|
+//! | `Published` | the windows of the published STAR and DDL code, with its quirks |
+//! | `Complete` | every pedestrian with all 20 steps, from every annotated frame |
+//! | `SocialGan` | 20 annotated frames in a row, with a least number of pedestrians |
+//!
+//! [`Fold::training_split`] keeps the last part of each training recording for validation.
+//! [`Fold::social_gan_split`] is what the published folders `train`, `val` and `test` of Social-GAN hold, to the row.
 
 mod augment;
 mod completion;

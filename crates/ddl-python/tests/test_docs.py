@@ -46,6 +46,9 @@ def test_pages(page, tracks, tmp_path, request):
     environment = {**os.environ, "MPLBACKEND": "Agg", "RAYON_NUM_THREADS": "1", "PYTHONPATH": str(CHECKOUT / "crates/ddl-python/examples")}
     ran = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, check=False)
     assert ran.returncode == 0, ran.stderr
+    shown = [line.split("# ", 1)[1] for line in script.read_text().splitlines() if "->" in line and line.startswith("print(")]
+    for answer in shown:
+        assert answer.split("-> ", 1)[1] in ran.stdout.splitlines(), answer
     pictures = os.environ.get("DDL_PAGE_PICTURES")
     if pictures:
         for picture in tmp_path.glob("*.png"):

@@ -1,4 +1,69 @@
 #![doc = include_str!("../README.md")]
+//!
+//! [`TorchNetwork::into_forecaster`] and [`TorchProposals::into_proposer`] give the traits of `ddl-network`, computed
+//! by libtorch: on CUDA, or as the reference.
+//!
+//! ## Propose endpoints
+//!
+//! ```rust
+//! use ddl_network::{
+//!     DeviceChoice, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
+//!     ProposalTraining, ProposeEnds,
+//! };
+//! use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
+//!
+//! // Pedestrians at several speeds who keep their velocity, in their own frames.
+//! let example = |k: u8| {
+//!     let step = 0.3 + 0.02 * f64::from(k);
+//!     let own = std::array::from_fn(|t| [step * (t as f64 - 7.0), 0.0]);
+//!     let future = std::array::from_fn(|t| [step * (t as f64 + 1.0), 0.0]);
+//!     ProposalExample { view: PedestrianView { own, neighbours: Vec::new(), remembered: Vec::new() }, future }
+//! };
+//! let examples: Vec<_> = (0..20).map(example).collect();
+//!
+//! let config = ProposalConfig { members: 2, ends: 5, width: 32, ..ProposalConfig::default() };
+//! let network = TorchProposals::new(config.clone(), 1, ComputeDevice::open(DeviceChoice::Cpu)?)?;
+//! let training = ProposalTraining { steps: 150, batch: 32, ..ProposalTraining::default() };
+//! let mut trainer = ProposalTrainer::new(network, &examples, &[], training)?;
+//! while !trainer.is_finished() {
+//!     trainer.step()?;
+//! }
+//! let weights = trainer.into_network()?.parameters().to_weights()?;
+//!
+//! let network = ProposalNetwork::new(config, 1)?.with_weights(weights)?; // without libtorch
+//! let proposed = network.propose(&[examples[10].view.clone()])?.remove(0);
+//! assert_eq!(proposed.ends.len(), 2 * 5); // metres ahead, metres to the left; with weights
+//! let off = |end: &[f64; 2]| (end[0] - examples[10].future[11][0]).hypot(end[1]);
+//! assert!(proposed.ends.iter().map(off).fold(f64::INFINITY, f64::min) < 1.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! ## Shapes
+//!
+//! T time steps, P pedestrians of all windows of a batch one after the other, H hypotheses. Positions in metres, time
+//! steps 0.4 s apart.
+//!
+//! | | shape |
+//! |---|---|
+//! | [`SceneBatch::positions`] | `[T, P, 2]` |
+//! | goals, in training / in a rollout | `[P, 2]` / `[G, P, 2]`, G = H or 1 |
+//! | noise, [`NoiseInput::Draws`] | `[1 or H, 16]`, shared by all pedestrians |
+//! | [`TorchNetwork::teacher_forced`] | `[T - 1, P, 2]`: time steps 2 to T, each from the true ones before it |
+//! | [`TorchNetwork::roll_out`] | positions `[12, H, P, 2]`: each time step from the forecast before it; factors `[12, H, P, 3]` |
+//!
+//! ## State of a training
+//!
+//! [`Trainer::save`] and [`ProposalTrainer::save`] write weights, Adam's moments and the progress into one safetensors
+//! file, which holds numbers alone and is renamed when complete. `resume` refuses a file that is damaged or of another
+//! run, and leaves the training as it was. A resumed run ends with the same weights, bit for bit, as an uninterrupted
+//! one on the same machine.
+//!
+//! ## Devices and threads
+//!
+//! [`ComputeDevice::open`] comes first: CUDA can be opened only before the first tensor is made. A missing `Cuda` is an
+//! error; `Auto` then takes the CPU. [`set_threads`] sets libtorch's threads for the process. One is enough on the CPU,
+//! because the kernels run on rayon's threads, with the same results for every number of them. Training seeds
+//! libtorch's process-wide generator at every step, for dropout.
 
 mod device;
 mod error;

@@ -1,8 +1,8 @@
 //! Forecasts the pedestrians of a csv file: positions in 4.8 s, goals, weights and certificates.
 //!
 //! ```text
-//! cargo run --release -p ddl --example forecast_csv
-//! cargo run --release -p ddl --example forecast_csv -- tracks.csv
+//! cargo run --release -p ddl-forecast --example forecast_csv
+//! cargo run --release -p ddl-forecast --example forecast_csv -- tracks.csv
 //! ```
 //! The table has the columns `frame`, `pedestrian`, `x` and `y`: metres, a row every 0.4 s. Without an argument, the
 //! example makes a small one: two pedestrians who meet on a pavement, and a third who appears later. It forecasts the

@@ -1,4 +1,72 @@
 #![doc = include_str!("../README.md")]
+//!
+//! ## Train and measure
+//!
+//! ```rust,no_run
+//! use ddl::data::Dataset;
+//! use ddl::network::{StarConfig, TrainingConfig};
+//! use ddl::report::Report;
+//! use ddl::{
+//!     Ddl, DeviceChoice, EvaluationRequest, EvaluationSplit, GoalRecipe, Protocol, RunDirectory,
+//!     TrainingRequest, TrainingStage, Variant,
+//! };
+//! use std::ops::ControlFlow;
+//!
+//! ddl::prepare(DeviceChoice::Cpu, None)?;
+//! // Simulated crowds need no files; `Dataset::load` reads the ETH/UCY recordings.
+//! let dataset = Dataset::simulated(1);
+//!
+//! let request = TrainingRequest {
+//!     fold: "plaza".to_owned(),
+//!     star: StarConfig::published(Variant::Full),
+//!     training: TrainingConfig { epochs: 4, ..TrainingConfig::published() },
+//!     validation: 0.0,
+//!     validation_recordings: Vec::new(),
+//!     goals: GoalRecipe::proposed(1),
+//!     patience: None,
+//!     from: None,
+//!     units: None,
+//!     last_epoch_only: false,
+//!     until: TrainingStage::Network,
+//!     out: RunDirectory::new("runs/plaza"),
+//!     device: DeviceChoice::Cpu,
+//!     commit: "unknown".to_owned(),
+//! };
+//! ddl::train(&request, &dataset, |now| {
+//!     println!("{} of {} steps", now.steps.0, now.steps.1);
+//!     ControlFlow::Continue(()) // `Break` saves and stops; the same call resumes later
+//! })?;
+//!
+//! let model = Ddl::load("runs/plaza".as_ref(), DeviceChoice::Cpu)?;
+//! let request = EvaluationRequest {
+//!     protocols: vec![Protocol::Fair, Protocol::Single],
+//!     on: EvaluationSplit::Test,
+//!     validation_recordings: Vec::new(),
+//!     test_pedestrians: Some(500), // a seeded part of the windows; the report says so
+//!     commit: "unknown".to_owned(),
+//! };
+//! let evaluation = ddl::evaluate(&model, &dataset, &request, |_| ControlFlow::Continue(()))?;
+//! println!("{}", Report::new("Plaza", evaluation.rows)?.to_markdown());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The rows hold the model and the baselines, each with the conditions it was measured under. Under `fair` there are
+//! also rows without the expert library and for straight lines at constant speed to the same goals, and, for a network
+//! trained on single steps, with plain Euler steps. Under `single` there is also a row for the path that the network
+//! shapes. Under `fair` and `single` the future is removed from the windows before the model is called.
+//!
+//! ## Guarantees
+//!
+//! - Every hypothesis of a variant with dynamics approaches its goal at every step: the network shapes the metric,
+//!   [`dynamics::StableEuler`] integrates in `f64`, and [`Ddl::forecast_certified`] returns the certificates. The
+//!   protocol `published` integrates with plain Euler steps, which overshoot; it exists to reproduce published numbers.
+//! - A run is one directory. Every file is written under a temporary name and renamed. A run refuses to resume under
+//!   another configuration. A resumed run ends with the same weights, bit for bit, as an uninterrupted one on the same
+//!   machine with the same number of threads.
+//! - Files are checked when they are loaded. A packed model carries the SHA-256 of its configuration and weights.
+//!   Truncated, mismatched or non-finite files are errors that name the file and the problem.
+//! - A model reads the 8 observed positions alone. Its hypotheses belong to the goals of the estimator and carry their
+//!   weights, which sum to 1 for each pedestrian; the variant without goals (`star`) has 20 equally likely samples.
 #![cfg_attr(
     not(feature = "torch"),
     allow(dead_code, reason = "only training needs it")

@@ -4,21 +4,19 @@ use crate::console::Command;
 use crate::page_run::Depth;
 use crate::recordings;
 
+const README: &str = "README.md";
 const TRAINING: &str = "docs/training.md";
 const PROGRAM: &str = "docs/program.md";
 
 /// Commands that take minutes, by page and beginning; they are only started.
 pub const LONG: &[(&str, &str)] = &[
+    (README, "ddl train --convention simulated"),
+    (README, "ddl evaluate --model runs/plaza"),
     (TRAINING, "ddl train --data recordings --out runs/own"),
     (TRAINING, "ddl train --fold zara1"),
     (TRAINING, "ddl evaluate --model runs/zara1"),
     (PROGRAM, "ddl evaluate --fold zara1"),
-    (PROGRAM, "ddl train --data recordings"),
-    (PROGRAM, "ddl evaluate --model runs/own"),
-    (PROGRAM, "ddl forecast --model runs/own"),
-    (PROGRAM, "ddl evaluate --model runs/without-lobby"),
     (PROGRAM, "ddl train --fold zara1"),
-    (PROGRAM, "ddl train --convention simulated"),
     (PROGRAM, "ddl train --fold eth --only-goals"),
     (PROGRAM, "ddl goals --model runs/eth --measure"),
 ];
@@ -29,7 +27,6 @@ pub const ELSEWHERE: &[(&str, &str)] = &[
     ("docs/gpu.md", ""),
     ("docs/libtorch.md", "export LIBTORCH="),
     ("docs/rust.md", "eval \"$(cargo xtask env)\""),
-    ("crates/ddl/README.md", "eval \"$(cargo xtask env)\""),
 ];
 
 /// Folds of the recordings; without recordings, their commands are only started.

@@ -1,9 +1,11 @@
-//! Commands shown in the documentation: those not listed in [`class`] run to their end and must answer as on the page.
-//! The arguments of `cargo xtask` are checked by a test of xtask (`xtask/src/command/docs.rs`).
+//! Commands that the documentation shows: whatever [`class`] does not name runs to its end and must answer as its page
+//! says. Calls of `cargo xtask` are held to its arguments by a test of xtask (`xtask/src/command/docs.rs`). With the
+//! variable `DDL_WRITE_SHOWN` the answers of a page are written anew where they differ.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 pub mod class;
+mod shown;
 
 use crate::console::{self, Command};
 use crate::page_run::{Depth, PageFolder};
@@ -49,7 +51,16 @@ pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
             Class::OfXtask | Class::Elsewhere => {}
         }
     }
-    let faults = folder.run(&to_run);
+    let problems = folder.run(&to_run);
+    if std::env::var_os("DDL_WRITE_SHOWN").is_some() {
+        let answers = problems.iter().filter_map(|(i, problem)| {
+            let (command, _) = to_run[*i];
+            Some((command, problem.answer.as_deref()?))
+        });
+        let text = shown::replaced(&text, answers);
+        std::fs::write(checkout().join(page), text).unwrap();
+    }
+    let faults: Vec<String> = problems.into_iter().map(|(_, problem)| problem.text).collect();
     assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
 }
 
@@ -68,10 +79,10 @@ fn check_cargo(page: &str, command: &Command) {
     let package =
         after("-p").unwrap_or_else(|| panic!("{page}:{}: no package is named", command.line));
     let of_tests = package == "ddl-tests";
-    let folder = checkout().join(if of_tests {
-        "tests".to_owned()
-    } else {
-        format!("crates/{package}")
+    let folder = checkout().join(match package {
+        "ddl-tests" => "tests".to_owned(),
+        "ddl-forecast" => "crates/ddl".to_owned(),
+        _ => format!("crates/{package}"),
     });
     assert!(
         folder.join("Cargo.toml").is_file(),

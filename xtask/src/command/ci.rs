@@ -19,7 +19,7 @@ const CHECKS: [Check; 10] = [
     ("recordings from the package index", recordings),
     ("dependencies", deny::run),
     ("set-up", set_up),
-    ("lints", lints),
+    ("lints", |workspace| lints(workspace, "ddl-cli/torch")),
     (
         "documentation, report page, benchmark; Python wheel",
         pages_benchmark_and_wheel,
@@ -43,7 +43,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     Ok(())
 }
 
-fn format(workspace: &Workspace) -> Result<()> {
+pub(super) fn format(workspace: &Workspace) -> Result<()> {
     step(
         "`cargo fmt --all --check`",
         &workspace.cargo(["fmt", "--all", "--check"]),
@@ -51,14 +51,14 @@ fn format(workspace: &Workspace) -> Result<()> {
     .context("run `cargo fmt --all`")
 }
 
-fn lints(workspace: &Workspace) -> Result<()> {
-    // Warnings are denied here and not with RUSTFLAGS, which would replace the path to libtorch.
+pub(super) fn lints(workspace: &Workspace, features: &str) -> Result<()> {
+    // Warnings are denied here and not by RUSTFLAGS, which would replace the path to libtorch.
     let arguments = [
         "clippy",
         "--workspace",
         "--all-targets",
         "--features",
-        "ddl-cli/torch",
+        features,
         "--quiet",
         "--",
         "-D",

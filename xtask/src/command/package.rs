@@ -52,7 +52,7 @@ pub(crate) fn check(workspace: &Workspace) -> Result<()> {
     let metadata = workspace.metadata()?;
     let tracked = workspace.files()?;
     let mut faults = Vec::new();
-    println!("package           files  compressed");
+    println!("package             files  compressed");
     let packages = metadata["packages"].as_array().into_iter().flatten();
     // An empty list is `publish = false`.
     for package in packages.filter(|package| package["publish"].is_null()) {
@@ -69,7 +69,7 @@ pub(crate) fn check(workspace: &Workspace) -> Result<()> {
             .with_context(|| format!("{} was not made", archive.display()))?
             .len();
         println!(
-            "{name:<14} {:>8} {:>7} KiB",
+            "{name:<16} {:>8} {:>7} KiB",
             packed.len(),
             bytes.div_ceil(1024)
         );
@@ -138,17 +138,17 @@ mod tests {
         ];
         let faults = |packed: &[&str], bytes| {
             let packed = packed.iter().map(PathBuf::from).collect();
-            faults_of("ddl", own.iter().map(Path::new), &packed, bytes)
+            faults_of("ddl-forecast", own.iter().map(Path::new), &packed, bytes)
         };
         let whole = [&NEEDED[..], &["src/lib.rs", "models/eth.safetensors"]].concat();
         assert_eq!(faults(&whole, LIMIT), [] as [&str; 0]);
         assert_eq!(
             faults(&whole[..5], LIMIT),
-            ["ddl: models/eth.safetensors is not in the package"]
+            ["ddl-forecast: models/eth.safetensors is not in the package"]
         );
         assert_eq!(
             faults(&whole[1..], LIMIT),
-            ["ddl: Cargo.toml is not in the package"]
+            ["ddl-forecast: Cargo.toml is not in the package"]
         );
         assert!(faults(&whole, LIMIT + 1)[0].contains("10485760"));
     }

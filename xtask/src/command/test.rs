@@ -46,8 +46,8 @@ impl Arguments {
         if self.no_torch {
             return Ok(());
         }
-        // The tests that need libtorch.
-        let packages = ["-p", "ddl-star", "-p", "ddl", "-p", "ddl-cli"];
+        // The other side: what libtorch adds.
+        let packages = ["-p", "ddl-star", "-p", "ddl-forecast", "-p", "ddl-cli"];
         let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
         cargo_test(workspace, &arguments, &self.rest)?;
         let tests = ["--test", "it_torch", "--test", "faults_torch"];

@@ -13,27 +13,39 @@ pub(super) struct Library {
     pub(super) package: String,
     /// Its name in code and in addresses of pages.
     pub(super) module: String,
+    /// The name of its folder in `crates`.
+    pub(super) folder: String,
     pub(super) description: String,
 }
 
 /// Every published library crate of the workspace, in the order of its manifest.
 pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
     let packages = metadata["packages"].as_array().into_iter().flatten();
-    let published = packages.filter(|package| {
-        let targets = package["targets"].as_array().into_iter().flatten();
-        let kinds: Vec<&Value> = targets
-            .flat_map(|target| target["kind"].as_array().into_iter().flatten())
-            .collect();
-        // The library of a program is internal to the program.
-        let has = |name: &str| kinds.iter().any(|kind| **kind == name);
-        package["publish"].is_null() && has("lib") && !has("bin")
-    });
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
+    let published = packages.filter(|package| package["publish"].is_null());
     published
-        .map(|package| Library {
-            package: text(&package["name"]),
-            module: text(&package["name"]).replace('-', "_"),
-            description: text(&package["description"]),
+        .filter_map(|package| {
+            let targets = package["targets"].as_array()?;
+            let of_kind = |kind: &str| {
+                let is = |target: &&Value| {
+                    let kinds = target["kind"].as_array();
+                    kinds.is_some_and(|kinds| kinds.iter().any(|one| one == kind))
+                };
+                targets.iter().find(is)
+            };
+            // The library of a program is there for the program alone.
+            if of_kind("bin").is_some() {
+                return None;
+            }
+            Some(Library {
+                package: text(&package["name"]),
+                module: text(&of_kind("lib")?["name"]).replace('-', "_"),
+                folder: text(&package["manifest_path"])
+                    .rsplit('/')
+                    .nth(1)?
+                    .to_owned(),
+                description: text(&package["description"]),
+            })
         })
         .collect()
 }
@@ -79,7 +91,9 @@ mod tests {
     fn the_library_crates_are_found_with_their_descriptions() {
         let found = libraries(&Workspace::find().unwrap().metadata().unwrap());
         let has = |name: &str| found.iter().any(|library| library.package == name);
-        assert!(has("ddl") && has("ddl-softdtw"), "{found:?}");
+        assert!(has("ddl-forecast") && has("ddl-softdtw"), "{found:?}");
+        let front = found.iter().find(|library| library.module == "ddl");
+        assert!(front.is_some_and(|library| library.folder == "ddl"));
         assert!(
             !["xtask", "ddl-tests", "ddl-cli"].into_iter().any(has),
             "{found:?}"

@@ -1,11 +1,8 @@
-//! Links between files of the repository. Pages of `docs/` are also read on the site, and READMEs of crates in a
-//! registry, so their links out of `docs/` or of the crate must be whole addresses. Links inside `docs/` are checked on
-//! the site (`cargo xtask docs`).
+//! Links between files of the repository are relative. A crate's README is read in a registry and as the first page of
+//! the crate's interface, too: it links to items of the crate alone, and names other files in words. Links inside
+//! `docs/` are checked on the site as well (`cargo xtask docs`).
 
 use std::path::{Component, Path, PathBuf};
-
-/// Address of a path in the repository, as in `workspace.package.repository`.
-const REPOSITORY: &str = "https://github.com/ddl-forecast/ddl/blob/main/";
 
 pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> {
     if file.extension().is_none_or(|extension| extension != "md") {
@@ -18,8 +15,8 @@ pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> 
     if file.ends_with("README.md") && file.starts_with("crates") {
         let folder = file.with_file_name("examples");
         let examples = files.iter().filter_map(|file| example_name(&folder, file));
-        let missing = examples.filter(|name| !text.contains(&format!("examples/{name}")));
-        faults.extend(missing.map(|name| format!("{at}: the example {name} is not linked")));
+        let missing = examples.filter(|name| !text.contains(&format!("`{name}`")));
+        faults.extend(missing.map(|name| format!("{at}: the example {name} is not named")));
     }
     faults
 }
@@ -27,9 +24,6 @@ pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> 
 fn fault(file: &Path, target: &str, files: &[PathBuf]) -> Option<&'static str> {
     let target = target.split('#').next().unwrap_or_default();
     let is_there = |path: &Path| files.iter().any(|file| file.starts_with(path));
-    if let Some(path) = target.strip_prefix(REPOSITORY) {
-        return (!is_there(Path::new(path))).then_some("the file does not exist in the repository");
-    }
     // In a crate's README a path without a slash or an ending is an item of the crate.
     let in_crate = file.starts_with("crates");
     let is_page = Path::new(target).extension().is_some_and(|end| end == "md");
@@ -38,10 +32,8 @@ fn fault(file: &Path, target: &str, files: &[PathBuf]) -> Option<&'static str> {
         return None;
     }
     let path = joined(file.parent()?, target);
-    if in_crate || file.starts_with("docs") && !path.starts_with("docs") {
-        return Some(
-            "this page is also published elsewhere: use the whole address in the repository",
-        );
+    if in_crate {
+        return Some("this page is read elsewhere, too: name the file in words");
     }
     (!is_there(&path)).then_some("the file does not exist")
 }
@@ -96,17 +88,9 @@ mod tests {
     }
 
     #[test]
-    fn the_address_is_that_of_the_workspace() {
-        let manifest = include_str!("../../../Cargo.toml");
-        let address = REPOSITORY.strip_suffix("/blob/main/").unwrap();
-        assert!(manifest.contains(&format!("repository = \"{address}\"\n")));
-    }
-
-    #[test]
-    fn valid_links_pass() {
-        let whole = format!("[a]({REPOSITORY}docs/goals.md#top), [b](https://other/y), [c](#d)");
+    fn links_that_lead_somewhere_pass() {
         for (file, text) in [
-            ("docs/x.md", whole.as_str()),
+            ("docs/x.md", "[a](../README.md#top), [b](https://other/y), [c](#d)"),
             ("docs/x.md", "[a](goals.md#b)\n```\n[a](b.md)\n```\n"),
             ("README.md", "[a](docs/goals.md) ![b](docs)"),
             ("datasets/README.md", "[a](../docs/goals.md)"),
@@ -120,26 +104,20 @@ mod tests {
     }
 
     #[test]
-    fn broken_and_relative_links_are_reported() {
-        let gone = format!("[a]({REPOSITORY}docs/gone.md)");
+    fn links_that_lead_nowhere_or_only_from_here_are_named() {
         for (file, text, needle) in [
-            (
-                "docs/x.md",
-                gone.as_str(),
-                "docs/gone.md: the file does not exist in the repository",
-            ),
+            ("docs/x.md", "[a](../gone.md)", "../gone.md: there is no such file"),
             (
                 "README.md",
                 "[a](docs/gone.md)",
                 "docs/gone.md: the file does not exist",
             ),
-            ("docs/x.md", "[a](../README.md)", "whole address"),
             (
                 "crates/b/README.md",
                 "[a](../../docs/goals.md)",
-                "whole address",
+                "in words",
             ),
-            ("crates/b/README.md", "[a](NOTES.md)", "whole address"),
+            ("crates/b/README.md", "[a](NOTES.md)", "in words"),
         ] {
             let found = found(file, text);
             assert!(found.len() == 1 && found[0].contains(needle), "{found:?}");
@@ -147,11 +125,10 @@ mod tests {
     }
 
     #[test]
-    fn every_example_is_linked() {
-        let text = format!("[one]({REPOSITORY}crates/a/examples/one.rs)");
+    fn every_example_is_named() {
         assert_eq!(
-            found("crates/a/README.md", &text),
-            ["crates/a/README.md: the example two is not linked"]
+            found("crates/a/README.md", "The example `one` shows it."),
+            ["crates/a/README.md: the example two is not named"]
         );
     }
 }

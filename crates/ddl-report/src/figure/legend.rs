@@ -30,6 +30,7 @@ pub(super) enum LegendEntry {
     WeightedGoals,
     NearestGoal,
     Experts,
+    Region,
 }
 
 impl LegendEntry {
@@ -44,6 +45,7 @@ impl LegendEntry {
             Self::WeightedGoals => "goals of 1, 5, 20 % probability",
             Self::NearestGoal => "goal nearest the true end",
             Self::Experts => "how similar pedestrians went on",
+            Self::Region => "90 % region at 4.8 s",
         }
     }
 
@@ -92,6 +94,7 @@ impl LegendEntry {
                     drawing.path("expert", &[[left, y], [right, y + rise]]);
                 }
             }
+            Self::Region => drawing.circle("region", [middle, y], 9.0),
         }
     }
 }

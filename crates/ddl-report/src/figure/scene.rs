@@ -1,7 +1,7 @@
-//! One scene: past, future and forecast of each pedestrian.
+//! One scene: the past, future and forecast of every pedestrian.
 
-use ddl_data::{OBSERVED, Position, Window};
-use ddl_eval::Forecast;
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_eval::{Disc, Forecast};
 
 use super::{
     axes::{Axes, SCENE},
@@ -12,8 +12,10 @@ use super::{
 };
 use crate::{Moment, MomentPedestrian};
 
-/// Draws the pedestrians of a window with their forecasts as the text of an SVG file. The same input gives the same
-/// bytes.
+/// The region that is drawn holds the pedestrian with this probability at the end of the horizon.
+const LEVEL: f64 = 0.9;
+
+/// Draws the pedestrians of a window and their forecast as the text of an SVG file. The same input gives the same bytes.
 ///
 /// # Errors
 /// The forecast is not of the window's pedestrians.
@@ -43,6 +45,10 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError
         &entries(window, forecast),
     );
     drawing.within(axes.frame(), |drawing| {
+        for disc in regions(forecast) {
+            let radius = axes.plan().scale * disc.radius;
+            drawing.circle("region", axes.plan().px(disc.centre), radius);
+        }
         for pedestrian in drawn {
             pedestrian::other_hypotheses(drawing, axes.plan(), pedestrian);
         }
@@ -59,6 +65,12 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError
         }
     });
     Ok(drawing.to_file(PLOT_STYLE))
+}
+
+/// The discs of all pedestrians; empty for forecasts without regions.
+fn regions(forecast: &Forecast) -> impl Iterator<Item = Disc> {
+    let of_one = |i| forecast.region(i, HORIZON - 1, LEVEL).unwrap_or_default();
+    (0..forecast.pedestrians()).flat_map(of_one)
 }
 
 fn entries(window: &Window, forecast: &Forecast) -> Vec<LegendEntry> {
@@ -79,6 +91,9 @@ fn entries(window: &Window, forecast: &Forecast) -> Vec<LegendEntry> {
     }
     if forecast.has_goals() {
         entries.push(LegendEntry::Goals(if several { "goals" } else { "goal" }));
+    }
+    if regions(forecast).next().is_some() {
+        entries.push(LegendEntry::Region);
     }
     entries
 }
