@@ -17,7 +17,11 @@ fn section(of: &str, text: &str) -> String {
 #[test]
 fn the_results_page_shows_what_was_measured() {
     let place = Place::empty();
-    let frame = ["# Results\n", &section("simulated", "old\n"), &section("star", "kept\n")];
+    let frame = [
+        "# Results\n",
+        &section("simulated", "old\n"),
+        &section("star", "kept\n"),
+    ];
     place.write(PAGE, frame.concat());
     place.ok(BENCHMARK);
     let page = place.text(PAGE);

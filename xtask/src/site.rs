@@ -95,7 +95,10 @@ fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
     let said = String::from_utf8_lossy(&output.stderr);
     // mdBook continues after most faults and only logs them.
     if !output.status.success() || said.contains("WARN") || said.contains("ERROR") {
-        bail!("mdbook does not accept the pages of {BOOK}:\n{}", said.trim());
+        bail!(
+            "mdbook does not accept the pages of {BOOK}:\n{}",
+            said.trim()
+        );
     }
     Ok(())
 }

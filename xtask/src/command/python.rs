@@ -87,12 +87,7 @@ fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
     step("pip install", &pip)
 }
 
-fn build(
-    workspace: &Workspace,
-    environment: &Path,
-    out: &Path,
-    profile: &str,
-) -> Result<PathBuf> {
+fn build(workspace: &Workspace, environment: &Path, out: &Path, profile: &str) -> Result<PathBuf> {
     let wheels = out.join("wheels");
     if wheels.exists() {
         fs::remove_dir_all(&wheels)

@@ -12,17 +12,15 @@ use super::check;
 const FILES: &str = "files";
 
 /// Copies the book to `to`, with its links out of it changed, and what they lead to into the site.
-pub(super) fn copy_book(
-    book: &Path,
-    to: &Path,
-    libraries: &[Library],
-    site: &Path,
-) -> Result<()> {
+pub(super) fn copy_book(book: &Path, to: &Path, libraries: &[Library], site: &Path) -> Result<()> {
     let root = book.parent().context("the book lies in the workspace")?;
     for file in check::files_below(book)? {
         let within = file.strip_prefix(book).unwrap_or(&file);
         let copy = to.join(within);
-        if within.extension().is_some_and(|extension| extension == "md") {
+        if within
+            .extension()
+            .is_some_and(|extension| extension == "md")
+        {
             let text = fs::read_to_string(&file)
                 .with_context(|| format!("{} cannot be read", file.display()))?;
             let (text, linked) = changed(&text, libraries);

@@ -54,9 +54,11 @@ enum Executor {
 /// Each model is trained in a process of its own. After Ctrl-C the processes save their state, and the same command
 /// resumes. In a checkout, `cargo xtask benchmark` first fetches libtorch and the recordings and builds this program.
 #[derive(Debug, Args)]
-#[command(after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
+#[command(
+    after_help = "Examples:\n  ddl benchmark\n  ddl benchmark --convention simulated --profile smoke --out \
         runs/smoke\n  ddl benchmark --profile paper --seeds 0,1,2 --variants full,perceptron\n  \
-        SBATCH_TIMELIMIT=2:00:00 ddl benchmark --executor slurm --threads 4")]
+        SBATCH_TIMELIMIT=2:00:00 ddl benchmark --executor slurm --threads 4"
+)]
 pub(crate) struct Benchmark {
     #[command(flatten)]
     choice: Choice,

@@ -107,8 +107,11 @@ fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
     BatchRollout {
         hypotheses: parts.iter().map(|part| part.hypotheses).sum(),
         positions: each(parts, pedestrians, |part| &part.positions),
-        factors: with_factors
-            .then(|| each(parts, pedestrians, |part| part.factors.as_deref().unwrap_or(&[]))),
+        factors: with_factors.then(|| {
+            each(parts, pedestrians, |part| {
+                part.factors.as_deref().unwrap_or(&[])
+            })
+        }),
     }
 }
 
@@ -150,11 +153,7 @@ impl Part<'_> {
     }
 
     /// Goes through the time steps to forecast.
-    fn walk(
-        &self,
-        mut course: Course<'_>,
-        (mut memory, mut features): Observed,
-    ) -> BatchRollout {
+    fn walk(&self, mut course: Course<'_>, (mut memory, mut features): Observed) -> BatchRollout {
         let Pass {
             layers,
             observation,
