@@ -45,7 +45,10 @@ fn explain(part: &[&str], lines: &[&str], anywhere: bool) -> String {
     let lines = &lines[lines.iter().position(begins).unwrap_or(0)..];
     match part.iter().zip(lines).find(differs) {
         Some((shown, line)) => format!("the page shows {shown:?}, the answer has {line:?}"),
-        None => format!("the page shows {:?}, the answer is shorter", part[part.len() - 1]),
+        None => format!(
+            "the page shows {:?}, the answer is shorter",
+            part[part.len() - 1]
+        ),
     }
 }
 

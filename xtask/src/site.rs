@@ -94,7 +94,10 @@ fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
     let said = String::from_utf8_lossy(&output.stderr);
     // mdBook goes on after most faults, and says so in its log.
     if !output.status.success() || said.contains("WARN") || said.contains("ERROR") {
-        bail!("mdbook does not accept the pages of {BOOK}:\n{}", said.trim());
+        bail!(
+            "mdbook does not accept the pages of {BOOK}:\n{}",
+            said.trim()
+        );
     }
     Ok(())
 }

@@ -183,11 +183,7 @@ mod tests {
         let fault =
             |file: &str, sha256| recording_fault(Path::new(file), sha256, &[("eth.csv", "abc")]);
         assert_eq!(fault("datasets/folds.json", "x"), None);
-        assert!(
-            fault("datasets/new.csv", "x")
-                .unwrap()
-                .contains("no data")
-        );
+        assert!(fault("datasets/new.csv", "x").unwrap().contains("no data"));
         for (file, sha256) in [("eth.csv", "x"), ("renamed.txt", "abc")] {
             assert!(
                 fault(file, sha256)

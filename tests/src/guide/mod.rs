@@ -60,7 +60,10 @@ pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
         let text = shown::replaced(&text, answers);
         std::fs::write(checkout().join(page), text).unwrap();
     }
-    let faults: Vec<String> = problems.into_iter().map(|(_, problem)| problem.text).collect();
+    let faults: Vec<String> = problems
+        .into_iter()
+        .map(|(_, problem)| problem.text)
+        .collect();
     assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
 }
 

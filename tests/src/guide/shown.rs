@@ -39,7 +39,8 @@ mod tests {
 
     #[test]
     fn answers_are_replaced_and_what_was_left_out_is_left_out_again() {
-        let page = "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
+        let page =
+            "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
         let commands = console::commands(page);
         let answers = commands.iter().zip(["4\n5\n6\n7\n", "8\n9\n"]);
         assert_eq!(

@@ -90,7 +90,10 @@ mod tests {
     #[test]
     fn links_that_lead_somewhere_pass() {
         for (file, text) in [
-            ("docs/x.md", "[a](../README.md#top), [b](https://other/y), [c](#d)"),
+            (
+                "docs/x.md",
+                "[a](../README.md#top), [b](https://other/y), [c](#d)",
+            ),
             ("docs/x.md", "[a](goals.md#b)\n```\n[a](b.md)\n```\n"),
             ("README.md", "[a](docs/goals.md) ![b](docs)"),
             ("datasets/README.md", "[a](../docs/goals.md)"),
@@ -106,17 +109,17 @@ mod tests {
     #[test]
     fn links_that_lead_nowhere_or_only_from_here_are_named() {
         for (file, text, needle) in [
-            ("docs/x.md", "[a](../gone.md)", "../gone.md: there is no such file"),
+            (
+                "docs/x.md",
+                "[a](../gone.md)",
+                "../gone.md: there is no such file",
+            ),
             (
                 "README.md",
                 "[a](docs/gone.md)",
                 "docs/gone.md: there is no such file",
             ),
-            (
-                "crates/b/README.md",
-                "[a](../../docs/goals.md)",
-                "in words",
-            ),
+            ("crates/b/README.md", "[a](../../docs/goals.md)", "in words"),
             ("crates/b/README.md", "[a](NOTES.md)", "in words"),
         ] {
             let found = found(file, text);
