@@ -1,5 +1,5 @@
-//! Links of the book to other files of the repository: on the site the README of a crate is the first page of its
-//! interface, and any other file lies in the folder `files`.
+//! Links and includes of the book that lead to other files of the repository: on the site the README of a crate is the
+//! first page of its interface, and any other file lies in the folder `files`.
 
 use std::fs;
 use std::path::Path;
@@ -10,6 +10,8 @@ use super::api::Library;
 use super::check;
 
 const FILES: &str = "files";
+/// How mdBook includes a file; it would look beside the copy of the book.
+const INCLUDE: &str = "{{#include ../";
 
 /// Copies the book to `to`, with its links out of it changed, and what they lead to into the site.
 pub(super) fn copy_book(book: &Path, to: &Path, libraries: &[Library], site: &Path) -> Result<()> {
@@ -23,7 +25,7 @@ pub(super) fn copy_book(book: &Path, to: &Path, libraries: &[Library], site: &Pa
         {
             let text = fs::read_to_string(&file)
                 .with_context(|| format!("{} cannot be read", file.display()))?;
-            let (text, linked) = changed(&text, libraries);
+            let (text, linked) = changed(&included(&text, root)?, libraries);
             crate::whole_file::write(&copy, text.as_bytes())?;
             for (path, name) in linked {
                 let linked = root.join(&path);
@@ -37,6 +39,21 @@ pub(super) fn copy_book(book: &Path, to: &Path, libraries: &[Library], site: &Pa
         }
     }
     Ok(())
+}
+
+/// A page with the text of the files that it includes.
+fn included(page: &str, root: &Path) -> Result<String> {
+    let mut parts = page.split(INCLUDE);
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (path, rest) = part.split_once("}}").context("an include has no end")?;
+        let file = root.join(path);
+        let file = fs::read_to_string(&file)
+            .with_context(|| format!("{} cannot be read", file.display()))?;
+        text.push_str(file.trim_end());
+        text.push_str(rest);
+    }
+    Ok(text)
 }
 
 fn copy_file(from: &Path, to: &Path) -> Result<()> {
@@ -95,5 +112,14 @@ mod tests {
         );
         let copied: Vec<&str> = files.iter().map(|(_, name)| name.as_str()).collect();
         assert_eq!(copied, ["LICENSE", "f.md.txt"]);
+    }
+
+    #[test]
+    fn included_files_are_part_of_the_page() {
+        let folder = tempfile::tempdir().unwrap();
+        crate::whole_file::write(&folder.path().join("a/b.md"), b"text\n").unwrap();
+        let page = |path: &str| included(&format!("x {INCLUDE}{path}}}}} y\n"), folder.path());
+        assert_eq!(page("a/b.md").unwrap(), "x text y\n");
+        assert!(page("a/c.md").unwrap_err().to_string().contains("c.md"));
     }
 }

@@ -34,16 +34,16 @@ fn numbered<'a>(
 
 /// Rows of tables, what a program prints, and the targets of links may be longer.
 fn in_markdown(text: &str) -> Vec<usize> {
-    let mut block: Option<&str> = None;
+    let (mut is_inside, mut is_printed) = (false, false);
     numbered(text.lines(), |line| {
         let line = line.trim_end();
         if let Some(kind) = line.trim_start().strip_prefix("```") {
-            block = block.is_none().then_some(kind.trim());
+            is_inside = !is_inside;
+            is_printed = is_inside && PRINTED.contains(&kind.trim());
             return false;
         }
-        let is_free =
-            line.trim_start().starts_with('|') || block.is_some_and(|kind| PRINTED.contains(&kind));
-        !is_free && without_targets(line) > COLUMNS
+        let is_row = line.trim_start().starts_with('|');
+        !is_printed && !is_row && without_targets(line) > COLUMNS
     })
 }
 

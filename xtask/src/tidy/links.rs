@@ -117,7 +117,7 @@ mod tests {
             (
                 "README.md",
                 "[a](docs/gone.md)",
-                "docs/gone.md: the file does not exist",
+                "docs/gone.md: there is no such file",
             ),
             ("crates/b/README.md", "[a](../../docs/goals.md)", "in words"),
             ("crates/b/README.md", "[a](NOTES.md)", "in words"),

@@ -7,13 +7,12 @@ const READ: [&str; 9] = [
     "md", "rs", "py", "toml", "html", "js", "css", "ipynb", "cff",
 ];
 /// What is not written, and what is written instead. Spelled in pieces, so that this file does not find itself.
-const PHRASES: [(&str, &str); 16] = [
+const PHRASES: [(&str, &str); 15] = [
     (concat!("wal", "ker"), "pedestrian"),
     (concat!("wal", "kers"), "pedestrians"),
     (concat!("walking", " people"), "pedestrians"),
     (concat!("that is", " none"), "say what it is"),
     (concat!("that are", " none"), "say what they are"),
-    (concat!("one that is", " no"), "say what it is"),
     (concat!("is no", " number"), "is not a number"),
     (concat!("are no", " numbers"), "are not numbers"),
     (
@@ -77,8 +76,8 @@ fn words(text: &str) -> Vec<(usize, String)> {
                 was_small = letter.is_lowercase();
                 if letter.is_alphanumeric() {
                     part.extend(letter.to_lowercase());
-                } else if ".;:!?".contains(letter) {
-                    // The end of a sentence is the end of a phrase.
+                } else if ".;:!?,\"".contains(letter) {
+                    // A phrase ends with its sentence, and with the string that holds it.
                     words.push((number, String::new()));
                 }
             }
@@ -96,7 +95,7 @@ mod tests {
 
     #[test]
     fn a_phrase_is_found_in_names_and_across_lines() {
-        let [pedestrian, number] = [PHRASES[0].0, PHRASES[6].0];
+        let [pedestrian, number] = [PHRASES[0].0, PHRASES[5].0];
         let (before, after) = number.split_at(5);
         for (text, line) in [
             (format!("a {pedestrian}."), 1),
