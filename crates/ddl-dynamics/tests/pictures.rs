@@ -22,8 +22,8 @@ fn the_committed_pictures_are_current() {
         ("stability.svg", circling::draw().unwrap()),
         ("around.svg", around::draw().unwrap()),
     ] {
-        let anew = "draw them again: cargo run -p ddl-dynamics --example pictures -- docs";
-        assert!(committed(file) == svg, "{file}: {anew}");
+        let advice = "draw them again: cargo run -p ddl-dynamics --example pictures -- docs";
+        assert!(committed(file) == svg, "{file}: {advice}");
     }
 }
 

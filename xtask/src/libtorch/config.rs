@@ -45,7 +45,7 @@ fn render(libtorch: &Path) -> Result<String> {
     let folder_text = quote(folder.to_owned());
     let rpath = quote(format!("link-arg=-Wl,-rpath,{folder}/lib"));
     Ok(format!(
-        "# Written by `cargo xtask setup`; delete it to set up anew. See docs/libtorch.md.\n\
+        "# Written by `cargo xtask setup`; delete it before a new set-up. See docs/libtorch.md.\n\
          [env]\n\
          LIBTORCH = {folder_text}\n\
          \n\

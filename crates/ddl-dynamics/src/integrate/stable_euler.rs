@@ -42,7 +42,7 @@ const ARRIVAL: f64 = 8.0;
 ///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that changes the
 ///   distance: about `epsilon max(|p|, |p*|)`, doubled until it does.
 ///
-/// So every computed rollout ends on the goal after enough steps. [`StableStep::limit`] tells which case applied.
+/// So every computed rollout ends on the goal after enough steps. [`StableStep::limit`] states which case applied.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct StableEuler;
 
