@@ -155,7 +155,7 @@ fn the_rate_of_scenes_is_used() {
     for (line, told, same_as) in [
         (
             "two.ndjson",
-            "note: the file's scenes give 2 frames per second, but its frame numbers increase by 10: read as --fps \
+            "note: the file's scenes give 2 frames per second, and its frame numbers increase by 10: read as --fps \
              20\n",
             "plain.ndjson --fps 20",
         ),

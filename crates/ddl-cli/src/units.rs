@@ -154,7 +154,7 @@ impl Units {
         let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
         let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
         let scenes = format!(
-            "the file's scenes give {rate} frames per second, but its frame numbers increase by {apart}"
+            "the file's scenes give {rate} frames per second, and its frame numbers increase by {apart}"
         );
         let of_file = format!("--fps {}", rounded(1.0 / told));
         match rate_option(&given) {
