@@ -149,7 +149,7 @@ fn what_cannot_be_measured_is_refused_with_the_reason() {
         ),
         (
             "forecasts.jsonl --window-rule published",
-            "of nobody in the windows",
+            "match no pedestrian of the windows",
         ),
     ] {
         place.fails(&format!("{EVALUATE} {arguments}"), &[needle]);
