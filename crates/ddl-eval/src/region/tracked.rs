@@ -9,9 +9,9 @@
 //!
 //! `missed` is the share of the `n` observed pedestrians outside their regions for this frame, `share` the time since
 //! the frame before in steps of 0.4 s, at most 1. As long as no shift reaches its bound, the shift after some frames is
-//! the sum of these moves. So the mean of `missed`, weighted by `w`, differs from `1 - a` by at most `LARGEST_SHIFT /
-//! (STEP sum w)`, for any motion of the pedestrians. Where quantiles of two levels cross they are sorted, and then this
-//! holds for the levels together.
+//! the sum of these moves. So the mean of `missed`, weighted by `w`, differs from `1 - a` by at most
+//! `LARGEST_SHIFT / (STEP sum w)`, for any motion of the pedestrians. Where quantiles of two levels cross they are
+//! sorted, and then this holds for the levels together.
 //!
 //! # References
 //! - Gibbs and Candes, *Adaptive Conformal Inference Under Distribution Shift*, 2021.

@@ -15,9 +15,8 @@ fn check(format: ExternalFormat, text: &str, expected: &str) {
     );
 }
 
-/// Cases, one on each line: parts of the file, then the expected error, between arrows. A line that ends with `\` \
-continues
-/// on the next.
+/// Cases, one on each line: parts of the file, then the expected error, between arrows. A line continues on the next
+/// after a backslash.
 fn check_all(format: ExternalFormat, cases: &str, file: impl Fn(&[&str]) -> String) {
     for case in cases.trim().replace("\\\n", "").lines() {
         let parts: Vec<&str> = case.split(" =>").map(str::trim).collect();
