@@ -149,7 +149,7 @@ fn invalid_evaluations_are_refused_with_the_reason() {
         ),
         (
             "forecasts.jsonl --window-rule published",
-            "of nobody in the windows",
+            "match no pedestrian of the windows",
         ),
     ] {
         place.fails(&format!("{EVALUATE} {arguments}"), &[needle]);

@@ -280,7 +280,7 @@ def check_viewer(opened):
     def shown(pedestrian, measured):
         for selector in errors_seen:
             assert opened.page.locator(selector).first.is_visible() == measured, (selector, measured)
-        said = f"seen for {len(pedestrian['truth'])} of the 12" in opened.text("#convention-words")
+        said = f"observed for {len(pedestrian['truth'])} of the 12" in opened.text("#convention-words")
         assert said != measured, opened.text("#convention-words")
         assert "which stands for all" in opened.text("#certificate-words")
 

@@ -1,8 +1,8 @@
-//! Time to score a fold as large as univ: 24,254 pedestrians with 20 hypotheses each, every metric and category; and what regions cost
-//! that follow what is seen.
+//! Time to score a fold as large as univ (24,254 pedestrians with 20 hypotheses each, all metrics and categories), and
+//! time of adaptive regions.
 #![allow(
     missing_docs,
-    reason = "criterion's macro makes a function without them"
+    reason = "the function that criterion's macro makes has no documentation"
 )]
 
 use std::hint::black_box;
@@ -18,9 +18,9 @@ use ddl_eval::{
 /// Pedestrians of univ under the published rule.
 const PEDESTRIANS: usize = 24_254;
 const CROWD: usize = 25;
-/// Frames that regions follow before time begins anew.
+/// Frames that the regions follow before time restarts.
 const FRAMES: usize = 500;
-/// Side of the square they begin in, m: as dense as univ.
+/// Side of the square in which the pedestrians start, m: the density of univ.
 const SIDE: f64 = 14.0;
 
 /// Numbers in [0, 1).
@@ -34,7 +34,7 @@ fn numbers(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Pedestrians of up to 1.5 m/s who sway and turn; one in five stands.
+/// Pedestrians of up to 1.5 m/s that sway and turn; one in five stands.
 fn windows() -> Vec<Window> {
     let mut next = numbers(1);
     let mut track = || -> Vec<Position> {

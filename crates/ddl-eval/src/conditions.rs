@@ -1,4 +1,4 @@
-//! Everything a printed number must name, and the number with it.
+//! Results with the conditions under which they were measured.
 
 use ddl_data::{Convention, Window, WindowRule};
 use serde::{Deserialize, Serialize};
@@ -9,7 +9,7 @@ use crate::{
     significance::{BlockErrors, block_errors},
 };
 
-/// How a result came about. Two results are comparable when convention, window rule, protocol and test subset agree.
+/// Conditions of a result. Results are comparable when convention, window rule, protocol and test subset agree.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conditions {
     /// Data convention of the recordings.
@@ -22,15 +22,15 @@ pub struct Conditions {
     pub fold: String,
     /// Name of the forecaster.
     pub forecaster: String,
-    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`) and a backbone other than STAR, if any.
+    /// Ablation variant (`full`, `no-goal-shift`, `no-dynamics` or `star`), and the backbone if it is not STAR.
     pub variant: Option<String>,
     /// Seed of the training and of the samples; `None` when nothing is random.
     pub seed: Option<u64>,
     /// Training epochs; `None` when nothing is trained.
     pub epochs: Option<usize>,
-    /// How the epoch scored was chosen, such as `last epoch`.
+    /// Choice of the scored epoch, such as `last epoch`.
     pub selection: Option<String>,
-    /// How it was made, in words: batch size and step size of the training, where the goals are from; `None` when neither applies.
+    /// Recipe in words: batch size and step size of the training, source of the goals; `None` when neither applies.
     pub recipe: Option<String>,
     /// Device the forecasts were computed on, such as `cpu`; empty when unknown.
     #[serde(default)]
@@ -45,7 +45,7 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Conditions of something that is neither trained nor random, on all test windows.
+    /// Conditions of a forecaster without training and randomness, on all test windows.
     pub fn new(
         convention: Convention,
         window_rule: WindowRule,
@@ -71,7 +71,7 @@ impl Conditions {
         }
     }
 
-    /// Forecaster and variant as printed in the first column; the variant `full` goes without saying.
+    /// Forecaster and variant for the first column of tables; the variant `full` is left out.
     pub fn label(&self) -> String {
         match self.variant.as_deref() {
             None | Some("full") => self.forecaster.clone(),
@@ -83,11 +83,11 @@ impl Conditions {
 /// One result: the scores of one forecaster on one fold under one protocol.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ResultRow {
-    /// How it came about.
+    /// Its conditions.
     pub conditions: Conditions,
-    /// The numbers.
+    /// Its metrics.
     pub scores: Scores,
-    /// Errors summed over 20 s each, from which it is told how sure the means are; empty when unknown.
+    /// Errors summed over blocks of 20 s, for intervals of the means; empty when unknown.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blocks: Vec<BlockErrors>,
 }
@@ -95,7 +95,7 @@ pub struct ResultRow {
 impl ResultRow {
     /// Forecasts the windows under the protocol of the conditions and scores the forecasts.
     ///
-    /// The conditions are taken at their word: windows and rule are the caller's to see to.
+    /// The caller ensures that the windows agree with the conditions.
     ///
     /// # Errors
     /// The forecaster failed, broke the protocol, or its forecasts cannot be scored.
@@ -115,7 +115,7 @@ impl ResultRow {
     ) -> Result<Self, MeasureError> {
         let mut forecasts = conditions.protocol.forecast(forecaster, everybody)?;
         for (forecast, (window, whole)) in forecasts.iter_mut().zip(windows.iter().zip(everybody)) {
-            // Whatever does not belong together is reported when it is scored.
+            // Mismatches are reported by the scoring.
             if let Some(places) = places(window, whole)
                 && places.len() < forecast.pedestrians()
                 && forecast.pedestrians() == whole.len()
@@ -128,7 +128,7 @@ impl ResultRow {
         )?)
     }
 
-    /// Scores forecasts that are there already, one a window.
+    /// Scores given forecasts, one for each window.
     ///
     /// # Errors
     /// As [`Scores::evaluate`].
@@ -153,12 +153,12 @@ impl ResultRow {
         })
     }
 
-    /// The errors of each recording, by name; nothing where the row does not know its errors by block.
+    /// The errors of each recording, by name; empty where the row has no errors by block.
     ///
     /// The mean over the recordings, weighted by their pedestrians, is that of the row.
     pub fn by_recording(&self) -> Vec<RecordingErrors> {
         let mut recordings: Vec<RecordingErrors> = Vec::new();
-        // blocks stand in the order of their recordings
+        // Blocks are in the order of their recordings.
         for of_one in self.blocks.chunk_by(|a, b| a.recording == b.recording) {
             let pedestrians = of_one.iter().map(|block| block.pedestrians).sum::<usize>();
             let count = pedestrians.max(1) as f64;

@@ -1,13 +1,13 @@
-//! What can go wrong between a forecast and a printed table.
+//! Errors of forecasts and of their scoring.
 
 use ddl_data::{HORIZON, Window};
 
 use crate::Protocol;
 
-/// The numbers given for a [`Forecast`](crate::Forecast) do not make one.
+/// The numbers do not make a valid [`Forecast`](crate::Forecast).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ForecastShapeError {
     #[error(
         "a forecast needs at least one pedestrian and one hypothesis, found {pedestrians} x {hypotheses}"
@@ -50,10 +50,10 @@ pub enum ForecastShapeError {
     NotNormalised { pedestrian: usize, sum: f64 },
 }
 
-/// A forecaster could not make its forecast.
+/// A forecaster cannot make its forecast.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ForecastError {
     #[error(transparent)]
     Shape(#[from] ForecastShapeError),
@@ -72,7 +72,7 @@ pub enum ForecastError {
         problem: String,
     },
     #[error(
-        "protocol `{protocol}` allows {allowed} hypotheses a pedestrian, `{forecaster}` made {found}"
+        "protocol `{protocol}` allows {allowed} hypotheses for each pedestrian, `{forecaster}` made {found}"
     )]
     TooManyHypotheses {
         protocol: Protocol,
@@ -103,17 +103,15 @@ impl ForecastError {
 /// Forecasts cannot be scored.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum EvaluationError {
-    #[error("there is no window to score; is the test set empty?")]
+    #[error("no window to score; is the test set empty?")]
     NoWindows,
-    #[error("{windows} windows but {forecasts} forecasts; there must be one forecast a window")]
+    #[error("{windows} windows but {forecasts} forecasts; each window needs one forecast")]
     Count { windows: usize, forecasts: usize },
-    #[error(
-        "{longest} positions were given as seen after the observation; a forecast covers {HORIZON}"
-    )]
+    #[error("{longest} true positions after the observation; a forecast has {HORIZON}")]
     Seen { longest: usize },
-    #[error("{windows} windows but {everybody} whole ones; there must be one each")]
+    #[error("{windows} windows but {everybody} whole ones; each window needs its whole one")]
     EverybodyCount { windows: usize, everybody: usize },
     #[error("window of `{recording}` starting at frame {start_frame}{problem}")]
     Window {
@@ -123,14 +121,14 @@ pub enum EvaluationError {
     },
 }
 
-/// Why a window cannot be scored with its forecast; what follows the name of the window in messages.
+/// Why a window cannot be scored with its forecast; the messages follow the name of the window.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum WindowProblem {
     #[error(" holds {expected} pedestrians, its forecast {found}")]
     Pedestrians { expected: usize, found: usize },
-    #[error(": the whole window given is of other frames or lacks some of its pedestrians")]
+    #[error(": its whole window has other frames or lacks some of its pedestrians")]
     Everybody,
     #[error(" has no true future: it can be forecast but not scored")]
     NoFuture,
@@ -138,14 +136,14 @@ pub enum WindowProblem {
         " was forecast with {found} hypotheses, the windows before it with {expected}; the best of K needs one K"
     )]
     Hypotheses { expected: usize, found: usize },
-    #[error(": either every forecast of a test set carries certificates or none does")]
+    #[error(": all forecasts of a test set must have certificates, or none")]
     CertificatesOfSome,
-    #[error(": either every forecast of a test set has goals or none has")]
+    #[error(": all forecasts of a test set must have goals, or none")]
     GoalsOfSome,
 }
 
 impl EvaluationError {
-    /// What is wrong with a window.
+    /// A problem of one window.
     pub fn of(window: &Window, problem: WindowProblem) -> Self {
         Self::Window {
             recording: window.recording().to_owned(),
@@ -154,7 +152,7 @@ impl EvaluationError {
         }
     }
 
-    /// That there is one forecast a window.
+    /// Checks that there is one forecast for each window.
     pub(crate) fn unless_one_each(windows: &[Window], forecasts: usize) -> Result<(), Self> {
         let windows = windows.len();
         if windows == forecasts {
@@ -164,14 +162,14 @@ impl EvaluationError {
     }
 }
 
-/// A forecaster could not be measured.
+/// A forecaster cannot be measured.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeasureError {
-    /// It could not forecast.
+    /// Its forecast failed.
     #[error(transparent)]
     Forecast(#[from] ForecastError),
-    /// Its forecasts could not be scored.
+    /// Its forecasts cannot be scored.
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
 }

@@ -1,10 +1,10 @@
-//! Small scenes whose errors can be worked out on paper.
+//! Small scenes whose errors can be computed by hand.
 
 use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, WINDOW, Window};
 
 use crate::Forecast;
 
-/// Each pedestrian stands at `starts[i]` while observed, then walks `steps[i]` a frame.
+/// Each pedestrian stands at `starts[i]` while observed, then walks `steps[i]` per frame.
 pub(crate) fn window(starts: &[Position], steps: &[Position]) -> Window {
     let tracks = starts.iter().zip(steps).map(|(start, step)| {
         let frame = |t: usize| at(*start, *step, (t + 1).saturating_sub(OBSERVED) as f64);
@@ -18,7 +18,7 @@ pub(crate) fn of_tracks(tracks: Vec<Vec<Position>>) -> Window {
     Window::new("made up", 0, 10, ids, tracks).unwrap()
 }
 
-/// Pedestrians of constant velocity: where they are at first, and metres a frame.
+/// Pedestrians of constant velocity: first position, and metres per frame.
 pub(crate) fn walking(all: &[(Position, Position)], frames: usize) -> Window {
     let track = |&(start, step): &(Position, Position)| {
         (0..frames).map(|t| at(start, step, t as f64)).collect()

@@ -1,4 +1,4 @@
-//! A forecast of one window: several weighted futures for every pedestrian.
+//! A forecast of one window: several weighted hypotheses for every pedestrian.
 
 use std::sync::Arc;
 
@@ -8,13 +8,14 @@ use crate::{error::ForecastShapeError, region::RegionTable};
 
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///
-/// Frames are 0.4 s apart; the first follows the last observed one. Hypothesis `k` of everybody is one joint future.
+/// Frames are 0.4 s apart; the first follows the last observed one. Hypothesis `k` of all pedestrians is one joint
+/// future.
 ///
 /// # Shapes
-/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 a pedestrian), goals `[N][K]` in metres; certified
-/// `[N][K]`: whether the model's proof that hypothesis `k` goes to its goal holds; spread `[N][12]` in metres: the
-/// standard deviation of a pedestrian about the right hypothesis; familiarity `[N]`, 0 to 1: how much the observed
-/// motion is like those that the model was trained on.
+/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 for each pedestrian), goals `[N][K]` in metres;
+/// certified `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds; spread `[N][12]` in
+/// metres: standard deviation of a pedestrian around the right hypothesis; familiarity `[N]`, 0 to 1: similarity of the
+/// observed motion to the training data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pedestrians: usize,
@@ -28,7 +29,7 @@ pub struct Forecast {
 }
 
 impl Forecast {
-    /// How far the weights of a pedestrian may sum from 1.
+    /// Largest difference of the sum of weights of a pedestrian from 1.
     pub const WEIGHT_TOLERANCE: f64 = 1e-6;
 
     /// A forecast from flat arrays; the layout is pedestrian, hypothesis, frame.
@@ -75,7 +76,7 @@ impl Forecast {
         })
     }
 
-    /// A forecast whose hypotheses all have the weight 1/K.
+    /// A forecast whose hypotheses have equal weights, 1/K.
     ///
     /// # Shapes
     /// `positions`: `[N][K][12]`, metres.
@@ -91,7 +92,7 @@ impl Forecast {
         Self::new(pedestrians, hypotheses, positions, weights, None)
     }
 
-    /// The same forecast with the verdict of a certificate for each hypothesis, `[N][K]`.
+    /// The same forecast with, for each hypothesis, whether its certificate holds, `[N][K]`.
     ///
     /// # Errors
     /// The array has the wrong length.
@@ -108,7 +109,7 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with its spread about the hypotheses, `[N][12]` (metres), and its table of regions.
+    /// The same forecast with its spread around the hypotheses, `[N][12]` (metres), and its table of regions.
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
@@ -148,7 +149,7 @@ impl Forecast {
         })
     }
 
-    /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, about the right hypothesis (metres), if known.
+    /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, around the right hypothesis (metres), if known.
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;
         Some(spread[i * HORIZON..][..HORIZON][t])
@@ -164,7 +165,7 @@ impl Forecast {
         Some(Arc::clone(regions))
     }
 
-    /// The same forecast with another table of regions; without a spread as it is.
+    /// The same forecast with another table of regions; unchanged without a spread.
     pub(crate) fn with_regions(self, regions: &Arc<RegionTable>) -> Self {
         Self {
             spread: self.spread.map(|(spread, _)| (spread, Arc::clone(regions))),
@@ -172,7 +173,7 @@ impl Forecast {
         }
     }
 
-    /// How much the observed motion of pedestrian `i` is like that of the training, 0 to 1; `None` where unknown.
+    /// Similarity of the observed motion of pedestrian `i` to the training data, 0 to 1; `None` where unknown.
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
@@ -215,12 +216,12 @@ impl Forecast {
         self.certified.as_ref().map(|certified| certified[pair])
     }
 
-    /// Whether every hypothesis has the verdict of a certificate.
+    /// Whether every hypothesis has a certificate that holds or fails.
     pub fn has_certificates(&self) -> bool {
         self.certified.is_some()
     }
 
-    /// The hypothesis of greatest weight of pedestrian `i`; of equals, the first.
+    /// The hypothesis of greatest weight of pedestrian `i`; the first of equal ones.
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {
             if self.weight(i, k) > self.weight(i, best) {
@@ -231,7 +232,7 @@ impl Forecast {
         })
     }
 
-    /// The [representative](Self::representative) hypothesis of each pedestrian alone, with the weight 1.
+    /// Only the [representative](Self::representative) hypothesis of each pedestrian, with the weight 1.
     #[must_use]
     pub fn single(&self) -> Self {
         let chosen: Vec<usize> = (0..self.pedestrians)
@@ -248,13 +249,13 @@ impl Forecast {
             weights: vec![1.0; self.pedestrians],
             goals: rows().map(|(i, &k)| self.goal(i, k)).collect(),
             certified: rows().map(|(i, &k)| self.certified(i, k)).collect(),
-            // about one of many hypotheses, not about the one that stands for all
+            // The spread is around one of many hypotheses, not around the representative one.
             spread: None,
             familiarity: self.familiarity.clone(),
         }
     }
 
-    /// The forecasts of some of the pedestrians alone, in the order asked for; at least one must be.
+    /// The forecasts of the given pedestrians, at least one, in the given order.
     pub(crate) fn keeping(&self, pedestrians: &[usize]) -> Self {
         fn rows<T: Copy>(all: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
             let row = |&i: &usize| &all[i * per_pedestrian..(i + 1) * per_pedestrian];
@@ -282,7 +283,7 @@ impl Forecast {
     fn pair(&self, i: usize, k: usize) -> usize {
         assert!(
             i < self.pedestrians && k < self.hypotheses,
-            "pedestrian {i}, hypothesis {k} asked of a forecast of {} x {}",
+            "pedestrian {i}, hypothesis {k} of a forecast of {} x {}",
             self.pedestrians,
             self.hypotheses
         );
@@ -314,7 +315,7 @@ fn check_range(
     per_pedestrian: usize,
     most: f64,
 ) -> Result<(), ForecastShapeError> {
-    // false for NaN
+    // False for NaN.
     match numbers.iter().position(|&x| !(x > 0.0 && x <= most)) {
         None => Ok(()),
         Some(at) => Err(ForecastShapeError::OutOfRange {

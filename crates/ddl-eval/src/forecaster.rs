@@ -1,4 +1,4 @@
-//! What every model and every baseline is to the evaluation.
+//! The interface of models and baselines for the evaluation.
 
 use std::sync::Arc;
 
@@ -6,25 +6,25 @@ use ddl_data::Window;
 
 use crate::{Forecast, error::ForecastError};
 
-/// Something that forecasts the people of a window: a baseline, the DDL model or any other.
+/// A forecaster of the pedestrians of a window: a baseline, the DDL model or any other.
 ///
 /// # Contract
-/// A forecaster reads [`Window::observed`] alone, which `leak::find` checks. One that also reads the future where it is
-/// shown (protocol `published`) must not need it, or must fail with [`ForecastError::FutureMissing`].
+/// A forecaster reads only [`Window::observed`], which `leak::find` checks. If it also reads a visible future (protocol
+/// `published`), it must work without it or fail with [`ForecastError::FutureMissing`].
 pub trait Forecaster {
     /// The name printed in tables, the same for every window.
     fn name(&self) -> String;
 
-    /// Forecasts one window: the pedestrians of the forecast are those of the window, in its order.
+    /// Forecasts the pedestrians of one window, in its order.
     ///
     /// # Errors
-    /// The model failed, or needs a future that is not there.
+    /// The model failed, or needs a future that the window does not have.
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError>;
 
     /// Forecasts many windows; models that work in batches override it.
     ///
     /// # Errors
-    /// As [`Forecaster::forecast`]; the first failure ends the work.
+    /// As [`Forecaster::forecast`], at the first failure.
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         windows.iter().map(|window| self.forecast(window)).collect()
     }

@@ -1,4 +1,4 @@
-//! The leak test: does a forecast change when the future does?
+//! The leak test: whether a forecast changes with the future.
 
 use ddl_data::{OBSERVED, Position, WINDOW, Window};
 
@@ -7,7 +7,7 @@ use crate::{Forecast, Forecaster, error::ForecastError};
 /// A change of the future that changed a forecast.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Leak {
-    /// What was changed in the window.
+    /// The change of the window.
     pub change: String,
 }
 
@@ -15,7 +15,7 @@ pub struct Leak {
 /// frame of one pedestrian at a time and all together. `None` when every forecast is bit-identical.
 ///
 /// # Errors
-/// The forecaster failed, for instance because it needs the future: that is a leak by its own word.
+/// The forecaster failed, for instance because it needs the future, which is also a leak.
 pub fn find(
     forecaster: &(impl Forecaster + ?Sized),
     window: &Window,
@@ -56,7 +56,7 @@ pub fn find(
     Ok(None)
 }
 
-/// Far enough for nothing to stay the same that depends on it.
+/// A displacement that changes everything that depends on the position, m.
 fn moved(p: Position) -> Position {
     [17.0 - 3.0 * p[1], 5.0 + 2.0 * p[0]]
 }
@@ -92,7 +92,7 @@ mod tests {
 
         fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
             let last = window.track(window.len() - 1);
-            // The future as it is looks like no future at all: only moving it shows the leak.
+            // The unchanged future equals no future here: only a moved one shows the leak.
             let seen = last.get(self.frame).map_or(0.0, |p| p[1]);
             let step = [0.0, if seen > 0.0 { 1e-9 } else { 0.0 }];
             Ok(forecast(

@@ -1,4 +1,4 @@
-//! The metrics of one pedestrian of one window, before any mean.
+//! The metrics of one pedestrian of one window.
 
 use crate::{
     Scene,
@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// An end is missed where no hypothesis ends nearer than 0.5 m, and by the distances of other works; metres.
+/// Distances beyond which an endpoint is missed by every hypothesis: 0.5 m, and those of other works; metres.
 const MISS_DISTANCES: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Lengths in metres.

@@ -1,4 +1,4 @@
-//! The rules of the game: what a forecaster may see, and how many guesses it has.
+//! Evaluation protocols: the input that a forecaster sees, and its number of hypotheses.
 
 use std::{borrow::Cow, fmt, str::FromStr};
 
@@ -7,19 +7,19 @@ use serde::{Deserialize, Serialize};
 
 use crate::{Forecast, Forecaster, error::ForecastError};
 
-/// How a number was measured. Numbers of different protocols are not comparable.
+/// An evaluation protocol. Numbers of different protocols are not comparable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
-    /// As the published DDL code measures: the goal is chosen with the true end.
+    /// The protocol of the published DDL code: the goal is chosen with the true endpoint.
     Published,
-    /// All goals, 20 hypotheses, nothing chosen with the truth but the usual best of 20.
+    /// 20 hypotheses with all goals; the truth chooses only the usual best of 20.
     Fair,
     /// One forecast: the [representative](Forecast::representative) hypothesis.
     Single,
-    /// As `Fair`, and besides the windows what was seen in their recording until then.
+    /// As `Fair`, with the part of the recording before each window as further input.
     Online,
-    /// As `Single`, and besides the windows what was seen in their recording until then.
+    /// As `Single`, with the part of the recording before each window as further input.
     OnlineSingle,
 }
 
@@ -27,7 +27,7 @@ impl Protocol {
     /// The greatest number of hypotheses that any protocol allows: 20.
     pub const MOST_HYPOTHESES: usize = 20;
 
-    /// Every protocol, in the order of printing.
+    /// All protocols, in display order.
     pub const ALL: [Self; 5] = [
         Self::Published,
         Self::Fair,
@@ -51,38 +51,41 @@ impl Protocol {
     pub const fn description(self) -> &'static str {
         match self {
             Self::Published => {
-                "one goal a pedestrian (of 20 cluster centres, the one nearest the true end), then 20 \
+                "one goal for each pedestrian (of 20 cluster centres, the one nearest the true end), then 20 \
                  noise samples on that goal; the best of 20 is scored; the goal query reads the first \
                  future frame"
             }
             Self::Fair => {
-                "at most 20 weighted hypotheses a pedestrian from the 8 observed frames alone; the \
+                "at most 20 weighted hypotheses for each pedestrian from the 8 observed frames alone; the \
                  best of them is scored; a trained model is that of the last epoch, or chosen on a validation \
                  split of the training scenes"
             }
             Self::Single => {
-                "one forecast a pedestrian from the 8 observed frames alone: what a forecaster gives as its one \
-                 forecast (DDL: the neutral motion to its central goal), otherwise the hypothesis of least expected ADE under \
-                 their own weights (all alike where there are none); nothing is chosen with the truth"
+                "one forecast for each pedestrian from the 8 observed frames alone: the single forecast of a \
+                 forecaster that has one (DDL: the neutral motion to its central goal), otherwise the hypothesis of \
+                 least expected ADE under the weights (equal ones where there are none); nothing is chosen with the \
+                 truth"
             }
             Self::Online => {
-                "as `fair`, and besides the 8 observed frames the tracks of the SAME recording before the last \
-                 observed frame, as a camera knows them that has watched it from the start; nothing later is read"
+                "as `fair`, with the tracks of the SAME recording before the last observed frame as further input, as \
+                 known to \
+                 a camera that has watched from the start; nothing later is read"
             }
             Self::OnlineSingle => {
-                "as `single`, and besides the 8 observed frames the tracks of the SAME recording before the last \
-                 observed frame, as a camera knows them that has watched it from the start; nothing later is read"
+                "as `single`, with the tracks of the SAME recording before the last observed frame as further input, \
+                 as known \
+                 to a camera that has watched from the start; nothing later is read"
             }
         }
     }
 
-    /// What a reader must be told beside a number of this protocol.
+    /// The warning to print beside numbers of this protocol.
     pub const fn warning(self) -> Option<&'static str> {
         match self {
             Self::Published => Some(
                 "The goal of each pedestrian is chosen with the TRUE end (the nearest of 20 centres), \
-                 and 20 noise samples are then drawn on it and the best is kept: up to 400 candidates \
-                 stand behind a \"best of 20\". The goal query also reads one future frame (frame 9), \
+                 then 20 noise samples are drawn on it and the best is kept: a \"best of 20\" \
+                 has up to 400 candidates. The goal query also reads one future frame (frame 9), \
                  and the published code keeps the epoch that is best on the TEST set. No system can \
                  reach these numbers in use; they serve to reproduce the published tables.",
             ),
@@ -90,7 +93,7 @@ impl Protocol {
         }
     }
 
-    /// The number of hypotheses a pedestrian may have: 20, or 1.
+    /// The largest number of hypotheses for each pedestrian: 20 or 1.
     pub const fn hypotheses(self) -> usize {
         match self {
             Self::Published | Self::Fair | Self::Online => Self::MOST_HYPOTHESES,
@@ -98,17 +101,17 @@ impl Protocol {
         }
     }
 
-    /// Whether forecasters are shown the true future of the windows.
+    /// Whether forecasters see the true future of the windows.
     pub const fn shows_future(self) -> bool {
         matches!(self, Self::Published)
     }
 
-    /// Whether forecasters are shown what was seen in the recording of a window before it.
+    /// Whether forecasters see the part of the recording before a window.
     pub const fn shows_past(self) -> bool {
         matches!(self, Self::Online | Self::OnlineSingle)
     }
 
-    /// The windows as a forecaster sees them: without their futures, but under `published`.
+    /// The windows as a forecaster sees them: without their futures, except under `published`.
     pub fn visible(self, windows: &[Window]) -> Cow<'_, [Window]> {
         if self.shows_future() {
             Cow::Borrowed(windows)
@@ -117,7 +120,7 @@ impl Protocol {
         }
     }
 
-    /// Forecasts the windows as this protocol demands: their futures are cut off first, but under `published`.
+    /// Forecasts the windows under this protocol: their futures are cut off first, except under `published`.
     ///
     /// # Errors
     /// The forecaster failed, or made more hypotheses than the protocol allows.
@@ -130,8 +133,8 @@ impl Protocol {
         self.admit(forecasts, &forecaster.name())
     }
 
-    /// Holds forecasts of [visible](Self::visible) windows to the number of hypotheses allowed: `single` keeps the
-    /// representative one, otherwise too many are an error.
+    /// Limits forecasts of [visible](Self::visible) windows to the allowed number of hypotheses: `single` keeps the
+    /// representative one; under other protocols too many are an error.
     ///
     /// # Errors
     /// A forecast has more hypotheses than the protocol allows.

@@ -1,16 +1,16 @@
-//! Regions that hold a pedestrian with a given probability.
+//! Regions that contain a pedestrian with a given probability.
 //!
-//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the spread `s` about them, the score of a
-//! position `x` is
+//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the spread `s` around them, the score
+//! of a position `x` is
 //!
 //! ```text
 //! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln(w_k / max w)        no unit
 //! ```
 //!
-//! The region of a level is where the score is at most a quantile `q` of the scores of true positions that the level of them
-//! does not exceed, found on recordings that were kept for this (split-conformal prediction): one disc about each hypothesis,
-//! of the radius `s sqrt(2 (q + ln(w_k / max w)))`, and none where that is no number. What was calibrated on some
-//! places holds on average over places like these.
+//! The region of a level is the set of positions whose score is at most `q`, the quantile of this level of the scores
+//! of true positions in separate calibration recordings (split-conformal prediction). It is one disc around each
+//! hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, without a disc where the root is not real. The coverage
+//! holds on average over places like those of the calibration.
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
@@ -37,7 +37,7 @@ pub struct RegionTable(LevelQuantiles);
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct LevelQuantiles {
-    /// Rising, in (0, 1).
+    /// Ascending, in (0, 1).
     levels: Vec<f64>,
     /// `[levels][12]`.
     quantiles: Vec<[f64; HORIZON]>,
@@ -61,7 +61,7 @@ impl TryFrom<LevelQuantiles> for RegionTable {
             Ok(Self(columns))
         } else {
             Err(
-                "a table of regions has rising levels between 0 and 1, each with 12 finite quantiles",
+                "a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles",
             )
         }
     }
@@ -90,11 +90,11 @@ impl Disc {
 }
 
 impl RegionTable {
-    /// The table of scores of true positions: for each level and step the smallest score that the level of them, and one
-    /// more of them, do not exceed. n scores serve levels up to n / (n + 1).
+    /// The table from scores of true positions: for each level and step the split-conformal quantile of the scores. n
+    /// scores suffice for levels up to n / (n + 1).
     ///
     /// # Shapes
-    /// `scores` `[pedestrians][12]`; `levels` rising, in (0, 1), at least one. `None` otherwise.
+    /// `scores` `[pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
     pub fn of(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Self> {
         let of_step = |t: usize| {
             let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
@@ -114,7 +114,7 @@ impl RegionTable {
         columns.try_into().ok()
     }
 
-    /// The lowest and the highest level there are quantiles for.
+    /// The lowest and the highest level with quantiles.
     pub fn range(&self) -> [f64; 2] {
         let levels = &self.0.levels;
         [levels[0], levels[levels.len() - 1]]
@@ -159,28 +159,29 @@ impl Forecast {
         scores.reduce(f64::min)
     }
 
-    /// ln of the weight of each hypothesis, in weights of the likeliest one of that pedestrian.
+    /// ln of the weight of each hypothesis, relative to the most likely one of the pedestrian.
     fn log_weights(&self, i: usize) -> Vec<f64> {
         let heaviest = self.weight(i, self.most_likely(i));
         let of_hypothesis = |k: usize| (self.weight(i, k) / heaviest).ln();
         (0..self.hypotheses()).map(of_hypothesis).collect()
     }
 
-    /// ln of the weight of a hypothesis, in weights of the likeliest one of that pedestrian.
+    /// ln of the weight of a hypothesis, relative to the most likely one of the pedestrian.
     fn log_weight(&self, i: usize, k: usize) -> f64 {
         (self.weight(i, k) / self.weight(i, self.most_likely(i))).ln()
     }
 
-    /// The radius (m) of the disc about hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a level;
-    /// `None` where there is none.
+    /// The radius (m) of the disc around hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a
+    /// level;
+    /// `None` without a disc.
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
         let quantile = self.regions()?.quantile(level, t)?;
         let left = quantile + self.log_weight(i, k);
         (left >= 0.0).then(|| self.spread(i, t).map(|spread| spread * (2.0 * left).sqrt()))?
     }
 
-    /// The region that holds pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc a
-    /// hypothesis, and one of the likeliest; `None` beyond the range of the table, and without regions.
+    /// The region that contains pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc for
+    /// each hypothesis, and always one for the most likely; `None` beyond the range of the table, and without regions.
     pub fn region(&self, i: usize, t: usize, level: f64) -> Option<Vec<Disc>> {
         self.regions()?.quantile(level, t)?;
         let disc = |k: usize| {
@@ -197,7 +198,7 @@ pub fn holds(region: &[Disc], at: Position) -> bool {
     region.iter().any(|disc| disc.holds(at))
 }
 
-/// The radius (m) of the one disc that is as large as all of the region, measured on a grid.
+/// The radius (m) of a disc with the area of the region, measured on a grid.
 pub fn equal_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
         let ends = region

@@ -1,16 +1,16 @@
-//! One hypothesis to stand for all of a pedestrian: the weighted medoid of their paths.
+//! The representative hypothesis of a pedestrian: the weighted medoid of its hypotheses.
 //!
 //! ```text
 //! d(k, j) = 1/T sum_t |p_k(t) - p_j(t)|                                     metres
 //! k* = argmin_k sum_j w_j d(k, j)
 //! ```
 //!
-//! If the truth were hypothesis `j` with probability `w_j`, the sum would be the ADE to expect of forecasting `k`; the
-//! heaviest hypothesis ([`Forecast::most_likely`]) may stand far from most of the probability.
+//! If the truth were hypothesis `j` with probability `w_j`, the sum would be the expected ADE of hypothesis `k`. The
+//! hypothesis of greatest weight ([`Forecast::most_likely`]) may be far from most of the probability.
 //!
 //! # Numerics
-//! O(K^2 T). Expected errors within 1 nm of the least count as equal; of these the heaviest hypothesis is taken, then
-//! the first.
+//! O(K^2 T). Expected errors within 1 nm of the least count as equal; of these the hypothesis of greatest weight is
+//! taken, then the first.
 //!
 //! # References
 //! Berger, "Statistical Decision Theory and Bayesian Analysis", 2nd ed. 1985, section 4.4 (Bayes actions); Kaufman,
@@ -18,11 +18,12 @@
 
 use crate::{Forecast, metric::displacement::average_displacement};
 
-/// Expected errors no farther apart than this count as equal, metres.
+/// Expected errors at most this far apart count as equal, metres.
 const EQUAL: f64 = 1e-9;
 
 impl Forecast {
-    /// The hypothesis of pedestrian `i` that stands for all: of least expected ADE if the truth is one of them.
+    /// The representative hypothesis of pedestrian `i`: that of least expected ADE if the truth is one of its
+    /// hypotheses.
     pub fn representative(&self, i: usize) -> usize {
         let weights: Vec<f64> = (0..self.hypotheses()).map(|k| self.weight(i, k)).collect();
         medoid(&weights, |k, j| {
@@ -31,7 +32,8 @@ impl Forecast {
     }
 }
 
-/// The weighted medoid: `argmin_k sum_j w_j d(k, j)`; of equals the heaviest, then the first. Distances in metres.
+/// The weighted medoid: `argmin_k sum_j w_j d(k, j)`; of equals the one of greatest weight, then the first. Distances
+/// in metres.
 ///
 /// # Panics
 /// When there are no weights.
@@ -39,7 +41,7 @@ pub fn medoid(weights: &[f64], distance: impl Fn(usize, usize) -> f64) -> usize 
     assert!(!weights.is_empty(), "nothing has no medoid");
     let errors: Vec<f64> = (0..weights.len())
         .map(|k| {
-            // Skipped and not multiplied: a distance may be too large for a number, and 0 times that is none.
+            // Skipped, because a distance may be infinite, and 0 times infinity is NaN.
             let others = weights.iter().enumerate();
             others
                 .filter(|&(j, &weight)| j != k && weight > 0.0)

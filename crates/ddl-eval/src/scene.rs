@@ -1,4 +1,4 @@
-//! A window and its forecast, checked to belong together: what every metric is computed on.
+//! A window with its forecast, checked against each other: the input of every metric.
 
 use ddl_data::{OBSERVED, PedestrianId, Position, Window};
 
@@ -7,7 +7,7 @@ use crate::{
     error::{EvaluationError, WindowProblem},
 };
 
-/// A window with a true future and the forecast of the same pedestrians, among everybody who was there.
+/// A window with a true future and the forecast of its pedestrians, among all pedestrians of the scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Scene<'a> {
     window: &'a Window,
@@ -19,7 +19,7 @@ impl<'a> Scene<'a> {
     /// Pairs a window with its forecast.
     ///
     /// # Errors
-    /// The window has no future, or the forecast is of another number of pedestrians.
+    /// The window has no future, or the forecast has another number of pedestrians.
     pub fn new(window: &'a Window, forecast: &'a Forecast) -> Result<Self, EvaluationError> {
         if !window.has_future() {
             return Err(EvaluationError::of(window, WindowProblem::NoFuture));
@@ -56,14 +56,14 @@ impl<'a> Scene<'a> {
         self.window
     }
 
-    /// The window with everybody who was there, forecast or not.
+    /// The window with all pedestrians, forecast or not.
     pub fn everybody(&self) -> &'a Window {
         self.everybody
     }
 
-    /// Which of [`everybody`](Self::everybody) pedestrian `i` is.
+    /// Index of pedestrian `i` in [`everybody`](Self::everybody).
     pub fn place(&self, i: usize) -> usize {
-        // `among` has seen that everybody includes them; in the window itself each is at its own place.
+        // `among` has checked that the whole window includes them; in the window itself the index is the same.
         place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
     }
 
@@ -99,7 +99,7 @@ impl<'a> Scene<'a> {
         weights.map(|weight| weight / sum).collect()
     }
 
-    /// Where the hypotheses of pedestrian `i` are at forecast frame `t`, counted from 0; `[K]`, metres.
+    /// Positions of the hypotheses of pedestrian `i` at forecast frame `t`, counted from 0; `[K]`, metres.
     pub fn positions_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())
             .map(|k| self.forecast.hypothesis(i, k)[t])

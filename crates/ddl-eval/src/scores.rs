@@ -19,18 +19,19 @@ use crate::{
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///
-/// Means are over pedestrians, one in several windows once for each. Fields that earlier versions lack are `None`.
+/// Means are over pedestrians; a pedestrian in several windows counts once for each. Fields missing in files of earlier
+/// versions are `None`.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
     /// Pedestrians scored, over all windows.
     pub pedestrians: usize,
     /// Windows scored.
     pub windows: usize,
-    /// Hypotheses a pedestrian, K.
+    /// Hypotheses of each pedestrian, K.
     pub hypotheses: usize,
     /// minADE over K, metres.
     pub min_ade: f64,
-    /// minFDE over K, a minimum of its own, metres.
+    /// minFDE over K, a separate minimum, metres.
     pub min_fde: f64,
     /// FDE of the hypothesis of least ADE, metres.
     pub fde_at_min_ade: f64,
@@ -38,7 +39,7 @@ pub struct Scores {
     pub joint_ade: f64,
     /// JFDE, metres.
     pub joint_fde: f64,
-    /// Share of pedestrians whom every hypothesis misses by more than 0.5 m at the end, in [0, 1].
+    /// Share of pedestrians for whom every hypothesis ends more than 0.5 m from the true endpoint, in [0, 1].
     pub miss_rate: f64,
     /// Share of pedestrians whose representative forecast collides with another's, in [0, 1].
     pub collision_rate: f64,
@@ -50,9 +51,9 @@ pub struct Scores {
     pub stability: Option<StabilityScores>,
     /// ADE of the hypothesis of least FDE, metres.
     pub ade_at_min_fde: Option<f64>,
-    /// ADE of all hypotheses, weighted, metres.
+    /// Weighted mean ADE of all hypotheses, metres.
     pub expected_ade: Option<f64>,
-    /// FDE of all hypotheses, weighted, metres.
+    /// Weighted mean FDE of all hypotheses, metres.
     pub expected_fde: Option<f64>,
     /// ADE of the most likely hypothesis, metres.
     pub most_likely_ade: Option<f64>,
@@ -62,7 +63,7 @@ pub struct Scores {
     pub miss_rate_1m: Option<f64>,
     /// As [`miss_rate`](Self::miss_rate), by more than 2 m.
     pub miss_rate_2m: Option<f64>,
-    /// Share of pedestrians whose representative forecast runs into another's true future, in [0, 1].
+    /// Share of pedestrians whose representative forecast collides with another's true future, in [0, 1].
     pub true_neighbour_collision_rate: Option<f64>,
     /// Negative log-likelihood of the truth under a kernel density of the hypotheses, nats; `None` for one hypothesis.
     pub kde_nll: Option<f64>,
@@ -80,7 +81,7 @@ pub struct Scores {
     pub coverage: Option<[f64; 2]>,
     /// Mean radius of a disc as large as these regions at the last step, metres.
     pub region_radius: Option<[f64; 2]>,
-    /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not say.
+    /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not give it.
     pub familiarity: Option<f64>,
     /// The pedestrians by kind of motion, in the order of [`Category::all`](crate::category::Category::all).
     #[serde(default)]
@@ -88,24 +89,24 @@ pub struct Scores {
 }
 
 impl Scores {
-    /// Scores one forecast a window, all windows together.
+    /// Scores the forecasts of all windows, one for each window.
     ///
     /// The result does not depend on the number of threads.
     ///
     /// # Errors
-    /// There is no window, a window has no future, a forecast does not belong to its window, or the
+    /// There are no windows, a window has no future, a forecast does not belong to its window, or the
     /// forecasts differ in their number of hypotheses, in having goals or in having certificates.
     pub fn evaluate(windows: &[Window], forecasts: &[Forecast]) -> Result<Self, EvaluationError> {
         Self::evaluate_among(windows, windows, forecasts)
     }
 
-    /// The same for a part of the pedestrians, who are among everybody of the whole windows, one each.
+    /// [`Scores::evaluate`] for a part of the pedestrians; `everybody` holds the whole window of each.
     ///
-    /// Means are over the part alone. Collisions with true futures and interactions are with everybody; the collision
-    /// rate, JADE and JFDE, which compare forecasts, are among those forecast.
+    /// Means are over the part. Collisions with true futures and interactions include all pedestrians; the collision
+    /// rate, JADE and JFDE, which compare forecasts, only those with forecasts.
     ///
     /// # Errors
-    /// As [`Scores::evaluate`]; or a whole window is not that of the reduced one.
+    /// As [`Scores::evaluate`]; also when a whole window does not belong to the reduced one.
     pub fn evaluate_among(
         windows: &[Window],
         everybody: &[Window],
@@ -142,7 +143,7 @@ impl Scores {
             let all = scenes.iter().flat_map(|s| &s.pedestrians);
             all.filter(|pedestrian| of(pedestrian)).count() as f64 / total
         };
-        // All pedestrians have as many hypotheses: either each has a distribution or none.
+        // All pedestrians have equally many hypotheses: all have a distribution, or none.
         let several = first.hypotheses() > 1;
         let of_several = |of: fn(&PedestrianScores) -> Option<f64>| {
             let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(of).sum::<f64>();

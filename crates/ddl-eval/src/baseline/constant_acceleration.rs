@@ -1,13 +1,13 @@
-//! Everybody goes on speeding up, slowing down or turning as in the last two steps.
+//! Constant acceleration: the change between the last two steps continues.
 
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
 use crate::{Forecast, Forecaster, error::ForecastError, metric::displacement::minus};
 
-/// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres a frame and
-/// `a = v - (p(7) - p(6))` in metres a frame squared.
+/// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres per frame and
+/// `a = v - (p(7) - p(6))` in metres per frame squared.
 ///
-/// [`unbounded`](Self::unbounded) is the literature's definition. [`bounded`](Self::bounded) is no faster than the
+/// [`unbounded`](Self::unbounded) is the literature's definition. [`bounded`](Self::bounded) is at most as fast as the
 /// fastest of the 7 observed steps, and stops where it would turn back.
 ///
 /// # References
@@ -18,12 +18,12 @@ pub struct ConstantAcceleration {
 }
 
 impl ConstantAcceleration {
-    /// As defined, whatever comes out.
+    /// As defined, without bounds.
     pub fn unbounded() -> Self {
         Self { bounded: false }
     }
 
-    /// No faster than observed, and no turning back.
+    /// At most the observed speed, and no turning back.
     pub fn bounded() -> Self {
         Self { bounded: true }
     }
@@ -78,9 +78,10 @@ mod tests {
     use super::*;
     use crate::fixture::of_tracks;
 
-    /// By hand, where 12 frames lead: from (7, -0.1) with v = (1, 0) and a = (0, 0.1) 12 m along x and 0.1 * 12 * 13 /
-    /// 2 = 7.8 m along y; steps of 1 m, the last of 0.75 m, turn back by 12 * 0.75 - 0.25 * 78 = -10.5 m, and bounded
-    /// 0.5, 0.25 and 0 m follow; steps of 0.5 m, once 0.6 m, the last 0.55 m, get faster, bounded by 0.6 m.
+    /// The end after 12 frames, computed by hand: from (7, -0.1) with v = (1, 0) and a = (0, 0.1) 12 m along x and
+    /// 0.1 * 12 * 13 / 2 = 7.8 m along y; steps of 1 m, the last of 0.75 m, turn back by 12 * 0.75 - 0.25 * 78 =
+    /// -10.5 m, and bounded 0.5, 0.25 and 0 m follow; steps of 0.5 m, once 0.6 m, the last 0.55 m, get faster, bounded
+    /// by 0.6 m.
     #[test]
     fn ends_by_hand() {
         let (free, bounded) = (

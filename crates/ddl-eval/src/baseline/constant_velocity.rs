@@ -1,4 +1,4 @@
-//! Everybody goes on as before.
+//! Constant velocity: every pedestrian keeps its velocity.
 
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::SeedableRng;
@@ -11,7 +11,7 @@ const SAMPLES: usize = 20;
 /// Standard deviation of the noisy variant's angle, degrees.
 const NOISE_DEG: f64 = 25.0;
 
-/// Constant velocity: `p(8 + t) = p(8) + t v`, with v in metres a frame.
+/// Constant velocity: `p(8 + t) = p(8) + t v`, with v in metres per frame.
 ///
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.
@@ -37,7 +37,7 @@ impl ConstantVelocity {
     }
 
     /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2). They
-    /// depend on the seed, the recording and the first frame alone.
+    /// depend only on the seed, the recording and the first frame.
     pub fn angular_noise(seed: u64) -> Self {
         Self(VelocityRule::AngularNoise { seed })
     }

@@ -1,4 +1,4 @@
-//! Forecasters without a model: what every result must be read against.
+//! Forecasters without a model, as references for every result.
 
 mod constant_acceleration;
 mod constant_velocity;
@@ -14,13 +14,13 @@ pub use straight_line::{GoalSource, StraightLine, TrueEnd, WeightedGoals};
 
 use crate::{Conditions, Forecaster, MeasureError, ResultRow};
 
-/// Seed of the baseline with angular noise: the same everywhere, so that its rows agree.
+/// Seed of the baseline with angular noise: always the same, so that its rows agree.
 pub const NOISE_SEED: u64 = 1;
 
 /// Measures the baselines that a protocol admits on the windows of one fold.
 ///
 /// These are constant velocity, bounded constant acceleration, the social force model, and the straight line to the
-/// TRUE end where the future is shown. What the `conditions` say of the forecaster and its training is replaced.
+/// TRUE end where the future is visible. The fields of `conditions` on the forecaster and its training are replaced.
 ///
 /// # Errors
 /// The windows cannot be scored.
@@ -77,8 +77,8 @@ mod tests {
     use crate::fixture::walking;
     use ddl_data::{Convention, WindowRule};
 
-    /// Constant velocity is right about somebody who keeps it; the oracle is measured only under protocols that
-    /// show the future, the noise only under those that score several hypotheses.
+    /// Constant velocity is exact for a pedestrian that keeps it. The oracle is measured only under protocols that show
+    /// the future, the noise only under those that score several hypotheses.
     #[test]
     fn each_protocol_has_its_baselines() {
         let windows = [walking(&[([0.0, 0.0], [0.4, 0.0])], 20)];

@@ -1,33 +1,33 @@
-//! Everybody would go on as before, and keeps away from the others.
+//! The social force model: pedestrians keep their velocity and avoid each other.
 
 use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, Window};
 use rayon::prelude::*;
 
 use crate::{Forecast, Forecaster, error::ForecastError};
 
-/// Time in which a pedestrian returns to the velocity it desires: tau, s.
+/// Relaxation time towards the desired velocity: tau, s.
 const RELAXATION: f64 = 0.5;
 /// Strength of the repulsive potential: V0, m^2/s^2.
 const STRENGTH: f64 = 2.1;
-/// Its reach: sigma, m.
+/// Range of the potential: sigma, m.
 const REACH: f64 = 0.3;
-/// How far others are seen to look ahead: the step of the ellipses, s.
+/// Time of the anticipated step of others, which shapes the ellipses, s.
 const FORESIGHT: f64 = 2.0;
 /// Half the angle of sight: phi, degrees.
 const HALF_SIGHT: f64 = 100.0;
-/// What somebody out of sight counts: c.
+/// Weight of pedestrians out of sight: c.
 const OUT_OF_SIGHT: f64 = 0.5;
-/// Nobody is faster than this many times the desired speed.
+/// Largest speed as a multiple of the desired speed.
 const TOP_SPEED: f64 = 1.3;
 /// Integration steps in one frame of 0.4 s.
 const SUBSTEPS: usize = 8;
-/// Beyond this semi-minor axis a push is below 3e-6 m/s^2, m.
+/// Semi-minor axis beyond which the repulsion is below 3e-6 m/s^2, m.
 const NEGLIGIBLE: f64 = 15.0 * REACH;
 
 /// The social force model of Helbing and Molnar, for all pedestrians of a window together; one hypothesis.
 ///
-/// Each desires the velocity of its last observed step, `v0 = (p(8) - p(7)) / 0.4 s` along `e`, and is
-/// pushed away by every other one, b, whose next step of `s = 2 s * |v_b|` along `e_b` it sees coming:
+/// The desired velocity of a pedestrian is that of its last observed step, `v0 = (p(8) - p(7)) / 0.4 s` along `e`.
+/// Every other pedestrian b repels it, in an ellipse of its anticipated step `s = 2 s * |v_b|` along `e_b`:
 ///
 /// ```text
 /// dv/dt = (v0 - v) / tau - sum_b w grad V(r)              r = x - x_b, m; tau = 0.5 s
@@ -36,7 +36,7 @@ const NEGLIGIBLE: f64 = 15.0 * REACH;
 /// w = 1 within 100 degrees of e, else 0.5;  |v| <= 1.3 |v0|
 /// ```
 ///
-/// Integrated by Euler in steps of 0.05 s. The paper's walls, fluctuations and attractions are left out.
+/// Integrated by Euler in steps of 0.05 s. It has no walls, fluctuations and attractions, unlike the paper.
 ///
 /// # References
 /// Helbing and Molnar, "Social force model for pedestrian dynamics", Physical Review E 51 (1995).
@@ -83,10 +83,10 @@ struct ForcedPedestrian {
     position: Position,
     velocity: Position,
     desired: Position,
-    /// Direction of the desired velocity; zero for who stands.
+    /// Direction of the desired velocity; zero for a standing pedestrian.
     direction: Position,
     top_speed: f64,
-    /// Length of the step that others see coming, m.
+    /// Length of the anticipated step, m.
     stride: f64,
 }
 
@@ -110,7 +110,7 @@ impl ForcedPedestrian {
         }
     }
 
-    /// Acceleration of pedestrian `i`, which this is, among all, m/s^2.
+    /// Acceleration of this pedestrian, number `i` of all, m/s^2.
     fn force(&self, i: usize, pedestrians: &[ForcedPedestrian]) -> Position {
         let mut sum = [0, 1].map(|c| (self.desired[c] - self.velocity[c]) / RELAXATION);
         if self.top_speed == 0.0 {
@@ -122,7 +122,7 @@ impl ForcedPedestrian {
                 continue;
             }
             let push = self.push_of(other);
-            // The other is where the push comes from.
+            // The other pedestrian is in the direction opposite to the repulsion.
             let ahead = -(push[0] * self.direction[0] + push[1] * self.direction[1]);
             let weight = if ahead > sight * length(push) {
                 1.0
@@ -147,7 +147,7 @@ impl ForcedPedestrian {
         let far = length(from_next);
         let around = near + far;
         let semi_minor = 0.5 * (around * around - stride * stride).max(0.0).sqrt();
-        // On the line of its next step the push has no side.
+        // On the line of its anticipated step the repulsion has no direction.
         if semi_minor > NEGLIGIBLE || semi_minor == 0.0 || near == 0.0 || far == 0.0 {
             return [0.0, 0.0];
         }
@@ -184,7 +184,7 @@ mod tests {
         walking(all, 8)
     }
 
-    /// The push is the slope of the potential, here by differences of 1e-6 m.
+    /// The repulsion is the gradient of the potential, here by differences of 1e-6 m.
     #[test]
     fn the_push_of_who_walks_is_the_slope_of_the_potential() {
         let other = ForcedPedestrian::of(
@@ -211,8 +211,8 @@ mod tests {
         }
     }
 
-    /// Two meet, one overtakes, one stands. The expected positions (first, sixth and last step) were computed by a
-    /// separate Python program, whose pushes are differences of the potential of fourth order.
+    /// Two pedestrians meet, one overtakes, one stands. A separate Python program computed the expected positions
+    /// (first, sixth and last step), with fourth-order differences of the potential.
     #[test]
     fn four_pedestrians_walk_as_computed_otherwise() {
         let meets = ([-3.5, 0.0], [0.5, 0.0]);

@@ -1,4 +1,4 @@
-//! Straight to the goal: what a goal estimator is worth without any model behind it.
+//! Straight lines to the goals: the value of a goal estimator without a model.
 
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
@@ -7,7 +7,7 @@ use crate::{
     error::{ForecastError, ForecastShapeError},
 };
 
-/// Where a pedestrian may be going, metres, and how likely each place is.
+/// Possible goals of a pedestrian (metres) and their probabilities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WeightedGoals {
     goals: Vec<Position>,
@@ -15,10 +15,10 @@ pub struct WeightedGoals {
 }
 
 impl WeightedGoals {
-    /// Goals with their weights; whether these sum to 1 is checked when a forecast is made of them.
+    /// Goals with their weights. [`Forecast::new`] checks later that they sum to 1.
     ///
     /// # Errors
-    /// There is no goal, or not one weight a goal.
+    /// There are no goals, or not as many weights as goals.
     pub fn new(goals: Vec<Position>, weights: Vec<f64>) -> Result<Self, ForecastShapeError> {
         if goals.is_empty() {
             return Err(ForecastShapeError::Empty {
@@ -56,15 +56,15 @@ impl WeightedGoals {
     }
 }
 
-/// Something that says where the people of a window may be going.
+/// An estimator of the goals of the pedestrians of a window.
 pub trait GoalSource {
     /// The name printed in tables, as in "straight line to NAME".
     fn name(&self) -> String;
 
-    /// The goals of every pedestrian, in the order of the window; all sets of one size.
+    /// The goals of every pedestrian, in the order of the window; all sets have the same size.
     ///
     /// # Errors
-    /// The goals cannot be estimated, or need a future that is not there.
+    /// The goals cannot be estimated, or need a future that the window does not have.
     fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError>;
 }
 
@@ -77,7 +77,7 @@ impl<G: GoalSource + ?Sized> GoalSource for &G {
     }
 }
 
-/// The last true position: an oracle, which only the protocol `published` lets see.
+/// The last true position: an oracle, for the protocol `published` only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TrueEnd;
 
@@ -100,7 +100,7 @@ impl GoalSource for TrueEnd {
 }
 
 /// Constant speed straight to each goal, which is reached at the 12th frame:
-/// `p(8 + t) = p(8) + t/12 (g - p(8))`, one hypothesis a goal, with the goal's weight.
+/// `p(8 + t) = p(8) + t/12 (g - p(8))`, one hypothesis for each goal, with the goal's weight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StraightLine<G>(G);
 

@@ -1,4 +1,4 @@
-//! How a pedestrian deals with others: leader-follower, collision avoidance, group, or something else.
+//! Interaction of a pedestrian with others: leader-follower, collision avoidance, group, or other.
 
 use std::fmt;
 
@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::metric::displacement::{distance, minus, turn};
 
-/// Velocities are taken over this many frames.
+/// Number of frames over which a velocity is taken.
 const STRIDE: usize = 3;
-/// Others at this distance or farther do not matter, metres.
+/// Pedestrians at this distance or farther are ignored, metres.
 const REACH: f64 = 5.0;
 /// Half the width of "ahead", and of "in the same direction"; degrees.
 const NARROW: f64 = 15.0;
@@ -29,38 +29,38 @@ const GROUP_DEVIATION: f64 = 0.2;
 ///
 /// ```text
 /// ahead                  |bearing| <= 15 degrees and d < 5 m
-/// leader-follower        ahead, and |course| <= 15 degrees, at 5 frames or more of one and the same j
+/// leader-follower        ahead, and |course| <= 15 degrees, at 5 frames or more of the same j
 /// collision avoidance    ahead, and |course| >= 165 degrees, at 1 frame or more
 /// group                  mean of d < 0.8 m and deviation of d < 0.2 m over all 20 frames, and at 1 frame
 ///                        or more 45 <= |bearing| <= 135 degrees and d < 5 m
-/// other                  none of these, while somebody is ahead at 1 frame or more
+/// other                  none of these, but a pedestrian is ahead at 1 frame or more
 /// ```
 ///
-/// The frames need not follow one another, and the deviation is that of the population.
+/// The frames need not be consecutive, and the deviation is that of the population.
 ///
-/// # Where this differs
-/// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21, and takes one border of each sector; here
-/// both borders belong to it, so that mirror images are alike. There, a
-/// pedestrian that does not move from t - 3 to t is taken to walk along x; here it has no direction, so no neighbour is
-/// ahead of it or beside it. There, all pedestrians of a frame are neighbours; here only those with all 20 steps.
+/// # Differences from `TrajNet++`
+/// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21. It includes one border of each sector; here
+/// both borders belong to it, so that mirror images are alike. There, a pedestrian that does not move from t - 3 to t
+/// walks along x; here it has no direction, so no neighbour is ahead of it or beside it. There, all pedestrians of a
+/// frame are neighbours; here only those with all 20 steps.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds", T-ITS 2021, section III.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Interaction {
-    /// Follows somebody who goes the same way.
+    /// Follows a pedestrian that walks in the same direction.
     LeaderFollower,
-    /// Somebody comes towards it.
+    /// Another pedestrian comes towards it.
     CollisionAvoidance,
-    /// Walks beside somebody.
+    /// Walks beside another pedestrian.
     Group,
-    /// Somebody is ahead, in none of these ways.
+    /// Another pedestrian is ahead, and none of the other kinds applies.
     Other,
 }
 
 impl Interaction {
-    /// Every kind, in the order in which they are shown.
+    /// All kinds, in display order.
     pub const ALL: [Self; 4] = [
         Self::LeaderFollower,
         Self::CollisionAvoidance,
@@ -89,8 +89,8 @@ impl Interaction {
             .collect()
     }
 
-    /// The kinds of pedestrian `i` with pedestrian `j` alone, but for [`Interaction::Other`]; empty without a future, and
-    /// for `i == j`.
+    /// The kinds of pedestrian `i` with pedestrian `j`, without [`Interaction::Other`]; empty without a future, and for
+    /// `i == j`.
     pub fn between(window: &Window, i: usize, j: usize) -> Vec<Self> {
         if i == j || !window.has_future() {
             return Vec::new();
@@ -125,7 +125,7 @@ impl Encounter {
         for t in OBSERVED..OBSERVED + HORIZON {
             let to = minus(other[t], me[t]);
             let heading = minus(me[t], me[t - STRIDE]);
-            // No direction lies along nothing: who stands still has no bearing, nor who is at the same place.
+            // A standing pedestrian, and one at the same position, have no bearing.
             if to[0].hypot(to[1]) >= REACH || heading == [0.0, 0.0] || to == [0.0, 0.0] {
                 continue;
             }
@@ -175,9 +175,9 @@ mod tests {
 
     const EAST: Position = [0.5, 0.0];
 
-    /// Somebody from the origin to the east, and others. Ahead is within 15 degrees and 5 m; who comes from 16 m is
-    /// nearer than that at the forecast frames alone; a group walks 0.8 m apart at most, and not from 0.1 m to 1.05 m;
-    /// who stands has no course.
+    /// A pedestrian from the origin to the east, and others. Ahead is within 15 degrees and 5 m; a pedestrian from 16 m
+    /// is nearer only at the forecast frames; a group walks at most 0.8 m apart, and not from 0.1 m to 1.05 m; a
+    /// standing pedestrian has no course.
     #[test]
     fn each_kind_by_hand() {
         let aside = |degrees: f64, metres: f64| {

@@ -1,23 +1,23 @@
-//! A constant-velocity Kalman filter: where a pedestrian would be if it went on in a straight line.
+//! A constant-velocity Kalman filter: the expected position of a pedestrian that walks straight on.
 //!
-//! Each axis for itself, in steps of one frame, with the state s = (position, velocity a frame):
+//! Each axis separately, in steps of one frame, with the state s = (position, velocity per frame):
 //!
 //! ```text
 //! s(t+1) = [1 1; 0 1] s(t) + noise of covariance 1e-5 I        z(t) = position + noise of 5 cm
 //! s(1) ~ N((z(1), 0), I)                                        the forecast: p(8) + 12 v(8)
 //! ```
 //!
-//! Noises and prior are those of `TrajNet++`'s filter. That one adapts them by EM and averages random continuations.
-//! Here they stay, and the continuation is the expected one.
+//! Noises and prior are those of `TrajNet++`'s filter, which adapts them by EM and averages random continuations. Here
+//! they are fixed, and the continuation is the expected one.
 
 use ddl_data::{HORIZON, Position};
 
-/// Variance of what a state changes by in a frame: metres squared, and (metres a frame) squared.
+/// Variance of the process noise in a frame: metres squared, and (metres per frame) squared.
 const TRANSITION: f64 = 1e-5;
 /// Variance of an observed position, square metres.
 const OBSERVATION: f64 = 0.05 * 0.05;
 
-/// Where the filter expects a pedestrian 12 frames after the last of its observed positions, metres.
+/// The expected position of a pedestrian 12 frames after the last observed position, metres.
 pub(crate) fn expected_end(observed: &[Position]) -> Position {
     let mut position = observed[0];
     let mut velocity = [0.0, 0.0];
@@ -47,8 +47,8 @@ mod tests {
 
     use super::*;
 
-    /// The same filter with whole matrices, written with numpy from the equations above: see
-    /// `tests/reference/distribution.py`, which prints these numbers.
+    /// The same filter with matrices, written with numpy from the equations above: `tests/reference/distribution.py`
+    /// prints these numbers.
     #[test]
     fn a_crooked_walk_as_computed_elsewhere() {
         let walk = [

@@ -1,5 +1,6 @@
-//! What kind of walk a result is about: [`MotionKind`], and `TrajNet++`'s [`TrajectoryType`] with [`Interaction`]s.
-//! All read the future: for grouping results once forecasts are made. No forecast may depend on them.
+//! Categories of pedestrians: [`MotionKind`], and `TrajNet++`'s [`TrajectoryType`] with [`Interaction`]s.
+//!
+//! All read the future. They group results after the forecasts are made; no forecast may depend on them.
 
 mod interaction;
 mod kalman;
@@ -17,11 +18,11 @@ pub use motion_kind::MotionKind;
 pub use scores::CategoryScores;
 pub use trajectory_type::TrajectoryType;
 
-/// A group of pedestrians.
+/// A category of pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Category {
-    /// How the pedestrian itself moves.
+    /// The kind of its own motion.
     Motion(MotionKind),
     /// Its type in `TrajNet++`'s taxonomy.
     Type(TrajectoryType),
@@ -30,7 +31,7 @@ pub enum Category {
 }
 
 impl Category {
-    /// Every category, in the order in which they are shown.
+    /// All categories, in display order.
     pub fn all() -> impl Iterator<Item = Self> {
         let motions = MotionKind::ALL.into_iter().map(Self::Motion);
         let types = TrajectoryType::ALL.into_iter().map(Self::Type);

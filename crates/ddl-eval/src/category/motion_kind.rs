@@ -1,4 +1,4 @@
-//! How a pedestrian moved: standing, straight on, turning, slowing down, speeding up.
+//! Kinds of motion: standing, straight on, turning, slowing down, speeding up.
 
 use std::fmt;
 
@@ -7,18 +7,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::metric::displacement::{distance, minus, turn};
 
-/// Who stays this near to the first position stands (m).
+/// A pedestrian that stays this near to its first position stands (m).
 const STANDING: f64 = 1.0;
-/// A shorter way has no direction (m).
+/// A shorter displacement has no direction (m).
 const NO_DIRECTION: f64 = 0.5;
-/// Who turns less goes straight on (degrees).
+/// A smaller turn counts as straight on (degrees).
 const TURN: f64 = 20.0;
-/// Who changes the speed by less keeps it (share of the observed speed).
+/// A smaller change counts as the same speed (share of the observed speed).
 const CHANGE: f64 = 0.3;
 
-/// How a pedestrian of 20 positions moved, seen with its true future.
+/// Kind of motion of a track of 20 positions, with its true future.
 ///
-/// With a = p(8) - p(1) the observed way and b = p(20) - p(8) the true one, the first that holds:
+/// With the observed displacement a = p(8) - p(1) and the true future one b = p(20) - p(8), the first rule that holds:
 ///
 /// ```text
 /// standing         every |p(t) - p(1)| < 1 m
@@ -36,7 +36,7 @@ const CHANGE: f64 = 0.3;
 pub enum MotionKind {
     /// Within 1 m of the first position all the time.
     Standing,
-    /// None of the others.
+    /// None of the other kinds.
     Straight,
     /// 20 degrees or more to the left.
     TurningLeft,
@@ -49,7 +49,7 @@ pub enum MotionKind {
 }
 
 impl MotionKind {
-    /// Every kind, in the order in which they are shown.
+    /// All kinds, in display order.
     pub const ALL: [Self; 6] = [
         Self::Standing,
         Self::Straight,
@@ -116,7 +116,7 @@ mod tests {
 
     use super::*;
 
-    /// 7 steps of one velocity, then 12 of another; metres a step.
+    /// 7 steps of one velocity, then 12 of another; metres per step.
     fn track(before: Position, after: Position) -> Vec<Position> {
         let steps = [before; OBSERVED - 1].into_iter().chain([after; HORIZON]);
         let mut here = [3.0, -2.0];

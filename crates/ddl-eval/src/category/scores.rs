@@ -8,17 +8,17 @@ use crate::pedestrian_scores::PedestrianScores;
 /// The metrics of one category on the test windows of one fold: means over its pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CategoryScores {
-    /// Whose they are.
+    /// The category.
     pub category: Category,
     /// Pedestrians in it, at least one; a pedestrian in several windows counts once for each.
     pub pedestrians: usize,
     /// minADE over K, metres.
     pub min_ade: f64,
-    /// minFDE over K, a minimum of its own, metres.
+    /// minFDE over K, a separate minimum, metres.
     pub min_fde: f64,
     /// FDE of the hypothesis of least ADE, metres.
     pub fde_at_min_ade: f64,
-    /// Share of pedestrians whom every hypothesis misses by more than 0.5 m at the end, in [0, 1].
+    /// Share of pedestrians for whom every hypothesis ends more than 0.5 m from the true endpoint, in [0, 1].
     pub miss_rate: f64,
     /// ADE of the most likely hypothesis, metres.
     pub most_likely_ade: f64,

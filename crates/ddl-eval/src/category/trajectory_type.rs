@@ -8,17 +8,17 @@ use serde::{Deserialize, Serialize};
 use super::{interaction::Interaction, kalman::expected_end};
 use crate::metric::displacement::distance;
 
-/// Who ends nearer to where it began is static, metres.
+/// A static trajectory ends nearer to its start than this, metres.
 const STATIC: f64 = 1.0;
-/// Who ends nearer to where a Kalman filter expects it is linear, metres.
+/// A linear trajectory ends nearer to the expectation of a Kalman filter than this, metres.
 const LINEAR: f64 = 0.5;
 
-/// The type of a trajectory in `TrajNet++`'s taxonomy: the first that holds. [`Interaction`] has the rules of III.
+/// The type of a trajectory in `TrajNet++`'s taxonomy: the first that applies. [`Interaction`] has the rules of III.
 ///
-/// # Where this differs
-/// `TrajNet++` has 9 observed frames of 21 and one primary pedestrian a scene; here each pedestrian of a window is
-/// judged, over 20. The bound of II is the paper's; the published tool was found with 1 m, and fits its filter first
-/// (see `src/category/kalman.rs`). Its data sets keep a tenth of the static scenes; here all count.
+/// # Differences from `TrajNet++`
+/// `TrajNet++` has 9 observed frames of 21 and one primary pedestrian in a scene; here each pedestrian of a window has
+/// a type, over 20 frames. The bound of II is the paper's; the published tool uses 1 m, and fits its filter first (see
+/// `src/category/kalman.rs`). Its data sets keep a tenth of the static scenes; here all count.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS 2021,
@@ -26,18 +26,18 @@ const LINEAR: f64 = 0.5;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TrajectoryType {
-    /// I: ends within 1 m of where it began.
+    /// I: ends within 1 m of its start.
     Static,
-    /// II: as a Kalman filter expects it.
+    /// II: ends as a Kalman filter expects.
     Linear,
-    /// III: not linear, with somebody ahead or beside it.
+    /// III: not linear, with another pedestrian ahead or beside it.
     Interacting,
-    /// IV: not linear, for no reason to be seen in the others.
+    /// IV: not linear, without interaction.
     NonInteracting,
 }
 
 impl TrajectoryType {
-    /// Every type, I to IV.
+    /// All types, I to IV.
     pub const ALL: [Self; 4] = [
         Self::Static,
         Self::Linear,
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::fixture::of_tracks;
 
-    /// 0.5 m a frame along x, and `aside` a frame along y after the eighth.
+    /// 0.5 m per frame along x, and `aside` per frame along y after the eighth.
     fn turning(aside: f64) -> Vec<Position> {
         let at = |t: i32| [0.5 * f64::from(t), aside * f64::from((t - 7).max(0))];
         (0..20).map(at).collect()
@@ -105,7 +105,7 @@ mod tests {
         // 12 steps aside of 4 cm are 0.48 m, of 5 cm 0.6 m.
         assert_eq!(of(vec![turning(0.04)]), Linear);
         assert_eq!(of(vec![turning(0.05)]), NonInteracting);
-        // Who comes back to where it began is static, however far it went.
+        // A trajectory that returns to its start is static, however long it is.
         let back = (0..20)
             .map(|t: i32| [0.5 * f64::from(10 - (t - 10).abs()), 0.0])
             .collect();

@@ -1,4 +1,4 @@
-//! What can be wrong with a file of forecasts, said with the place and the remedy.
+//! Errors in files of forecasts, with their place and remedy.
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use crate::error::{EvaluationError, ForecastError, ForecastShapeError, MeasureEr
 /// Forecasts of another program cannot be read, matched or scored.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ExternalError {
     #[error("cannot read {}: {source}", path.display())]
     File {
@@ -29,8 +29,9 @@ pub enum ExternalError {
         problem: String,
     },
     #[error(
-        "{origin} forecasts {} of the {pedestrians} pedestrians in the windows; {missing} are missing, the first of them \
-         {}; forecast them too, or score the intersection alone",
+        "{origin} forecasts {} of the {pedestrians} pedestrians in the windows; {missing} are missing, the first of \
+         them \
+         {}; forecast them too, or score the intersection only",
         pedestrians - missing, first.join(", ")
     )]
     Missing {
@@ -40,7 +41,7 @@ pub enum ExternalError {
         first: Vec<String>,
     },
     #[error(
-        "{origin}: {unknown} of {forecasts} forecasts are of nobody in the windows, the first of {}; {hint}",
+        "{origin}: {unknown} of {forecasts} forecasts match no pedestrian of the windows, the first one {}; {hint}",
         first.join(", ")
     )]
     Unknown {
@@ -51,7 +52,8 @@ pub enum ExternalError {
         hint: String,
     },
     #[error(
-        "{origin}: half of the forecasts begin {metres:.1} m or more from the pedestrian's last observed position; {hint}"
+        "{origin}: half of the forecasts start {metres:.1} m or more from the pedestrian's last observed position; \
+         {hint}"
     )]
     OutOfPlace {
         origin: String,
@@ -59,16 +61,15 @@ pub enum ExternalError {
         hint: &'static str,
     },
     #[error(
-        "two windows of `{recording}` are observed until frame {observed_until}: give the windows of one rule"
+        "two windows of `{recording}` are observed until frame {observed_until}: use the windows of one rule"
     )]
     AmbiguousWindows {
         recording: String,
         observed_until: i64,
     },
     #[error(
-        "forecasts of a file cannot be measured under the protocol `published`: there the goal is chosen with the \
-         TRUE end inside the forecaster, before it forecasts; a file's hypotheses are scored as they are, so ask for \
-         `fair` or `single`"
+        "forecasts of a file cannot be measured under the protocol `published`, in which the forecaster chooses the \
+         goal with the TRUE end before it forecasts; use `fair` or `single`"
     )]
     Published,
     #[error("{origin}: {source}")]
@@ -84,21 +85,21 @@ pub enum ExternalError {
     Measure(#[from] MeasureError),
 }
 
-/// What can be wrong at one place of a file of forecasts.
+/// An error at one place of a file of forecasts.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum ExternalProblem {
     #[error("not a JSON object: {detail}")]
     Json { detail: String },
     #[error("the text is not UTF-8")]
     NotUtf8,
-    #[error("the line is longer than {limit} bytes; write one line a pedestrian")]
+    #[error("the line is longer than {limit} bytes; write one line for each pedestrian")]
     LongLine { limit: usize },
     #[error(
         "must lie within {limit} m of the origin, found {found}",
         limit = ddl_data::COORDINATE_LIMIT
     )]
     TooFar { found: f64 },
-    #[error("the file holds no forecast; is it empty or cut off?")]
+    #[error("the file holds no forecast; is it empty or truncated?")]
     Empty,
     #[error(
         "the header must name the columns observed_until, pedestrian, frame, x and y, and may name recording, \
@@ -119,16 +120,16 @@ pub(super) enum ExternalProblem {
     )]
     NotFinite { found: String },
     #[error(
-        "{found} positions; a forecast has {expected}, one each 0.4 s after the last observed frame"
+        "{found} positions; a forecast has {expected}, 0.4 s apart, after the last observed frame"
     )]
     Length { expected: usize, found: usize },
     #[error(
-        "the forecast is of the frames {found}; the 12 after the last observed one are {expected}"
+        "the forecast has the frames {found}; the 12 after the last observed one are {expected}"
     )]
     Frames { expected: String, found: String },
     #[error(
-        "the scene has the frames {found}; the window that starts there has the observed frames {observed} and the forecast frames \
-         {ahead}: a scene is 8 or 9 observed and 12 forecast frames, {step} s apart",
+        "the scene has the frames {found}; the window that starts there has the observed frames {observed} and the \
+         forecast frames {ahead}: a scene has 8 or 9 observed and 12 forecast frames, {step} s apart",
         step = ddl_data::TIME_STEP
     )]
     SceneFrames {
@@ -137,7 +138,7 @@ pub(super) enum ExternalProblem {
         ahead: String,
     },
     #[error(
-        "{found} hypotheses, but {expected} on line {first_line}; the best of K needs one K for all pedestrians"
+        "{found} hypotheses, but {expected} on line {first_line}; the best of K needs the same K for all pedestrians"
     )]
     Hypotheses {
         expected: usize,
@@ -145,26 +146,26 @@ pub(super) enum ExternalProblem {
         first_line: usize,
     },
     #[error(
-        "more than {allowed} hypotheses of {pedestrian}; the protocols allow {allowed}: choose before you write, without \
-         the true future"
+        "more than {allowed} hypotheses of {pedestrian}; the protocols allow {allowed}: choose them without the true \
+         future"
     )]
     TooManyHypotheses { pedestrian: String, allowed: usize },
     #[error(
-        "the hypotheses of {pedestrian} have the numbers {numbers}: those of one number are one joint \
-         future, so number them alike for all pedestrians"
+        "the hypotheses of {pedestrian} have the numbers {numbers}; a number stands for one joint future, so number \
+         them alike for all pedestrians"
     )]
     Numbers { pedestrian: String, numbers: String },
-    #[error("is there twice; keep one")]
+    #[error("appears twice; keep one")]
     TwiceNamed,
-    #[error("a quote is opened and not closed on this line")]
+    #[error("a quote is not closed on this line")]
     OpenQuote,
     #[error("at least one hypothesis is needed")]
     NoHypothesis,
     #[error(
-        "hypothesis {hypothesis} is there already; the rows of a hypothesis must stand together"
+        "hypothesis {hypothesis} appeared before; the rows of a hypothesis must be consecutive"
     )]
     Scattered { hypothesis: i64 },
-    #[error("either every hypothesis of a pedestrian has a weight or none has")]
+    #[error("all hypotheses of a pedestrian must have weights, or none")]
     WeightsOfSome,
     #[error("a weight must not be below 0, found {found}")]
     NegativeWeight { found: f64 },
@@ -172,26 +173,23 @@ pub(super) enum ExternalProblem {
     WeightSum { sum: f64 },
     #[error("weight {found}, but {first} in the row before; a hypothesis has one weight")]
     WeightChanges { first: f64, found: f64 },
-    #[error(
-        "either every hypothesis of the file has a goal or none has (line {first_line} decided)"
-    )]
+    #[error("all hypotheses of the file must have goals, or none (as on line {first_line})")]
     GoalsOfSome { first_line: usize },
-    #[error("this pedestrian was forecast on line {first_line} already; keep one")]
+    #[error("line {first_line} already forecasts this pedestrian; keep one")]
     Duplicate { first_line: usize },
     #[error(
-        "pedestrian {pedestrian} is a neighbour in two scenes that forecast it differently (line {first_line}); make it \
+        "pedestrian {pedestrian} is a neighbour in two scenes that forecast it differently (line {first_line}); make \
+         it \
          the primary pedestrian of one"
     )]
     Neighbours {
         pedestrian: PedestrianName,
         first_line: usize,
     },
-    #[error("is missing, and the windows are of several recordings: {}", known.join(", "))]
+    #[error("is missing, but the windows have several recordings: {}", known.join(", "))]
     WhichRecording { known: Vec<String> },
     #[error("scene {scene} has no scene line before its tracks")]
     UnknownScene { scene: i64 },
-    #[error(
-        "scene {scene} was finished on an earlier line; the tracks of a scene must stand together"
-    )]
+    #[error("scene {scene} ended on an earlier line; the tracks of a scene must be consecutive")]
     ScatteredScene { scene: i64 },
 }

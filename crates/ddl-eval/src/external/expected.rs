@@ -1,4 +1,4 @@
-//! The pedestrians of the windows, and what a file says of each.
+//! The pedestrians of the windows, each with its forecast of the file.
 
 use std::collections::HashMap;
 
@@ -45,7 +45,7 @@ impl PedestrianForecast {
 pub(super) struct Slot {
     pub(super) forecast: PedestrianForecast,
     pub(super) line: usize,
-    /// Whether it was made of this pedestrian for its own sake: always, but for neighbours of TrajNet++.
+    /// Whether this is the primary pedestrian of the forecast; false only for neighbours of TrajNet++.
     primary: bool,
     pub(super) conflict: Option<usize>,
 }
@@ -55,7 +55,7 @@ pub(super) struct ExpectedForecasts<'a> {
     pub(super) origin: String,
     pub(super) windows: &'a [Window],
     pub(super) recordings: Vec<&'a str>,
-    /// Window of a recording's index and a last observed frame.
+    /// Index of the window by index of the recording and last observed frame.
     by_last: HashMap<(usize, i64), usize>,
     /// `[window][pedestrian]`.
     pub(super) slots: Vec<Vec<Option<Slot>>>,
@@ -105,7 +105,7 @@ impl<'a> ExpectedForecasts<'a> {
         self.by_last.get(&(recording, observed_until)).copied()
     }
 
-    /// The index of the recording named; where none is, of the only one there is. `None` for an unknown name.
+    /// The index of the named recording; without a name, of the only one. `None` for an unknown name.
     pub(super) fn recording(&self, name: Option<&str>) -> Result<Option<usize>, Wrong> {
         match name {
             Some(name) => Ok(self.index_of(name)),
@@ -118,8 +118,8 @@ impl<'a> ExpectedForecasts<'a> {
         }
     }
 
-    /// Takes the forecast of a pedestrian that stands on a line; `primary` is false for the neighbours of a scene, whom
-    /// another scene may forecast for their own sake.
+    /// Adds the forecast of a pedestrian from a line; `primary` is false for the neighbours of a scene, which may be
+    /// primary in another scene.
     pub(super) fn put(
         &mut self,
         who: &PedestrianKey,

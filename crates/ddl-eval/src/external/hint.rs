@@ -1,4 +1,4 @@
-//! Forecasts of nobody: whose they are, and what may be the reason.
+//! Forecasts that match no pedestrian, and their likely reason.
 
 use super::pedestrian_key::{PedestrianKey, named};
 
@@ -9,9 +9,9 @@ pub(super) struct Unknown {
     pub(super) count: usize,
     pub(super) first: Vec<String>,
     recordings: Vec<String>,
-    /// How many would fit if the frame named were the first of the window.
+    /// Number that would match if the frame were the first one of the window.
     as_first_frame: usize,
-    /// How many would fit if it were the first to forecast.
+    /// Number that would match if it were the first forecast frame.
     as_next_frame: usize,
     frames: Option<(i64, i64)>,
 }
@@ -57,7 +57,7 @@ impl Unknown {
                 self.recordings.join(" and ")
             );
         }
-        // Where more fit as they are, the frame is not what is wrong.
+        // If more match unchanged, the frame is not the reason.
         let most = fitting.max(self.count / 2);
         for (count, frame) in [
             (self.as_first_frame, "first frame of a window"),
@@ -65,7 +65,7 @@ impl Unknown {
         ] {
             if count > most {
                 return format!(
-                    "most would fit if observed_until were the {frame}; it is the last observed one"
+                    "most would match if observed_until were the {frame}; it must be the last observed one"
                 );
             }
         }

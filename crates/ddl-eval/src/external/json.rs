@@ -1,4 +1,4 @@
-//! A JSON object of a line, and where in it the fault is if it cannot be read.
+//! A JSON object of a line, and the place of an error in it.
 
 use std::borrow::Cow;
 
@@ -10,10 +10,10 @@ use serde_path_to_error::{Path, Segment};
 use super::error::ExternalProblem;
 use super::lines::{self, Wrong, in_field, quoted, whole_line};
 
-/// Words for numbers that JSON does not have and several programs write all the same.
+/// Words for numbers that are not JSON but that several programs write.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
 
-/// A whole number, however it is written.
+/// A whole number in any notation.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(try_from = "Number")]
 pub(super) struct Whole(pub(super) i64);
@@ -38,7 +38,7 @@ pub(super) fn whole<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error
     Whole::deserialize(field).map(|Whole(number)| number)
 }
 
-/// For fields: a pedestrian, which is a whole number, however it is written, or a word in quotes.
+/// For fields: a pedestrian, either a whole number in any notation or a word in quotes.
 pub(super) fn pedestrian<'de, D: Deserializer<'de>>(field: D) -> Result<PedestrianName, D::Error> {
     Ok(match Name::deserialize(field)? {
         Name::Number(Whole(number)) => PedestrianName::Number(number),
@@ -46,9 +46,9 @@ pub(super) fn pedestrian<'de, D: Deserializer<'de>>(field: D) -> Result<Pedestri
     })
 }
 
-/// The object of a line; fields of other names may stand beside those that are read.
+/// The object of a line; fields of other names are ignored.
 pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
-    // The quick way knows no names of fields, so that a line it refuses is read again.
+    // The fast parser does not report names of fields, so a line with an error is read again.
     serde_json::from_str(text).or_else(|_| read_with_path(&without_no_numbers(text)))
 }
 
@@ -105,7 +105,7 @@ fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
     Some(ExternalProblem::Kind { expected, found })
 }
 
-/// The text with `null` for every word outside quotes that stands for no number, so that its field can be named.
+/// The text with `null` for every word such as NaN outside quotes, so that the error can name its field.
 fn without_no_numbers(text: &str) -> Cow<'_, str> {
     let mut replaced = String::new();
     let (mut quoted, mut escaped, mut done) = (false, false, 0);

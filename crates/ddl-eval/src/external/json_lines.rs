@@ -1,4 +1,4 @@
-//! JSON lines: an object for each pedestrian of a window.
+//! JSON lines: one object for each pedestrian of a window.
 
 use std::io::BufRead;
 
@@ -12,7 +12,7 @@ use super::lines::{Lines, Wrong, in_field, within_bounds};
 use super::pedestrian_key::PedestrianKey;
 use crate::Protocol;
 
-/// Fields of other names may stand beside these.
+/// Fields of other names are ignored.
 #[derive(Debug, Deserialize)]
 struct JsonForecast {
     recording: Option<String>,
@@ -28,12 +28,12 @@ struct JsonForecast {
 struct JsonHypothesis {
     #[serde(default, deserialize_with = "number")]
     weight: Option<f64>,
-    /// `null` is no goal: what programs make of NaN is `[null, null]`, and refused.
+    /// `null` means no goal; `[null, null]`, which some programs write for NaN, is an error.
     goal: Option<Position>,
     positions: Vec<Position>,
 }
 
-/// A field that is there must be a number: `null` is what programs make of NaN, and not nothing.
+/// A field must be a number if it is there; `null`, which some programs write for NaN, is an error.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     f64::deserialize(deserializer).map(Some)
 }

@@ -1,4 +1,4 @@
-//! A file, one line at a time, however large it is, and what its fields may hold.
+//! Lines of a file of any size, read one at a time, and checks of their fields.
 
 use std::io::{BufRead, Read as _};
 
@@ -6,14 +6,14 @@ use ddl_data::{COORDINATE_LIMIT, Position};
 
 use super::error::{ExternalError, ExternalProblem};
 
-/// Longest line, bytes: 20 hypotheses with certificates take twenty times less.
+/// Longest line, bytes: twenty times the length of 20 hypotheses with certificates.
 const LIMIT: usize = 4 << 20;
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;
-/// Whole numbers are below this in size: exact in an `f64`.
+/// Bound of the absolute value of whole numbers, which are exact in an `f64`.
 const WHOLE_LIMIT: f64 = 9_007_199_254_740_992.0;
 
-/// The lines of a file that hold something, with their numbers.
+/// The lines of a file that are not blank, with their numbers.
 pub(super) struct Lines<R> {
     reader: R,
     origin: String,
@@ -21,7 +21,7 @@ pub(super) struct Lines<R> {
     line: Vec<u8>,
 }
 
-/// A field, where it is one, and what is wrong with it.
+/// An error with its field, if it has one.
 pub(super) type Wrong = (Option<String>, ExternalProblem);
 
 pub(super) fn whole_line(problem: ExternalProblem) -> Wrong {
@@ -61,7 +61,7 @@ impl<R: BufRead> Lines<R> {
                 return Err(self.wrong(self.number, whole_line(problem)));
             }
             if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
-                // Spreadsheets mark UTF-8 text with a byte-order mark, which is no content.
+                // Spreadsheets begin UTF-8 text with a byte-order mark, which is not part of the content.
                 self.line.drain(..3);
             }
             if !self.line.trim_ascii().is_empty() {
@@ -92,7 +92,7 @@ pub(super) fn whole(number: f64) -> Option<i64> {
     (number.fract() == 0.0 && number.abs() < WHOLE_LIMIT).then_some(number as i64)
 }
 
-/// Refuses a position beyond every map, with which later computations would end in infinities.
+/// Refuses a position so far away that later computations would overflow.
 pub(super) fn within_bounds(
     position: Position,
     field: impl FnOnce() -> String,

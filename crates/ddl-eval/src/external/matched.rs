@@ -13,23 +13,23 @@ use super::lines::{whole_line, wrong};
 use super::pedestrian_key::{last_observed, named};
 use crate::Forecast;
 
-/// What to do where a file and the windows are not of the same pedestrians.
+/// What to do if a file and the windows have different pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Coverage {
-    /// It is an error: the file must forecast exactly the pedestrians of the windows.
+    /// Fail: the file must forecast exactly the pedestrians of the windows.
     #[default]
     Whole,
-    /// The pedestrians that are in both are scored, among everybody: the others still count for collisions with true
-    /// futures, interactions and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
+    /// Score the pedestrians that are in both. The others still count for collisions with true futures, interactions
+    /// and baselines, but not for the collision rate, JADE and JFDE, which compare forecasts.
     Intersection,
 }
 
-/// Windows and the forecasts of a file for them, one each, in the order of the windows.
+/// Windows with their forecasts from a file, in the order of the windows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Matched {
-    /// The windows, reduced to the pedestrians who are forecast.
+    /// The windows, reduced to the pedestrians with forecasts.
     pub windows: Vec<Window>,
-    /// The same windows with everybody in them.
+    /// The same windows with all pedestrians.
     pub everybody: Vec<Window>,
     /// Their forecasts.
     pub forecasts: Vec<Forecast>,
@@ -47,18 +47,17 @@ impl Matched {
         &self.file
     }
 
-    /// Pedestrians who are forecast, counted once for each window.
+    /// Number of pedestrians with forecasts, counted once for each window.
     pub fn forecast_pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
-    /// Pedestrians that the windows asked for.
+    /// Number of pedestrians in the windows.
     pub fn pedestrians(&self) -> usize {
         self.pedestrians
     }
 
-    /// The words by which a result names the part of the pedestrians it is of, with a digest of them. `None` where
-    /// it is of all.
+    /// The description of the scored part of the pedestrians, with a digest of them. `None` where all are scored.
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {
@@ -71,13 +70,14 @@ impl Matched {
         })
     }
 
-    /// The first 8 hexadecimal digits of the SHA-256 of recording, last observed frame and pedestrian of all pedestrians.
+    /// The first 8 hexadecimal digits of the SHA-256 of recording, last observed frame and pedestrian of all
+    /// pedestrians.
     fn digest(&self) -> String {
         let mut hash = Sha256::new();
         for window in &self.windows {
             let recording = window.recording();
             for pedestrian in window.pedestrians() {
-                // The length first: no two lists of pedestrians make the same bytes.
+                // The length comes first, so that different lists of pedestrians give different bytes.
                 hash.update((recording.len() as u64).to_le_bytes());
                 hash.update(recording);
                 hash.update(last_observed(window).to_le_bytes());

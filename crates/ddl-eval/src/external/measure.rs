@@ -1,4 +1,4 @@
-//! Scores of a file's forecasts, beside the baselines on the same pedestrians.
+//! Scores of a file's forecasts and of the baselines on the same pedestrians.
 
 use ddl_data::{OBSERVED, Position};
 
@@ -7,17 +7,18 @@ use super::matched::Matched;
 use crate::metric::displacement::distance;
 use crate::{Conditions, Protocol, ResultRow, baseline};
 
-/// Nobody is this far away after 0.4 s, m: half of the pedestrians of a file cannot be.
+/// Distance that a pedestrian does not walk in 0.4 s, m. If half of the forecasts start farther away, the file is
+/// wrong.
 const FARTHEST: f64 = 3.0;
 
 /// Scores forecasts of a file under the protocol of the conditions, then the baselines on the same pedestrians.
 ///
-/// [`Matched::test_subset`] is added to the test subset of the conditions; a part of the pedestrians is scored as by
+/// [`Matched::test_subset`] is added to the test subset of the conditions; a part of the pedestrians is scored as in
 /// [`Scores::evaluate_among`](crate::Scores::evaluate_among).
 ///
 /// # Errors
 /// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] where half of the
-/// forecasts begin more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
+/// forecasts start more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
 pub fn measure(
     conditions: &Conditions,
     matched: &Matched,
@@ -84,9 +85,9 @@ impl Matched {
             return Ok(());
         }
         let hint = if apart(|_, [x, y]| [y, x]) <= FARTHEST {
-            "they would begin there if x and y were exchanged, as they are between the conventions star and social-gan"
+            "they would start there if x and y were exchanged, as they are between the conventions star and social-gan"
         } else if apart(|last, first| [last[0] + first[0], last[1] + first[1]]) <= FARTHEST {
-            "they would begin there if they were relative to the last observed position: add it"
+            "they would start there if they were relative to the last observed position: add it"
         } else {
             "are they in metres, and of the same data convention and fold?"
         };

@@ -1,6 +1,7 @@
-//! Forecasts that another program made: read from a file, matched with the windows of a fold, scored.
-//! Recording, raw number of the **last observed** frame (`observed_until`) and pedestrian say whom a forecast is of.
-//! `docs/your-model.md` describes the files. Whatever is wrong is an error with its line and field.
+//! Forecasts of another program: read from a file, matched with the windows of a fold, scored.
+//!
+//! Recording, raw number of the **last observed** frame (`observed_until`) and pedestrian identify a forecast.
+//! `docs/your-model.md` describes the files. Errors name their line and field.
 
 mod error;
 mod expected;
@@ -31,23 +32,24 @@ pub use write::{write_forecasts, write_windows};
 
 use expected::ExpectedForecasts;
 
-/// How a file of forecasts is written.
+/// Format of a file of forecasts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ExternalFormat {
-    /// A JSON object for each pedestrian of a window: what [`write_forecasts`] and `ddl forecast --format jsonl` write.
+    /// A JSON object for each pedestrian of a window, as [`write_forecasts`] and `ddl forecast --format jsonl` write
+    /// it.
     JsonLines,
-    /// A comma-separated table with a header, a row for each position: what `ddl forecast` writes.
+    /// A comma-separated table with a header and a row for each position, as `ddl forecast` writes it.
     Table,
     /// The newline-delimited JSON of TrajNet++, with 8 observed and 12 forecast frames.
     TrajNet,
 }
 
 impl ExternalFormat {
-    /// Every format.
+    /// All formats.
     pub const ALL: [Self; 3] = [Self::JsonLines, Self::Table, Self::TrajNet];
 
-    /// `jsonl`, `csv` or `ndjson`: the extension that files of the format have.
+    /// The file extension of the format: `jsonl`, `csv` or `ndjson`.
     pub fn name(self) -> &'static str {
         match self {
             Self::JsonLines => "jsonl",
@@ -56,7 +58,7 @@ impl ExternalFormat {
         }
     }
 
-    /// The format that the extension of a file names, in small letters or capitals; JSON lines where it names none.
+    /// The format of a file by its extension, in upper or lower case; JSON lines for other extensions.
     pub fn of_file(path: &Path) -> Self {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let named = extension.to_ascii_lowercase().parse();
@@ -88,8 +90,8 @@ impl FromStr for ExternalFormat {
 /// Reads a file of forecasts and matches it with windows.
 ///
 /// # Errors
-/// The file cannot be read; a line is wrong (the error says where, and what); or, unless
-/// [`Coverage::Intersection`] is asked for, a pedestrian has no forecast, or a forecast belongs to no pedestrian of the windows.
+/// The file cannot be read, or a line has an error, whose place is named. Without [`Coverage::Intersection`] also when
+/// a pedestrian has no forecast, or a forecast matches no pedestrian of the windows.
 pub fn read(
     path: &Path,
     format: ExternalFormat,
@@ -107,7 +109,7 @@ pub fn read(
     Ok(matched.named_after(name.into_owned()))
 }
 
-/// The same for anything that can be read; `origin` is the file's name in error messages.
+/// [`read`] for any reader; `origin` is the file's name in error messages.
 ///
 /// # Errors
 /// As [`read`].

@@ -1,5 +1,5 @@
-//! Whom a forecast is of, the frames it is of, and the numbers of its hypotheses: those of one number are one joint
-//! future of the scene.
+//! The pedestrian of a forecast, its frames, and the numbers of its hypotheses. Equal numbers are one joint future of
+//! the scene.
 
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Window};
 
@@ -40,8 +40,7 @@ pub(super) fn last_observed(window: &Window) -> i64 {
     window.frames()[OBSERVED - 1]
 }
 
-/// The frames that a window asks to forecast: those it has, and those at its regular step, which differ where the
-/// recording has gaps.
+/// The forecast frames of a window: its own, and those at its regular step, which differ where the recording has gaps.
 pub(super) fn frames_ahead(window: &Window) -> [Vec<i64>; 2] {
     let (last, step) = (last_observed(window), window.frame_step());
     let regular: Vec<i64> = (1..=HORIZON as i64).map(|t| last + t * step).collect();
@@ -61,14 +60,14 @@ pub(super) fn in_short(frames: &[i64]) -> String {
     }
 }
 
-/// From where a file counts its hypotheses, once its first pedestrian has shown it.
+/// The first number of the hypotheses of a file, known after its first pedestrian.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct HypothesisNumbering {
     first: Option<i64>,
 }
 
 impl HypothesisNumbering {
-    /// Holds sorted numbers to 0 ... K - 1 or 1 ... K, the same for all pedestrians of the file.
+    /// Checks that sorted numbers are 0 ... K - 1 or 1 ... K, alike for all pedestrians of the file.
     pub(super) fn check(
         &mut self,
         sorted: &[i64],

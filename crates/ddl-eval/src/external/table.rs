@@ -1,4 +1,4 @@
-//! The comma-separated table: a row for each position.
+//! The comma-separated table with a row for each position.
 
 use std::io::BufRead;
 
@@ -37,7 +37,7 @@ pub(super) fn read(
     put(group, expected, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))
 }
 
-/// Hands over a pedestrian whose rows are complete; an error with its line.
+/// Adds a pedestrian whose rows are complete; an error comes with its line.
 fn put(
     group: Option<PedestrianRows>,
     expected: &mut ExpectedForecasts<'_>,
@@ -75,7 +75,7 @@ impl TableColumns {
             let place = places.next();
             match places.next() {
                 None => Ok(place),
-                Some(_) => Err(wrong(format!("column {name} is there twice"))),
+                Some(_) => Err(wrong(format!("column {name} appears twice"))),
             }
         };
         let mut required = [0; REQUIRED.len()];
@@ -238,7 +238,7 @@ fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
     })
 }
 
-/// A pedestrian: a whole number, or a word, which is no number at all.
+/// A pedestrian: a whole number, or a word that is not a number.
 fn name(text: &str) -> Result<PedestrianName, Wrong> {
     let wrong = text.is_empty()
         || text

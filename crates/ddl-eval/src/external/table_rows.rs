@@ -9,11 +9,11 @@ use super::lines::{Lines, Wrong, whole_line};
 
 pub(super) type AtLine<T> = (usize, T);
 
-/// The rows of a table. Each is taken from one line, so that an open quote does not swallow the file.
+/// The rows of a table. Each is read from one line, so that an open quote does not include the rest of the file.
 pub(super) struct TableRows<R> {
     lines: Lines<R>,
     reader: Reader,
-    /// The line being read, its number, and where its next row begins: a carriage return ends a row too.
+    /// The current line, its number, and the start of its next row: a carriage return also ends a row.
     line: Vec<u8>,
     number: usize,
     at: usize,
@@ -31,10 +31,10 @@ impl Fields<'_> {
         self.ends.len()
     }
 
-    /// The field in a column, without blanks around it; nothing beyond the last.
+    /// The trimmed field in a column; empty after the last column.
     pub(super) fn get(&self, column: usize) -> &str {
         let start = column.checked_sub(1).map_or(0, |before| self.ends[before]);
-        // Lines are text, and their fields are cut at commas and quotes.
+        // Lines are text, and fields end at commas and quotes.
         std::str::from_utf8(&self.text[start..self.ends[column]]).map_or("", str::trim)
     }
 }
@@ -65,7 +65,7 @@ impl<R: BufRead> TableRows<R> {
             self.line.clear();
             self.line.extend_from_slice(text.as_bytes());
             self.line.push(b'\n');
-            // Fields take no more room than their line.
+            // Fields are not longer than their line.
             self.fields.resize(self.line.len(), 0);
             self.ends.resize(self.line.len(), 0);
         }

@@ -1,8 +1,8 @@
-//! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames, and the tracks that were forecast in them.
+//! TrajNet++ ndjson: scenes of 8 or 9 observed and 12 forecast frames with their forecast tracks.
 //!
-//! A scene stands for the window that starts at its first frame or, with 9 observed frames, at its second. A
-//! neighbour's forecast counts where no scene of the window has it as primary; who is outside the window is left out.
-//! Hypothesis k of a window is put together from the scenes.
+//! A scene belongs to the window that starts at its first frame or, with 9 observed frames, at its second. A
+//! neighbour's forecast counts if no scene of the window has it as primary; pedestrians outside the window are ignored.
+//! Hypothesis k of a window is composed of the scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
@@ -16,14 +16,14 @@ use crate::Protocol;
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use serde::Deserialize;
 
-/// Lines and fields of other names may stand between.
+/// Lines and fields of other names are ignored.
 #[derive(Debug, Deserialize)]
 struct NdjsonLine {
     scene: Option<NdjsonScene>,
     track: Option<NdjsonTrack>,
 }
 
-/// `recording` is an addition of ours, for folds of several recordings.
+/// `recording` is an extension for folds of several recordings.
 #[derive(Debug, Clone, Deserialize)]
 struct NdjsonScene {
     #[serde(deserialize_with = "json::whole")]
@@ -76,7 +76,7 @@ pub(super) fn read(
 
 struct Reading<'w, 'a> {
     expected: &'w mut ExpectedForecasts<'a>,
-    /// Window of a recording's index and a first frame.
+    /// Index of the window by index of the recording and first frame.
     by_start: HashMap<(usize, i64), usize>,
     scenes: HashMap<i64, NdjsonScene>,
     finished: HashSet<i64>,
@@ -248,7 +248,7 @@ fn ends_at(window: &Window, frame: i64) -> bool {
     last.contains(&Some(frame))
 }
 
-/// A scene of other frames than 8 or 9 observed and 12 to forecast is not the window that starts with it.
+/// A scene needs 8 or 9 observed and 12 forecast frames to match the window that starts with it.
 fn wrong_end(window: &Window, scene: &NdjsonScene) -> Wrong {
     let problem = ExternalProblem::SceneFrames {
         found: format!("{} to {}", scene.s, scene.e),

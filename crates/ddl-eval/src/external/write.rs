@@ -1,4 +1,4 @@
-//! What another program reads, and our own forecasts in the same words.
+//! Writers of observations for other programs, and of forecasts in the same format.
 
 use std::io::Write;
 
@@ -33,7 +33,7 @@ struct WrittenHypothesis<'a> {
     positions: &'a [Position],
 }
 
-/// Writes what was observed as JSON lines, an object for each pedestrian of each window.
+/// Writes the observations as JSON lines, one object for each pedestrian of each window.
 ///
 /// Positions are `[x, y]` in metres, 0.4 s apart, the last one at `observed_until`; reading them gives the same bits.
 ///
@@ -42,7 +42,7 @@ struct WrittenHypothesis<'a> {
 /// ```
 ///
 /// # Errors
-/// [`ExternalError::Io`] when it cannot be written.
+/// [`ExternalError::Io`] when the writer fails.
 pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), ExternalError> {
     for window in windows {
         for i in 0..window.len() {
@@ -58,11 +58,10 @@ pub fn write_windows(windows: &[Window], mut writer: impl Write) -> Result<(), E
     writer.flush().map_err(cannot_write)
 }
 
-/// Writes forecasts as the JSON lines that [`read`](super::read) takes back, bit by bit; verdicts of certificates are
-/// left out.
+/// Writes forecasts as JSON lines, from which [`read`](super::read) returns the same bits, but without certificates.
 ///
 /// # Errors
-/// Windows and forecasts are not of the same pedestrians, or it cannot be written.
+/// Windows and forecasts have different pedestrians, or the writer fails.
 pub fn write_forecasts(
     windows: &[Window],
     forecasts: &[Forecast],

@@ -1,4 +1,4 @@
-//! AMD and AMV: how many deviations the truth lies from the forecast distribution, and how wide it is.
+//! AMD and AMV: distance of the truth from the forecast distribution in deviations, and width of the distribution.
 //!
 //! For one pedestrian and one frame, with mean m and covariance C of the weighted hypotheses and the
 //! true position p:
@@ -9,13 +9,13 @@
 //! AMV = largest eigenvalue of the mean over frames and pedestrians of C        square metres
 //! ```
 //!
-//! A wider distribution has a smaller AMD and a larger AMV. Eigenvalues of C below (1 cm)^2 are raised to it. A forecast
-//! of one hypothesis is no distribution. A spread about the hypotheses adds its variance to C.
+//! A wider distribution has a smaller AMD and a larger AMV. Eigenvalues of C below (1 cm)^2 are raised to it. AMD and
+//! AMV need several hypotheses. A spread around the hypotheses adds its variance to C.
 //!
-//! # Beside the published code
-//! Social-Implicit fits a mixture of up to four Gaussians to 1,000 samples; here C and m are the hypotheses' own moments.
-//! AMV does not depend on the number of components; AMD is theirs wherever one is chosen. As in their code, and not their
-//! paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world axes.
+//! # Differences from the published code
+//! Social-Implicit fits a mixture of up to four Gaussians to 1,000 samples; here C and m are the moments of the
+//! hypotheses. AMV does not depend on the number of components; AMD agrees with theirs where they choose one. As in
+//! their code, but not in their paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world axes.
 //!
 //! # References
 //! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness
@@ -39,7 +39,7 @@ pub struct DistributionErrors {
 }
 
 impl DistributionErrors {
-    /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
+    /// That of pedestrian `i`; `None` for forecasts of one hypothesis.
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         if scene.hypotheses() < 2 {
             return None;

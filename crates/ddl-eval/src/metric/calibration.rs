@@ -1,5 +1,4 @@
-//! Whether probabilities mean what they say: of all goals given the probability p, a share p should
-//! turn out to be the nearest to the true end.
+//! Calibration of probabilities: among goals of probability p, the share p should be nearest to the true endpoint.
 //!
 //! ```text
 //! log loss = -1/N sum_i ln w_{i, k*(i)}      nats, k*(i) the hypothesis nearest the truth
@@ -11,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 /// Bins of the reliability table, each with as many goals.
 const BINS: usize = 10;
-/// Smallest probability that is told from 0 in the log loss.
+/// Smallest probability in the log loss.
 const SMALLEST: f64 = 1e-6;
 
 /// Reliability of the probabilities of many sets of hypotheses.
@@ -19,11 +18,11 @@ const SMALLEST: f64 = 1e-6;
 pub struct Calibration {
     /// Mean of -ln of the probability (at least 1e-6) given to the nearest hypothesis, nats.
     pub log_loss: f64,
-    /// What equal probabilities would have: ln K, averaged over the sets.
+    /// Log loss of equal probabilities: ln K, averaged over the sets.
     pub uniform_log_loss: f64,
     /// Mean over the bins of |predicted - observed|, weighted by their size.
     pub expected_error: f64,
-    /// By rising probability; fewer than ten where there are few hypotheses.
+    /// Bins by ascending probability; fewer than ten with few hypotheses.
     pub bins: Vec<CalibrationBin>,
 }
 
@@ -32,14 +31,14 @@ pub struct Calibration {
 pub struct CalibrationBin {
     /// Their mean probability.
     pub predicted: f64,
-    /// Share of them that were the nearest to the truth.
+    /// Share of those that were nearest to the truth.
     pub observed: f64,
-    /// How many there are.
+    /// Number of hypotheses.
     pub count: usize,
 }
 
 impl Calibration {
-    /// Of sets of probabilities, each with the index of the hypothesis that was nearest to the truth.
+    /// From sets of probabilities, each with the index of the hypothesis nearest to the truth.
     ///
     /// `None` without sets.
     ///

@@ -6,14 +6,14 @@
 //!
 //! ```text
 //! min over t in [1, 12] of |p_i(t) - p_j(t)| < 2 r = 0.4 m between the centres
-//! collision rate = pedestrians who collide with anybody / pedestrians, in [0, 1]
+//! collision rate = pedestrians who collide with another / pedestrians, in [0, 1]
 //! ```
 //!
-//! The minimum is exact. Pedestrians alone in their window count in the denominator. Real people who walk together come
-//! closer than this too: compare with the rate of the true futures. Other works take centres closer than 0.2 m, pairs
-//! instead of people, or fewer instants: their percentages are not comparable.
+//! The minimum is exact. Pedestrians alone in their window count in the denominator. Real pedestrians who walk together
+//! also come this close: compare with the rate of the true futures. Other works take centres closer than 0.2 m, pairs
+//! instead of pedestrians, or fewer instants: their percentages are not comparable.
 //!
-//! Against the truth (Col-II of `TrajNet++`) everybody but pedestrian i follows the TRUE future.
+//! Against the truth (Col-II of `TrajNet++`) all pedestrians except i follow their TRUE futures.
 //!
 //! # References
 //! Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds" (`TrajNet++`), T-ITS 2021.
@@ -25,7 +25,7 @@ use crate::Scene;
 /// Radius of a pedestrian, metres. Two collide when their centres are closer than twice this.
 pub const DISC_RADIUS: f64 = 0.2;
 
-/// The least distance of two pedestrians who move straight from frame to frame, metres.
+/// The least distance of two pedestrians that move straight between frames, metres.
 ///
 /// Infinite when either track is empty. Frames beyond the shorter track are ignored.
 pub fn closest_approach(a: &[Position], b: &[Position]) -> f64 {
@@ -52,7 +52,7 @@ fn distance_to_origin(r0: Position, r1: Position) -> f64 {
     (r0[0] + s * d[0]).hypot(r0[1] + s * d[1])
 }
 
-/// Which tracks' discs of radius `radius` metres overlap that of any other track; one entry a track.
+/// Whether the disc of each track (`radius` in metres) overlaps that of another track; one entry for each track.
 pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     let mut hit = vec![false; tracks.len()];
     for i in 0..tracks.len() {
@@ -74,7 +74,7 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
         .collect()
 }
 
-/// Which pedestrians' true futures collide with that of anybody who was there, forecast or not; `[N]`.
+/// Whether the true future of each pedestrian collides with that of another one, forecast or not; `[N]`.
 pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let everybody = scene.everybody();
     let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();
@@ -84,7 +84,7 @@ pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
         .collect()
 }
 
-/// Which pedestrians' representative forecasts run into the true future of another; `[N]`.
+/// Whether the representative forecast of each pedestrian collides with the true future of another; `[N]`.
 pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let (forecast, everybody) = (scene.forecast(), scene.everybody());
     let runs_into_another = |i: usize| {

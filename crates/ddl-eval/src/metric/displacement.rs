@@ -6,17 +6,16 @@
 //! ADE_k = 1/T sum_t |p_k(t) - p(t)|        FDE_k = |p_k(T) - p(T)|        metres
 //! minADE_K = min_k ADE_k    minFDE_K = min_k FDE_k    FDE@minADE_K = FDE_k* with k* = argmin_k ADE_k
 //! ADE@minFDE_K = ADE_k* with k* = argmin_k FDE_k
-//! expected ADE = sum_k w_k ADE_k            most likely ADE = ADE_k* with k* = argmax_k w_k (of equals, the first)
-//! JADE = min_k 1/N sum_i ADE_{i,k}          JFDE = min_k 1/N sum_i FDE_{i,k}        one index for everybody
+//! expected ADE = sum_k w_k ADE_k            most likely ADE = ADE_k* with k* = argmax_k w_k (the first of equals)
+//! JADE = min_k 1/N sum_i ADE_{i,k}          JFDE = min_k 1/N sum_i FDE_{i,k}        one index for all pedestrians
 //! goal FDE = min_k |g_k - p(T)|             with the goals g_k
 //! ```
 //!
 //! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
-//! Y-Net) `ADE@minFDE`. The expected error is that of a hypothesis drawn with its weight; the most likely hypothesis is
-//! not the one of the protocol `single`, the [representative](Forecast::representative) one.
-//! JADE and JFDE are a fair question only to models whose hypothesis `k` is one future of the scene. The averages of
-//! "Joint Metrics Matter" are over scenes; here a scene counts with its number of pedestrians. The goal of a pedestrian
-//! still under way lies beyond the 12th frame, and is compared with the last true position all the same.
+//! Y-Net) print `ADE@minFDE`. The expected error is that of a hypothesis drawn by its weight. The protocol `single`
+//! scores the [representative](Forecast::representative) hypothesis, not the most likely one. JADE and JFDE suit only
+//! models whose hypothesis `k` is one future of the scene. "Joint Metrics Matter" averages over scenes; here a scene
+//! counts with its number of pedestrians. A goal beyond the 12th frame is still compared with the last true position.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
@@ -134,7 +133,7 @@ fn least(errors: &[f64]) -> usize {
     (1..errors.len()).fold(0, |best, k| if errors[k] < errors[best] { k } else { best })
 }
 
-/// `sum_k w_k e_k` of pedestrian `i`, metres, for its errors `e`, one a hypothesis.
+/// `sum_k w_k e_k` of pedestrian `i`, metres, for its errors `e`, one for each hypothesis.
 ///
 /// # Panics
 /// When `i` is out of range or there are more errors than hypotheses.

@@ -1,11 +1,11 @@
-//! How different the hypotheses of a pedestrian are from one another.
+//! Diversity of the hypotheses of a pedestrian.
 //!
 //! ```text
 //! APD_i = mean over pairs k < l of 1/T sum_t |x_k(t) - x_l(t)|        metres
 //! FPD_i = mean over pairs k < l of |x_k(T) - x_l(T)|                  metres
 //! ```
 //!
-//! Weights and truth do not count: noise is diverse too. A forecast of one hypothesis has none.
+//! Weights and truth do not enter, so noise is diverse too. Diversity needs several hypotheses.
 //!
 //! # References
 //! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020 (APD).
@@ -22,7 +22,7 @@ pub struct Diversity {
 }
 
 impl Diversity {
-    /// Of pedestrian `i`; `None` for forecasts of one hypothesis.
+    /// That of pedestrian `i`; `None` for forecasts of one hypothesis.
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let (forecast, k) = (scene.forecast(), scene.hypotheses());
         if k < 2 {
@@ -39,7 +39,7 @@ impl Diversity {
                 let (mut sum, mut last) = (0.0, 0.0);
                 for (p, q) in pairs {
                     let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
-                    // Positions of pedestrians are far from where squares overflow.
+                    // Squares of positions of pedestrians do not overflow.
                     last = (dx * dx + dy * dy).sqrt();
                     sum += last;
                     steps += 1;

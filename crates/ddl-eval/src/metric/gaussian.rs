@@ -63,7 +63,7 @@ pub struct PrincipalAxes {
 }
 
 impl PrincipalAxes {
-    /// The same axes, with eigenvalues below `least` (square metres) raised to it: a spread of nothing has no inverse.
+    /// The same axes, with eigenvalues below `least` (square metres) raised to it, so that an inverse exists.
     #[must_use]
     pub fn raised_to(self, least: f64) -> Self {
         Self {
@@ -105,10 +105,10 @@ pub struct Moments {
 }
 
 impl Moments {
-    /// Of points with weights that sum to 1.
+    /// The moments of points with weights that sum to 1.
     ///
     /// # Panics
-    /// When there is not one weight a point.
+    /// When the numbers of weights and points differ.
     pub fn of(points: &[Position], weights: &[f64]) -> Self {
         assert_eq!(points.len(), weights.len(), "one weight a point");
         let weighted = || points.iter().zip(weights);

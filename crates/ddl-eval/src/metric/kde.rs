@@ -12,14 +12,14 @@
 //! KDE NLL = - mean over frames and pedestrians of max(ln f(p), -20)        nats
 //! ```
 //!
-//! A forecast that says how far pedestrians spread about its hypotheses is a mixture of bells already: with that
-//! [spread](crate::Forecast::spread) s, H is s^2 times the identity.
+//! For a forecast with a [spread](crate::Forecast::spread) s around its hypotheses, which is already a Gaussian
+//! mixture, H is s^2 times the identity.
 //!
-//! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, but for the
-//! smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it, where others fail or leave the frame out.
+//! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, except
+//! for the smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it, where others fail or skip the frame.
 //!
-//! Lower is better, and it may be negative. A forecast of one hypothesis has no density. The number depends strongly on
-//! how many hypotheses there are: that of 1,000 samples cannot be compared with that of 20.
+//! Lower is better, and it may be negative. A forecast of one hypothesis has no density. The value depends strongly on
+//! the number of hypotheses: values for 1,000 samples and for 20 are not comparable.
 //!
 //! # References
 //! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV
@@ -30,7 +30,7 @@ use ddl_data::Position;
 use super::gaussian::{Moments, PrincipalAxes};
 use crate::Scene;
 
-/// Log densities below this count as this, nats: one far miss shall not decide the mean.
+/// Lower bound of log densities, nats, so that one large error does not dominate the mean.
 pub const LOWEST_LOG_DENSITY: f64 = -20.0;
 /// Least deviation of a distribution of positions along any direction, metres.
 pub const LEAST_DEVIATION: f64 = 0.01;
@@ -38,7 +38,7 @@ pub const LEAST_DEVIATION: f64 = 0.01;
 /// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not clipped.
 ///
 /// # Panics
-/// When there is not one weight a point.
+/// When the numbers of weights and points differ.
 ///
 /// # Numerics
 /// The sum of exponentials is taken relative to its largest term. Where all weight is on one point
@@ -46,7 +46,7 @@ pub const LEAST_DEVIATION: f64 = 0.01;
 pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();
-    // 1 - sum of squares, without its cancellation when one weight is nearly 1.
+    // 1 - sum of squares, without cancellation when one weight is nearly 1.
     let unbiased: f64 = weights.iter().map(|w| w * (1.0 - w)).sum();
     let scott = concentration.powf(1.0 / 6.0);
     let factor = if unbiased > 0.0 {

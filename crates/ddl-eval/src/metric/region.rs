@@ -1,4 +1,4 @@
-//! The probability given to what came, and the share of true positions that regions hold.
+//! The probability given to the true future, and the coverage of regions.
 
 use ddl_data::HORIZON;
 
@@ -10,10 +10,10 @@ use crate::{
 
 /// Probabilities of the regions that are measured.
 pub const LEVELS: [f64; 2] = [0.5, 0.9];
-/// Smallest weight that is told from 0 in the log loss.
+/// Smallest weight in the log loss.
 const SMALLEST_WEIGHT: f64 = 1e-6;
 
-/// Of one pedestrian, for each of the [`LEVELS`].
+/// Coverage and size for one pedestrian, for each of the [`LEVELS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RegionScores {
     /// Share of the 12 true positions inside their regions, in [0, 1].
@@ -23,7 +23,7 @@ pub struct RegionScores {
 }
 
 impl RegionScores {
-    /// Of pedestrian `i`; `None` for forecasts without regions.
+    /// Those of pedestrian `i`; `None` for forecasts without regions.
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let forecast = scene.forecast();
         forecast.regions()?;
@@ -39,8 +39,8 @@ impl RegionScores {
     }
 }
 
-/// -ln of the weight of the hypothesis that leads nearest to the true end: by its goal, or by its last position where it has
-/// none; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
+/// -ln of the weight of the hypothesis that is nearest to the true endpoint with its goal, or with its last position
+/// without a goal; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
 pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);
@@ -64,8 +64,9 @@ mod tests {
         metric::{amd::DistributionErrors, kde::kde_nll},
     };
 
-    /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a spread of 0.5 m its score
-    /// is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it is 1.5.
+    /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a
+    /// spread of 0.5 m its score is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it
+    /// is 1.5.
     #[test]
     fn by_hand() {
         let still = [0.0, 0.0];
@@ -88,8 +89,8 @@ mod tests {
         assert_relative_eq!(scores.coverage[1], 1.0);
         let area = 2.0 * 0.25 * (3.0 + (3.0 + 0.25_f64.ln()));
         assert_relative_eq!(scores.end_radius[1], area.sqrt(), epsilon = 0.1);
-        // The likelihood is that of bells of this spread, and their variance of 0.25 is part of that about the mean (2, 0), which is
-        // 0.8 * 4 + 0.2 * 64 = 16 along x.
+        // The likelihood is that of Gaussians of this spread. Their variance of 0.25 adds to that around the mean
+        // (2, 0), 0.8 * 4 + 0.2 * 64 = 16 along x.
         let nll = 0.5 - (0.2 / (std::f64::consts::TAU * 0.25)).ln();
         assert_relative_eq!(kde_nll(&scene, 0).unwrap(), nll, epsilon = 1e-12);
         let errors = DistributionErrors::of(&scene, 0).unwrap();

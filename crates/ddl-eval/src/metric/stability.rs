@@ -1,4 +1,4 @@
-//! Whether rollouts go to their goals: the promise of a stable system, checked on its output.
+//! Stability of rollouts: whether they go to their goals, checked on the output.
 //!
 //! Phi(t) = |p(t) - g| is the distance to the goal, the Lyapunov function of DDL (its potential),
 //! from the last observed position (t = 0) to the 12th forecast frame. For each rollout, that is each
@@ -8,10 +8,10 @@
 //! decreasing     Phi(t+1) < Phi(t) at every step t = 0..11, or both are at the goal (within 1 mm)
 //! end distance   Phi(12)                                                            metres
 //! largest turn   max_t angle between p(t+1) - p(t) and g - p(t)                     degrees, [0, 180]
-//! certified      the model's own certificate of the rollout holds, where it gives one
+//! certified      the model's certificate of the rollout holds, if it has one
 //! ```
 //!
-//! Steps shorter than 1 mm, and steps that start within 1 mm of the goal, have no direction and count as no turn.
+//! Steps shorter than 1 mm, and steps that start within 1 mm of the goal, have no direction and no turn.
 //!
 //! # References
 //! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section II-E: v = -P grad Phi.
@@ -25,7 +25,7 @@ use crate::Scene;
 /// Within this distance a pedestrian is at the goal, and a shorter step has no direction; metres.
 pub const AT_GOAL: f64 = 1e-3;
 
-/// What one rollout does about its goal.
+/// Behaviour of one rollout towards its goal.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RolloutStability {
     /// Whether the distance to the goal decreases at every step.
@@ -34,12 +34,12 @@ pub struct RolloutStability {
     pub end_distance: f64,
     /// Largest angle between a step and the direction to the goal, degrees.
     pub largest_turn: f64,
-    /// Whether the model's certificate of the rollout holds; `None` where there is none.
+    /// Whether the model's certificate of the rollout holds; `None` without a certificate.
     pub certified: Option<bool>,
 }
 
 impl RolloutStability {
-    /// Judges the rollout `path`, which starts from `start`, against `goal`; all in metres. No certificate is known.
+    /// Checks the rollout `path` from `start` against `goal`, all in metres, without a certificate.
     pub fn of(start: Position, path: &[Position], goal: Position) -> Self {
         let mut result = Self {
             decreasing: true,
@@ -62,10 +62,10 @@ impl RolloutStability {
     }
 }
 
-/// The rollouts of a test set, together.
+/// Means over the rollouts of a test set.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct StabilityScores {
-    /// Rollouts judged: hypotheses of all pedestrians.
+    /// Number of rollouts: hypotheses of all pedestrians.
     pub rollouts: usize,
     /// Share of rollouts whose distance to the goal decreases at every step, in [0, 1].
     pub decreasing: f64,
@@ -75,12 +75,12 @@ pub struct StabilityScores {
     pub largest_turn: f64,
     /// Share of rollouts with a turn of more than 90 degrees, a step away from the goal, in [0, 1].
     pub reversing: f64,
-    /// Share of rollouts whose certificate holds, in [0, 1]; `None` unless all have one.
+    /// Share of rollouts whose certificate holds, in [0, 1]; `None` unless all have a certificate.
     pub certified: Option<f64>,
 }
 
 impl StabilityScores {
-    /// The mean of rollouts; `None` when there are none.
+    /// The means of rollouts; `None` without rollouts.
     pub fn mean(rollouts: &[RolloutStability]) -> Option<Self> {
         if rollouts.is_empty() {
             return None;
@@ -102,7 +102,7 @@ impl StabilityScores {
     }
 }
 
-/// Judges every hypothesis of every pedestrian; empty when the forecast has no goals.
+/// Checks every hypothesis of every pedestrian; empty when the forecast has no goals.
 pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
@@ -126,9 +126,9 @@ mod tests {
 
     use super::*;
 
-    /// Of each rollout whether Phi falls, how far from the goal it ends and its largest turn: straight there; past a goal at (0.6, 0) by
-    /// 0.4 m (nearer: 0.6 to 0.4) and on by 0.5 m, at 180 degrees to it; the side 3-4-5 of a triangle, at acos(0.6) to it; standing
-    /// at the goal, where no step has a direction, and elsewhere.
+    /// Descent of Phi, distance at the end and largest turn of rollouts: straight to the goal; past a goal at (0.6, 0)
+    /// by 0.4 m (nearer: 0.6 to 0.4) and further by 0.5 m, at 180 degrees to it; along a side of a 3-4-5 triangle, at
+    /// acos(0.6) to it; standing at the goal, where no step has a direction, and standing elsewhere.
     #[test]
     fn rollouts_by_hand() {
         let ahead: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();

@@ -1,4 +1,4 @@
-//! Regions that keep their share in a new place, by what is seen there.
+//! Regions that keep their coverage in a new place, by online calibration.
 
 use std::collections::VecDeque;
 
@@ -7,16 +7,16 @@ use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
 use super::tracked::{Outcomes, TrackedQuantiles};
 use crate::Forecast;
 
-/// Fed every forecast of one place in order of time, it gives each the regions that have held their share there so far.
+/// Takes every forecast of one place in order of time, and gives each the regions that have kept their coverage so far.
 ///
-/// The regions of a forecast `t` steps ahead are judged when the pedestrian is seen there, so `t` steps later, and
-/// change later regions from then on. Who is not in the window of that frame is not judged. Nothing depends on the
-/// order of the pedestrians, or on anything that comes after the frame.
+/// The regions of a forecast `t` steps ahead are compared with the observed position `t` steps later, and change later
+/// regions from then on. Pedestrians outside the window of that frame are skipped. The result does not depend on the
+/// order of the pedestrians, or on later frames.
 ///
-/// It begins with the table of the first forecast that has one. Forecasts without regions pass as they are.
+/// It begins with the table of the first forecast that has one. Forecasts without regions are unchanged.
 ///
-/// # What is kept
-/// What was [learned](Self::learned), a few numbers, which can be saved and [taken up](Self::resuming) again; and the
+/// # State
+/// The [learned](Self::learned) shifts, a few numbers, which can be saved and [resumed](Self::resuming); and the
 /// forecasts of the last 4.8 s, which are not saved.
 ///
 /// # Examples
@@ -28,7 +28,7 @@ use crate::Forecast;
 /// let table = std::sync::Arc::new(RegionTable::of(&scores, &[0.5, 0.9]).expect("99 scores"));
 /// let mut regions = AdaptiveRegions::default();
 /// for frame in 0..100 {
-///     // somebody who stands, and a forecast that says so
+///     // A standing pedestrian with a forecast that says so.
 ///     let window = Window::new("yard", frame, 1, vec![PedestrianId(1)], vec![vec![[1.0, 2.0]; 8]])?;
 ///     let forecast = Forecast::equally_likely(1, 1, vec![[1.0, 2.0]; HORIZON])?
 ///         .with_spread(vec![0.5; HORIZON], table.clone())?;
@@ -41,7 +41,7 @@ use crate::Forecast;
 #[derive(Debug, Clone, Default)]
 pub struct AdaptiveRegions {
     learned: Option<TrackedQuantiles>,
-    /// The last frame, and those before it whose forecasts are not all judged; oldest first.
+    /// The last frame, and the earlier ones with open forecasts; oldest first.
     pending: VecDeque<Pending>,
 }
 
@@ -57,7 +57,7 @@ struct Pending {
 }
 
 impl AdaptiveRegions {
-    /// Goes on from what was learned before.
+    /// Resumes with the learned state.
     #[must_use]
     pub fn resuming(learned: TrackedQuantiles) -> Self {
         Self {
@@ -66,18 +66,18 @@ impl AdaptiveRegions {
         }
     }
 
-    /// What was learned; `None` before the first forecast that has regions.
+    /// The learned state; `None` before the first forecast with regions.
     pub fn learned(&self) -> Option<&TrackedQuantiles> {
         self.learned.as_ref()
     }
 
-    /// Forgets the forecasts not judged yet, as when a tracker starts anew; what was learned stays.
+    /// Forgets the open forecasts, as after a restart of a tracker; the learned state stays.
     pub fn clear(&mut self) {
         self.pending.clear();
     }
 
-    /// Learns where everybody of the window is at its last observed frame, and gives the forecast from there the regions
-    /// that follow from it. A frame that is not after the one before [clears](Self::clear) first.
+    /// Learns from the positions at the last observed frame of the window, and gives the forecast its new regions. A
+    /// frame that is not later than the one before [clears](Self::clear) the open forecasts first.
     ///
     /// # Panics
     /// When the forecast has fewer pedestrians than the window.
@@ -123,8 +123,8 @@ impl Pending {
         }
     }
 
-    /// The scores of those who are in the window, at its last observed frame; `None` where that is none of the steps
-    /// forecast, or nobody is.
+    /// The scores of the pedestrians of the window at its last observed frame; `None` if that is not one of the
+    /// forecast steps, or no pedestrian is in both.
     fn outcomes(&self, window: &Window) -> Option<Outcomes> {
         let after = window.frames()[OBSERVED - 1] - self.frame;
         let steps = after / window.frame_step();
@@ -169,7 +169,7 @@ mod tests {
     use super::*;
     use crate::RegionTable;
 
-    /// Where everybody is, frame by frame.
+    /// The positions of all pedestrians, frame by frame.
     type Tracks = Vec<Vec<Position>>;
 
     const PEOPLE: usize = 4;
@@ -188,13 +188,13 @@ mod tests {
         })
     }
 
-    /// The forecasts of two hypotheses, to stand still or to go on, of the people in this order, up to each frame.
+    /// Forecasts of two hypotheses, standing still and walking on, of pedestrians in this order, up to each frame.
     fn forecasts(tracks: &Tracks, order: [usize; PEOPLE]) -> Vec<(Window, Forecast)> {
         let scores: Vec<[f64; HORIZON]> =
             (1..100).map(|n| [f64::from(n) / 30.0; HORIZON]).collect();
         let table = Arc::new(RegionTable::of(&scores, &[0.3, 0.5, 0.9]).unwrap());
         let until = |last: usize| {
-            // the second is away for a while
+            // The second pedestrian is away for a while.
             let here = |i: &&usize| **i != 1 || !(20..30).contains(&last);
             let people: Vec<usize> = order.iter().filter(here).copied().collect();
             let observed = |&i: &usize| (last - 7..=last).map(|t| tracks[t][i]).collect();
@@ -296,13 +296,13 @@ mod tests {
         assert_eq!(regions.learned(), None);
         let (window, forecast) = &stream[0];
         assert_eq!(&regions.adapt(window, forecast.clone()), forecast);
-        // time that goes backwards is a new beginning, and so no outcome
+        // An earlier time is a restart, and so not an outcome.
         let learned = regions.learned().cloned();
         let _ = regions.adapt(window, forecast.clone());
         assert_eq!(regions.learned().cloned(), learned);
         let _ = regions.adapt(&stream[1].0, stream[1].1.clone());
         assert_ne!(regions.learned().cloned(), learned);
-        // 4.8 s later everything is judged or gone
+        // 4.8 s later no forecast is open.
         assert!(regions.pending.len() <= HORIZON);
     }
 }

@@ -1,22 +1,22 @@
-//! Quantiles of scores that follow the scores of one place.
+//! Quantiles that follow the scores of one place.
 //!
-//! A region of the level `a` misses a share `1 - a` of the true positions where its quantile `q` is right. So each
-//! quantile of the table is multiplied by `exp(shift)`, and each frame moves the shift by what the regions missed:
+//! A region of the level `a` with the right quantile `q` misses the share `1 - a` of the true positions. Each quantile
+//! of the table is multiplied by `exp(shift)`, and each frame moves the shift by the share that the regions missed:
 //!
 //! ```text
 //! shift += STEP * w * (missed - (1 - a))        w = share * min(sqrt(n), LARGEST_WEIGHT)
 //! ```
 //!
-//! `missed` is the share of the `n` pedestrians, now seen, that the regions forecast for now did not hold, `share` the
-//! time since the frame before in steps of 0.4 s, at most 1. As long as no shift reaches its bound, the shift after
-//! some frames is the sum of these moves. So the mean of `missed`, weighted by `w`, differs from `1 - a` by at most
-//! `LARGEST_SHIFT / (STEP sum w)`, whatever the pedestrians do. Where quantiles of two levels cross they are put in
-//! order, and then this holds for the levels together.
+//! `missed` is the share of the `n` observed pedestrians outside their regions for this frame, `share` the time since
+//! the frame before in steps of 0.4 s, at most 1. As long as no shift reaches its bound, the shift after some frames is
+//! the sum of these moves. So the mean of `missed`, weighted by `w`, differs from `1 - a` by at most
+//! `LARGEST_SHIFT / (STEP sum w)`, for any motion of the pedestrians. Where quantiles of two levels cross they are
+//! sorted, and then this holds for the levels together.
 //!
 //! # References
 //! - Gibbs and Candes, *Adaptive Conformal Inference Under Distribution Shift*, 2021.
-//! - Angelopoulos, Candes and Tibshirani, *Conformal PID Control for Time Series Prediction*, 2023: the
-//!   quantile itself is followed.
+//! - Angelopoulos, Candes and Tibshirani, *Conformal PID Control for Time Series Prediction*, 2023
+//!   (tracking of the quantile).
 
 use std::sync::Arc;
 
@@ -25,17 +25,17 @@ use serde::{Deserialize, Serialize};
 
 use super::{LevelQuantiles, RegionTable};
 
-/// How fast a shift follows. Chosen with [`LARGEST_WEIGHT`] on recordings of other places (`docs/regions.md`).
+/// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places (`docs/regions.md`).
 const STEP: f64 = 0.06;
-/// Weight of a frame with nine pedestrians or more. Outcomes come up to 12 steps late; with more weight the quantiles
-/// of crowds swing.
+/// Weight of a frame with nine pedestrians or more. Outcomes come up to 12 steps late; with a larger weight the
+/// quantiles of crowds oscillate.
 const LARGEST_WEIGHT: f64 = 3.0;
-/// ln 64: a quantile stays within 64 times and a 64th of the table's, a radius within about eight times of it.
+/// ln 64: a quantile stays between 1/64 and 64 times that of the table, a radius between about 1/8 and 8 times.
 const LARGEST_SHIFT: f64 = 4.158_883_083_359_672;
 /// Smallest quantile that is multiplied, so that one of 0 can grow.
 const LEAST: f64 = 1e-3;
 
-/// A table of quantiles, and how far each has been shifted by what was seen.
+/// A table of quantiles with their learned shifts.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Columns", into = "Columns")]
 pub struct TrackedQuantiles {
@@ -59,7 +59,7 @@ impl TryFrom<Columns> for TrackedQuantiles {
         let bounded = |shift: &f64| shift.abs() <= LARGEST_SHIFT;
         if shifts.len() != start.0.levels.len() || !shifts.as_flattened().iter().all(bounded) {
             return Err(
-                "tracked quantiles have a row of 12 shifts for each level, none beyond ln 64",
+                "tracked quantiles need a row of 12 shifts for each level, none beyond ln 64",
             );
         }
         let now = shifted(&start, &shifts).into();
@@ -77,18 +77,18 @@ impl From<TrackedQuantiles> for Columns {
     }
 }
 
-/// Scores of positions seen at one frame, of regions for that frame that were all forecast `step` + 1 steps before it.
+/// Scores of the positions at one frame under forecasts made `step` + 1 steps before it.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Outcomes {
     pub(super) step: usize,
-    /// The table that the regions had.
+    /// The table of their regions.
     pub(super) table: Arc<RegionTable>,
-    /// One a pedestrian.
+    /// One for each pedestrian.
     pub(super) scores: Vec<f64>,
 }
 
 impl TrackedQuantiles {
-    /// The table, not shifted yet.
+    /// The table with shifts of 0.
     #[must_use]
     pub fn new(start: Arc<RegionTable>) -> Self {
         Self {
@@ -98,7 +98,7 @@ impl TrackedQuantiles {
         }
     }
 
-    /// The quantiles as they are now.
+    /// The current quantiles.
     pub fn table(&self) -> &Arc<RegionTable> {
         &self.now
     }
@@ -128,7 +128,7 @@ impl TrackedQuantiles {
     }
 }
 
-/// The quantiles times the exponentials of their shifts, in rising order over the levels.
+/// The quantiles times the exponentials of their shifts, in ascending order over the levels.
 fn shifted(start: &RegionTable, shifts: &[[f64; HORIZON]]) -> RegionTable {
     let LevelQuantiles { levels, quantiles } = &start.0;
     let mut moved: Vec<[f64; HORIZON]> = quantiles
@@ -167,7 +167,7 @@ mod tests {
         Arc::new(columns.try_into().unwrap())
     }
 
-    /// The numbers are those of ten lines of Python, written from the formula at the head of this file.
+    /// The numbers come from a Python program, written from the formula at the head of this file.
     #[test]
     fn five_frames_as_computed_elsewhere() {
         let mut tracked = TrackedQuantiles::new(table(&[(0.5, 1.0), (0.9, 4.0)]));
@@ -215,12 +215,12 @@ mod tests {
         assert!(read(&text.replace("0.9", "1.5")).is_err());
     }
 
-    /// A frame: who is judged, whether each is missed, and how far from the edge.
+    /// A frame: for each observed pedestrian whether it is missed, and the distance from the edge.
     type Judged = Vec<(bool, f64)>;
 
     proptest! {
-        /// Whoever decides when to miss, knowing the region, cannot move the weighted mean further than the bound says,
-        /// as long as the scores stay within a factor of 7 of the table's quantile: then no shift reaches its bound.
+        /// An adversary that knows the region cannot move the weighted mean beyond the bound, as long as the scores
+        /// stay within a factor of 7 of the table's quantile: then no shift reaches its bound.
         #[test]
         fn the_share_missed_is_bounded_for_any_stream(
             level in 0.05..0.95f64,
@@ -236,7 +236,7 @@ mod tests {
                 let judged: &Judged = judged;
                 let table = issued.pop_front().unwrap();
                 let edge = table.quantile(level, t).unwrap();
-                // runs in which all miss or none does, which moves the quantile furthest
+                // Runs in which all miss or none misses move the quantile furthest.
                 let mood = (at / run) % 3;
                 let score = |&(coin, by): &(bool, f64)| {
                     let misses = if mood == 2 { coin } else { mood == 0 };

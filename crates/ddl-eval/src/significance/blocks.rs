@@ -1,4 +1,4 @@
-//! Errors summed over stretches of time.
+//! Errors summed over blocks of time.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::BlockMetric;
 use crate::{EvaluationError, Forecast, Scene, metric::displacement::DisplacementErrors};
 
-/// Steps of 0.4 s within which windows start that belong to one block: 20 s.
+/// Length of a block in steps of 0.4 s: 20 s. A window belongs to the block in which it starts.
 pub const BLOCK_STEPS: i64 = 50;
 
 /// The errors of all windows of a recording that start within the same 20 s.
@@ -36,17 +36,17 @@ impl BlockErrors {
         }
     }
 
-    /// Whether both are of the same windows: place and pedestrians agree.
+    /// Whether both have the same windows: recording, block and pedestrians agree.
     pub fn same_windows(&self, other: &Self) -> bool {
         (&self.recording, self.block, self.pedestrians)
             == (&other.recording, other.block, other.pedestrians)
     }
 }
 
-/// Sums the errors of forecasts, one a window, by recording, then by time.
+/// Sums the errors of forecasts, one for each window, by recording and by time.
 ///
 /// # Errors
-/// A window has no future, or a forecast is not of its window's pedestrians.
+/// A window has no future, or a forecast does not belong to its window's pedestrians.
 pub fn block_errors(
     windows: &[Window],
     forecasts: &[Forecast],

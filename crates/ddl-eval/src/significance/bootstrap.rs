@@ -8,10 +8,10 @@ use super::{BlockErrors, BlockMetric};
 /// Resamples drawn for an interval, and sign changes for a test.
 pub const RESAMPLES: usize = 10_000;
 
-/// Fewest blocks of a fold: fewer know too little of their own spread.
+/// Fewest blocks of a fold: fewer blocks give no reliable spread.
 pub const FEWEST_BLOCKS: usize = 10;
 
-/// Seed of the resamples: the same in every report, so that it is made again bit by bit.
+/// Seed of the resamples: the same in every report, so that reports are reproducible bit by bit.
 const SEED: u64 = 0;
 
 /// A mean and the interval that holds 95 % of its resamples.
@@ -27,8 +27,9 @@ pub struct Interval {
 
 /// The plain mean over the folds of the mean error of each, with its 95 % percentile interval over resampled blocks, m.
 ///
-/// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it has, with
-/// replacement; its mean is that of the pedestrians in them. `None` when there is no fold, or one of fewer than [`FEWEST_BLOCKS`].
+/// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it
+/// has, with replacement; its mean is that of the pedestrians in them. `None` without folds, or with a fold of fewer
+/// than [`FEWEST_BLOCKS`].
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
     let folds: Vec<Vec<PartialSum>> = folds
         .iter()
@@ -72,7 +73,7 @@ pub(super) fn interval(folds: &[Vec<PartialSum>]) -> Option<Interval> {
                 .iter()
                 .map(|fold| {
                     let draw = (0..fold.len()).map(|_| fold[random.random_range(0..fold.len())]);
-                    // Every block holds somebody, so that every resample has a mean.
+                    // Every block has pedestrians, so that every resample has a mean.
                     mean(draw).unwrap_or(f64::NAN)
                 })
                 .collect();
@@ -98,7 +99,7 @@ pub(super) fn mean(parts: impl Iterator<Item = PartialSum>) -> Option<f64> {
     (pedestrians > 0).then(|| sum / pedestrians as f64)
 }
 
-/// The value below which this share of sorted values lies, between two of them by proportion.
+/// The quantile of sorted values, interpolated linearly.
 fn percentile(sorted: &[f64], share: f64) -> f64 {
     let place = share * (sorted.len() - 1) as f64;
     let below = place.floor() as usize;
@@ -131,7 +132,7 @@ mod tests {
         assert_relative_eq!(twice.low, 2.0 * interval.low, epsilon = 1e-12);
     }
 
-    /// As numpy.percentile computes them.
+    /// The values of numpy.percentile.
     #[test]
     #[expect(clippy::float_cmp, reason = "quarters of small integers are exact")]
     fn percentiles_lie_between_two_values_by_proportion() {

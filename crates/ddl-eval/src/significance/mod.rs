@@ -1,5 +1,6 @@
-//! How sure a difference is: intervals and tests that know how windows overlap.
-//! Neighbouring windows share most of their people, so that the unit is a *block*: all windows of a recording that
+//! Intervals and tests of differences that account for the overlap of windows.
+//!
+//! Neighbouring windows share most of their pedestrians, so the unit is a *block*: all windows of a recording that
 //! start within the same 20 s ([`BLOCK_STEPS`] steps). Errors are summed by block and resampled within each fold.
 //!
 //! # References
@@ -14,7 +15,7 @@ pub use blocks::{BLOCK_STEPS, BlockErrors, block_errors};
 pub use bootstrap::{FEWEST_BLOCKS, Interval, RESAMPLES, mean_interval};
 pub use paired::{PairedDifference, UnpairedError, paired_difference};
 
-/// Which of the errors of a block is looked at.
+/// The error of a block that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BlockMetric {
     /// minADE, m.

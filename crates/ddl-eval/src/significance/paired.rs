@@ -7,20 +7,22 @@ use super::{
     bootstrap::{PartialSum, RESAMPLES, generator, interval, mean},
 };
 
-/// How much greater the errors of one forecaster are than those of another, window by window.
+/// Difference of the errors of two forecasters, window by window.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PairedDifference {
-    /// First minus second, mean over the folds, m, with its 95 % interval over resampled blocks. Negative: the first is better.
+    /// First minus second, mean over the folds, m, with its 95 % interval over resampled blocks. Negative: the first is
+    /// better.
     pub difference: Interval,
-    /// How often chance alone makes a difference as large in size: the share of [`RESAMPLES`] random changes of sign of the
-    /// blocks' differences, two-sided, counting the one observed.
+    /// Probability that chance alone makes a difference as large: the share of [`RESAMPLES`] random sign changes of the
+    /// blocks' differences, two-sided, with the observed one included.
     pub p_value: f64,
 }
 
 /// The two were not measured on the same blocks.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the two results are not of the same windows: fold {fold}, {what}; measure both on the same recordings, window rule and subset"
+    "the two results have different windows: fold {fold}, {what}; measure both on the same recordings, window rule \
+     and subset"
 )]
 pub struct UnpairedError {
     fold: usize,
@@ -29,11 +31,11 @@ pub struct UnpairedError {
 
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
-/// The test: were the two alike, the difference of every block might as well have the other sign. `None` when there is no
-/// fold, or one of fewer than [`FEWEST_BLOCKS`](super::FEWEST_BLOCKS).
+/// The test: if the two were alike, both signs of the difference of a block would be equally likely. `None` without
+/// folds, or with a fold of fewer than [`FEWEST_BLOCKS`](super::FEWEST_BLOCKS) blocks.
 ///
 /// # Errors
-/// The blocks of the two differ in number, place or pedestrians.
+/// The blocks of the two differ in number, recording or pedestrians.
 ///
 /// # References
 /// Good, "Permutation, Parametric and Bootstrap Tests of Hypotheses", 2005, section 3.
@@ -74,7 +76,7 @@ pub fn paired_difference(
 }
 
 fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
-    // Sums in another order differ in their last bits; they are no less.
+    // Sums in another order differ in their last bits but count as equal.
     let as_large = observed.abs() * (1.0 - 1e-12);
     let mut random = generator();
     let mut at_least = 1;

@@ -1,4 +1,4 @@
-//! What makes a forecast, and what is refused.
+//! Valid forecasts and errors.
 
 use ddl_data::{HORIZON, Position};
 use ddl_eval::{Forecast, ForecastShapeError};

@@ -1,4 +1,4 @@
-//! Windows and forecasts of any numbers.
+//! Strategies for windows and forecasts.
 
 use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
 use ddl_eval::Forecast;

@@ -1,4 +1,4 @@
-//! Every metric of one window of three pedestrians with two hypotheses each, against numbers worked out by hand.
+//! Every metric of one window of three pedestrians with two hypotheses each, against numbers computed by hand.
 //!
 //! All offsets are sides of 3-4-5 triangles. Frames s = 1..12 are forecast; metres.
 //!

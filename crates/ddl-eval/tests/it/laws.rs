@@ -1,4 +1,4 @@
-//! What must hold of the metrics whatever the forecast.
+//! Properties of the metrics, for any forecast.
 
 use ddl_data::{PedestrianId, Position, Rotation, WINDOW, Window};
 use ddl_eval::{
@@ -26,7 +26,7 @@ fn scores(window: &Window, forecast: &Forecast) -> Scores {
     Scores::evaluate(std::slice::from_ref(window), std::slice::from_ref(forecast)).unwrap()
 }
 
-/// Every number but for angles: lengths, shares and densities, which no motion of the plane changes.
+/// All numbers except angles: lengths, shares and densities, which do not change under motions of the plane.
 fn invariants(scores: &Scores) -> Vec<f64> {
     fn numbers(value: Value, found: &mut Vec<f64>) {
         match value {
@@ -50,7 +50,7 @@ fn invariants(scores: &Scores) -> Vec<f64> {
     found
 }
 
-/// Agreement up to the rounding that a narrow distribution magnifies.
+/// Agreement up to rounding, which a narrow distribution magnifies.
 fn all_agree(a: &[f64], b: &[f64]) -> bool {
     let close = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9 + 1e-8 * a.abs();
     a.len() == b.len() && a.iter().zip(b).all(close)

@@ -1,4 +1,4 @@
-//! What the crate promises, seen from outside.
+//! Tests of the public interface.
 
 #![allow(
     clippy::unwrap_used,

@@ -8,7 +8,7 @@ use ddl_eval::{
     leak,
 };
 
-/// The recordings of the `star` convention; without them the test is skipped, but not in CI.
+/// The recordings of the `star` convention; without them the test is skipped, except in CI.
 fn recordings() -> Option<Dataset> {
     let found =
         locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
@@ -17,16 +17,16 @@ fn recordings() -> Option<Dataset> {
         Err(why) => {
             assert!(
                 std::env::var_os("CI").is_none(),
-                "in CI the recordings must be there: {why}"
+                "CI needs the recordings: {why}"
             );
-            eprintln!("skipped, the recordings are not here: {why}");
+            eprintln!("skipped, no recordings: {why}");
             None
         }
     }
 }
 
 /// Pedestrians of each type, I to IV, and of each sub-kind of III, counted with numpy from the definitions in
-/// the docstrings, angles by arctan2 and the filter with whole matrices.
+/// the docstrings, with angles by arctan2 and the filter in matrix form.
 #[test]
 fn pedestrians_are_of_the_types_counted_independently() {
     let Some(dataset) = recordings() else { return };

@@ -1,4 +1,4 @@
-//! Which hypothesis stands for all of a pedestrian: numbers worked out by hand, and what must hold of any.
+//! The representative hypothesis: examples computed by hand, and properties.
 
 use ddl_data::{HORIZON, Position};
 use ddl_eval::{Forecast, representative::medoid};
@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use crate::generated::{forecast, position};
 
-/// One pedestrian whose hypotheses walk straight and evenly from the origin to these ends.
+/// One pedestrian whose hypotheses go straight from the origin to these ends at constant speed.
 fn to_ends(ends: &[Position], weights: &[f64]) -> Forecast {
     let positions = ends.iter().flat_map(|end| {
         let share = |t: usize| t as f64 / HORIZON as f64;
@@ -15,7 +15,7 @@ fn to_ends(ends: &[Position], weights: &[f64]) -> Forecast {
     Forecast::new(1, ends.len(), positions.collect(), weights.to_vec(), None).unwrap()
 }
 
-/// `sum_j w_j mean_t |p_k(t) - p_j(t)|`, written down once more.
+/// `sum_j w_j mean_t |p_k(t) - p_j(t)|`, written separately.
 fn expected_ade(forecast: &Forecast, i: usize, k: usize) -> f64 {
     let mut sum = 0.0;
     for j in 0..forecast.hypotheses() {
@@ -28,8 +28,8 @@ fn expected_ade(forecast: &Forecast, i: usize, k: usize) -> f64 {
     sum
 }
 
-/// Straight walks are 6.5/12 of the distance of their ends apart on average. Weights 0.3, 0.25, 0.25, 0.2 at the ends 0, 4,
-/// 5 and 7 m; in that order
+/// Straight walks are 6.5/12 of the distance of their ends apart on average. Weights 0.3, 0.25, 0.25, 0.2 at the ends
+/// 0, 4, 5 and 7 m; in that order
 /// 0.25 * 4 + 0.25 * 5 + 0.2 * 7 = 3.65; 0.3 * 4 + 0.25 * 1 + 0.2 * 3 = 2.05; 0.3 * 5 + 0.25 * 1 + 0.2 * 2 = 2.15;
 /// 0.3 * 7 + 0.25 * 3 + 0.25 * 2 = 3.35.
 #[test]
@@ -51,14 +51,14 @@ fn of_four_straight_walks() {
 fn ties_go_to_the_heaviest_and_then_to_the_first() {
     let one_metre = |k: usize, j: usize| if k == j { 0.0 } else { 1.0 };
     assert_eq!(medoid(&[1.0 / 3.0; 3], one_metre), 0);
-    // Eight places, the same from both ends: what is summed from one end differs in the last digits from the other end.
+    // Eight symmetric positions: sums from the two ends differ in their last digits.
     let weights = [0.1, 0.2, 0.15, 0.05, 0.05, 0.15, 0.2, 0.1];
     let places = [-4.0, -3.0, -2.0, -1.0, 1.0, 2.0, 3.0, 4.0_f64];
     let apart = |k: usize, j: usize| (places[k] - places[j]).abs();
     assert_eq!(medoid(&weights, apart), 3);
     let reversed = |k: usize, j: usize| (places[7 - k] - places[7 - j]).abs();
     assert_eq!(medoid(&weights, reversed), 3);
-    // Two in one place, where the second is the heavier.
+    // Two at one position, of which the second has the greater weight.
     let places = [0.0, 0.0, 5.0_f64];
     let apart = |k: usize, j: usize| (places[k] - places[j]).abs();
     assert_eq!(medoid(&[0.3, 0.5, 0.2], apart), 1);

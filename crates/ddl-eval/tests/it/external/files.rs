@@ -108,12 +108,17 @@ pub(crate) fn scene(id: i64, primary: i64, start: i64) -> String {
 pub(crate) fn tracks(scene: i64, pedestrian: i64, prediction: i64, until: i64, x: f64) -> String {
     (1..=12).fold(String::new(), |mut text, t| {
         let f = until + 10 * t;
-        writeln!(text, "{{\"track\": {{\"f\": {f}, \"p\": {pedestrian}, \"x\": {x:?}, \"y\": 0.0, \"prediction_number\": {prediction}, \"scene_id\": {scene}}}}}").unwrap();
+        writeln!(
+            text,
+            "{{\"track\": {{\"f\": {f}, \"p\": {pedestrian}, \"x\": {x:?}, \"y\": 0.0, \
+            \"prediction_number\": {prediction}, \"scene_id\": {scene}}}}}"
+        )
+        .unwrap();
         text
     })
 }
 
-/// Scene 0 forecasts 3 and its neighbours 5 and 9, who is in no window; scene 1 forecasts 5 for its own sake.
+/// Scene 0 forecasts 3 and its neighbours 5 and 9, which is in no window; in scene 1 pedestrian 5 is primary.
 pub(crate) fn ndjson() -> String {
     scene(0, 3, 0)
         + "{\"track\": {\"f\": 0, \"p\": 3, \"x\": 0.0, \"y\": 0.0}}\n"

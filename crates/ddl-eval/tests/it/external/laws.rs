@@ -1,4 +1,4 @@
-//! What must hold of files of forecasts, whatever is in them.
+//! Properties of files of forecasts, for any content.
 
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_eval::external::{self, Coverage, ExternalFormat};
@@ -66,7 +66,7 @@ proptest! {
         ).unwrap();
         prop_assert_eq!(&matched.forecasts, &forecasts);
         prop_assert_eq!(&matched.windows, &windows);
-        // equal numbers may differ in the sign of zero; their text does not
+        // Equal numbers may differ in the sign of zero; equal text does not.
         prop_assert_eq!(written(&matched.windows, &matched.forecasts), written(&windows, &forecasts));
     }
 

@@ -1,4 +1,4 @@
-//! What is read, matched with windows, and scored.
+//! Reading, matching with windows, and scoring.
 
 use ddl_data::{Format, PedestrianId, Window, WindowRule, parse_recording};
 use ddl_eval::baseline::SocialForce;
@@ -41,8 +41,8 @@ fn every_format_says_the_same() {
     }
 }
 
-/// A neighbour counts where no scene has it as its own. The benchmark of TrajNet++ shows a frame more before the forecast; that of the
-/// last scene is the first of the other window.
+/// A neighbour counts if it is not primary in any scene. The benchmark of TrajNet++ shows one more frame before the
+/// forecast; that of the last scene is the first frame of the other window.
 #[test]
 fn scenes_of_trajnet_stand_for_windows() {
     let of_9 = |id, primary, start: i64| {
@@ -106,8 +106,10 @@ fn pedestrians_may_have_words_for_names() {
 fn what_ddl_forecast_writes_beside_is_passed_over_and_goals_of_null_are_none() {
     let frames: Vec<i64> = (8..20).map(|t| 10 * t).collect();
     let first = format!(
-        "{{\"observed_until\":70,\"pedestrian\":3,\"frames\":{frames:?},\"hypotheses\":[{{\"weight\":0.75,\"goal\":[1.0,0.0],\
-         \"positions\":{p:?},\"certificate\":{{\"holds\":true,\"violation\":null}}}},{{\"weight\":0.25,\"goal\":[2.0,0.0],\"positions\":{p:?}}}]}}\n",
+        "{{\"observed_until\":70,\"pedestrian\":3,\"frames\":{frames:?},\"hypotheses\":\
+         [{{\"weight\":0.75,\"goal\":[1.0,0.0],\"positions\":{p:?},\
+         \"certificate\":{{\"holds\":true,\"violation\":null}}}},\
+         {{\"weight\":0.25,\"goal\":[2.0,0.0],\"positions\":{p:?}}}]}}\n",
         p = still(1.0, 0.0)
     );
     let matched = read(&first, ExternalFormat::JsonLines, Coverage::Intersection).unwrap();
@@ -146,7 +148,7 @@ fn the_intersection_is_named_beside_the_callers_subset_and_scored_alone() {
     assert!(rows.iter().all(|row| row.scores.pedestrians == 1));
     let scores = Scores::evaluate(windows, &matched.forecasts).unwrap();
     assert_eq!(rows[0].scores, scores);
-    // he goes on from x = 4 to 9.5 at y = 2, and is forecast at (2, 0)
+    // The pedestrian walks from x = 4 to 9.5 at y = 2, and is forecast at (2, 0).
     assert!((scores.min_fde - f64::hypot(7.5, 2.0)).abs() < 1e-12);
     let every = "every second window";
     let other = line(70, 3, &hypothesis(2.0));
@@ -189,8 +191,7 @@ fn extensions_name_the_format_in_capitals_too() {
     }
 }
 
-/// 1 goes east and meets 2, who goes west and whom nobody forecast; 3 is far away. The social force model gives way to
-/// 2.
+/// 1 walks east and meets 2, which walks west and has no forecast; 3 is far away. The social force model avoids 2.
 #[test]
 fn baselines_see_whom_nobody_forecast() {
     let track = |at: fn(f64) -> [f64; 2]| (0..20).map(|t| at(f64::from(t))).collect::<Vec<_>>();
@@ -208,7 +209,7 @@ fn baselines_see_whom_nobody_forecast() {
     let text = line(70, 1, &straight_on(0.0)) + &line(70, 3, &straight_on(50.0));
     let matched = of(&windows, &text, Coverage::Intersection).unwrap();
     let rows = external::measure(&conditions(Protocol::Single), &matched, 1).unwrap();
-    // nobody forecast where 2 goes
+    // 2 has no forecast.
     assert!(rows[0].scores.collision_rate.abs() < f64::EPSILON);
     let mut forces = rows.iter();
     let forces = forces.find(|row| row.conditions.forecaster == "social force");
@@ -233,13 +234,14 @@ fn pedestrians_that_are_missing_and_forecasts_of_nobody_are_counted_and_named() 
     assert_eq!(
         mine,
         "f forecasts 1 of the 3 pedestrians in the windows; 2 are missing, the first of them `yard` observed until 70 \
-         pedestrian 3, `yard` observed until 80 pedestrian 5; forecast them too, or score the intersection alone"
+         pedestrian 3, `yard` observed until 80 pedestrian 5; forecast them too, or score the intersection only"
     );
     let hint = |text: &str| complaint(&(whole() + text), ExternalFormat::JsonLines);
     let elsewhere = line(70, 5, &hypothesis(2.0)).replace("{\"obs", "{\"recording\":\"eth\",\"obs");
     assert_eq!(
         hint(&elsewhere),
-        "f: 1 of 4 forecasts are of nobody in the windows, the first of `eth` observed until 70 pedestrian 5; the \
+        "f: 1 of 4 forecasts match no pedestrian of the windows, the first one `eth` observed until 70 pedestrian 5; \
+         the \
          windows are of yard, the file also of eth; is it of another fold?"
     );
     for (text, expected) in [
@@ -263,7 +265,7 @@ fn pedestrians_that_are_missing_and_forecasts_of_nobody_are_counted_and_named() 
         let alone = complaint(&text, ExternalFormat::JsonLines);
         assert!(alone.contains(expected), "{alone}");
     }
-    // Where the others fit as they are, one that would fit if it were shifted says nothing of the frame.
+    // If the others match, one that would match after a shift is no evidence against the frame.
     let among_others = hint(&line(90, 5, &hypothesis(2.0)));
     assert!(!among_others.contains("first frame forecast"));
     let nothing = read(
@@ -283,7 +285,7 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
     let read = |text: &str| of(&two, text, Coverage::Whole);
     assert_eq!(
         read(&text).unwrap_err().to_string(),
-        "f, line 1, recording: is missing, and the windows are of several recordings: yard, square"
+        "f, line 1, recording: is missing, but the windows have several recordings: yard, square"
     );
     let named = |text: &str, name: &str| {
         text.replace("{\"obs", &format!("{{\"recording\":\"{name}\",\"obs"))
@@ -294,7 +296,8 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
     assert_eq!(matched.forecasts[2].hypothesis(0, 0), still(4.0, 0.0));
 }
 
-/// Half of the forecasts begin elsewhere than their pedestrians: the usual reasons are named, and no part of such a file is scored.
+/// If half of the forecasts start away from their pedestrians, the error names the usual reasons, and nothing is
+/// scored.
 #[test]
 fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
     let at = |[x, y]: [f64; 2]| format!("{{\"positions\":{:?}}}", still(x, y));
@@ -324,7 +327,7 @@ fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
     ] {
         let complaint = measure(&text).unwrap_err().to_string();
         assert!(complaint.contains(expected), "{complaint}");
-        assert!(complaint.starts_with("f: half of the forecasts begin "));
+        assert!(complaint.starts_with("f: half of the forecasts start "));
     }
     assert!(measure(&file([9.9, 0.0], [9.8, 2.0], [9.5, 2.5])).is_ok());
 }

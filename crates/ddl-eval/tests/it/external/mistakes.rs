@@ -1,4 +1,4 @@
-//! Every mistake is named with its place.
+//! Every error names its place.
 
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
@@ -15,9 +15,10 @@ fn check(format: ExternalFormat, text: &str, expected: &str) {
     );
 }
 
-/// Cases, one a line: what is put where, and the error that it makes, between arrows.
+/// Cases, one on each line: parts of the file, then the expected error, between arrows. A line continues on the next
+/// after a backslash.
 fn check_all(format: ExternalFormat, cases: &str, file: impl Fn(&[&str]) -> String) {
-    for case in cases.trim().lines() {
+    for case in cases.trim().replace("\\\n", "").lines() {
         let parts: Vec<&str> = case.split(" =>").map(str::trim).collect();
         let (expected, parts) = parts.split_last().unwrap();
         check(format, &file(parts), expected);
@@ -57,10 +58,11 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
 0.0], [2.0 => 0.0], ["2" => 2, hypotheses[0].positions[1][0]: must be a finite number, found "2"
 0.0], [2.0 => 0.0], [1e999 => 2: not a JSON object: number out of range
 0.0], [2.0 => 0.0], [2.0, 3.0 => 2, hypotheses[0].positions[1]: must be [x, y] in metres, found [2.0,3.0,0.0]
-"pedestrian":5 => "pedestrian":3 => 2: this pedestrian was forecast on line 1 already
-"pedestrian":5 => "pedestrian":3,"pedestrian":5 => 2, pedestrian: is there twice; keep one
-{"positions":[[2.0 => {"goal":[1,2],"positions":[[2.0 => 2: either every hypothesis of the file has a goal
-{ => {"frames":[71,72,73,74,75,76,77,78,79,80,81,82], => 1, frames: the forecast is of the frames 71, 72 to 82; the 12 after the last observed one are 80, 90 to 190
+"pedestrian":5 => "pedestrian":3 => 2: line 1 already forecasts this pedestrian
+"pedestrian":5 => "pedestrian":3,"pedestrian":5 => 2, pedestrian: appears twice; keep one
+{"positions":[[2.0 => {"goal":[1,2],"positions":[[2.0 => 2: all hypotheses of the file must have goals
+{ => {"frames":[71,72,73,74,75,76,77,78,79,80,81,82], => 1, frames: the forecast has the frames 71, 72 to 82; the 12 \
+after the last observed one are 80, 90 to 190
 "#;
     let both = first.clone() + &line(70, 5, &hypothesis(2.0));
     check_all(format, edits, |parts| {
@@ -76,7 +78,7 @@ fn every_mistake_of_json_lines_is_named_with_its_place() {
     );
     // Fields of two hypotheses; what programs write for a goal of NaN is a list, and a bare null is no goal.
     let pairs = r#"
-"weight":0.5, => => 1, hypotheses: either every hypothesis of a pedestrian has a weight
+"weight":0.5, => => 1, hypotheses: all hypotheses of a pedestrian must have weights
 "weight":0.5, => "weight":NaN, => 1, hypotheses[1].weight: must be a finite number
 "weight":0.5, => "weight":null, => 1, hypotheses[1].weight: must be a finite number, found null, NaN or infinity
 "goal":[null,null], => "goal":[1,2], => 1, hypotheses[0].goal[0]: must be a finite number
@@ -110,7 +112,7 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
     check(
         format,
         &(HEADER.to_owned() + "\""),
-        "2: a quote is opened and not closed on this line",
+        "2: a quote is not closed on this line",
     );
     let edits = r#"
 ,ok => => 14: 8 fields where the header names 9
@@ -122,18 +124,20 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
 ,80, => ,81, => 14, frames: the forecast is of the frames 81, 90 to 190
 yard,70,5,0,1,80,2,0,ok => => 15: 11 positions; a forecast has 12
 yard,70,5,0,1,80,2,0,ok => yard,70,5,0,1,80,2,0,ok\nyard,70,5,0,1,80,2,0,ok => 26: 13 positions
-yard => \n\n"yard",70,5,0,"1,80,2,0,ok\nyard => 16: a quote is opened and not closed on this line
+yard => \n\n"yard",70,5,0,"1,80,2,0,ok\nyard => 16: a quote is not closed on this line
 "#;
     check_all(format, edits, |parts| {
         first.clone() + &edited(&second, parts[0], parts[1])
     });
     // Pedestrian, hypothesis and weight, rows for rows.
     let sequences = r"
-3/0/1 5/0/1 3/0/1 => 26: this pedestrian was forecast on line 2 already
-3/0/1 5/0/0.5 5/1/0.5 5/0/0.5 => 38, hypothesis: hypothesis 0 is there already
+3/0/1 5/0/1 3/0/1 => 26: line 2 already forecasts this pedestrian
+3/0/1 5/0/0.5 5/1/0.5 5/0/0.5 => 38, hypothesis: hypothesis 0 appeared before
 3/0/1 5/0/0.5 => 14, weight: the weights sum to 0.5
-5/2/0.5 5/0/0.5 => 2, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 0, 2, expected 0 to 1 or 1 to 2
-3/0/1 5/1/1 => 14, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 1, expected 0 as before
+5/2/0.5 5/0/0.5 => 2, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 0, 2, \
+expected 0 to 1 or 1 to 2
+3/0/1 5/1/1 => 14, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 1, expected 0 \
+as before
 ";
     let of = |sequence: &str| {
         let part = |part: &str| {
@@ -167,11 +171,12 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
 "x": 1.0 => "x": NaN => 2, track.x: must be a finite number, found null, NaN
 "f": 80 => "f": 80.5 => 2, track.f: must be a whole number
 "f": 80 => "f": 81 => 2, prediction_number 0: the forecast is of the frames 81, 90 to 190
-"e": 190 => "e": 210 => 2, scene 0: the scene has the frames 0 to 210; the window that starts there has the observed frames 0, 10 to 70 and the forecast frames 80, 90 to 190: a scene is 8 or 9 observed and 12 forecast frames
+"e": 190 => "e": 210 => 2, scene 0: the scene has the frames 0 to 210; the window that starts there has the observed \
+frames 0, 10 to 70 and the forecast frames 80, 90 to 190: a scene has 8 or 9 observed and 12 forecast frames
 "p": 3, => => 1, scene.p: is missing
 {"scene": { => {"scene": [{ => 1: not a JSON object
 {"scene": { => {"scene": 7, "other": { => 1, scene: must be an object, found 7
-"p": 3, "x" => "p": 3, "p": 5, "x" => 2, track.p: is there twice; keep one
+"p": 3, "x" => "p": 3, "p": 5, "x" => 2, track.p: appears twice; keep one
 "#;
     check_all(format, edits, |parts| edited(&good, parts[0], parts[1]));
     // Scenes (id, primary pedestrian, start) and their tracks (scene, pedestrian, number, last observed frame, x).
@@ -179,8 +184,10 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
 T0/3/0/70/1 => 1, track.scene_id: scene 0 has no scene line before its tracks
 S0/3/0 T0/3/0/70/1 S0/5/0 => 14, scene.id: scene 0 was finished on an earlier line
 S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/0/70/1 T0/3/0/70/1 => 27, track.scene_id: scene 0 was finished
-S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/1/70/1 => 15, prediction_number: the hypotheses of observed until 70 pedestrian 5 have the numbers 1, expected 0 as before
-S0/3/0 T0/3/0/70/1 T0/5/0/70/1 S1/3/10 T1/5/0/80/2 S2/4/0 T2/5/0/70/2 => 40: pedestrian 5 is a neighbour in two scenes that forecast it differently (line 14)
+S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/1/70/1 => 15, prediction_number: the hypotheses of observed until 70 pedestrian 5 have \
+the numbers 1, expected 0 as before
+S0/3/0 T0/3/0/70/1 T0/5/0/70/1 S1/3/10 T1/5/0/80/2 S2/4/0 T2/5/0/70/2 => 40: pedestrian 5 is a neighbour in two \
+scenes that forecast it differently (line 14)
 ";
     let of = |sequence: &str| {
         let part = |part: &str| {

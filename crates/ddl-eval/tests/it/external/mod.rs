@@ -1,4 +1,4 @@
-//! Forecasts of another program: every format reads the same, and every mistake is named with its place.
+//! Forecasts of another program: all formats read the same, and errors name their place.
 
 mod files;
 mod laws;

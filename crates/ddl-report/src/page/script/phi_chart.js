@@ -30,7 +30,7 @@ function makePhiChart(svg) {
     const known = lines.filter((line) => line);
     if (known.length === 0) {
       cursor = null;
-      svg.append(svgElement("text", { x: PHI.left, y: PHI.height / 2 }, "This forecast names no goals."));
+      svg.append(svgElement("text", { x: PHI.left, y: PHI.height / 2 }, "This forecast has no goals."));
       return;
     }
     const largest = Math.max(...known.flat(), 0.1);

@@ -47,9 +47,9 @@ function makePlayer(moments) {
     const { padded, filled } = who.madeUp;
     if (padded + filled === 0) return "";
     const parts = [];
-    if (padded > 0) parts.push(`${padded} before it came`);
-    if (filled > 0) parts.push(`${filled} in holes`);
-    return `Of its ${OBSERVED} observed steps ${padded + filled} are made up (${parts.join(", ")}). `;
+    if (padded > 0) parts.push(`${padded} before its first observation`);
+    if (filled > 0) parts.push(`${filled} in gaps`);
+    return `Of its ${OBSERVED} observed steps ${padded + filled} were filled in (${parts.join(", ")}). `;
   }
 
   // Similarity of the observed motion to the forecaster's training data.
@@ -137,9 +137,9 @@ function makePlayer(moments) {
     byId("min-ade").textContent = errorWords(errors.minAde);
     byId("min-fde").textContent = errorWords(errors.minFde);
     const count = who.hypotheses.length;
-    const best = count === 1 ? "Of its one hypothesis" : `Best of ${count} hypotheses, two minima of their own`;
+    const best = count === 1 ? "Of its one hypothesis" : `Best of ${count} hypotheses, two separate minima`;
     const measured = errors.minAde === null
-      ? `Not measured: seen for ${who.truth.length} of the ${HORIZON} forecast steps. `
+      ? `Not measured: observed for ${who.truth.length} of the ${HORIZON} forecast steps. `
       : `${best}; from positions rounded to the millimetre. `;
     byId("convention-words").textContent =
       measured + madeUpWords(who) + familiarityWords(who) +

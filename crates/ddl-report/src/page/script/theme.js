@@ -1,7 +1,7 @@
 // Light, dark, or as in the system. The choice is stored if the browser allows it for files.
 
 const THEMES = ["auto", "light", "dark"];
-const THEME_WORDS = { auto: "as the system has them", light: "light", dark: "dark" };
+const THEME_WORDS = { auto: "as in the system", light: "light", dark: "dark" };
 const themeListeners = [];
 
 function onThemeChange(listener) {

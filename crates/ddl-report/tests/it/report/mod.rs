@@ -1,5 +1,6 @@
 //! The content of a report, and the separation of numbers that are not comparable.
 
+mod summary;
 mod wording;
 
 use ddl_data::{Convention, WindowRule};

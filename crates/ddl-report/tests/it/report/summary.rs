@@ -1,0 +1,58 @@
+//! The short tables of a results page.
+
+use ddl_data::Convention;
+use ddl_eval::Protocol;
+use ddl_report::Report;
+
+use super::{five_folds, of_forecaster};
+
+#[test]
+fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {
+    let mut rows = Vec::new();
+    for (protocol, min_ade) in [
+        (Protocol::Fair, 0.25),
+        (Protocol::Single, 0.5),
+        (Protocol::Published, 0.125),
+    ] {
+        for seed in [1, 2] {
+            let errors = five_folds(protocol, seed, min_ade * seed as f64);
+            rows.extend(errors.clone());
+            let name = "DDL without an expert library";
+            rows.extend(errors.into_iter().map(|mut row| {
+                name.clone_into(&mut row.conditions.forecaster);
+                row
+            }));
+        }
+        let baseline = five_folds(protocol, 1, 0.75);
+        rows.extend(of_forecaster(baseline, "constant velocity (last step)"));
+    }
+    let report = Report::new("Results", rows).unwrap();
+    let summary = report.summary(Convention::Star).unwrap();
+    let named = |rows: &[Vec<String>]| -> Vec<String> {
+        rows.iter().map(|row| row[..2].join(", ")).collect()
+    };
+    let shown = [
+        "DDL, fair",
+        "constant velocity (last step), fair",
+        "DDL, single",
+    ];
+    assert_eq!(named(&summary.errors.rows()[1..]), shown);
+    assert_eq!(named(summary.metrics.rows()), shown);
+    assert_eq!(
+        named(summary.comparison.rows()),
+        [
+            "DDL, fair",
+            "DDL, single",
+            "Resonance, the best published, best of 20",
+            "constant velocity (last step), fair",
+        ]
+    );
+    // Means of 0.25 and 0.5 m, with a sample deviation of 0.177 m.
+    let errors = &summary.errors.rows()[1];
+    assert_eq!(errors[2], "0.375/0.750");
+    assert_eq!(errors[7], "0.375±0.177/0.750±0.354");
+    let metrics = &summary.metrics.rows()[0];
+    assert_eq!(metrics[2], "0.375 [0.342, 0.408]");
+    assert_eq!(metrics[4..8], ["0.333", "25.0", "10.0", "87.5"]);
+    assert_eq!(report.summary(Convention::SocialGan), None);
+}
