@@ -67,6 +67,14 @@ def test_examples_are_typed():
     assert typed.returncode == 0, typed.stdout
 
 
+def test_other_formats(tracks, tmp_path):
+    program = [sys.executable, CHECKOUT / "crates/ddl-python/examples/other_formats.py", tracks, tmp_path]
+    ran = subprocess.run(program, capture_output=True, text=True, timeout=120, check=False)
+    assert ran.returncode == 0, ran.stderr
+    rows = (tmp_path / "sample_000.txt").read_text().splitlines()
+    assert "(12, 2) (12, " in ran.stdout and len(rows) % 12 == 0 and len(rows[0].split()) == 4
+
+
 def test_a_torch_model():
     pytest.importorskip("torch")
     program = [sys.executable, CHECKOUT / "crates/ddl-python/examples/own_model_torch.py", "simulated", "3"]

@@ -87,7 +87,7 @@ mod tests {
         assert!(sizes.fault_of_all().is_none());
         assert!(
             sizes
-                .fault(Path::new("docs/one-more.md"), &"x".repeat(PAGE))
+                .fault(Path::new("docs/one-more.md"), &"x".repeat(PAGE - 1))
                 .is_none()
         );
         assert!(sizes.fault_of_all().is_some());
