@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 #![cfg_attr(
     not(feature = "training"),
-    allow(dead_code, reason = "kernels backwards are for training alone")
+    allow(dead_code, reason = "only training uses the backward passes")
 )]
 
 pub mod backbone;
