@@ -1,6 +1,7 @@
 //! Names of enum values on the command line, in files and in reports.
 
-/// Implements `name`, `Display` and `FromStr` for an enum. The error of `FromStr` names the configuration field `$field`.
+/// Implements `name`, `Display` and `FromStr` for an enum. The error of `FromStr` names the configuration field
+/// `$field`.
 macro_rules! named {
     ($type:ident, $field:literal, $first:ident => $first_name:literal $(, $value:ident => $name:literal)*) => {
         impl $type {

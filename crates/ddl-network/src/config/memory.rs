@@ -5,8 +5,8 @@ use crate::NetworkError;
 use ddl_data::Remembered;
 use serde::{Deserialize, Serialize};
 
-/// Sizes of the memory branch: attention over earlier pedestrians of the place, and a separate readout. Its endpoints are
-/// pooled with those that the rest of the network proposes from the observation alone.
+/// Sizes of the memory branch: attention over earlier pedestrians of the place, and a separate readout. Its endpoints
+/// are pooled with those that the rest of the network proposes from the observation alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemoryConfig {
@@ -48,12 +48,7 @@ impl MemoryConfig {
     pub fn check(&self) -> Result<(), NetworkError> {
         // The upper limits prevent a damaged file from requesting all memory of the machine.
         for (field, value, most, rule) in [
-            (
-                "memory.remembered",
-                self.remembered as i64,
-                256,
-                "1 to 256",
-            ),
+            ("memory.remembered", self.remembered as i64, 256, "1 to 256"),
             ("memory.width", self.width, 4096, "1 to 4096"),
             ("memory.heads", self.heads, 64, "1 to 64"),
             ("memory.hidden", self.hidden, 4096, "1 to 4096"),
@@ -72,8 +67,8 @@ impl MemoryConfig {
         positive("memory.half", self.half)
     }
 
-    /// Share of the probability given to the endpoints of the branch: n / (n + `half`). n is the sum of exp(-d / `fade`)
-    /// over the earlier pedestrians attended to, d the squared distance of each. 0 without earlier pedestrians.
+    /// Share of the probability given to the endpoints of the branch: n / (n + `half`). n is the sum of exp(-d /
+    /// `fade`) over the earlier pedestrians attended to, d the squared distance of each. 0 without earlier pedestrians.
     pub fn share(&self, remembered: &[Remembered]) -> f64 {
         let looked_at = remembered.iter().take(self.remembered);
         let alike: f64 = looked_at

@@ -58,7 +58,8 @@ impl ProposalConfig {
     pub fn least_numbers(&self) -> u64 {
         let [members, ends, width, near] =
             [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
-        // Hidden layers, attention, and a position and a probability for each endpoint. Packed models have no waypoints.
+        // Hidden layers, attention, and a position and a probability for each endpoint. Packed models have no
+        // waypoints.
         let part = |layers: usize, hidden: u64, near: u64| {
             let layers = width * hidden + (layers as u64 - 1) * hidden * hidden;
             layers + near * (3 * near + width) + 3 * hidden * ends
@@ -124,8 +125,8 @@ pub struct ProposalTraining {
     pub scale: f64,
     /// Scenes are turned by a normal angle of this standard deviation (radians).
     pub turn: f64,
-    /// Largest standard deviation of the errors added to observed positions (metres). The deviation of each pedestrian is
-    /// uniform from 0 to this.
+    /// Largest standard deviation of the errors added to observed positions (metres). The deviation of each pedestrian
+    /// is uniform from 0 to this.
     pub jitter: f64,
     /// Standard deviation of the offset added to a neighbour's whole track (metres).
     pub neighbour_jitter: f64,

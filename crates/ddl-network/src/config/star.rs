@@ -48,7 +48,10 @@ pub struct StarConfig {
 }
 
 /// STAR is not written, because configurations of earlier versions have no field `backbone`.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
 fn is_star(backbone: &BackboneKind) -> bool {
     *backbone == BackboneKind::Star
 }
@@ -73,8 +76,8 @@ impl StarConfig {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
     }
 
-    /// Number of weights in the largest layers: a lower bound for the whole network. A file with fewer weights is refused
-    /// before memory for the network is allocated.
+    /// Number of weights in the largest layers: a lower bound for the whole network. A file with fewer weights is
+    /// refused before memory for the network is allocated.
     ///
     /// # Panics
     /// On overflow, which [`check`](Self::check) excludes.
@@ -103,8 +106,8 @@ impl StarConfig {
         }
     }
 
-    /// The default: the pedestrian's own frame if the variant has goals (`docs/accuracy.md`), and the smallest sizes that
-    /// lose no accuracy (`docs/performance.md`).
+    /// The default: the pedestrian's own frame if the variant has goals (`docs/accuracy.md`), and the smallest sizes
+    /// that lose no accuracy (`docs/performance.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
@@ -118,7 +121,8 @@ impl StarConfig {
         }
     }
 
-    /// Inputs of the temporal encoders for each pedestrian and time step: the position, and in its own frame the velocity.
+    /// Inputs of the temporal encoders for each pedestrian and time step: the position, and in its own frame the
+    /// velocity.
     pub fn temporal_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => 2,

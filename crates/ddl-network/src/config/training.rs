@@ -42,11 +42,11 @@ named!(LearningRateSchedule, "learning_rate_schedule", Constant => "constant", C
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Objective {
-    /// Forecast each next position from the true positions before it, with the true endpoint as goal and with noise. The
-    /// loss is the squared distance (paper eq. 13).
+    /// Forecast each next position from the true positions before it, with the true endpoint as goal and with noise.
+    /// The loss is the squared distance (paper eq. 13).
     NextStep,
-    /// Forecast the whole horizon from the observed positions, with an estimated goal. The loss is the distance from the
-    /// true path.
+    /// Forecast the whole horizon from the observed positions, with an estimated goal. The loss is the distance from
+    /// the true path.
     Walk,
 }
 

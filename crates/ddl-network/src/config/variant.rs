@@ -21,8 +21,8 @@ impl Variant {
     /// All variants, in the order of the paper's Table II.
     pub const ALL: [Self; 4] = [Self::Star, Self::NoGoalShift, Self::NoDynamics, Self::Full];
 
-    /// Whether the temporal encoders read positions relative to the goal (eq. 10). If not: relative to the last observed
-    /// position.
+    /// Whether the temporal encoders read positions relative to the goal (eq. 10). If not: relative to the last
+    /// observed position.
     pub fn goal_shift(self) -> bool {
         matches!(self, Self::Full | Self::NoDynamics)
     }

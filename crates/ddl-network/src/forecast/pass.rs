@@ -1,4 +1,4 @@
-//! The rollout of one batch of windows, a few hypotheses at a time.
+//! The rollout of one batch of windows, some hypotheses at a time.
 
 use super::batch::{BatchRollout, ForecastBatch};
 use super::course::{Course, Observation};
@@ -11,15 +11,15 @@ use ddl_data::{HORIZON, OBSERVED};
 use std::ops::Range;
 use std::rc::Rc;
 
-/// Pedestrians times hypotheses that are rolled out together: enough to fill the products, and few enough that the memory
-/// for a crowd does not grow with the number of hypotheses.
+/// Largest number of rows (pedestrians times hypotheses) that are rolled out together, if a hypothesis has no more. It
+/// is enough for efficient matrix products, and bounds the memory for the hypotheses of a crowd.
 const ROWS_AT_ONCE: usize = 2048;
 
 #[derive(Clone, Copy)]
 pub(super) struct PassLayers<'a> {
     pub(super) backbone: &'a dyn Backbone<KernelBackend>,
     pub(super) output: Linear,
-    /// For the expectation over the noise; `None` for the variants without dynamics.
+    /// Needed for the expectation over the noise; `None` for the variants without dynamics.
     pub(super) spread: Option<NoiseSpread>,
 }
 
@@ -59,7 +59,7 @@ impl<'a> Pass<'a> {
 
     pub(super) fn roll_out(&self) -> BatchRollout {
         let (pedestrians, hypotheses) = (self.batch.pedestrians(), self.batch.hypotheses());
-        // Without goals among the inputs the observed time steps are the same for all hypotheses.
+        // If the inputs do not depend on the goals, the observed time steps are the same for all hypotheses.
         let shared = (self.observation.entries() == 1)
             .then(|| self.observe(&Course::new(&self.observation, self.batch, 0..1)));
         let at_once = (ROWS_AT_ONCE / pedestrians).clamp(1, hypotheses);
@@ -100,7 +100,7 @@ impl<'a> Pass<'a> {
         (memory, newest)
     }
 
-    /// Goes through the time steps to forecast, and writes those of the `hypotheses` of the course.
+    /// Forecasts all time steps of the `hypotheses` of the course, and writes them to `rollout`.
     fn walk(
         &self,
         mut course: Course<'_>,
@@ -148,8 +148,8 @@ impl<'a> Pass<'a> {
         Buffer::copy(&self.backend.linear(self.layers.output, &inputs))
     }
 
-    /// The noise beside each pedestrian's features in some hypotheses, `[H, P, noise]`: zeros where its expectation is added
-    /// afterwards.
+    /// The noise inputs of the output layer for some hypotheses, `[H, P, noise]`; zeros for the expectation over the
+    /// noise.
     fn noise(&self, hypotheses: Range<usize>) -> Rc<Rows> {
         let width = self.noise_width;
         let shape = [hypotheses.len(), self.batch.pedestrians(), width];
