@@ -1,4 +1,5 @@
-//! The networks behind the shared rollout: from what pedestrians see to features, and from these to what shapes a step.
+//! The networks behind the shared rollout. They turn the input of each time step into features; the output layer turns
+//! features into the factors (a, b, c) of the metric, or into a position.
 
 mod features;
 mod perceptron;

@@ -1,5 +1,5 @@
-//! What computes a network. A backbone is written once, in the operations of a [`Backend`]: [`KernelBackend`] computes them
-//! on the CPU in `f32`, forwards and backwards; the crate `ddl-star` has one on libtorch.
+//! The operations that a backbone is written in. [`KernelBackend`] computes them on the CPU in `f32`, forwards and
+//! backwards; the crate `ddl-star` implements [`Backend`] on libtorch.
 
 mod kernels;
 mod operations;

@@ -1,4 +1,4 @@
-//! Sizes of the networks, and how they are trained.
+//! Sizes of the networks, and settings of their training.
 
 mod memory;
 mod proposal;

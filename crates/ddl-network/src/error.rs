@@ -1,11 +1,11 @@
-//! What can go wrong in this crate.
+//! Errors of this crate.
 
 use std::path::{Path, PathBuf};
 
-/// Errors of `ddl-network`. Messages say what is wrong, where, and what to do.
+/// Errors of `ddl-network`.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what they mean")]
+#[expect(missing_docs, reason = "the messages describe the variants")]
 pub enum NetworkError {
     #[error("configuration: {field} = {value} is not allowed: {rule}")]
     Config {
@@ -40,7 +40,7 @@ impl NetworkError {
         }
     }
 
-    /// A checkpoint that must not be trusted.
+    /// An error about a checkpoint that cannot be read or is damaged.
     pub fn checkpoint(path: &Path, problem: impl Into<String>) -> Self {
         Self::Checkpoint {
             path: path.to_owned(),
@@ -55,7 +55,7 @@ impl NetworkError {
         }
     }
 
-    /// Windows, goals or tensors of unexpected size.
+    /// An error about windows, goals or tensors of unexpected shape.
     pub fn shape(
         operation: &'static str,
         expected: impl Into<String>,

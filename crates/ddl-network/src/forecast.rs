@@ -1,4 +1,4 @@
-//! Windows and goals in, positions out.
+//! Forecasts: from windows and goals to positions.
 
 mod batch;
 mod course;

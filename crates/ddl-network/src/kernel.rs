@@ -1,6 +1,6 @@
-//! The heavy parts of the network. A computation is written once, as a `Kernel` of any [`ddl_simd::Simd`] or
-//! [`ddl_simd::Pairs`]; the fastest instructions of the machine run it. Results do not depend on the number of threads;
-//! instruction sets agree to rounding.
+//! The expensive computations of the network. Each is written once, as a `Kernel` over any [`ddl_simd::Simd`] or
+//! [`ddl_simd::Pairs`], and runs with the fastest instructions of the processor. Results do not depend on the number of
+//! threads. Results of different instruction sets agree up to rounding.
 
 #![expect(
     clippy::inline_always,

@@ -77,7 +77,7 @@
 //! slowly.
 #![cfg_attr(
     not(feature = "training"),
-    allow(dead_code, reason = "kernels backwards are for training alone")
+    allow(dead_code, reason = "only training uses the backward passes")
 )]
 
 pub mod backbone;

@@ -1,6 +1,7 @@
-//! Names of the values of an enum: on the command line, in files and in reports.
+//! Names of enum values on the command line, in files and in reports.
 
-/// Gives an enum `name`, `Display` and `FromStr`, whose error names this configuration field.
+/// Implements `name`, `Display` and `FromStr` for an enum. The error of `FromStr` names the configuration field
+/// `$field`.
 macro_rules! named {
     ($type:ident, $field:literal, $first:ident => $first_name:literal $(, $value:ident => $name:literal)*) => {
         impl $type {
@@ -43,7 +44,7 @@ mod tests {
     use crate::{Precision, Variant};
 
     #[test]
-    fn names_are_read_and_others_refused_with_what_there_is() {
+    fn names_are_parsed_and_unknown_names_refused_with_the_list() {
         for variant in Variant::ALL {
             assert_eq!(variant.to_string().parse::<Variant>().unwrap(), variant);
         }
@@ -51,7 +52,7 @@ mod tests {
             assert_eq!(precision.name().parse::<Precision>().unwrap(), precision);
         }
         let error = "f16".parse::<Precision>().unwrap_err().to_string();
-        let said = "configuration: precision = f16 is not allowed: one of f32, bf16";
-        assert_eq!(error, said);
+        let expected = "configuration: precision = f16 is not allowed: one of f32, bf16";
+        assert_eq!(error, expected);
     }
 }

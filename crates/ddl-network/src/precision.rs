@@ -1,19 +1,20 @@
-//! Where a network shall compute, and how exactly its heavy products.
+//! The device that a network runs on, and the precision of its feed-forward blocks.
 
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 
-/// Precision of the products in the feed-forward blocks of forecasts, on the CPU.
+/// Precision of the matrix products in the feed-forward blocks, for forecasts on the CPU.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// Single precision throughout: the reference.
     F32,
-    /// Factors with 8 significant bits, sums in single precision; emulated, bit for bit, without AVX-512 BF16.
+    /// Factors with 8 significant bits, sums in single precision. A processor without AVX-512 BF16 emulates it, with
+    /// the same bits.
     Bf16,
 }
 
 impl Precision {
-    /// Whether this machine has instructions for it.
+    /// Whether this processor has instructions for the precision.
     pub fn is_native(self) -> bool {
         match self {
             Self::F32 => true,
@@ -24,15 +25,15 @@ impl Precision {
 
 named!(Precision, "precision", F32 => "f32", Bf16 => "bf16");
 
-/// The device asked for.
+/// The requested device.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum DeviceChoice {
-    /// CUDA when it can be had, else the CPU.
+    /// CUDA when it is available, else the CPU.
     Auto,
     /// The CPU.
     Cpu,
-    /// The first CUDA device; its absence is an error.
+    /// The first CUDA device; an error if there is none.
     Cuda,
 }
 

@@ -1,6 +1,6 @@
-//! A small network that proposes where a pedestrian will be at the end of the horizon.
-//! It sees one pedestrian in its own frame and those nearby. An ensemble of members, each with K ends, is trained so that
-//! the nearest of the K ends comes close to the true one ("winner takes all").
+//! A small network that proposes endpoints: where a pedestrian may be at the end of the horizon. Its input is one
+//! pedestrian, in its own frame, and the pedestrians nearby. It is an ensemble of members that propose K endpoints
+//! each. The loss is the distance of the nearest of the K endpoints from the true one ("winner takes all").
 
 mod ends;
 mod layers;

@@ -1,9 +1,9 @@
-//! One stream of random numbers for each purpose, so that none depends on how much another drew.
+//! Random numbers: each purpose has its own stream, which does not depend on how many numbers other purposes drew.
 
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
 
-/// What the numbers are for.
+/// The purpose of a stream of random numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// Initial weights.
@@ -22,7 +22,7 @@ pub enum Stage {
     ProposalStep,
 }
 
-/// The stream of a stage; `index` separates steps of one stage.
+/// The stream of a stage; `index` selects one step of the stage.
 pub fn stream(seed: u64, stage: Stage, index: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(((stage as u64) << 48) | index);

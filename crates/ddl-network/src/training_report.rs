@@ -1,44 +1,44 @@
-//! What training tells of its steps and epochs.
+//! Reports of training steps and epochs.
 
 use serde::{Deserialize, Serialize};
 
-/// What one step did.
+/// Report of one training step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepReport {
     /// Epoch of the step, counted from 1.
     pub epoch: usize,
-    /// Steps done in that epoch, this one included.
+    /// Steps done in that epoch, including this one.
     pub done: usize,
-    /// Steps of an epoch.
+    /// Steps in an epoch.
     pub steps_per_epoch: usize,
-    /// Mean loss (square metres) of the steps whose losses were read with this one; `None` when none was.
-    /// On CUDA every sixteenth step and the last of an epoch read several.
+    /// Mean loss (square metres) since the last step that has one; `None` where the step does not read the loss.
+    /// On CUDA only every sixteenth step and the last of an epoch read it.
     pub loss: Option<f64>,
-    /// Set when the step was the last of its epoch.
+    /// The report of the epoch, after its last step.
     pub finished_epoch: Option<EpochReport>,
 }
 
 /// One line of `metrics.jsonl`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EpochReport {
-    /// Counted from 1. Number 0, where a caller measured the network before its first step, has neither loss nor batches.
+    /// Counted from 1. Number 0 is a measurement before the first step, with neither loss nor batches.
     pub epoch: usize,
     /// Mean of the batches' losses, square metres.
     pub loss: f64,
-    /// Batches of the epoch.
+    /// Batches in the epoch.
     pub batches: usize,
-    /// Seconds it took.
+    /// Duration in seconds.
     pub seconds: f64,
-    /// Error on validation windows, metres, where somebody measured it; the trainer does not.
+    /// Error on validation windows (metres), if the caller measured it; the trainer does not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub validation: Option<f64>,
 }
 
-/// What one step of the proposal network did.
+/// Report of one training step of the proposal network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposalStep {
-    /// Steps done, this one included.
+    /// Steps done, including this one.
     pub done: u64,
-    /// Running mean of the training distance (metres): relaxed at first, of the nearest end at last.
+    /// Running mean of the training distance (metres): at first of several nearest endpoints, at last of the nearest.
     pub distance: f64,
 }

@@ -1,4 +1,4 @@
-//! The learned numbers of a network, by name: what they are called, how they begin, and how they are kept in files.
+//! The learned weights of a network: their names, initial values and files.
 
 mod digest;
 mod file;

@@ -1,4 +1,4 @@
-//! From what pedestrians see to features, and from these and noise to what shapes a step.
+//! The trait of a backbone, and the output layer behind it.
 
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};
@@ -6,26 +6,27 @@ use crate::config::NetworkFrame;
 use crate::weights::{Initial, Layout, Linear};
 use std::fmt::Debug;
 
-/// How much smaller the first weights of an output layer are that begins near L = I.
+/// Scale of the initial weights of an output layer whose initial output is near L = I.
 const NEAR_NEUTRAL: f64 = 0.1;
 
-/// A network that turns what pedestrians see, step by step, into features. To add one: the guide on extending.
+/// A network that turns positions into features, one time step after the other. `docs/extending.md` adds one.
 pub trait Backbone<B: Backend>: Debug + Send + Sync {
-    /// The output layer that it has declared: [`output_layer`].
+    /// The output layer that the backbone declared with [`output_layer`].
     fn output(&self) -> Linear;
 
-    /// What everybody makes of the scene in whole time steps, before its own way is looked at.
+    /// The part of the computation that depends on the scene, but not on a goal or on earlier time steps.
     ///
     /// # Shapes
-    /// `centred` `[T, P, 2]`, positions (m) relative to the scene's mean so far; `seen` during one time step or T -> `[T, P, any
-    /// width]`, the input `scene` of [`step`](Self::step).
+    /// `centred` `[T, P, 2]`: positions (m) relative to the mean over the scene and all time steps so far. `seen`:
+    /// masks of one time step, or of T. Returns `[T, P, any width]`, the input `scene` of [`step`](Self::step).
     fn scene(&self, backend: &B, centred: &B::Tokens, seen: &B::Seen) -> B::Tokens;
 
-    /// One time step: the features of everybody, and what is kept for later steps.
+    /// One time step: returns the features of all pedestrians, and adds to `memory` what later steps need.
     ///
     /// # Shapes
-    /// `relative` `[B, P, StarConfig::temporal_inputs]`: positions relative to the goal (or to the last observed position), in the pedestrian's own
-    /// frame with its velocity; `scene` `[1 or B, P, any]`; `seen` during one time step -> `[B, P, StarConfig::output_inputs]`.
+    /// `relative` `[B, P, StarConfig::temporal_inputs]`: positions relative to the goal (or to the last observed
+    /// position), in the pedestrian's own frame with its velocity. `scene` `[1 or B, P, any width]`. `seen`: masks of
+    /// one time step. Returns `[B, P, StarConfig::output_inputs]`.
     fn step(
         &self,
         backend: &B,
@@ -36,7 +37,8 @@ pub trait Backbone<B: Backend>: Debug + Send + Sync {
     ) -> B::Tokens;
 }
 
-/// Declares the output layer: features and noise to (a, b, c), or (x, y); in the pedestrian's own frame near L = I.
+/// Declares the output layer, from features and noise to (a, b, c) or (x, y). In the pedestrian's own frame the initial
+/// output is near L = I.
 pub fn output_layer(layout: &mut Layout, config: &StarConfig) -> Linear {
     let inputs = (config.output_inputs() + config.noise_width) as usize;
     let outputs = config.output_width() as usize;

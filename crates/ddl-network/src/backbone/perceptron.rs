@@ -1,4 +1,4 @@
-//! A small perceptron: what shapes a step depends on the goal offset and the observed motion, on nobody else.
+//! A small perceptron. Its features depend on the goal offset and the observed motion, not on other pedestrians.
 
 use super::features::{Backbone, output_layer};
 use crate::StarConfig;
@@ -7,7 +7,7 @@ use crate::config::NetworkFrame;
 use crate::weights::{Layout, Linear};
 use ddl_data::OBSERVED;
 
-/// The backbone without a Transformer: two hidden layers on where the pedestrian is and was, in its own frame.
+/// The backbone without a Transformer: two hidden layers on the present and observed positions of the pedestrian.
 #[derive(Debug, Clone)]
 pub struct Perceptron {
     frame: NetworkFrame,
@@ -17,7 +17,7 @@ pub struct Perceptron {
 }
 
 impl Perceptron {
-    /// Declares its layers: a hidden one of `feed_forward_width`, and one of `model_width`.
+    /// Declares its hidden layers: one of width `feed_forward_width`, and one of width `model_width`.
     pub fn new(layout: &mut Layout, config: &StarConfig) -> Self {
         let inputs = config.temporal_inputs() as usize * (OBSERVED + 1);
         let [width, hidden] = [config.model_width, config.feed_forward_width].map(|n| n as usize);
@@ -50,7 +50,7 @@ impl<B: Backend> Backbone<B> for Perceptron {
         if memory.tokens.len() < OBSERVED {
             memory.tokens.push(relative.clone());
         }
-        // What is not observed yet counts as what is observed now.
+        // At an observed time step the later ones are replaced by the present one.
         let observed = (0..OBSERVED).map(|t| memory.tokens.get(t).unwrap_or(relative));
         let inputs = observed.fold(relative.clone(), |inputs, x| {
             let x = backend.repeated(x, backend.entries(relative));

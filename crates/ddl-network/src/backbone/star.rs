@@ -1,6 +1,5 @@
-//! STAR (Yu et al., ECCV 2020), one time step at a time.
-//! Only the newest token's output is used, and earlier tokens never change: one query a step is computed, and keys and
-//! values of the past are cached.
+//! STAR (Yu et al., ECCV 2020), one time step at a time. Only the output of the newest token is used, and earlier
+//! tokens never change. So each time step needs one query, and keys and values of earlier tokens are cached.
 
 use super::features::{Backbone, output_layer};
 use crate::StarConfig;
@@ -41,7 +40,7 @@ impl Star {
             layout.encoder_layer(&format!("temporal_encoder_{encoder}.layers.0"), sizes, 0.0)
         });
         let inputs = config.temporal_inputs() as usize;
-        // In this order they draw their initial weights.
+        // The order decides which random numbers become the initial weights of a layer.
         let temporal_embedding = layout.linear("input_embedding_layer_temporal", inputs, width);
         let spatial_embedding = layout.linear("input_embedding_layer_spatial", 2, width);
         let output = output_layer(layout, config);

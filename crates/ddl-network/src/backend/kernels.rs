@@ -1,4 +1,4 @@
-//! The operations of a backbone by our own kernels, on the CPU in `f32`.
+//! The operations of a backbone, computed by the kernels of this crate on the CPU in `f32`.
 
 use super::operations::{Backend, Mode};
 use super::rows::{Rows, Tape};
@@ -10,7 +10,7 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// The weights of a network as kernels read them.
+/// The weights of a network in the layout that the kernels read.
 #[derive(Debug, Clone)]
 pub struct Kernels {
     layout: Arc<Layout>,
@@ -20,10 +20,10 @@ pub struct Kernels {
 }
 
 impl Kernels {
-    /// Kernels with these learned numbers, in the order of the layout.
+    /// Kernels with these weights, in the order of the layout.
     ///
     /// # Panics
-    /// When there are more or fewer numbers than the layout has.
+    /// If the count of `numbers` differs from the layout's.
     pub fn new(layout: &Arc<Layout>, numbers: &[f32], precision: Precision) -> Self {
         let linear =
             |layer: &Linear| Arc::new(kernel::LinearKernel::zeros(layer.inputs, layer.outputs));
@@ -38,12 +38,12 @@ impl Kernels {
         kernels
     }
 
-    /// Takes over other learned numbers. What a backward pass still holds of the earlier ones stays as it was.
+    /// Replaces the weights. A backward pass that still refers to the earlier weights keeps them unchanged.
     ///
     /// # Panics
-    /// When there are more or fewer numbers than the layout has.
+    /// If the count of `numbers` differs from the layout's.
     pub fn update(&mut self, numbers: &[f32]) {
-        assert_eq!(numbers.len(), self.layout.count(), "learned numbers");
+        assert_eq!(numbers.len(), self.layout.count(), "number of weights");
         for (kernel, layer) in self.linears.iter_mut().zip(self.layout.linears()) {
             Arc::make_mut(kernel).update(&numbers[layer.span()]);
         }
@@ -59,7 +59,8 @@ impl Kernels {
     }
 }
 
-/// One pass of kernels through a network: forwards, and, with the feature `training`, backwards where it was begun so.
+/// One pass through a network. [`forward_only`](Self::forward_only) computes no gradients; with the feature `training`
+/// a pass can also run backwards.
 #[derive(Debug)]
 pub struct KernelBackend {
     kernels: Arc<Kernels>,
@@ -68,24 +69,24 @@ pub struct KernelBackend {
     tape: Option<Tape>,
 }
 
-/// Keys and values `[B, P, width]` each, and what has come back to them so far.
+/// Keys and values, each `[B, P, width]`, and their gradient accumulated so far.
 #[derive(Debug)]
 pub struct RowKeyValues {
     rows: Remembered,
     gradient: RefCell<Option<Remembered>>,
 }
 
-/// Who sees whom in some time steps of scenes.
+/// The visibility masks of some time steps of scenes.
 #[derive(Debug, Clone)]
 pub struct SeenScenes {
     /// The scenes, with all their time steps.
     pub scenes: Arc<Scenes>,
-    /// One time step for all batch entries, or one for each.
+    /// A single time step for all batch entries, or one for each entry.
     pub steps: Range<usize>,
 }
 
 impl KernelBackend {
-    /// A pass that no gradient is asked of, without dropout.
+    /// A pass without gradients and without dropout.
     pub fn forward_only(kernels: Arc<Kernels>) -> Self {
         Self {
             kernels,
@@ -95,7 +96,7 @@ impl KernelBackend {
         }
     }
 
-    /// A pass whose gradient [`backward`](Self::backward) gives, with dropout by this seed in [`Mode::Train`].
+    /// A pass whose gradient [`backward`](Self::backward) computes. `seed` determines the dropout in [`Mode::Train`].
     #[cfg(feature = "training")]
     pub fn training(kernels: Arc<Kernels>, mode: Mode, seed: u64) -> Self {
         Self {
@@ -106,18 +107,19 @@ impl KernelBackend {
         }
     }
 
-    /// Runs `step`, which may add to the gradients of learned numbers, when those of all that comes later are known.
+    /// Records a step of the backward pass. It runs after the steps recorded later, and may add to the gradients of the
+    /// weights.
     pub fn on_the_way_back(&self, step: impl FnOnce(&mut [f32]) + 'static) {
         #[cfg(feature = "training")]
         if let Some(tape) = &self.tape {
             tape.push(step);
         }
-        // Without the feature no kernel backwards is named anywhere, and none is compiled.
+        // Without the feature nothing calls the backward kernels, so the compiler leaves them out.
         #[cfg(not(feature = "training"))]
         drop(step);
     }
 
-    /// Adds the gradients of all learned numbers to `of_weights`; the second call adds nothing.
+    /// Adds the gradients of all weights to `of_weights`, in the order of the layout. A second call adds nothing.
     #[cfg(feature = "training")]
     pub fn backward(&self, of_weights: &mut [f32]) {
         if let Some(tape) = &self.tape {
@@ -125,7 +127,7 @@ impl KernelBackend {
         }
     }
 
-    /// One batch entry, `[1, P, width]`.
+    /// One batch entry of `x`, `[1, P, width]`.
     pub fn entry(&self, x: &Rc<Rows>, entry: usize) -> Rc<Rows> {
         let [_, pedestrians, width] = x.shape();
         let first = entry * pedestrians * width;
@@ -136,8 +138,8 @@ impl KernelBackend {
         })
     }
 
-    /// What a kernel has computed; `backward` gets the gradient of it, and adds to those of the kernel's inputs and
-    /// of all learned numbers.
+    /// The output of a kernel. `backward` receives the gradient of the output, and adds to the gradients of the
+    /// kernel's inputs and of all weights.
     fn made(
         &self,
         shape: [usize; 3],
@@ -147,7 +149,7 @@ impl KernelBackend {
         let rows = Rc::new(Rows::new(shape, numbers));
         let output = Rc::clone(&rows);
         self.on_the_way_back(move |of_weights| {
-            // Otherwise nothing of the loss depends on it.
+            // Without a gradient the loss does not depend on this output.
             if let Some(gradient) = output.take_gradient() {
                 backward(&gradient, of_weights);
             }
@@ -170,7 +172,7 @@ impl KernelBackend {
             return None;
         }
         let seed = self.seed.get();
-        // An odd constant goes through all numbers before one comes back.
+        // Steps of an odd constant reach all 2^64 seeds before one repeats.
         self.seed.set(seed.wrapping_add(0x9e37_79b9_7f4a_7c15));
         Some(Dropout { p, seed })
     }
@@ -219,7 +221,7 @@ impl Backend for KernelBackend {
         let (a, b) = (Rc::clone(x), Rc::clone(other));
         let [batch, pedestrians, width] = a.shape();
         let both = width + b.shape()[2];
-        assert_eq!(b.shape()[..2], [batch, pedestrians], "rows side by side");
+        assert_eq!(b.shape()[..2], [batch, pedestrians], "rows to concatenate");
         let mut numbers = Buffer::any(batch * pedestrians * both);
         let rows = a.chunks_exact(width).zip(b.chunks_exact(both - width));
         for (row, (a, b)) in numbers.chunks_exact_mut(both).zip(rows) {
@@ -319,7 +321,7 @@ impl Backend for KernelBackend {
     }
 
     fn repeated_key_values(&self, cached: &Rc<RowKeyValues>, _: usize) -> Rc<RowKeyValues> {
-        // The kernels take fewer rows for repetitions.
+        // The kernels repeat a single batch entry themselves.
         Rc::clone(cached)
     }
 }

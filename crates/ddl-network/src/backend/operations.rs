@@ -1,4 +1,4 @@
-//! The operations that a backbone is made of, and what it keeps between them.
+//! The operations that a backbone consists of, and its memory of earlier time steps.
 
 use crate::weights::{EncoderLayer, Linear};
 use std::fmt::Debug;
@@ -6,39 +6,39 @@ use std::fmt::Debug;
 /// Whether dropout is active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Mode {
-    /// Dropout on.
+    /// With dropout.
     Train,
-    /// Dropout off: the forecast is a function of its inputs.
+    /// Without dropout: the forecast is deterministic.
     Evaluate,
 }
 
-/// The operations that a backbone is made of.
+/// The operations that a backbone consists of.
 ///
-/// Tokens are `[B, P, width]`: batch entries (hypotheses, or time steps), pedestrians of all scenes one after the other, numbers.
+/// Tokens are `[B, P, width]`: B batch entries (hypotheses or time steps), and P pedestrians of all scenes in sequence.
 pub trait Backend: Debug + Sized + 'static {
-    /// Tokens on their way; cloning is cheap.
+    /// Tokens; cloning is cheap.
     type Tokens: Debug + Clone;
     /// Keys and values of tokens, for later queries; cloning is cheap.
     type KeyValues: Debug + Clone;
-    /// Who sees whom during one time step, or one for each batch entry.
+    /// Visibility masks of one time step, or of one for each batch entry.
     type Seen: Debug + Clone;
 
-    /// B.
+    /// The number of batch entries B.
     fn entries(&self, x: &Self::Tokens) -> usize;
 
     /// `[B, P, inputs]` -> `[B, P, outputs]`.
     fn linear(&self, layer: Linear, x: &Self::Tokens) -> Self::Tokens;
 
-    /// max(0, x), number by number.
+    /// max(0, x), elementwise.
     fn relu(&self, x: &Self::Tokens) -> Self::Tokens;
 
-    /// Both side by side, `[B, P, width + width of other]`.
+    /// Concatenates both along the width: `[B, P, width + width of other]`.
     fn beside(&self, x: &Self::Tokens, other: &Self::Tokens) -> Self::Tokens;
 
-    /// A single batch entry `batch` times; the same tokens where there are as many already.
+    /// Repeats a single batch entry `batch` times; returns `x` itself if it has `batch` entries already.
     fn repeated(&self, x: &Self::Tokens, batch: usize) -> Self::Tokens;
 
-    /// An encoder layer in which every pedestrian attends to those of its scene that it sees.
+    /// An encoder layer in which each pedestrian attends to the visible pedestrians of its scene.
     fn spatial_attention(
         &self,
         layer: EncoderLayer,
@@ -46,7 +46,7 @@ pub trait Backend: Debug + Sized + 'static {
         seen: &Self::Seen,
     ) -> Self::Tokens;
 
-    /// An encoder layer in which every newest token attends to the cached ones of its pedestrian and to itself.
+    /// An encoder layer in which each newest token attends to the cached tokens of its pedestrian and to itself.
     fn temporal_attention(
         &self,
         layer: EncoderLayer,
@@ -57,16 +57,16 @@ pub trait Backend: Debug + Sized + 'static {
     /// Keys and values of tokens in an encoder layer, to be cached.
     fn key_values(&self, layer: EncoderLayer, x: &Self::Tokens) -> Self::KeyValues;
 
-    /// Those of a single batch entry for `batch` entries.
+    /// Repeats the keys and values of a single batch entry `batch` times.
     fn repeated_key_values(&self, cached: &Self::KeyValues, batch: usize) -> Self::KeyValues;
 }
 
-/// What a backbone keeps of earlier time steps.
+/// The memory that a backbone has of earlier time steps.
 #[derive(Debug)]
 pub struct Memory<B: Backend> {
     /// Key-value caches, one for each temporal attention, oldest token first.
     pub caches: Vec<Vec<B::KeyValues>>,
-    /// Other tokens, as the backbone needs them.
+    /// Other tokens that the backbone needs.
     pub tokens: Vec<B::Tokens>,
 }
 

@@ -1,12 +1,12 @@
-//! Tokens of the kernels: plain numbers, with the gradient that has come back to them; and the tape of the way back.
-//! A kernel leaves on the tape how the gradients of its output become those of its inputs and weights. Where tokens
-//! go over to another library, its way back comes first; then the tape, from its end.
+//! Tokens of the kernels with their gradients, and the tape of the backward pass. A kernel records on the tape how the
+//! gradient of its output becomes those of its inputs and weights. If another library continues with the tokens, its
+//! backward pass runs first, then the tape in reverse order.
 
 use crate::kernel::Buffer;
 use std::cell::RefCell;
 use std::ops::Deref;
 
-/// Numbers `[B, P, width]`, and what has come back to them so far.
+/// Tokens `[B, P, width]`, and their gradient accumulated so far.
 #[derive(Debug)]
 pub struct Rows {
     shape: [usize; 3],
@@ -23,15 +23,15 @@ impl Deref for Rows {
 }
 
 impl Rows {
-    /// Tokens of that shape.
+    /// Tokens of that shape, in row-major order.
     ///
     /// # Panics
-    /// When the numbers are more or fewer.
+    /// If the count of `numbers` does not fit the shape.
     pub fn new(shape: [usize; 3], numbers: Buffer) -> Self {
         assert_eq!(
             numbers.len(),
             shape.iter().product::<usize>(),
-            "numbers of {shape:?}"
+            "number of elements of the shape {shape:?}"
         );
         Self {
             shape,
@@ -40,12 +40,12 @@ impl Rows {
         }
     }
 
-    /// B, P and the width.
+    /// `[B, P, width]`.
     pub fn shape(&self) -> [usize; 3] {
         self.shape
     }
 
-    /// Adds to their gradient.
+    /// Adds `terms`, of the same shape, to the gradient.
     pub fn add_gradient(&self, terms: Buffer) {
         let mut gradient = self.gradient.borrow_mut();
         match &mut *gradient {
@@ -71,7 +71,7 @@ fn add(sums: &mut [f32], terms: &[f32]) {
     }
 }
 
-/// One kernel backwards; it adds to the gradients of all learned numbers.
+/// The backward pass of one kernel; it adds to the gradients of all weights.
 type Backward = Box<dyn FnOnce(&mut [f32])>;
 
 #[derive(Default)]
@@ -102,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_step_comes_first_and_only_once() {
+    fn steps_run_once_and_in_reverse_order() {
         let tape = Tape::default();
         tape.push(|sums| sums[0] += 1.0);
         tape.push(|sums| sums[0] *= 3.0);

@@ -1,28 +1,28 @@
-//! Shape of the part of the proposal network that looks at earlier pedestrians of the place.
+//! Sizes of the part of the proposal network that attends to earlier pedestrians of the place.
 
 use super::range::{not_negative, positive, require};
 use crate::NetworkError;
 use ddl_data::Remembered;
 use serde::{Deserialize, Serialize};
 
-/// Shape of the memory branch: attention over earlier pedestrians of the place, and a readout of its own. Its ends are
-/// pooled with those that the rest of the network proposes from the observation alone.
+/// Sizes of the memory branch: attention over earlier pedestrians of the place, and a separate readout. Its endpoints
+/// are pooled with those that the rest of the network proposes from the observation alone.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemoryConfig {
-    /// Earlier pedestrians looked at, the most alike first.
+    /// Number of earlier pedestrians attended to: the most similar ones.
     pub remembered: usize,
     /// Width of the code of an earlier pedestrian.
     pub width: i64,
     /// Heads of the attention over earlier pedestrians.
     pub heads: i64,
-    /// Width of the hidden layers after they have been taken in.
+    /// Width of the hidden layers after the attention.
     pub hidden: i64,
-    /// Hidden layers after they have been taken in.
+    /// Number of hidden layers after the attention.
     pub layers: usize,
-    /// An earlier pedestrian at the squared distance d counts exp(-d / this).
+    /// An earlier pedestrian at the squared distance d has the weight exp(-d / `fade`).
     pub fade: f64,
-    /// Count of earlier pedestrians at which the ends of the branch have half of the probability.
+    /// Sum of these weights at which the endpoints of the branch get half of the probability.
     pub half: f64,
 }
 
@@ -46,16 +46,15 @@ impl MemoryConfig {
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), NetworkError> {
-        // An upper limit keeps a damaged file from asking for all the memory there is.
-        for (field, value, most) in [
-            ("memory.remembered", self.remembered as i64, 256),
-            ("memory.width", self.width, 4096),
-            ("memory.heads", self.heads, 64),
-            ("memory.hidden", self.hidden, 4096),
-            ("memory.layers", self.layers as i64, 16),
+        // The upper limits prevent a damaged file from requesting all memory of the machine.
+        for (field, value, most, rule) in [
+            ("memory.remembered", self.remembered as i64, 256, "1 to 256"),
+            ("memory.width", self.width, 4096, "1 to 4096"),
+            ("memory.heads", self.heads, 64, "1 to 64"),
+            ("memory.hidden", self.hidden, 4096, "1 to 4096"),
+            ("memory.layers", self.layers as i64, 16, "1 to 16"),
         ] {
-            let holds = (1..=most).contains(&value);
-            require(holds, field, &value, "at least 1 and within reason")?;
+            require((1..=most).contains(&value), field, &value, rule)?;
         }
         let divides = self.width % self.heads == 0;
         require(
@@ -68,8 +67,8 @@ impl MemoryConfig {
         positive("memory.half", self.half)
     }
 
-    /// Share of the probability that the ends of the branch have: n / (n + `half`), where n is the sum of exp(-d / `fade`) over the
-    /// earlier pedestrians that are looked at, d the squared distance of each. 0 where there are none.
+    /// Share of the probability given to the endpoints of the branch: n / (n + `half`). n is the sum of exp(-d /
+    /// `fade`) over the earlier pedestrians attended to, d the squared distance of each. 0 without earlier pedestrians.
     pub fn share(&self, remembered: &[Remembered]) -> f64 {
         let looked_at = remembered.iter().take(self.remembered);
         let alike: f64 = looked_at
@@ -79,15 +78,15 @@ impl MemoryConfig {
     }
 }
 
-/// How the memory branch is trained, after the rest of the network, whose numbers then stay as they are.
+/// Training of the memory branch. It is trained last; the weights of the rest of the network are fixed then.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MemoryTraining {
-    /// Batches.
+    /// Number of batches.
     pub steps: u64,
-    /// Share of the pedestrians of a batch that see a part of what is remembered, each a random part.
+    /// Share of the pedestrians of a batch that are given only a random part of the earlier pedestrians.
     pub partial: f64,
-    /// Standard deviation of what is added to the whole track of an earlier pedestrian (metres).
+    /// Standard deviation of the offset added to the whole track of an earlier pedestrian (metres).
     pub jitter: f64,
 }
 

@@ -1,33 +1,33 @@
-//! Shape of the proposal network, and how it is trained.
+//! Sizes of the proposal network, and settings of its training.
 
 use super::memory::{MemoryConfig, MemoryTraining};
 use super::range::{at_least_one, not_negative, positive, require};
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
 
-/// Shape of the proposal network.
+/// Sizes of the proposal network.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProposalConfig {
-    /// Networks of the ensemble, each trained on its own batches.
+    /// Number of networks in the ensemble, each trained on its own batches.
     pub members: i64,
-    /// Ends K that each member proposes.
+    /// Number K of endpoints that each member proposes.
     pub ends: i64,
     /// Width of the hidden layers.
     pub width: i64,
-    /// Hidden layers after the neighbours have been taken in.
+    /// Number of hidden layers after the attention over neighbours.
     pub layers: usize,
     /// Width of a neighbour's code.
     pub neighbour_width: i64,
     /// Heads of the attention over neighbours.
     pub heads: i64,
-    /// Nearest neighbours looked at.
+    /// Number of nearest neighbours attended to.
     pub neighbours: usize,
-    /// Neighbours further away than this at the last observed step are not looked at (metres).
+    /// Largest distance of a neighbour attended to, at the last observed time step (metres).
     pub neighbour_range: f64,
     /// Seconds between two positions.
     pub time_step: f64,
-    /// The part that looks at earlier pedestrians of the place; `None` without it.
+    /// The branch that attends to earlier pedestrians of the place; `None` for a network without it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub memory: Option<MemoryConfig>,
 }
@@ -50,14 +50,16 @@ impl Default for ProposalConfig {
 }
 
 impl ProposalConfig {
-    /// Weights of its largest layers alone: the network has more numbers than these, and a file with fewer is not of it.
+    /// Number of weights in the largest layers: a lower bound for the whole network. A file with fewer weights cannot
+    /// belong to this configuration.
     ///
     /// # Panics
-    /// Where numbers overflow, which [`check`](Self::check) excludes.
+    /// On overflow, which [`check`](Self::check) excludes.
     pub fn least_numbers(&self) -> u64 {
         let [members, ends, width, near] =
             [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
-        // hidden layers, attention, and for each end a place and a probability: packed models have no waypoints
+        // Hidden layers, attention, and a position and a probability for each endpoint. Packed models have no
+        // waypoints.
         let part = |layers: usize, hidden: u64, near: u64| {
             let layers = width * hidden + (layers as u64 - 1) * hidden * hidden;
             layers + near * (3 * near + width) + 3 * hidden * ends
@@ -72,20 +74,18 @@ impl ProposalConfig {
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
     pub fn check(&self) -> Result<(), NetworkError> {
-        // An upper limit keeps a damaged file from asking for all the memory there is.
-        for (field, value, most) in [
-            ("members", self.members, 64),
-            ("ends", self.ends, 1024),
-            ("width", self.width, 4096),
-            ("neighbour_width", self.neighbour_width, 4096),
-            ("heads", self.heads, 64),
-            ("neighbours", self.neighbours as i64, 256),
+        // The upper limits prevent a damaged file from requesting all memory of the machine.
+        for (field, value, most, rule) in [
+            ("members", self.members, 64, "1 to 64"),
+            ("ends", self.ends, 1024, "1 to 1024"),
+            ("width", self.width, 4096, "1 to 4096"),
+            ("layers", self.layers as i64, 16, "1 to 16"),
+            ("neighbour_width", self.neighbour_width, 4096, "1 to 4096"),
+            ("heads", self.heads, 64, "1 to 64"),
+            ("neighbours", self.neighbours as i64, 256, "1 to 256"),
         ] {
-            let holds = (1..=most).contains(&value);
-            require(holds, field, &value, "at least 1 and within reason")?;
+            require((1..=most).contains(&value), field, &value, rule)?;
         }
-        let layers = self.layers;
-        require((1..=16).contains(&layers), "layers", &layers, "1 to 16")?;
         let divides = self.neighbour_width % self.heads == 0;
         require(
             divides,
@@ -99,43 +99,44 @@ impl ProposalConfig {
     }
 }
 
-/// How the proposal network is trained.
+/// Training of the proposal network.
 ///
 /// The defaults were chosen on validation splits of training recordings (`docs/tried.md`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProposalTraining {
-    /// Batches.
+    /// Number of batches.
     pub steps: u64,
-    /// Pedestrians a batch, for each member.
+    /// Pedestrians in a batch, for each member.
     pub batch: i64,
-    /// Largest step size of Adam; it rises, then falls along a half cosine.
+    /// Largest step size of Adam; the step size rises to it, then falls along a half cosine.
     pub learning_rate: f64,
-    /// Largest allowed norm of a member's gradient, on average.
+    /// Largest norm of a member's gradient, as the root mean square over the members.
     pub gradient_clip: f64,
-    /// Nearest ends that share the loss at the start; falls to 1, the winner alone.
+    /// Number of nearest endpoints that share the loss at the start; it falls to 1, the nearest alone.
     pub relaxed_ends: f64,
-    /// Share of the training after which the winner takes all.
+    /// Share of the training after which the nearest endpoint alone has the loss.
     pub relaxed_share: f64,
-    /// Weight of the waypoints' distances in the loss, beside that of the end.
+    /// Weight of the waypoints' distances in the loss, relative to the endpoint's distance.
     pub waypoint_weight: f64,
-    /// Weight of the cross-entropy of the ends' probabilities (metres).
+    /// Weight of the cross-entropy of the endpoints' probabilities in the loss (metres).
     pub probability_weight: f64,
-    /// Scenes are enlarged by exp(u), u uniform within ± this.
+    /// Scenes are enlarged by exp(u), u uniform in ±`scale`.
     pub scale: f64,
     /// Scenes are turned by a normal angle of this standard deviation (radians).
     pub turn: f64,
-    /// Largest standard deviation of what is added to every observed position (metres); each pedestrian's is uniform from 0 to this.
+    /// Largest standard deviation of the errors added to observed positions (metres). The deviation of each pedestrian
+    /// is uniform from 0 to this.
     pub jitter: f64,
-    /// Standard deviation of what is added to a neighbour's whole track (metres).
+    /// Standard deviation of the offset added to a neighbour's whole track (metres).
     pub neighbour_jitter: f64,
-    /// Share of the pedestrians that see no neighbours in a batch.
+    /// Share of the pedestrians of a batch whose neighbours are hidden.
     pub blindness: f64,
-    /// Share of the pedestrians that walk backwards in time in a batch, where there are any to draw from.
+    /// Share of the pedestrians of a batch whose track is reversed in time, if there are reversed tracks.
     pub reversed: f64,
     /// Seed of initial weights, batches and augmentation.
     pub seed: u64,
-    /// How the memory branch is trained, in a network that has one.
+    /// Training of the memory branch, in a network that has one.
     #[serde(default)]
     pub memory: MemoryTraining,
 }
@@ -192,7 +193,8 @@ impl ProposalTraining {
         self.memory.check()
     }
 
-    /// How many of the nearest ends share the loss of a step of so many, a fraction counting for the last.
+    /// Number of nearest endpoints that share the loss at step `step` of `steps`. With a fractional number the last
+    /// endpoint has this fraction as its weight.
     pub fn relaxed_at(&self, step: u64, steps: u64) -> f64 {
         let done = step as f64 / steps as f64;
         let left = if self.relaxed_share > 0.0 {
@@ -209,7 +211,7 @@ mod tests {
     use super::ProposalTraining;
 
     #[test]
-    fn the_winner_takes_all_in_the_end() {
+    fn the_number_of_relaxed_endpoints_falls_to_one() {
         let training = ProposalTraining::default();
         assert!((training.relaxed_at(0, 1500) - 10.0).abs() < 1e-12);
         assert!((training.relaxed_at(450, 1500) - 5.5).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Values that have to lie in a range.
+//! Range checks of configuration values.
 
 use crate::NetworkError;
 

@@ -1,31 +1,31 @@
-//! Size and constants of the forecasting network.
+//! Sizes and constants of the forecasting network.
 
 use super::range::{positive, require};
 use super::variant::{BackboneKind, Variant};
 use crate::NetworkError;
 use serde::{Deserialize, Serialize};
 
-/// The frame in which the network reads where a pedestrian is, and says how it goes on.
+/// The coordinate frame of the network's input and output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NetworkFrame {
-    /// That of the recording, as published.
+    /// The frame of the recording, as published.
     World,
-    /// The pedestrian's own, whose first axis points from where it was last observed to its goal. Velocities are read beside
-    /// positions, and the output layer reads both beside the token.
+    /// The pedestrian's own frame: its first axis points from the last observed position to the goal. The network then
+    /// reads velocities as well as positions, and the output layer reads both in addition to the token.
     Goal,
 }
 
-/// Size and constants of the network. [`StarConfig::published`] gives the paper's.
+/// Sizes and constants of the network. [`StarConfig::published`] gives those of the paper.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct StarConfig {
     /// The network behind the shared rollout.
     #[serde(default, skip_serializing_if = "is_star")]
     pub backbone: BackboneKind,
-    /// What the network reads and what its output means.
+    /// The variant of the ablation: use of the goal, and meaning of the output.
     pub variant: Variant,
-    /// The frame of what it reads of a pedestrian and of what it emits.
+    /// The coordinate frame of the network's input and output.
     pub frame: NetworkFrame,
     /// Width of a token.
     pub model_width: i64,
@@ -33,7 +33,7 @@ pub struct StarConfig {
     pub heads: i64,
     /// Width of the hidden layer of each feed-forward block.
     pub feed_forward_width: i64,
-    /// Layers of each of the two spatial encoders.
+    /// Number of layers in each of the two spatial encoders.
     pub spatial_layers: usize,
     /// Length of the Gaussian noise vector given to the output layer.
     pub noise_width: i64,
@@ -47,20 +47,23 @@ pub struct StarConfig {
     pub time_step: f64,
 }
 
-/// Configurations of earlier versions name no backbone: theirs is STAR.
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+/// STAR is not written, because configurations of earlier versions have no field `backbone`.
+#[expect(
+    clippy::trivially_copy_pass_by_ref,
+    reason = "serde passes a reference"
+)]
 fn is_star(backbone: &BackboneKind) -> bool {
     *backbone == BackboneKind::Star
 }
 
-/// As many as the kernels have room for.
+/// The kernels have room for this many heads.
 const MOST_HEADS: i64 = 256;
-/// Upper limits keep a damaged file from asking for all the memory there is.
+/// The upper limits prevent a damaged file from requesting all memory of the machine.
 const MOST_LAYER_NUMBERS: i64 = 1 << 24;
 const MOST_LAYERS: usize = 64;
 
 impl StarConfig {
-    /// What reports call a network of this configuration: its variant, and its backbone where that is not STAR.
+    /// The name of the network in reports: its variant, and its backbone if that is not STAR.
     pub fn name(&self) -> String {
         match (self.variant, self.backbone) {
             (variant, BackboneKind::Star) => variant.name().to_owned(),
@@ -73,10 +76,11 @@ impl StarConfig {
         self.model_width * (4 * self.model_width + 2 * self.feed_forward_width)
     }
 
-    /// Weights of the largest layers alone, so that a file with fewer is refused before there is a network to fill.
+    /// Number of weights in the largest layers: a lower bound for the whole network. A file with fewer weights is
+    /// refused before memory for the network is allocated.
     ///
     /// # Panics
-    /// Where numbers overflow, which [`check`](Self::check) excludes.
+    /// On overflow, which [`check`](Self::check) excludes.
     pub fn least_numbers(&self) -> u64 {
         match self.backbone {
             BackboneKind::Star => 2 * self.spatial_layers as u64 * self.layer_numbers() as u64,
@@ -102,8 +106,8 @@ impl StarConfig {
         }
     }
 
-    /// The default: in own frames where there are goals (`docs/tried.md`), and as small as loses no accuracy
-    /// (`docs/performance.md`).
+    /// The default: the pedestrian's own frame if the variant has goals (`docs/tried.md`), and the smallest sizes
+    /// that lose no accuracy (`docs/performance.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {
@@ -117,7 +121,8 @@ impl StarConfig {
         }
     }
 
-    /// Numbers the temporal encoders read of a pedestrian and step: where it is, and in its own frame its velocity too.
+    /// Inputs of the temporal encoders for each pedestrian and time step: the position, and in its own frame the
+    /// velocity.
     pub fn temporal_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => 2,
@@ -125,7 +130,8 @@ impl StarConfig {
         }
     }
 
-    /// Numbers the output layer reads of a pedestrian and step, without noise: token; in own frames place and velocity.
+    /// Inputs of the output layer for each pedestrian and time step, without the noise: the token, and in the
+    /// pedestrian's own frame also position and velocity.
     pub fn output_inputs(&self) -> i64 {
         match self.frame {
             NetworkFrame::World => self.model_width,
@@ -133,7 +139,7 @@ impl StarConfig {
         }
     }
 
-    /// Numbers the network emits a pedestrian and step: (a, b, c) of the Cholesky factor, or (x, y).
+    /// Outputs for each pedestrian and time step: (a, b, c) of the Cholesky factor, or (x, y).
     pub fn output_width(&self) -> i64 {
         if self.variant.dynamics() { 3 } else { 2 }
     }
@@ -152,7 +158,7 @@ impl StarConfig {
         ];
         for (field, value) in counts {
             let holds = (1..=65_536).contains(&value);
-            require(holds, field, &value, "a whole number in 1..=65536")?;
+            require(holds, field, &value, "1 to 65536")?;
         }
         let (heads, layers) = (self.heads, self.spatial_layers);
         require(heads <= MOST_HEADS, "heads", &heads, "at most 256")?;
@@ -160,12 +166,12 @@ impl StarConfig {
             self.layer_numbers() <= MOST_LAYER_NUMBERS,
             "feed_forward_width",
             &self.feed_forward_width,
-            "so that a layer has at most 2^24 weights",
+            "a layer may have at most 2^24 weights",
         )?;
         let few = layers <= MOST_LAYERS;
         require(few, "spatial_layers", &layers, "at most 64")?;
         let divides = self.model_width % heads == 0;
-        require(divides, "heads", &heads, "must divide model_width")?;
+        require(divides, "heads", &heads, "a divisor of model_width")?;
         require(
             self.frame == NetworkFrame::World || self.variant.goal_shift(),
             "frame",

@@ -1,4 +1,4 @@
-//! How to train.
+//! Settings of the training.
 
 use super::range::{at_least_one, not_negative, positive, require};
 use super::variant::Variant;
@@ -6,20 +6,20 @@ use crate::NetworkError;
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 
-/// How Adam's step size changes over the training.
+/// Schedule of Adam's step size over the training.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LearningRateSchedule {
-    /// The same throughout, as published.
+    /// Constant, as published.
     Constant,
-    /// Rises over the first twentieth, then falls along a half cosine to zero.
+    /// Rises over the first twentieth of the training, then falls along a half cosine to zero.
     Cosine,
 }
 
 impl LearningRateSchedule {
     const WARM_UP: f64 = 0.05;
 
-    /// Factor of the largest step size at step `step` of `total`, counted from 0.
+    /// Factor (0 to 1) on the largest step size at step `step` of `total`, counted from 0.
     pub fn factor(self, step: u64, total: u64) -> f64 {
         match self {
             Self::Constant => 1.0,
@@ -38,45 +38,48 @@ impl LearningRateSchedule {
 
 named!(LearningRateSchedule, "learning_rate_schedule", Constant => "constant", Cosine => "cosine");
 
-/// What a step of training asks of the network.
+/// The training objective.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Objective {
-    /// The next position from the true ones, on the way to the true end, with noise: squared distance (paper eq. 13).
+    /// Forecast each next position from the true positions before it, with the true endpoint as goal and with noise.
+    /// The loss is the squared distance (paper eq. 13).
     NextStep,
-    /// The walk that will be forecast, from the observed frames to an estimated goal: distance from the true path.
+    /// Forecast the whole horizon from the observed positions, with an estimated goal. The loss is the distance from
+    /// the true path.
     Walk,
 }
 
 named!(Objective, "objective", NextStep => "next-step", Walk => "walk");
 
-/// So that steps can be counted, whatever the windows.
+/// Keeps the number of training steps within `u64`.
 const MOST_EPOCHS: usize = 1_000_000;
 
-/// How to train.
+/// Settings of the training.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainingConfig {
-    /// What is asked of the network.
+    /// The objective.
     pub objective: Objective,
-    /// Passes over the training set (or over `pedestrians_per_epoch` of it).
+    /// Number of passes over the training set (or over `pedestrians_per_epoch` of it).
     pub epochs: usize,
     /// Largest step size of Adam.
     pub learning_rate: f64,
-    /// How the step size changes over the training.
+    /// Schedule of the step size.
     pub learning_rate_schedule: LearningRateSchedule,
-    /// Largest allowed norm of the gradient.
+    /// Largest norm of the gradient.
     pub gradient_clip: f64,
     /// Windows are gathered into a batch until it holds more than this many pedestrians.
     pub batch_pedestrians: usize,
-    /// Rotate each batch by a fresh random angle at every visit; angles add up, as published.
+    /// Rotate each batch by a random angle at every visit. The angles of successive visits add up, as published.
     pub rotate: bool,
-    /// Mirror each batch at every other visit, drawn at random.
+    /// Mirror each batch at every visit with probability 1/2.
     pub mirror: bool,
-    /// Move every observed coordinate by a normal error at every visit, whose deviation is uniform from 0 to this (m) for each
-    /// pedestrian; futures stay where they are. Only for [`Objective::Walk`].
+    /// Largest standard deviation (metres) of the normal errors that are added to observed coordinates at every visit.
+    /// The deviation of each pedestrian is uniform from 0 to this. True futures are not changed. Only for
+    /// [`Objective::Walk`].
     pub jitter: f64,
-    /// Train on at most about this many pedestrians an epoch, going round the whole set.
+    /// Train on about this many pedestrians in an epoch; the next epoch continues with the windows after them.
     pub pedestrians_per_epoch: Option<usize>,
     /// Seed of initial weights, batch order, rotation, mirror images, jitter, noise and dropout.
     pub seed: u64,
@@ -129,7 +132,7 @@ impl TrainingConfig {
             (1..=MOST_EPOCHS).contains(&self.epochs),
             "epochs",
             &self.epochs,
-            "a whole number in 1..=1000000",
+            "1 to 1000000",
         )?;
         positive("learning_rate", self.learning_rate)?;
         let jitter = self.jitter;
@@ -138,7 +141,7 @@ impl TrainingConfig {
             jitter == 0.0 || self.objective == Objective::Walk,
             "jitter",
             &jitter,
-            "0 unless the objective is walk: single steps are led to the observed positions themselves",
+            "0 unless the objective is walk: the targets of next-step include observed positions",
         )?;
         positive("gradient_clip", self.gradient_clip)?;
         at_least_one("batch_pedestrians", self.batch_pedestrians as u64)?;
@@ -146,10 +149,10 @@ impl TrainingConfig {
         at_least_one("pedestrians_per_epoch", pedestrians as u64)
     }
 
-    /// Checks that a network of this variant can be trained so.
+    /// Checks that a network of this variant can be trained with these settings.
     ///
     /// # Errors
-    /// [`NetworkError::Config`] for walks of [`Variant::Star`], which has no goals to walk to.
+    /// [`NetworkError::Config`] for [`Objective::Walk`] with [`Variant::Star`], which has no goals.
     pub fn check_for(&self, variant: Variant) -> Result<(), NetworkError> {
         require(
             variant.uses_goal() || self.objective == Objective::NextStep,
@@ -165,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_cosine_schedule_rises_then_falls_to_nothing() {
+    fn the_cosine_schedule_rises_then_falls_to_zero() {
         let factors: Vec<f64> = (0..1000)
             .map(|step| LearningRateSchedule::Cosine.factor(step, 1000))
             .collect();

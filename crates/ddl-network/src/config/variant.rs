@@ -1,4 +1,4 @@
-//! The four variants of the paper's ablation, and which network stands behind them.
+//! The four variants of the paper's ablation, and the backbones.
 
 use crate::names::named;
 use serde::{Deserialize, Serialize};
@@ -21,17 +21,18 @@ impl Variant {
     /// All variants, in the order of the paper's Table II.
     pub const ALL: [Self; 4] = [Self::Star, Self::NoGoalShift, Self::NoDynamics, Self::Full];
 
-    /// Whether the temporal encoders read positions relative to the goal (eq. 10), not to the last observed position.
+    /// Whether the temporal encoders read positions relative to the goal (eq. 10). If not: relative to the last
+    /// observed position.
     pub fn goal_shift(self) -> bool {
         matches!(self, Self::Full | Self::NoDynamics)
     }
 
-    /// Whether the output is the Cholesky factor of the metric (eq. 12), not the next position itself.
+    /// Whether the output is the Cholesky factor of the metric (eq. 12). If not, it is the next position.
     pub fn dynamics(self) -> bool {
         matches!(self, Self::Full | Self::NoGoalShift)
     }
 
-    /// Whether a forecast depends on a goal at all.
+    /// Whether a forecast depends on a goal.
     pub fn uses_goal(self) -> bool {
         self != Self::Star
     }
@@ -39,19 +40,19 @@ impl Variant {
 
 named!(Variant, "variant", Full => "full", NoGoalShift => "no-goal-shift", NoDynamics => "no-dynamics", Star => "star");
 
-/// The network behind the shared rollout: what turns observed and forecast positions into features.
+/// The network behind the shared rollout, which turns observed and forecast positions into features.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum BackboneKind {
     /// The spatio-temporal Transformer of the paper.
     #[default]
     Star,
-    /// A small perceptron on the goal offset and the observed velocities; pedestrians do not see each other.
+    /// A small perceptron on the goal offset and the observed velocities, without interaction between pedestrians.
     Perceptron,
 }
 
 impl BackboneKind {
-    /// All of them.
+    /// All backbones.
     pub const ALL: [Self; 2] = [Self::Star, Self::Perceptron];
 }
 

@@ -1,4 +1,4 @@
-//! Windows that are forecast together, laid out side by side.
+//! Batches: windows that are forecast together.
 
 use super::rollout::{Noise, StepRule, WindowRollout};
 use crate::NetworkError;
@@ -7,7 +7,7 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
 
-/// Windows are rolled out together until they hold this many pedestrians: enough to fill the products.
+/// Largest number of pedestrians in a batch of several windows. It is enough for efficient matrix products.
 const PEDESTRIANS_AT_ONCE: usize = 64;
 
 /// The pedestrians of a window with more than this are sorted by position, so that the keys and values that a query
@@ -16,33 +16,34 @@ const CROWD: usize = 128;
 /// Width of the strips by which they are sorted, metres.
 const STRIP: f64 = 2.5;
 
-/// Several windows with their goals: P pedestrians, window after window; those of a large window are sorted by position.
+/// Several windows with their goals. The P pedestrians are in the order of the windows; those of a large window are
+/// sorted by position.
 ///
-/// Positions are relative to a point of each window, so that tracks in map coordinates lose nothing in `f32`.
+/// Positions are relative to a point of each window, so that tracks in map coordinates keep their precision in `f32`.
 #[derive(Debug)]
 pub struct ForecastBatch<'a> {
     originals: &'a [Window],
     origins: Vec<Position>,
-    /// For each window, the index in the window of the pedestrian in each row.
+    /// For each window and each of its rows: the index of the pedestrian in the window.
     orders: Vec<Vec<usize>>,
     /// The windows, relative to their origins.
     pub windows: Vec<Window>,
     /// `[G][P]`, relative to the origin of each pedestrian's window.
     pub goals: Vec<Vec<Position>>,
-    /// Share of the network's metric in what shapes a step, `[P]`.
+    /// Share of the network's metric in the metric of a step, `[P]`, 0 to 1; `None` for 1.
     pub shares: Option<Vec<f64>>,
     /// Noise vectors `[H, noise]`; `None` for the expectation over them.
     pub noise: Option<Vec<f64>>,
-    /// Number of noise vectors; 1 where there are none.
+    /// Number of noise vectors; 1 for the expectation.
     pub noise_vectors: usize,
-    /// How a velocity becomes the next position.
+    /// The integrator.
     pub rule: StepRule,
 }
 
-/// What a network made of a [`ForecastBatch`].
+/// Forecast positions of a [`ForecastBatch`].
 #[derive(Debug)]
 pub struct BatchRollout {
-    /// H.
+    /// The number of hypotheses H.
     pub hypotheses: usize,
     /// `[12, H, P]`, relative to the origins, metres.
     pub positions: Vec<[f64; 2]>,
@@ -88,7 +89,7 @@ pub(super) fn batches<'a>(
             })
             .collect()
         };
-        // The rows keep the names of the original order, which nothing here reads.
+        // The pedestrians' ids stay in the original order; nothing here reads them.
         let ordered = |((window, &origin), order): ((&Window, &Position), &Vec<usize>)| {
             window.map_positions(|i, t, _| relative(window.track(order[i])[t], origin))
         };
@@ -119,12 +120,12 @@ pub(super) fn batches<'a>(
 }
 
 impl ForecastBatch<'_> {
-    /// P.
+    /// The number of pedestrians P.
     pub fn pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
-    /// H.
+    /// The number of hypotheses H.
     pub fn hypotheses(&self) -> usize {
         self.goals.len().max(self.noise_vectors)
     }
@@ -197,7 +198,7 @@ fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), N
     };
     let lengths = windows.iter().map(Window::len);
     if !lengths.eq(shares.iter().map(Vec::len)) {
-        return fault(format!("those of {}", shares.len()));
+        return fault(format!("shares of {} windows", shares.len()));
     }
     let is_share = |share: &&f64| (0.0..=1.0).contains(*share);
     match shares.iter().flatten().find(|share| !is_share(share)) {

@@ -1,4 +1,5 @@
-//! Where everybody of a batch is, was and is led, on plain numbers.
+//! The state of a rollout: positions of a batch's pedestrians, the inputs of the network, and the step to the next
+//! positions.
 
 use super::batch::ForecastBatch;
 use super::motion_bounds::motion_bounds;
@@ -18,33 +19,36 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// The observation of a batch, in metres: the same for all hypotheses.
+/// The observation of a batch in metres, the same for all hypotheses.
 pub(super) struct Observation<'a> {
     config: &'a StarConfig,
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
     scenes: Arc<Scenes>,
     pedestrians: usize,
-    /// Bounds of each pedestrian's motion, `[P]`; `None` for plain Euler steps.
+    /// Bounds of each pedestrian's motion, `[P]`; `None` for Euler steps.
     bounds: Option<Vec<MotionBounds<f32>>>,
     /// Sum of the 8 observed positions of each pedestrian, `[P]`.
     sums: Vec<[f32; 2]>,
-    /// Entries of what the network reads at an observed time step: G where it is relative to the goals, otherwise 1.
+    /// Batch entries at an observed time step: G if the inputs are relative to the goals, otherwise 1.
     entries: usize,
 }
 
 /// The state of a rollout of some hypotheses, in metres.
 pub(super) struct Course<'a> {
     observation: &'a Observation<'a>,
-    /// What the network's temporal positions are relative to, `[E, P]`: E is G where that is the goal, otherwise 1.
+    /// Origins of the positions that the temporal encoders read, `[E, P]`: the goals (E = G), or the last observed
+    /// positions (E = 1).
     references: Vec<[f32; 2]>,
-    /// `[E, P]`; `None` for the frame of the world.
+    /// `[E, P]`; `None` for [`NetworkFrame::World`].
     frames: Option<Vec<OwnFrame>>,
     /// `[G, P]`.
     goals: Vec<[f32; 2]>,
-    /// Newest positions, `[H, P]`, and those one time step before.
+    /// Newest positions, `[H, P]`.
     positions: Vec<[f32; 2]>,
+    /// Positions one time step before, `[H, P]`.
     before: Vec<[f32; 2]>,
+    /// Sums of the positions so far, `[H, P]`.
     sums: Vec<[f32; 2]>,
 }
 
@@ -95,7 +99,7 @@ impl<'a> Observation<'a> {
         }
     }
 
-    /// The observed positions relative to the mean over the scene and all time steps so far, `[8, P, 2]`.
+    /// Observed positions relative to the mean over the scene and all time steps so far, `[8, P, 2]`.
     pub(super) fn centred(&self) -> Rc<Rows> {
         let mut sums = vec![[0.0; 2]; self.pedestrians];
         let mut centred = Buffer::copy(self.observed.as_flattened());
@@ -133,7 +137,7 @@ impl<'a> Observation<'a> {
 }
 
 impl<'a> Course<'a> {
-    /// The pedestrians before the first step to forecast, in `hypotheses`; a single goal is that of all hypotheses.
+    /// The state before the first forecast step, for some hypotheses. A single goal is used for all hypotheses.
     pub(super) fn new(
         observation: &'a Observation<'_>,
         batch: &ForecastBatch<'_>,
@@ -141,12 +145,12 @@ impl<'a> Course<'a> {
     ) -> Self {
         let config = observation.config;
         let count = hypotheses.len();
-        let led = if batch.goals.len() == 1 {
+        let used = if batch.goals.len() == 1 {
             0..1
         } else {
             hypotheses
         };
-        let goals = &batch.goals[led];
+        let goals = &batch.goals[used];
         let frames = (config.frame == NetworkFrame::Goal).then(|| {
             let frames = goals.iter().flat_map(|goals| {
                 let each = tracks(batch).zip(goals);
@@ -179,8 +183,8 @@ impl<'a> Course<'a> {
         &self.positions
     }
 
-    /// The newest positions relative to the mean over the scene and all time steps so far, `[H, P, 2]`; they are counted
-    /// into the mean as those of time step `steps`.
+    /// Newest positions relative to the mean over the scene and the `steps` time steps so far, `[H, P, 2]`. Adds them
+    /// to the mean.
     pub(super) fn centred(&mut self, steps: usize) -> Rc<Rows> {
         add(&mut self.sums, &self.positions);
         let pedestrians = self.observation.pedestrians;
@@ -194,18 +198,19 @@ impl<'a> Course<'a> {
         rows([hypotheses, pedestrians, 2], centred)
     }
 
-    /// What the network reads of everybody at an observed time step, `[E, P, inputs]`.
+    /// Inputs of the temporal encoders at an observed time step, `[E, P, inputs]`.
     pub(super) fn observed_relative(&self, t: usize) -> Rc<Rows> {
         let at = |t: usize| self.observation.at(t);
         self.relative(at(t), at(t.saturating_sub(1)))
     }
 
-    /// The same of the newest positions, `[H, P, inputs]`.
+    /// Inputs of the temporal encoders at the newest positions, `[H, P, inputs]`.
     pub(super) fn newest_relative(&self) -> Rc<Rows> {
         self.relative(&self.positions, &self.before)
     }
 
-    /// `positions` and those a step before, `[1 or more, P]`, relative to the references, in the frames with the velocity.
+    /// Inputs from `positions` and the positions one step before, `[1 or H, P]`: relative to the references and, in the
+    /// pedestrians' own frames, with the velocity.
     fn relative(&self, positions: &[[f32; 2]], before: &[[f32; 2]]) -> Rc<Rows> {
         let count = positions.len().max(self.references.len());
         let pedestrians = self.observation.pedestrians;
@@ -234,8 +239,9 @@ impl<'a> Course<'a> {
         rows([entries, pedestrians, 4], numbers)
     }
 
-    /// Goes one step on by factors (a, b, c) or vectors, as the output layer emits them in the pedestrians' frames, `[H, P, outputs]`,
-    /// with `done` steps made and `left` of them left, this one included. The factors are in the frame of the world afterwards.
+    /// Moves the pedestrians one step by the output of the network, `[H, P, outputs]`: factors (a, b, c) or vectors in
+    /// the pedestrians' frames. Afterwards the factors are in the frame of the world. `steps`: the number of steps
+    /// done, and of steps left including this one.
     pub(super) fn advance(&mut self, emitted: &mut [f32], steps: (usize, usize)) {
         self.before.copy_from_slice(&self.positions);
         if self.observation.config.variant.dynamics() {
@@ -263,7 +269,7 @@ impl<'a> Course<'a> {
             let bounds = bounds.as_ref();
             let bounds = bounds.map(|bounds| &bounds[i % self.observation.pedestrians]);
             let goal = around(&self.goals, i);
-            // NaN goes on as NaN, and is reported by who walks the same way in f64.
+            // An invalid step gives NaN. The integration in f64 by `ddl` reports the error.
             *place = next(*place, goal, *factor, (sigma, time), bounds).unwrap_or([f32::NAN; 2]);
         }
     }
@@ -289,7 +295,7 @@ fn tracks<'a>(batch: &'a ForecastBatch<'_>) -> impl Iterator<Item = &'a [Positio
     windows.flat_map(|window| (0..window.len()).map(|i| window.observed(i)))
 }
 
-/// The bounds in single precision. Invalid speeds are reported by the rollout in `f64`, which has the same bounds.
+/// The bounds in single precision. The integration in `f64`, which has the same bounds, reports invalid speeds.
 fn single(bounds: &MotionBounds<f64>, absolute: bool) -> MotionBounds<f32> {
     let velocity = bounds.velocity().map(|x| x as f32);
     let (top, share) = (bounds.top_speed() as f32, bounds.share() as f32);

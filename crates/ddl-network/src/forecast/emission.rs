@@ -1,6 +1,6 @@
-//! What noise adds to the metric that the output layer emits.
+//! The expectation, over the noise, of the metric that the output layer emits.
 
-/// Pivots of the expected metric below this count as this, in m/s.
+/// Lower bound of the pivots of the expected metric, in m/s.
 const SMALLEST_PIVOT: f32 = 1e-12;
 
 /// Entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
@@ -12,7 +12,7 @@ pub(super) struct NoiseSpread {
 }
 
 impl NoiseSpread {
-    /// `rows`: the three rows of the output layer's weight, of which the last `noise` columns are for the noise.
+    /// From the weight of the output layer, `[3, inputs]`, whose last `noise` columns multiply the noise.
     pub(super) fn of(weight: &[f32], inputs: usize, noise: usize) -> Self {
         let row = |i: usize| &weight[i * inputs..][inputs - noise..inputs];
         let c = |i: usize, j: usize| -> f32 { row(i).iter().zip(row(j)).map(|(a, b)| a * b).sum() };
@@ -25,7 +25,8 @@ impl NoiseSpread {
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
     ///
-    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n; L0 alone is too slow.
+    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n. L0 L0^T alone would
+    /// give too low speeds.
     pub(super) fn expected_factor(self, [a, b, c]: [f32; 3]) -> [f32; 3] {
         let first = (a * a + self.c11).max(SMALLEST_PIVOT).sqrt();
         let below = (a * b + self.c12) / first;
@@ -64,7 +65,7 @@ mod tests {
         }
         let spread = NoiseSpread::of(&weight, inputs, noise);
         let expected = metric(spread.expected_factor(mean));
-        // standard error of the sampled mean: about 3e-3
+        // The standard error of the sampled mean is about 3e-3.
         for (sampled, expected) in sums.into_iter().zip(expected) {
             assert!((sampled - expected).abs() < 1.5e-2, "{sampled} {expected}");
         }

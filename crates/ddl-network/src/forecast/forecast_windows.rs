@@ -1,4 +1,4 @@
-//! A forecasting network, as everybody sees it who does not compute it.
+//! The interface of a forecasting network, independent of its implementation.
 
 use super::batch::{BatchRollout, ForecastBatch, batches};
 use super::rollout::{Noise, StepRule, WindowRollout};
@@ -7,35 +7,36 @@ use crate::{NetworkError, Precision, StarConfig};
 use ddl_data::{Position, Window};
 use std::fmt::Debug;
 
-/// A forecasting network, whoever computes it.
+/// A forecasting network: kernels on the CPU, or libtorch in `ddl-star`.
 pub trait ForecastWindows: Debug + Send + Sync {
-    /// Size and constants.
+    /// Sizes and constants.
     fn config(&self) -> &StarConfig;
 
-    /// A copy of the learned numbers.
+    /// A copy of the weights.
     ///
     /// # Errors
-    /// When they cannot be fetched from their device.
+    /// If the weights cannot be copied from their device.
     fn copy_weights(&self) -> Result<Weights, NetworkError>;
 
-    /// Precision of the products in its feed-forward blocks.
+    /// Precision of the matrix products in the feed-forward blocks.
     fn precision(&self) -> Precision;
 
     /// Forecasts one batch of windows.
     ///
     /// # Errors
-    /// When the implementation fails.
+    /// If the implementation fails.
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError>;
 
-    /// Forecasts 12 time steps for every pedestrian of every window, without touching the future.
+    /// Forecasts 12 time steps for every pedestrian of every window. Does not read the true future.
     ///
     /// # Shapes
-    /// `goals[w][i]` holds the goals of pedestrian i of window w, as many for every pedestrian; one
-    /// hypothesis a goal, or, with a single goal, one a noise vector. `shares[w][i]`, 0 to 1, is the share of the network's
-    /// metric in what shapes the bounded steps of pedestrian i; all of it where there are none.
+    /// `goals[w][i]` holds the goals of pedestrian i of window w. All pedestrians have the same number of goals. There
+    /// is one hypothesis for each goal or, with a single goal, for each noise vector. `shares[w][i]`, 0 to 1, is the
+    /// share of the network's metric in the bounded steps of pedestrian i; `None` means 1.
     ///
     /// # Errors
-    /// [`NetworkError::Shape`] when the goals do not fit the windows, or several goals meet several noise vectors.
+    /// [`NetworkError::Shape`] if goals or shares do not fit the windows, or if there are several goals and several
+    /// noise vectors.
     fn forecast_windows(
         &self,
         windows: &[Window],

@@ -1,19 +1,19 @@
-//! What a pedestrian's own motion was when it was last observed: how fast it can be, and at which velocity it goes on.
+//! The bounds of a pedestrian's motion from its observed positions: its top speed and its present velocity.
 
 use ddl_data::Position;
 use ddl_dynamics::MotionBounds;
 use nalgebra::Vector2;
 
-/// Mean length of the second differences of positions (m) that takes the last step all but a third of its say.
+/// Mean length of the second differences of positions (m) at which the last step has the weight 1/e.
 const JITTER: f64 = 0.06;
-/// Steps whose mean velocity counts where the last step alone says little.
+/// Number of last steps whose mean velocity has the rest of the weight.
 const RECENT: usize = 3;
 
-/// The bounds of the motion of a pedestrian observed at these positions (m), `time_step` seconds apart, of whose
-/// metric this `share` counts: 0 to 1, what is beyond is brought within, and NaN is 0.
+/// The bounds of the motion of a pedestrian observed at these positions (m), `time_step` seconds apart. `share` is the
+/// share of the network's metric: it is clamped to 0..1, and NaN counts as 0.
 ///
-/// Its own velocity is that of the last step where the steps are even, and the mean of the last three where they
-/// tremble: with w the mean length of the second differences, the last step has the share exp(-(w / 6 cm)^2).
+/// The present velocity is that of the last step if the steps are even, and the mean of the last three if the positions
+/// jitter. With w the mean length of the second differences, the last step has the weight exp(-(w / 6 cm)^2).
 pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> MotionBounds<f64> {
     let points: Vec<Vector2<f64>> = observed.iter().map(|&p| p.into()).collect();
     let steps: Vec<Vector2<f64>> = points.array_windows().map(|[a, b]| b - a).collect();
@@ -40,7 +40,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_step_counts_where_steps_are_even() {
+    fn the_velocity_is_of_the_last_step_or_of_the_last_three_with_jitter() {
         let even: Vec<Position> = (0..8).map(|t| [0.4 * f64::from(t), 1.0]).collect();
         let bounds = motion_bounds(&even, 0.4, 1.0);
         assert!((bounds.velocity() - Vector2::new(1.0, 0.0)).norm() < 1e-12);
@@ -49,10 +49,10 @@ mod tests {
         for (t, p) in askew.iter_mut().enumerate() {
             p[1] += if t % 2 == 0 { 3.0 } else { 0.0 };
         }
-        // the last three steps go 3 m up, down and up again in 1.2 s
+        // The last three steps go 3 m up, down and up again in 1.2 s.
         let velocity = motion_bounds(&askew, 0.4, 1.0).velocity();
         assert!((velocity - Vector2::new(1.0, -3.0 / 1.2)).norm() < 1e-9);
-        // a share out of range keeps the runner's bounds
+        // A share out of range does not change the top speed of a runner.
         let runner: Vec<Position> = (0..8).map(|t| [2.4 * f64::from(t), 0.0]).collect();
         for (share, kept) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
             assert_eq!(

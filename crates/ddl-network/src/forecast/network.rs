@@ -1,4 +1,4 @@
-//! The forecasting network on plain numbers.
+//! The forecasting network on the CPU.
 
 use super::batch::{BatchRollout, ForecastBatch};
 use super::emission::NoiseSpread;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// The forecasting network, computed by kernels on the CPU in `f32`.
 ///
 /// # Numerics
-/// A window's rollout has the same bits alone and among others, and with every number of threads.
+/// The rollout of a window has the same bits alone and together with other windows, with any number of threads.
 #[derive(Debug)]
 pub struct MotionNetwork {
     config: StarConfig,
@@ -38,8 +38,8 @@ impl MotionNetwork {
     /// A network with the weights that `read` gives for its layout.
     ///
     /// # Errors
-    /// [`NetworkError::Config`] when the configuration is out of range, [`NetworkError::Shape`] when the weights are of another layout,
-    /// and those of `read`.
+    /// [`NetworkError::Config`] if the configuration is out of range, [`NetworkError::Shape`] if the weights have
+    /// another layout, and the errors of `read`.
     pub fn reading(
         config: StarConfig,
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
@@ -50,7 +50,7 @@ impl MotionNetwork {
         }
     }
 
-    /// A network with a backbone of one's own, and seeded initial weights; `make` declares its layers.
+    /// A network with a custom backbone and seeded initial weights; `make` declares the layers.
     ///
     /// # Errors
     /// [`NetworkError::Config`] when the configuration is out of range.
@@ -85,10 +85,10 @@ impl MotionNetwork {
         })
     }
 
-    /// The same network with other learned numbers.
+    /// The same network with other weights.
     ///
     /// # Errors
-    /// [`NetworkError::Shape`] when they are of another layout.
+    /// [`NetworkError::Shape`] if they have another layout.
     pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
         weights.ensure_of(self.weights.layout())?;
         let layout = weights.layout();
@@ -101,7 +101,7 @@ impl MotionNetwork {
         })
     }
 
-    /// The same network, whose feed-forward blocks are computed in that precision.
+    /// The same network with feed-forward blocks in this precision.
     #[must_use]
     pub fn in_precision(self, precision: Precision) -> Self {
         let kernels = Kernels::new(self.weights.layout(), self.weights.numbers(), precision);
@@ -111,7 +111,7 @@ impl MotionNetwork {
         }
     }
 
-    /// The learned numbers.
+    /// The weights.
     pub fn weights(&self) -> &Weights {
         &self.weights
     }

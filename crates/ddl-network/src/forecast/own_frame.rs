@@ -1,19 +1,19 @@
-//! A pedestrian's own frame: the first axis points from where it was last observed to its goal, and lengths are in
-//! its own unit. So one walk teaches all directions, and a runner looks like a fast pedestrian.
+//! A pedestrian's own frame. Its first axis points from the last observed position to the goal, and its unit of length
+//! depends on the pedestrian's speed. So a track trains all directions, and a runner has the inputs of a fast walk.
 //!
-//! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: a metre up to walking speed, v / (2
-//! m/s) metres far above it.
+//! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: about 1 m up to walking speed, and
+//! about v / (2 m/s) metres far above it.
 
 use ddl_data::Position;
 
-/// Nearer to its goal than this (metres) a pedestrian has the axes of the world.
+/// Closer to its goal than this (metres), a pedestrian's frame has the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
-/// Speed (m/s) around which the unit begins to grow: the fastest that training recordings hold many examples of.
+/// Speed (m/s) around which the unit begins to grow. Training recordings hold few examples of higher speeds.
 const FAST_WALK: f64 = 2.0;
-/// Squares of pivots below this count as this, in m/s.
+/// Lower bound of the square of the first pivot, in m/s.
 const SMALLEST_PIVOT: f32 = 1e-12;
 
-/// The frame of one pedestrian in one hypothesis: its first axis, as cosine and sine, and its unit of length (m).
+/// The frame of one pedestrian in one hypothesis: cosine and sine of its first axis, and its unit of length (m).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct OwnFrame {
     cos: f32,
@@ -22,7 +22,7 @@ pub(super) struct OwnFrame {
 }
 
 impl OwnFrame {
-    /// Of who was last observed at `last` and goes to `goal` (m), in this unit.
+    /// The frame of a pedestrian last observed at `last` with the goal `goal` (m) and this unit (m).
     pub(super) fn new(last: Position, goal: Position, unit: f64) -> Self {
         let [x, y] = [goal[0] - last[0], goal[1] - last[1]];
         let distance = x.hypot(y);
@@ -45,9 +45,11 @@ impl OwnFrame {
         [(cos * x - sin * y) * unit, (cos * y + sin * x) * unit]
     }
 
-    /// The lower-triangular factor of the same metric in the world: L' L'^T = R^T L L^T R.
-    /// Where the first row of R^T L vanishes (L singular, its null space along the world's x axis) the square of the first pivot is
-    /// raised to 1e-12 m/s and what the second row is worth is lost: the pedestrian stands, and P is still positive definite.
+    /// The lower-triangular factor of the same metric in the frame of the world: L' L'^T = R^T L L^T R.
+    ///
+    /// The first row of R^T L is zero if L is singular with its null space along the x axis of the world. Then the
+    /// square of the first pivot is raised to 1e-12 m/s, and the second row is lost: the pedestrian stands still, and P
+    /// is still positive definite.
     pub(super) fn factor_to_world(self, [a, b, c]: [f32; 3]) -> [f32; 3] {
         let Self { cos, sin, .. } = self;
         let (x1, x2) = (cos * a - sin * b, -(sin * c));
@@ -57,7 +59,8 @@ impl OwnFrame {
     }
 }
 
-/// The unit of a pedestrian (m) from its observed positions (m), `time_step` seconds apart; 1 for fewer than two.
+/// The unit of length of a pedestrian's own frame (m), from its observed positions (m), `time_step` seconds apart. 1
+/// for fewer than two positions.
 ///
 /// # Examples
 /// ```
@@ -72,7 +75,7 @@ pub fn motion_unit(observed: &[Position], time_step: f64) -> f64 {
         .map(|pair| (pair[1][0] - pair[0][0]).hypot(pair[1][1] - pair[0][1]))
         .sum();
     let relative = way / (steps * time_step * FAST_WALK);
-    // Divided by the larger of the two first: the fourth power of a large number overflows.
+    // The division by the larger of the two prevents an overflow of the fourth power.
     let larger = relative.max(1.0);
     larger * (larger.powi(-4) + (relative / larger).powi(4)).powf(0.25)
 }
@@ -109,7 +112,7 @@ mod tests {
         }
 
         #[test]
-        fn nobody_is_faster_than_a_fast_walk_in_its_own_units(
+        fn speeds_in_own_units_are_at_most_a_fast_walk(
             track in prop::collection::vec([-3.0..3.0f64, -3.0..3.0f64], 8),
             scale in -6.0..6.0f64,
         ) {
@@ -122,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn the_goal_lies_ahead_in_units_and_whoever_is_there_looks_along_x() {
+    fn the_first_axis_points_to_the_goal_or_along_x_if_it_is_reached() {
         let frame = OwnFrame::new([1.0, 2.0], [1.0, 6.0], 2.0);
         let same = |found: [f32; 2], expected: [f32; 2]| {
             assert_eq!(found.map(f32::to_bits), expected.map(f32::to_bits));

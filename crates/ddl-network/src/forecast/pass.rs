@@ -1,4 +1,4 @@
-//! The rollout of one batch of windows, a few hypotheses at a time.
+//! The rollout of one batch of windows, some hypotheses at a time.
 
 use super::batch::{BatchRollout, ForecastBatch};
 use super::course::{Course, Observation};
@@ -21,7 +21,7 @@ const ROWS_AT_ONCE: usize = 128;
 pub(super) struct PassLayers<'a> {
     pub(super) backbone: &'a dyn Backbone<KernelBackend>,
     pub(super) output: Linear,
-    /// For the expectation over the noise; `None` for the variants without dynamics.
+    /// Needed for the expectation over the noise; `None` for the variants without dynamics.
     pub(super) spread: Option<NoiseSpread>,
 }
 

@@ -1,13 +1,13 @@
-//! Who sees whom.
+//! Visibility masks: which pedestrians attend to which.
 
 use crate::backend::Scenes;
 use ddl_data::Window;
 
-/// The visibility masks of windows for each of the first `steps` time steps. A pedestrian sees itself and the
-/// pedestrians within a box around it of this half width (m).
+/// The visibility masks of windows for each of the first `steps` time steps. A pedestrian attends to itself and to the
+/// pedestrians in a square around it with half the side `half_box` (m).
 ///
 /// # Panics
-/// When there is no window.
+/// If `windows` is empty.
 pub fn visibility(windows: &[&Window], steps: usize, half_box: f64) -> Scenes {
     let sizes: Vec<usize> = windows.iter().map(|window| window.len()).collect();
     let of_window = |window: &Window, step: usize| -> Vec<Vec<u32>> {

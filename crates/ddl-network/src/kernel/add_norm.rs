@@ -1,4 +1,4 @@
-//! What follows a sublayer: dropout, the residual connection, layer normalisation (Ba et al. 2016).
+//! Dropout, residual connection and layer normalisation (Ba et al. 2016) after a sublayer.
 
 mod rows;
 #[cfg(test)]
@@ -9,7 +9,7 @@ use ddl_simd::{DEPTH, LANES, Lanes, Simd};
 pub(super) use rows::Decisions;
 use rows::{Four, USUAL, means};
 
-/// Added to the variance.
+/// Added to the variance before the square root.
 const EPSILON: f32 = 1e-5;
 
 /// y = (s − mean s) / √(var s + 1e-5) · weight + bias of s = x + d(t) for each row, with dropout d.
@@ -18,11 +18,11 @@ pub(super) struct AddNorm {
     width: usize,
     weight: Vec<Lanes>,
     bias: Vec<Lanes>,
-    /// 1 within the width, 0 beyond.
+    /// 1 for columns within the width, 0 for padding.
     inside: Vec<Lanes>,
 }
 
-/// What the backward pass needs of the forward one, row by row.
+/// Results of the forward pass that the backward pass needs.
 pub(super) struct Normal<'a> {
     /// (s − mean) / deviation, `[rows, width]`.
     pub(super) numbers: &'a mut [f32],
@@ -55,7 +55,8 @@ impl AddNorm {
         }
     }
 
-    /// `x`, `t` `[rows, width]`, the first of which has number `first` -> `normal` and `y` `[rows, width]`, overwritten.
+    /// `x`, `t` `[rows, width]` -> `normal` and `y` `[rows, width]`, overwritten. `decisions` come with the index of
+    /// the first row.
     #[inline(always)]
     pub(super) fn forward<S: Simd>(
         &self,
@@ -135,8 +136,8 @@ impl AddNorm {
         }
     }
 
-    /// The derivatives with respect to x and t, and those with respect to the weights added to `weight` and `bias`.
-    /// `normal` of the forward pass, `gy` `[rows, width]` -> `gx`, `gt` `[rows, width]`, overwritten.
+    /// Gradients: `normal` of the forward pass and `gy` `[rows, width]` -> those of x and t, `[rows, width]`,
+    /// overwritten. The gradients of weight and bias are added to `of_weights`.
     #[inline(always)]
     pub(super) fn backward<S: Simd>(
         &self,
@@ -154,7 +155,7 @@ impl AddNorm {
         }
     }
 
-    /// The width, known to the compiler where it is the usual one.
+    /// The width, a compile-time constant if it is the usual one.
     #[inline(always)]
     fn fixed_width<const FIXED: bool>(&self) -> usize {
         if FIXED { USUAL * LANES } else { self.width }

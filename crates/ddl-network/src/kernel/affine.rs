@@ -1,4 +1,4 @@
-//! Affine maps of rows: the projections before and after attention, embeddings, the fusion of tokens.
+//! Affine maps of rows: projections before and after attention, embeddings, fusion of tokens.
 
 mod product;
 #[cfg(test)]
@@ -9,14 +9,14 @@ use ddl_simd::{LANES, Lanes, Simd};
 pub(super) use product::sum_of_rows;
 use product::{Matrix, Start, add_transposed_product, multiply};
 
-/// y = W x + b, with the weights arranged for both directions.
+/// y = W x + b. The weights are stored for the forward and for the backward pass.
 #[derive(Clone, Debug)]
 pub(super) struct Affine {
     inputs: usize,
     outputs: usize,
-    /// W^T, rows inputs.
+    /// W^T, `[inputs, outputs]`.
     transposed: Matrix,
-    /// W, rows outputs.
+    /// W, `[outputs, inputs]`.
     weight: Matrix,
     bias: Vec<Lanes>,
 }
@@ -60,7 +60,7 @@ impl Affine {
         multiply::<S, R, V>(simd, x, &self.transposed, Start::Row(&self.bias), y);
     }
 
-    /// W^T gy for every row, which overwrites `gx`, or is added to it.
+    /// W^T gy for every row. It overwrites `gx`, or is added to it if `add`.
     /// `gy` `[rows, outputs]` -> `gx` `[rows, inputs]`.
     #[inline(always)]
     pub(super) fn backward<S: Simd, const R: usize, const V: usize>(
@@ -74,7 +74,7 @@ impl Affine {
         multiply::<S, R, V>(simd, gy, &self.weight, start, gx);
     }
 
-    /// Adds the derivatives with respect to the weights.
+    /// Adds the gradients of the weights.
     /// `x` `[rows, inputs]`, `gy` `[rows, outputs]` -> `weight` `[outputs, inputs]`, `bias` `[outputs]`.
     #[inline(always)]
     pub(super) fn add_gradients<S: Simd, const R: usize, const V: usize>(

@@ -1,4 +1,5 @@
-//! Attention of every pedestrian over the pedestrians of its scene that it sees (Vaswani et al. 2017, section 3.2).
+//! Spatial attention: each pedestrian attends to the visible pedestrians of its scene (Vaswani et al. 2017, section
+//! 3.2).
 
 mod backward;
 mod dropout;
@@ -20,25 +21,26 @@ use dropout::WeightDecisions;
 use forward::SceneForward;
 use queries::{SceneBuffers, SceneTask};
 
-/// Multiplications that take as long as a pair of a query and a key.
+/// Cost of a pair of a query and a key, in multiplications.
 const WORK_OF_A_PAIR: usize = 50;
 
 /// Multi-head attention within scenes.
 ///
-/// `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that i sees, for each head alone, where `d_ij`
-/// is 1 or what [`Dropout`] makes of it.
-/// Results do not depend on the number of threads; the instruction sets agree to rounding.
+/// For each head, `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that are visible to i. `d_ij`
+/// is the factor of [`Dropout`], or 1 without it. Results do not depend on the number of threads; those of different
+/// instruction sets agree up to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AmongPedestrians {
     heads: Heads,
     dispatch: Dispatch,
 }
 
-/// What came out of [`AmongPedestrians::forward`], and what its gradient needs.
+/// The output of [`AmongPedestrians::forward`], and what the backward pass needs in addition.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attended {
     mixed: Buffer,
-    /// By entry, scene, two queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score − largest).
+    /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and
+    /// 1 / Σ 2^(score − largest).
     normalisers: Vec<[Lanes; 2]>,
 }
 
@@ -63,9 +65,9 @@ impl AmongPedestrians {
         Some(Self { dispatch, ..self })
     }
 
-    /// Mixes the values of what each pedestrian sees.
-    /// `qkv` `[B, P, 3, heads, head width]`, with the pedestrians P of the scenes; `frames` one or B -> `attended`, whose
-    /// buffers are used again.
+    /// Mixes the values of the visible pedestrians.
+    /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames` -> `attended`, whose
+    /// buffers are reused.
     pub(crate) fn forward(
         &self,
         qkv: &[f32],
@@ -101,8 +103,7 @@ impl AmongPedestrians {
     }
 
     /// The gradient of the inputs of [`AmongPedestrians::forward`] from that of its output.
-    /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, all of which is
-    /// overwritten.
+    /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, overwritten.
     /// The first four arguments must be those of the forward pass.
     pub(crate) fn backward(
         &self,
@@ -165,7 +166,7 @@ impl AmongPedestrians {
         entries
     }
 
-    /// Every scene of every entry, with its part of `qkv`, in the order of the rows.
+    /// All scenes of all entries with their parts of `qkv`, in the order of the rows.
     fn tasks<'a>(
         &self,
         qkv: &'a [f32],

@@ -1,13 +1,13 @@
-//! Memory for rows of numbers that is used again.
+//! Reusable memory for rows of numbers.
 
 use std::cell::RefCell;
 use std::ops::{Deref, DerefMut};
 
 use ddl_simd::LANES;
 
-/// Buffers that a thread keeps for the next ones: to ask the system would take as long as the work on small batches.
+/// Number of free buffers that a thread keeps. For small batches the system's allocation takes as long as the work.
 const SPARE: usize = 64;
-/// Numbers that all of them may hold together, 32 MiB: what one crowded frame took is given back.
+/// Largest total size of the free buffers, in numbers (32 MiB). So the memory of a crowded frame is freed.
 const SPARE_NUMBERS: usize = 1 << 23;
 
 struct Spares {
@@ -25,7 +25,7 @@ thread_local! {
 }
 
 impl Spares {
-    /// The smallest that holds `count` numbers, or a new one.
+    /// The smallest free buffer that holds `count` numbers, or a new one.
     fn take(&mut self, count: usize) -> Vec<f32> {
         let lengths = self.buffers.iter().map(Vec::len).enumerate();
         let fitting = lengths.filter(|&(_, length)| length >= count);
@@ -33,7 +33,7 @@ impl Spares {
             self.numbers -= length;
             return self.buffers.swap_remove(index);
         }
-        // Drops a kept buffer that is too small, so that their number does not grow.
+        // Drops a free buffer that is too small, so that the number of buffers does not grow.
         if let Some(small) = self.buffers.pop() {
             self.numbers -= small.len();
         }
@@ -48,7 +48,7 @@ impl Spares {
     }
 }
 
-/// Numbers that begin where a register's load begins.
+/// Numbers in memory aligned to the width of a vector register.
 #[derive(Debug, Default)]
 pub struct Buffer {
     numbers: Vec<f32>,
@@ -57,7 +57,7 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// `count` numbers, whatever was there before.
+    /// `count` numbers with arbitrary contents.
     pub fn any(count: usize) -> Self {
         let numbers = SPARES.with_borrow_mut(|spares| spares.take(count + LANES));
         let aligned = numbers.as_ptr().align_offset(LANES * size_of::<f32>());
@@ -69,7 +69,7 @@ impl Buffer {
         }
     }
 
-    /// `count` numbers, all 0.
+    /// `count` zeros.
     pub fn zeros(count: usize) -> Self {
         let mut buffer = Self::any(count);
         buffer.fill(0.0);
@@ -80,7 +80,7 @@ impl Buffer {
         (0..buffers).map(|_| Self::zeros(count)).collect()
     }
 
-    /// These numbers.
+    /// A copy of these numbers.
     pub fn copy(numbers: &[f32]) -> Self {
         let mut buffer = Self::any(numbers.len());
         buffer.copy_from_slice(numbers);
@@ -114,7 +114,7 @@ impl Drop for Buffer {
         if numbers.is_empty() {
             return;
         }
-        // At the end of a thread there is no place to keep it any more.
+        // At the end of a thread its free buffers are gone already.
         let _ = SPARES.try_with(|spares| spares.borrow_mut().keep(numbers));
     }
 }

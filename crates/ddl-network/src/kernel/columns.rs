@@ -1,13 +1,13 @@
-//! Some columns of matrices that lie row by row, and pieces of rows in registers.
+//! Columns of row-major matrices, and vectors of a row in registers.
 
 use ddl_simd::{LANES, Simd};
 
-/// Columns of a matrix: all of them, or what stands side by side with others.
+/// Adjacent columns of a matrix, all or some.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MatrixColumns<'a> {
     numbers: &'a [f32],
     rows: usize,
-    /// Numbers in a row of the whole matrix.
+    /// Length of a row of the whole matrix.
     stride: usize,
     first: usize,
     count: usize,
@@ -26,7 +26,7 @@ impl<'a> MatrixColumns<'a> {
         Self::part(numbers, count, 0, count)
     }
 
-    /// `count` columns from `first` on, of a matrix whose rows are `stride` numbers.
+    /// `count` columns from `first` on, of a matrix with rows of `stride` numbers.
     pub(super) fn part(numbers: &'a [f32], stride: usize, first: usize, count: usize) -> Self {
         assert!(
             numbers.len().is_multiple_of(stride) && first + count <= stride,
@@ -81,7 +81,7 @@ impl<'a> MatrixColumnsMut<'a> {
     }
 }
 
-/// Sixteen numbers of a row from `at`; what is beyond its end counts as 0.
+/// Sixteen numbers of a row from `at`; numbers beyond its end are 0.
 #[inline(always)]
 pub(super) fn load<S: Simd>(simd: S, row: &[f32], at: usize) -> S::Floats {
     match row.get(at..at + LANES) {
@@ -90,7 +90,7 @@ pub(super) fn load<S: Simd>(simd: S, row: &[f32], at: usize) -> S::Floats {
     }
 }
 
-/// Writes sixteen numbers of a row from `at`, as far as it goes.
+/// Writes sixteen numbers to a row from `at`; drops those beyond its end.
 #[inline(always)]
 pub(super) fn store<S: Simd>(simd: S, value: S::Floats, row: &mut [f32], at: usize) {
     if let Some(whole) = row.get_mut(at..at + LANES) {

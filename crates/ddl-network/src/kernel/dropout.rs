@@ -1,29 +1,31 @@
-//! Dropout (Srivastava et al. 2014) whose decisions are a function of a seed and a place, not of the order of work.
+//! Dropout (Srivastava et al. 2014). A decision is a function of the seed and of the number's index, not of the order
+//! of the work.
 
 use ddl_simd::Simd;
 
 /// Sets each number to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
-/// The decision is a function of `seed` and the place of the number alone; each layer of each step needs its own seed.
-/// p is rounded to a multiple of 2^-16 for hidden units, of 2^-24 for attention weights and outputs, and to less than 1.
+/// The decision is a function of only `seed` and the index of the number, so each layer of each step needs its own
+/// seed. p is rounded to less than 1: to a multiple of 2^-16 for hidden units, of 2^-24 for attention weights and
+/// outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Dropout {
     /// Probability that a number is dropped, 0 <= p < 1.
     pub(crate) p: f64,
-    /// Which of 2^64 sets of decisions.
+    /// Selects one of 2^64 sets of decisions.
     pub(crate) seed: u64,
 }
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Threshold {
-    /// A number is kept when its random bits are this or more.
+    /// A number is kept if its random bits are at least this.
     pub(super) least: u32,
     /// 1 / (1 - p).
     pub(super) scale: f32,
 }
 
 impl Dropout {
-    /// The threshold for `bits` random bits, 24 at most; `None` when nothing is dropped.
+    /// The threshold for `bits` random bits, at most 24; `None` if nothing is dropped.
     pub(super) fn threshold(self, bits: u32) -> Option<Threshold> {
         let p = self.p;
         assert!((0.0..1.0).contains(&p), "dropout of {p}: not in [0, 1)");
@@ -36,23 +38,24 @@ impl Dropout {
     }
 }
 
-/// Random numbers of one row, from which those of its places are made.
+/// Random bits of a row, from which those of its numbers are made.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowKey(pub(super) [u32; 2]);
 
 impl RowKey {
-    /// Of a row under a seed that [`mixed`] has made.
+    /// The key of a row, for a seed from [`mixed`].
     #[inline]
     pub(super) fn new(seed: u64, row: u64) -> Self {
         let bits = mixed(seed.wrapping_add(row));
         Self([bits as u32, (bits >> 32) as u32])
     }
 
-    /// 32 random bits for each of the sixteen places from `first`, a multiple of 16.
+    /// 32 random bits for each of the sixteen numbers from `first`, a multiple of 16.
     #[inline(always)]
     pub(super) fn bits<S: Simd>(self, simd: S, first: usize) -> S::Bits {
         let [a, b] = self.0;
-        // The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), the row's second word in between.
+        // The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with the row's second word in the
+        // middle.
         let bits = simd.count_from(a ^ first as u32);
         let bits = simd.mul_low(simd.xor_shift::<16>(bits), 0x7feb_352d);
         let bits = simd.mul_low(simd.xor(simd.xor_shift::<15>(bits), b), 0x846c_a68b);
@@ -94,7 +97,7 @@ mod tests {
 
     #[test]
     fn words_are_mixed_as_published() {
-        // The first two numbers of SplitMix64 from 0: a step of the counter before each.
+        // The first two numbers of SplitMix64 from the seed 0.
         assert_eq!(mixed(0), 0xe220_a839_7b1d_cdaf);
         assert_eq!(mixed(1), 0x6e78_9e6a_a1b9_65f4);
     }

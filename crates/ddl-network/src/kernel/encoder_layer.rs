@@ -1,4 +1,4 @@
-//! A whole Transformer encoder layer (Vaswani et al. 2017, section 3.1), normalised after each residual connection.
+//! A Transformer encoder layer (Vaswani et al. 2017, section 3.1) with normalisation after each residual connection.
 
 mod backward;
 mod forward;
@@ -19,8 +19,8 @@ pub use layer::Sizes;
 pub(crate) use layer::{Dropouts, EncoderKernel};
 
 impl EncoderKernel {
-    /// The layer with attention among the pedestrians of each scene.
-    /// `x` `[B, P, width]`; `frames` one or B -> y `[B, P, width]`.
+    /// The layer with spatial attention.
+    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`.
     pub(crate) fn among_pedestrians(
         &self,
         x: &[f32],
@@ -37,7 +37,7 @@ impl EncoderKernel {
     }
 
     /// The gradients of [`among_pedestrians`](Self::among_pedestrians).
-    /// `gy` like `x` -> the gradient of x; those of the learned numbers are added to `of_weights`, [`Sizes::count`].
+    /// `gy` like `x` -> the gradient of x. The gradients of the weights are added to `of_weights`, `[Sizes::count]`.
     /// The other arguments must be those of the forward pass.
     pub(crate) fn among_pedestrians_backward(
         &self,
@@ -66,8 +66,8 @@ impl EncoderKernel {
         gx
     }
 
-    /// The layer with attention of the newest token over remembered ones and itself.
-    /// `x` `[rows, width]`; `memory` of as many rows each, or a divisor, as [`OverMemory::forward`] has it
+    /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
+    /// `x` `[rows, width]`; tokens in `memory` have as many rows, or a divisor, as in [`OverMemory::forward`]
     /// -> y `[rows, width]`.
     pub(crate) fn over_memory(
         &self,
@@ -85,10 +85,9 @@ impl EncoderKernel {
         self.after_attention(x, attention, dropouts)
     }
 
-    /// The gradients of [`over_memory`](Self::over_memory).
-    /// `gy` like `x` -> the gradient of x; those of the memory are added to `of_memory`, which has as many rows each as
-    /// `x`, as `memory` must have here; those of the learned numbers to `of_weights`, [`Sizes::count`].
-    /// The other arguments must be those of the forward pass.
+    /// The gradients of [`over_memory`](Self::over_memory). `gy` like `x` -> the gradient of x. The gradients of the
+    /// memory are added to `of_memory`, those of the weights to `of_weights`, `[Sizes::count]`. The tokens of `memory`
+    /// and `of_memory` must have as many rows as `x`. The other arguments must be those of the forward pass.
     #[expect(
         clippy::too_many_arguments,
         reason = "all of the forward pass, and its gradients"
@@ -130,7 +129,7 @@ impl EncoderKernel {
         Remembered { key, value }
     }
 
-    /// The gradients of [`remember`](Self::remember): that of x; those of the learned numbers are added to `of_weights`.
+    /// The gradient of x through [`remember`](Self::remember). The gradients of the weights are added to `of_weights`.
     pub(crate) fn remember_backward(
         &self,
         x: &[f32],

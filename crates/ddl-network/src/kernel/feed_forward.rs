@@ -1,4 +1,4 @@
-//! The feed-forward block of an encoder layer: two affine maps, `ReLU` and dropout between them.
+//! The feed-forward block of an encoder layer: two affine maps with `ReLU` and dropout between them.
 
 mod backward;
 mod bf16;

@@ -12,8 +12,8 @@ const A: [f32; 5] = [
     1.061_405_4,
 ];
 
-/// x Φ(x) of every number, in place.
-/// Off by less than 1e-6 at |x| up to 6, and by less than the rounding of x beyond. NaN stays NaN.
+/// Replaces every number x by x Φ(x).
+/// The error is below 1e-6 for |x| up to 6, and below the rounding of x beyond. NaN stays NaN.
 pub(crate) fn gelu(numbers: &mut [f32]) {
     Dispatch::detect().run(Gelu(numbers));
 }
@@ -58,7 +58,7 @@ fn of_lanes<S: Simd>(simd: S, x: S::Floats) -> S::Floats {
 mod tests {
     use super::*;
 
-    /// x erfc(-x / √2) / 2 in double precision, by another program's erfc.
+    /// x erfc(-x / √2) / 2 in double precision, with erfc from another program.
     const KNOWN: [(f32, f64); 9] = [
         (-6.0, -5.919_525_870_226e-9),
         (-3.0, -0.004_049_694_094_890),

@@ -1,4 +1,4 @@
-//! Rows of heads in lanes: eight heads each of two pedestrians, four of their numbers (a quad) at a time.
+//! The layout of heads in lanes: eight heads of each of two pedestrians, four of their numbers (a quad) at a time.
 
 use ddl_simd::{DEPTH, LANES, Simd, Vectors};
 
@@ -31,7 +31,7 @@ impl Heads {
         self.width.div_ceil(DEPTH)
     }
 
-    /// 1 / √width, which keeps the variance of scores.
+    /// 1 / √width, so that the variance of scores does not depend on the width.
     pub(super) fn scale(self) -> f32 {
         (1.0 / (self.width as f64).sqrt()) as f32
     }
@@ -39,7 +39,7 @@ impl Heads {
 
 /// A part of the numbers of a row: [`GROUP`] heads and [`DEPTH`] numbers of each.
 ///
-/// Heads that lack in the last group and numbers that lack in the last quad are 0 when loaded, and not stored.
+/// Heads beyond the last and numbers beyond the width are loaded as 0 and not stored.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeadPart {
     heads: Heads,
@@ -53,10 +53,10 @@ impl HeadPart {
         Self { heads, group, quad }
     }
 
-    /// Heads of two rows side by side; a missing row counts as zeros. Vector d holds the d-th numbers.
+    /// Loads the heads of two rows; a missing row counts as zeros. Vector d holds the d-th number of each head.
     ///
-    /// Lane l is head l / 4 + 4 (l mod 2) of row (l mod 4) / 2, for which rows need only be transposed within pieces of
-    /// four lanes.
+    /// Lane l holds head l / 4 + 4 (l mod 2) of row (l mod 4) / 2. In this order, transposing pieces of four lanes is
+    /// enough.
     #[inline(always)]
     pub(super) fn load<S: Simd>(
         self,

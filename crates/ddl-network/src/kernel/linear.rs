@@ -1,4 +1,4 @@
-//! An affine map as a kernel of its own: embeddings, and the fusion of tokens.
+//! An affine map as a separate kernel, for embeddings and the fusion of tokens.
 
 use super::affine::Affine;
 use super::buffer::Buffer;
@@ -6,11 +6,11 @@ use super::columns::{MatrixColumns, MatrixColumnsMut};
 use super::threads::run_each;
 use ddl_simd::{Dispatch, Simd, TiledKernel};
 
-/// Rows that are computed together. Always the same, so that sums over rows are.
+/// Rows that are computed together. The constant number makes sums over rows independent of the threads.
 const ROWS: usize = 512;
 
 /// y = W x + b.
-/// Nothing depends on the number of threads.
+/// Results do not depend on the number of threads.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearKernel {
     inputs: usize,
@@ -29,7 +29,7 @@ impl LinearKernel {
         }
     }
 
-    /// Takes over the weights: W `[outputs, inputs]` by rows, then b.
+    /// Replaces the weights: W `[outputs, inputs]`, row-major, then b.
     pub(crate) fn update(&mut self, weights: &[f32]) {
         let (weight, bias) = weights.split_at(self.outputs * self.inputs);
         self.map.update(weight, bias);
@@ -50,7 +50,7 @@ impl LinearKernel {
         y
     }
 
-    /// The gradient of x; that of the weights is added to `of_weights`.
+    /// The gradient of x; the gradient of the weights is added to `of_weights`.
     pub(crate) fn backward(&self, x: &[f32], gy: &[f32], of_weights: &mut [f32]) -> Buffer {
         let mut gx = Buffer::any(x.len());
         let pieces = x.len().div_ceil(ROWS * self.inputs);

@@ -1,4 +1,4 @@
-//! Attention of the newest token over itself and the remembered ones (Vaswani et al. 2017, section 3.2).
+//! Temporal attention: the newest token attends to the cached tokens and to itself (Vaswani et al. 2017, section 3.2).
 
 mod backward;
 mod forward;
@@ -16,23 +16,23 @@ use forward::MemoryForward;
 use tokens::MemoryBuffers;
 pub(crate) use tokens::{KeyValue, KeyValueMut};
 
-/// Rows that a thread takes at once: with any number of heads they fill whole groups of lanes.
+/// Rows in a job. They fill whole vectors with any number of heads.
 const ROWS_AT_ONCE: usize = 64;
 
-/// Multiplications that take as long as a number of a token.
+/// Cost of one number of a token, in multiplications.
 const WORK_OF_A_NUMBER: usize = 8;
 
-/// Multi-head attention of one query a row over t remembered tokens and its own.
+/// Multi-head attention. The query of each row attends to t cached tokens and to its own token.
 ///
-/// `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e, for each row and head alone.
-/// Results do not depend on the number of threads; the instruction sets agree to rounding.
+/// For each row and head, `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e. Results do not
+/// depend on the number of threads; those of different instruction sets agree up to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OverMemory {
     heads: Heads,
     dispatch: Dispatch,
 }
 
-/// Where [`OverMemory::backward`] adds gradients.
+/// The gradients to which [`OverMemory::backward`] adds.
 pub(crate) struct OverMemoryGradients<'a, 'b> {
     /// `[rows, heads, head width]`.
     pub(crate) query: &'a mut [f32],
@@ -54,12 +54,12 @@ impl OverMemory {
         Some(Self { dispatch, ..self })
     }
 
-    /// Mixes the values of the remembered tokens and the query's own.
+    /// Mixes the values of the cached tokens and the query's own token.
+    /// `query` and `own` `[rows, heads, head width]`; each token of `memory` the same, or with a divisor of the rows
+    /// -> `mixed` `[rows, heads, head width]`, overwritten.
     ///
-    /// A remembered token of fewer rows stands for all repetitions of them: row r of the query meets its row
-    /// r mod its number of rows, as when one memory serves many hypotheses.
-    /// `query` and `own` `[rows, heads, head width]`; each of `memory` the same, or a divisor of the rows
-    /// -> `mixed` `[rows, heads, head width]`, all of which is overwritten.
+    /// The rows of a token with fewer rows are repeated: row r of the query reads its row r mod its number of rows. So
+    /// many hypotheses can share one memory.
     pub(crate) fn forward(
         &self,
         query: &[f32],
@@ -91,7 +91,7 @@ impl OverMemory {
     }
 
     /// Adds the gradients of the inputs of [`OverMemory::forward`], from that of its output.
-    /// All `[rows, heads, head width]`, also the remembered tokens.
+    /// All shapes are `[rows, heads, head width]`, also those of the cached tokens.
     pub(crate) fn backward(
         &self,
         query: &[f32],

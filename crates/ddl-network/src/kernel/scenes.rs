@@ -1,23 +1,23 @@
-//! Which pedestrians stand in which scene, and who sees whom.
+//! Scenes: the pedestrians of each, and the visibility between them.
 
 use std::ops::Range;
 
-/// The pedestrians of several scenes, one scene after the other, with who sees whom in each of several frames.
+/// The pedestrians of several scenes, in sequence, with visibility masks for each of several frames.
 ///
-/// Memory and time grow with the number of pairs who see each other.
+/// Memory and time grow with the number of pairs that are visible to each other.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scenes {
     ranges: Vec<Range<usize>>,
     frames: usize,
-    /// By frame, scene and pair of queries: the keys that at least one of the two sees, ascending.
+    /// For each frame, scene and pair of queries: the keys visible to at least one of the two, ascending.
     seen: Vec<Seen>,
-    /// Where in `seen` the keys of each pair end.
+    /// For each pair of queries: the end of its keys in `seen`.
     ends: Vec<usize>,
-    /// Where in `ends` the pairs of each scene start within a frame, and where they end.
+    /// For each scene: the first of its pairs in the `ends` of a frame; last, the number of pairs in a frame.
     starts: Vec<usize>,
 }
 
-/// A key, and which of two queries see it.
+/// A key, and the queries of a pair to which it is visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Seen(u32);
 
@@ -27,13 +27,13 @@ impl Seen {
         (self.0 >> 2) as usize
     }
 
-    /// Bit r: the pedestrian 2 i + r sees it.
+    /// Bit r: whether it is visible to query r of the pair.
     pub(super) fn code(self) -> usize {
         (self.0 & 3) as usize
     }
 }
 
-/// Who sees whom in some of the frames of [`Scenes`].
+/// The visibility in some of the frames of [`Scenes`].
 #[derive(Clone, Copy, Debug)]
 pub struct Frames<'a> {
     scenes: &'a Scenes,
@@ -44,17 +44,17 @@ pub struct Frames<'a> {
 /// One scene in one frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SceneView<'a> {
-    /// Number of the first pedestrian.
+    /// Index of the first pedestrian among those of all scenes.
     pub(super) first: usize,
     pub(super) pedestrians: usize,
     seen: &'a [Seen],
-    /// Where in `seen` the first two start, and where those of each two end.
+    /// Start of the first pair's keys in `seen`, and the end of each pair's keys.
     start: usize,
     ends: &'a [usize],
 }
 
 impl<'a> SceneView<'a> {
-    /// The keys that the pedestrians 2 `two` and 2 `two` + 1 see, ascending.
+    /// The keys visible to the pedestrians 2 `two` and 2 `two` + 1, ascending.
     pub(super) fn of(self, two: usize) -> &'a [Seen] {
         let start = two.checked_sub(1).map_or(self.start, |i| self.ends[i]);
         &self.seen[start..self.ends[two]]
@@ -62,14 +62,15 @@ impl<'a> SceneView<'a> {
 }
 
 impl Scenes {
-    /// Scenes of `sizes` pedestrians, with who sees whom in every frame.
+    /// Scenes of `sizes` pedestrians with their visibility in every frame.
     ///
     /// # Shapes
-    /// `seen`: for each frame, scene and pedestrian, the indices within its scene of those it sees, ascending and with its own.
+    /// `seen`: for each frame, scene and pedestrian, the ascending indices, within its scene, of the pedestrians that
+    /// it sees, including itself.
     ///
     /// # Panics
-    /// When there is no scene or an empty one, when `seen` is not of a whole number of frames (at least one), when
-    /// a pedestrian does not see itself, or when indices are not ascending ones of the scene.
+    /// If there is no scene, or an empty one. If `seen` does not have a whole number of frames (at least one). If a
+    /// pedestrian does not see itself. If indices are not ascending or not in the scene.
     pub fn new(sizes: &[usize], seen: impl IntoIterator<Item = Vec<u32>>) -> Self {
         assert!(!sizes.is_empty(), "at least one scene is needed");
         assert!(
@@ -103,7 +104,8 @@ impl Scenes {
                         list
                     };
                     let even = list(first);
-                    // The query that fills up an odd number sees what the other one does, so that its weights are finite.
+                    // The query that pads an odd number has the visibility of the other one, so that its weights are
+                    // finite.
                     let odd = (first + 1 < size).then(|| list(first + 1));
                     scenes.push(&even, odd.as_deref().unwrap_or(&even));
                 }
@@ -133,25 +135,25 @@ impl Scenes {
         self.ends.push(self.seen.len());
     }
 
-    /// Pedestrians in all scenes together.
+    /// Number of pedestrians in all scenes.
     pub fn pedestrians(&self) -> usize {
         self.ranges.last().map_or(0, |last| last.end)
     }
 
-    /// The pedestrians of each scene.
+    /// The index range of the pedestrians of each scene.
     pub fn ranges(&self) -> &[Range<usize>] {
         &self.ranges
     }
 
-    /// Frames with visibility of their own.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.frames
     }
 
-    /// Every ordered pair of pedestrians, counted through all scenes, of which the first sees the second in a frame.
+    /// All ordered pairs of pedestrians, indexed over all scenes, of which the first sees the second in a frame.
     ///
     /// # Panics
-    /// When there is no such frame.
+    /// If the frame does not exist.
     pub fn pairs(&self, frame: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
         let scenes = self.during(frame..frame + 1).of_entry(0);
         scenes.flat_map(|scene| {
@@ -163,10 +165,10 @@ impl Scenes {
         })
     }
 
-    /// Who sees whom in `frames`: one frame stands for every entry of a batch, several for one entry each.
+    /// The visibility in `frames`. A single frame is used for all entries of a batch, several for one entry each.
     ///
     /// # Panics
-    /// When the frames are none or not there.
+    /// If the range is empty or a frame does not exist.
     pub fn during(&self, frames: Range<usize>) -> Frames<'_> {
         assert!(
             frames.start < frames.end && frames.end <= self.frames,
@@ -219,7 +221,7 @@ impl<'a> Frames<'a> {
         })
     }
 
-    /// Panics unless a batch of `entries` can have these frames.
+    /// Panics if the number of frames does not fit a batch of `entries`.
     pub(super) fn check(self, entries: usize) {
         assert!(
             self.count == 1 || self.count == entries,
@@ -228,7 +230,7 @@ impl<'a> Frames<'a> {
         );
     }
 
-    /// Queries times the keys they see in a batch of `entries`.
+    /// Number of pairs of a query and a visible key in a batch of `entries`.
     pub(super) fn pairs(self, entries: usize) -> usize {
         2 * self.scenes.seen.len() / self.scenes.frames * entries
     }

@@ -1,4 +1,4 @@
-//! What the tests of several kernels share.
+//! Shared parts of the kernels' tests.
 
 pub(super) mod attention;
 pub(super) mod chance;

@@ -1,61 +1,62 @@
-//! What the network sees of a pedestrian, the ends it proposes, and who proposes them.
+//! Input and output of a proposal network, and its interface.
 
 use crate::weights::Weights;
 use crate::{NetworkError, ProposalConfig};
 use ddl_data::{HORIZON, OBSERVED, Position, Remembered};
 use std::fmt::Debug;
 
-/// Ends lie within a few metres of where the present velocity leads: the unit of the last layer (m).
+/// Unit of length of the last layer (m). Endpoints are within a few metres of the point to which the present velocity
+/// leads.
 pub const END_UNIT: f64 = 3.0;
 
-/// A pedestrian and those nearby over the observed steps, in the pedestrian's own frame (metres): the
-/// last own position is the origin and the heading is +x.
+/// The input for one pedestrian: observed positions in the pedestrian's own frame (metres). The origin is its last
+/// position, and its heading is +x.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PedestrianView {
     /// The pedestrian.
     pub own: [Position; OBSERVED],
-    /// Others in the scene, nearest first at the last observed step; any number of them.
+    /// Any number of other pedestrians of the scene, the nearest at the last observed time step first.
     pub neighbours: Vec<[Position; OBSERVED]>,
-    /// What earlier pedestrians of the place did who had moved like this one, the most alike first; any number of them.
+    /// Any number of earlier pedestrians of the place that moved similarly, the most similar first.
     pub remembered: Vec<Remembered>,
 }
 
-/// A pedestrian with its future, in the frame of the view (metres).
+/// A training example: a pedestrian with its future, in the frame of the view (metres).
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposalExample {
-    /// What was observed.
+    /// The observation.
     pub view: PedestrianView,
-    /// What followed.
+    /// The positions after it.
     pub future: [Position; HORIZON],
 }
 
-/// Ends proposed for one pedestrian, those of all members one after the other, then those of all memory branches.
+/// The endpoints proposed for one pedestrian: first those of all members, then those of all memory branches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposedEnds {
-    /// Ends in the pedestrian's frame (metres): members x K of them, twice as many where something is remembered and the
-    /// network has a memory branch.
+    /// Endpoints in the pedestrian's frame (metres): members x K of them. Twice as many if the network has a memory
+    /// branch and the view has earlier pedestrians.
     pub ends: Vec<Position>,
-    /// Probability of each to be the nearest to the true end; sums to 1.
+    /// Probability of each endpoint to be the nearest to the true one; the sum is 1.
     pub weights: Vec<f64>,
 }
 
-/// A network that proposes ends, whoever computes it.
+/// A network that proposes endpoints: kernels on the CPU, or libtorch in `ddl-star`.
 pub trait ProposeEnds: Debug + Send + Sync {
-    /// Its shape.
+    /// Its sizes.
     fn config(&self) -> &ProposalConfig;
 
-    /// A copy of the learned numbers.
+    /// A copy of the weights.
     ///
     /// # Errors
-    /// When they cannot be fetched from their device.
+    /// If the weights cannot be copied from their device.
     fn copy_weights(&self) -> Result<Weights, NetworkError>;
 
-    /// Proposes ends for each of the pedestrians.
+    /// Proposes endpoints for each pedestrian.
     ///
     /// # Shapes
-    /// One [`ProposedEnds`] a view, in their order: places in metres ahead and to the left.
+    /// One [`ProposedEnds`] for each view, in the same order: metres ahead and metres to the left.
     ///
     /// # Errors
-    /// When the implementation fails, for want of memory for instance.
+    /// If the implementation fails, for example if a device has too little memory.
     fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, NetworkError>;
 }

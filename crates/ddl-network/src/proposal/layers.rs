@@ -1,4 +1,4 @@
-//! The learned tensors of the proposal network.
+//! The tensors of the proposal network.
 
 use super::remembered::REMEMBERED_FEATURES;
 use super::seen::NEIGHBOUR_FEATURES;
@@ -7,10 +7,10 @@ use crate::weights::Layout;
 use ddl_data::OBSERVED;
 use std::ops::Range;
 
-/// Positions between now and the end that are learned beside the end, as shares of the horizon.
+/// Waypoints, the positions that are trained in addition to the endpoint, as shares of the horizon.
 pub const WAYPOINTS: [f64; 3] = [0.25, 0.5, 0.75];
 
-/// An affine map of every member: y = x W + b, with W `[members, inputs, outputs]` and b `[members, 1, outputs]`.
+/// One affine map y = x W + b for each member, with W `[members, inputs, outputs]` and b `[members, 1, outputs]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemberAffine {
     tensor: usize,
@@ -21,7 +21,7 @@ pub struct MemberAffine {
 }
 
 impl MemberAffine {
-    /// Declares it: uniform weights with the variance `gain`² · 2 / inputs (He et al. 2015), no bias.
+    /// Declares the map. Initial weights are uniform with the variance `gain`² · 2 / inputs (He et al. 2015), biases 0.
     fn new(
         layout: &mut Layout,
         name: &str,
@@ -42,17 +42,17 @@ impl MemberAffine {
         }
     }
 
-    /// The number of its weight among the tensors of the layout; its bias is the next one.
+    /// Index of its weight among the tensors of the layout; its bias is the next tensor.
     pub fn tensor(self) -> usize {
         self.tensor
     }
 
-    /// Inputs and outputs.
+    /// Number of inputs and of outputs.
     pub(super) fn sizes(self) -> [usize; 2] {
         [self.inputs, self.outputs]
     }
 
-    /// Where weight `[inputs, outputs]` and bias of a member stand among all learned numbers.
+    /// The ranges of a member's weight `[inputs, outputs]` and bias among all weights.
     pub(super) fn of_member(self, member: usize) -> [Range<usize>; 2] {
         let size = self.inputs * self.outputs;
         let weight = self.first + member * size;
@@ -61,47 +61,47 @@ impl MemberAffine {
     }
 }
 
-/// Affine maps of an attention over others: neighbours, or earlier pedestrians.
+/// Affine maps of an attention over other pedestrians: neighbours, or earlier pedestrians of the place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttentionLayers {
-    /// From the features of another to its code.
+    /// From the features of another pedestrian to its code.
     pub code: [MemberAffine; 2],
-    /// What a pedestrian asks the others.
+    /// To the query of the pedestrian.
     pub query: MemberAffine,
-    /// What another is compared by.
+    /// From the code to the key.
     pub key: MemberAffine,
-    /// What another contributes.
+    /// From the code to the value.
     pub value: MemberAffine,
 }
 
-/// Affine maps from what is known of a pedestrian to its ends.
+/// Affine maps from a pedestrian's code and attention to its endpoints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadoutLayers {
-    /// Hidden layers, with short cuts between those of one width.
+    /// Hidden layers, with residual connections between layers of the same width.
     pub hidden: Vec<MemberAffine>,
-    /// To the ends.
+    /// To the endpoints.
     pub ends: MemberAffine,
-    /// To the waypoints, which only training looks at.
+    /// To the waypoints, which only training reads.
     pub waypoints: MemberAffine,
-    /// To the logarithms of the ends' probabilities.
+    /// To the logits of the endpoints' probabilities.
     pub logits: MemberAffine,
 }
 
 /// All affine maps of the network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposalLayers {
-    /// Of a pedestrian's positions and velocities.
+    /// From a pedestrian's positions and velocities to its code.
     pub own: MemberAffine,
-    /// Over the neighbours.
+    /// Attention over the neighbours.
     pub neighbours: AttentionLayers,
-    /// From both.
+    /// From both to the endpoints.
     pub readout: ReadoutLayers,
-    /// Over earlier pedestrians of the place, with what it adds to the ends, waypoints and logits of the
-    /// [`readout`](Self::readout), from whose last hidden layer it starts.
+    /// The memory branch: attention over earlier pedestrians of the place, and a readout. Its input is the last hidden
+    /// layer of [`readout`](Self::readout), and its outputs are added to the endpoints, waypoints and logits of that.
     pub memory: Option<(AttentionLayers, ReadoutLayers)>,
 }
 
-/// Declares layers one after the other.
+/// Declares layers in sequence.
 struct Declaring<'a> {
     layout: &'a mut Layout,
     members: usize,
@@ -128,7 +128,7 @@ impl Declaring<'_> {
         }
     }
 
-    /// `gains`: of ends and waypoints, and of logits.
+    /// `gains`: for endpoints and waypoints, and for logits.
     fn readout(
         &mut self,
         name: &str,
@@ -144,9 +144,9 @@ impl Declaring<'_> {
             })
             .collect();
         let points = ends * WAYPOINTS.len() * 2;
-        let [of_places, of_logits] = gains;
-        let to_ends = self.affine(&format!("{name}ends"), [width, ends * 2], of_places);
-        let waypoints = self.affine(&format!("{name}waypoints"), [width, points], of_places);
+        let [of_positions, of_logits] = gains;
+        let to_ends = self.affine(&format!("{name}ends"), [width, ends * 2], of_positions);
+        let waypoints = self.affine(&format!("{name}waypoints"), [width, points], of_positions);
         for tensor in [waypoints.tensor, waypoints.tensor + 1] {
             self.layout.mark_training_only(tensor);
         }
@@ -160,7 +160,7 @@ impl Declaring<'_> {
 }
 
 impl ProposalLayers {
-    /// Declares them.
+    /// Declares the layers.
     pub fn new(layout: &mut Layout, config: &ProposalConfig) -> Self {
         let [members, ends, width, near] = [
             config.members,
@@ -183,7 +183,7 @@ impl ProposalLayers {
             memory: config.memory.as_ref().map(|memory| {
                 let [near, hidden] = [memory.width, memory.hidden].map(|n| n as usize);
                 let names = ["memory.code", "memory."];
-                // It begins with almost the ends that are there without it.
+                // With small gains the initial endpoints are close to those of the main readout.
                 (
                     declaring.attention(names, REMEMBERED_FEATURES, near),
                     declaring.readout("memory.", (memory.layers, hidden, near), [0.03, 0.03]),
@@ -194,7 +194,7 @@ impl ProposalLayers {
 }
 
 impl ProposalConfig {
-    /// Numbers learned in all.
+    /// Number of weights of the network.
     pub fn parameter_count(&self) -> usize {
         let mut layout = Layout::default();
         ProposalLayers::new(&mut layout, self);

@@ -1,4 +1,4 @@
-//! One member of the ensemble on plain numbers.
+//! One member of the ensemble on the CPU.
 
 use super::layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers};
 use super::remembered::RememberedRows;
@@ -7,7 +7,7 @@ use crate::kernel::{Buffer, LinearKernel, gelu};
 use crate::weights::Weights;
 use crate::{MemoryConfig, ProposalConfig};
 
-/// What a readout says of B pedestrians: `[B, K * 2]` and `[B, K]`.
+/// The output of a readout for B pedestrians: endpoints `[B, K * 2]` and logits `[B, K]`.
 pub(super) struct Readings {
     pub(super) ends: Buffer,
     pub(super) logits: Buffer,
@@ -72,7 +72,8 @@ impl MemberKernels {
         }
     }
 
-    /// What is proposed from the observation alone and, for those of whom something is remembered, with that too.
+    /// Endpoints from the observation alone and, for the pedestrians with `remembered` ones, those of the memory
+    /// branch.
     pub(super) fn read(
         &self,
         seen: &SeenRows,
@@ -80,14 +81,14 @@ impl MemberKernels {
     ) -> (Readings, Option<Readings>) {
         let mut code = self.own.forward(&seen.own);
         gelu(&mut code);
-        let context = self.neighbours.look(&code, &seen.neighbours);
+        let context = self.neighbours.attend(&code, &seen.neighbours);
         let counts = seen.neighbours.counts.iter();
         let hidden = (self.readout).hidden_layer(code, &context, counts.map(|&n| n as f32 * 0.1));
         let readings = self.readout.read(&hidden);
         let memory = self.memory.as_ref().filter(|_| !remembered.of.is_empty());
         let with_memory = memory.map(|(attention, readout)| {
             let hidden = rows_of(&hidden, &remembered.of, seen.onward.len());
-            let context = attention.look(&hidden, &remembered.others);
+            let context = attention.attend(&hidden, &remembered.others);
             let support = remembered.support.iter().copied();
             let mut offsets = readout.read(&readout.hidden_layer(hidden, &context, support));
             for (offsets, base) in [
@@ -106,8 +107,8 @@ impl MemberKernels {
 }
 
 impl ReadoutKernels {
-    /// What ends and probabilities are read from, `[B, width]`: of what a pedestrian is known by, `[B, width]`, the others,
-    /// `[B, ..]`, and how much there is of them, `[B]`.
+    /// The last hidden layer `[B, width]`, from the pedestrians' codes `[B, width]`, their attention `[B, ..]`, and the
+    /// amount of other pedestrians attended to `[B]`.
     fn hidden_layer(
         &self,
         code: Buffer,
@@ -124,16 +125,16 @@ impl ReadoutKernels {
             row[width..width + near].copy_from_slice(context);
             row[width + near] = amount;
         }
-        let mut short_cut = code;
+        let mut residual = code;
         for layer in &self.hidden {
             hidden = layer.forward(&hidden);
             gelu(&mut hidden);
-            if short_cut.len() == hidden.len() {
-                for (number, short_cut) in hidden.iter_mut().zip(short_cut.iter()) {
-                    *number += short_cut;
+            if residual.len() == hidden.len() {
+                for (number, residual) in hidden.iter_mut().zip(residual.iter()) {
+                    *number += residual;
                 }
             }
-            short_cut = hidden.clone();
+            residual = hidden.clone();
         }
         hidden
     }
@@ -147,8 +148,9 @@ impl ReadoutKernels {
 }
 
 impl AttentionKernels {
-    /// What the pedestrians make of the others, `[B, code width]`: attention with one more choice of score 0, nobody.
-    fn look(&self, asking: &Buffer, others: &OthersRows) -> Buffer {
+    /// Attention of the pedestrians to the others, `[B, code width]`. The softmax has an additional score 0 whose value
+    /// is 0, so that a pedestrian can ignore the others.
+    fn attend(&self, asking: &Buffer, others: &OthersRows) -> Buffer {
         let query = self.query.forward(asking);
         let near = query.len() / others.counts.len();
         let mut context = Buffer::zeros(query.len());
@@ -194,7 +196,7 @@ impl AttentionKernels {
     }
 }
 
-/// Some rows of `count` many.
+/// Some of the `count` rows of `numbers`.
 fn rows_of(numbers: &Buffer, rows: &[usize], count: usize) -> Buffer {
     let width = numbers.len() / count;
     let mut taken = Buffer::any(rows.len() * width);
@@ -207,7 +209,7 @@ fn rows_of(numbers: &Buffer, rows: &[usize], count: usize) -> Buffer {
 fn kernel(layer: MemberAffine, member: usize, weights: &Weights) -> LinearKernel {
     let [inputs, outputs] = layer.sizes();
     let [weight, bias] = layer.of_member(member).map(|span| &weights.numbers()[span]);
-    // The kernel takes W by outputs.
+    // The kernel takes W as `[outputs, inputs]`.
     let by_outputs = (0..outputs).flat_map(|o| (0..inputs).map(move |i| weight[i * outputs + o]));
     let numbers: Vec<f32> = by_outputs.chain(bias.iter().copied()).collect();
     let mut kernel = LinearKernel::zeros(inputs, outputs);

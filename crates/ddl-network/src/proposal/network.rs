@@ -1,4 +1,4 @@
-//! The ensemble on plain numbers: small perceptrons with attention over the neighbours.
+//! The ensemble on the CPU: small perceptrons with attention over the neighbours.
 
 use super::ends::{END_UNIT, PedestrianView, ProposeEnds, ProposedEnds};
 use super::layers::ProposalLayers;
@@ -11,13 +11,13 @@ use crate::{NetworkError, ProposalConfig};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Pedestrians that are pushed through the network together.
+/// Number of pedestrians in a batch.
 const CHUNK: usize = 64;
 
 /// The ensemble, computed by kernels on the CPU in `f32`.
 ///
 /// # Numerics
-/// A pedestrian's proposals have the same bits alone and among others, and with every number of threads.
+/// The proposals of a pedestrian have the same bits alone and together with others, with any number of threads.
 #[derive(Debug)]
 pub struct ProposalNetwork {
     config: ProposalConfig,
@@ -30,7 +30,7 @@ impl ProposalNetwork {
     /// A network with initial weights drawn from `seed`.
     ///
     /// # Errors
-    /// [`NetworkError::Config`] for a bad configuration.
+    /// [`NetworkError::Config`] if the configuration is out of range.
     pub fn new(config: ProposalConfig, seed: u64) -> Result<Self, NetworkError> {
         let rng = stream(seed, Stage::ProposalWeights, 0);
         Self::reading(config, |layout| Ok(Weights::initial(layout, rng)))
@@ -39,8 +39,8 @@ impl ProposalNetwork {
     /// A network with the weights that `read` gives for its layout.
     ///
     /// # Errors
-    /// [`NetworkError::Config`] for a bad configuration, [`NetworkError::Shape`] when the weights are of another layout, and those
-    /// of `read`.
+    /// [`NetworkError::Config`] if the configuration is out of range, [`NetworkError::Shape`] if the weights have
+    /// another layout, and the errors of `read`.
     pub fn reading(
         config: ProposalConfig,
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
@@ -59,10 +59,10 @@ impl ProposalNetwork {
         })
     }
 
-    /// The same network with other learned numbers.
+    /// The same network with other weights.
     ///
     /// # Errors
-    /// [`NetworkError::Shape`] when they are of another layout.
+    /// [`NetworkError::Shape`] if they have another layout.
     pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
         weights.ensure_of(self.weights.layout())?;
         Ok(Self {
@@ -72,7 +72,7 @@ impl ProposalNetwork {
         })
     }
 
-    /// The learned numbers.
+    /// The weights.
     pub fn weights(&self) -> &Weights {
         &self.weights
     }

@@ -1,26 +1,28 @@
-//! What pedestrians know of earlier ones, as the numbers that the memory branch reads.
+//! Inputs of the memory branch from earlier pedestrians of the place.
 
 use super::ends::{END_UNIT, PedestrianView};
 use super::seen::{OthersRows, RECENT, velocity};
 use crate::MemoryConfig;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
 
-/// Inputs of an earlier pedestrian: where it was, its late and early velocity beside one's own, how far it went, where it
-/// was at the end and half-way, each beside going straight on, its late velocity, and [likenesses](LIKENESSES).
+/// Number of inputs for an earlier pedestrian: 7 vectors and the [likenesses](LIKENESSES). The vectors, relative to the
+/// pedestrian, are: present position, late and early velocity, displacement to the endpoint, endpoint, displacement to
+/// the halfway position; and its late velocity itself. Displacements and endpoint are relative to the pedestrian's
+/// constant velocity.
 pub const REMEMBERED_FEATURES: usize = 14 + LIKENESSES.len();
-/// Squared distances over which an input exp(-d / ..) falls off.
+/// Scales s of the inputs exp(-d / s), where d is the squared distance of an earlier pedestrian.
 pub const LIKENESSES: [f64; 3] = [2.0, 8.0, 32.0];
 
-/// What the memory branch reads of pedestrians of whom something is remembered.
+/// Inputs of the memory branch, for the B pedestrians whose views have earlier pedestrians.
 #[derive(Default)]
 pub(super) struct RememberedRows {
-    /// Which of the views these are.
+    /// Indices of these pedestrians' views, `[B]`.
     pub(super) of: Vec<usize>,
-    /// `[.., 17]`.
+    /// Features `[.., 17]`.
     pub(super) others: OthersRows,
-    /// ln(1 + sum of exp(-d / 2)), `[B]`: of how many is known that they moved alike.
+    /// ln(1 + sum of exp(-d / 2)), `[B]`: the amount of earlier pedestrians that moved similarly.
     pub(super) support: Vec<f32>,
-    /// Share of the probability that the ends of the branch have, `[B]`.
+    /// Share of the probability given to the endpoints of the branch, `[B]`.
     pub(super) shares: Vec<f64>,
 }
 

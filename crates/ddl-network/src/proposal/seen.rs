@@ -1,18 +1,19 @@
-//! What pedestrians see, as the numbers that the network reads.
+//! Inputs of the proposal network from the observation.
 
 use super::ends::PedestrianView;
 use crate::ProposalConfig;
 use ddl_data::{HORIZON, OBSERVED, Position};
 
-/// Time steps over which the present velocity is taken.
+/// Number of time steps over which the present velocity is averaged.
 pub const RECENT: usize = 3;
-/// Inputs of a neighbour: direction, nearness twice, relative and own velocity, closing speed.
+/// Number of inputs for a neighbour: direction (2), two measures of nearness, relative velocity (2), velocity (2),
+/// closing speed.
 pub const NEIGHBOUR_FEATURES: usize = 9;
 
-/// Features of some others of each pedestrian.
+/// Features of other pedestrians, for each of B pedestrians.
 #[derive(Default)]
 pub(super) struct OthersRows {
-    /// How many others each pedestrian has, `[B]`.
+    /// Number of others of each pedestrian, `[B]`.
     pub(super) counts: Vec<usize>,
     /// `[sum of counts, features]`.
     pub(super) features: Vec<f32>,
@@ -22,9 +23,9 @@ pub(super) struct OthersRows {
 pub(super) struct SeenRows {
     /// `[B, 30]`: positions and velocities.
     pub(super) own: Vec<f32>,
-    /// `[.., 9]`.
+    /// Features `[.., 9]`.
     pub(super) neighbours: OthersRows,
-    /// Where the present velocity leads by the end of the horizon, `[B]`, metres.
+    /// Endpoints at constant velocity, `[B]`, metres.
     pub(super) onward: Vec<Position>,
 }
 
@@ -51,7 +52,7 @@ impl SeenRows {
             for neighbour in view.neighbours.iter().take(config.neighbours) {
                 let there = neighbour[OBSERVED - 1];
                 let offset = [there[0] - here[0], there[1] - here[1]];
-                // Not 0 for who stands at the same place: it is divided by.
+                // 1e-6 prevents a division by 0 for a neighbour at the same position.
                 let distance = (offset[0].powi(2) + offset[1].powi(2) + 1e-6).sqrt();
                 if distance >= config.neighbour_range {
                     continue;

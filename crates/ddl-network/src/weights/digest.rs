@@ -1,17 +1,17 @@
-//! The SHA-256 of the numbers in a file, so that a bit that turned on the way is noticed: most such weights still look like weights.
+//! The SHA-256 of the numbers in a weights file. It detects flipped bits, which mostly leave finite, plausible weights.
 
 use safetensors::SafeTensors;
 use safetensors::tensor::TensorView;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 
-/// SHA-256 of tensors, in hexadecimal: of each one's name, kind, shape and bytes, by name.
+/// SHA-256, in hexadecimal, of the name, type, shape and bytes of each tensor, in the order of the names.
 pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView<'a>)>) -> String {
     let mut tensors: Vec<_> = tensors.into_iter().collect();
     tensors.sort_by(|one, other| one.0.cmp(other.0));
     let mut hasher = Sha256::new();
     let mut part = |bytes: &[u8]| {
-        // with its length, so that no part can pass for the beginning of the next
+        // The length before each part makes the boundaries between parts unambiguous.
         hasher.update((bytes.len() as u64).to_le_bytes());
         hasher.update(bytes);
     };
@@ -22,12 +22,12 @@ pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
     }
     let digest = hasher.finalize();
     digest.iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}"); // writing to a string cannot fail
+        let _ = write!(text, "{byte:02x}"); // Writing to a string cannot fail.
         text
     })
 }
 
-/// The numbers of a file are not those that were written. Its words are to follow the name of the file.
+/// The numbers of a file are not those that were written. Its message continues a sentence that begins with the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \
@@ -35,10 +35,10 @@ pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
 )]
 pub struct DamagedNumbers;
 
-/// Whether the numbers of a file are those that were written, as far as its header says.
+/// Checks the numbers of a file against the digest in its header.
 ///
 /// # Errors
-/// [`DamagedNumbers`] when they are not. Files of earlier versions have no digest, and pass.
+/// [`DamagedNumbers`] if they differ. Files of earlier versions have no digest and are accepted.
 pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DamagedNumbers> {
     let Some(expected) = expected else {
         return Ok(());

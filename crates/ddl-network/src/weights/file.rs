@@ -1,4 +1,4 @@
-//! Weights and other tensors as safetensors files: checked when read, atomic when written.
+//! Safetensors files of weights and other tensors. Reading checks them; writing is atomic.
 
 use super::digest::{check_numbers, numbers_digest};
 use super::layout::Layout;
@@ -12,7 +12,7 @@ use std::io::Read as _;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Room for the header of a safetensors file beyond its numbers.
+/// Largest size of the header of a safetensors file.
 const HEADER_BYTES: u64 = 1 << 20;
 
 /// A tensor of a file.
@@ -20,13 +20,13 @@ const HEADER_BYTES: u64 = 1 << 20;
 pub struct StoredTensor {
     /// Its name.
     pub name: String,
-    /// Its shape; numbers lie row by row.
+    /// Its shape.
     pub shape: Vec<usize>,
-    /// Its numbers.
+    /// Its numbers, in row-major order.
     pub numbers: StoredNumbers,
 }
 
-/// The numbers of a [`StoredTensor`], in the precision that the file has them in.
+/// The numbers of a [`StoredTensor`], in the precision of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StoredNumbers {
     /// 32-bit floats.
@@ -39,9 +39,9 @@ impl StoredTensor {
     /// The tensor in single precision.
     ///
     /// # Errors
-    /// [`NetworkError::Checkpoint`], naming `path`, when its shape is another one or a number is not finite.
+    /// [`NetworkError::Checkpoint`], naming `path`, if the tensor has another shape or a number is not finite.
     pub fn single(&self, shape: &[usize], path: &Path) -> Result<Vec<f32>, NetworkError> {
-        // In the precision it will have: a large f64 is infinite in f32.
+        // Checked after the conversion, because a large f64 becomes infinite in f32.
         let numbers = match &self.numbers {
             StoredNumbers::Single(numbers) => numbers.clone(),
             StoredNumbers::Double(numbers) => numbers.iter().map(|&number| number as f32).collect(),
@@ -90,10 +90,10 @@ impl StoredTensor {
     }
 }
 
-/// Writes learned tensors, by name, and what they are of.
+/// Writes weights and their origin.
 ///
 /// # Errors
-/// [`NetworkError::Io`] when the file cannot be written; an existing file is then left as it was.
+/// [`NetworkError::Io`] if the file cannot be written. An existing file then stays unchanged.
 pub fn save_weights(weights: &Weights, origin: &Origin, path: &Path) -> Result<(), NetworkError> {
     let tensors: Vec<StoredTensor> = weights
         .iter()
@@ -106,11 +106,11 @@ pub fn save_weights(weights: &Weights, origin: &Origin, path: &Path) -> Result<(
     write_tensors(&tensors, origin, path)
 }
 
-/// Reads learned tensors of that layout.
+/// Reads the weights of a layout.
 ///
 /// # Errors
-/// [`NetworkError::Checkpoint`] when the file is truncated, too large, of another origin, or holds other
-/// names, shapes or numbers than the network needs.
+/// [`NetworkError::Checkpoint`] if the file is truncated, too large, of another origin, or holds tensors of other
+/// names, shapes or types than the network needs.
 pub fn load_weights(
     layout: &Arc<Layout>,
     origin: &Origin,
@@ -120,7 +120,7 @@ pub fn load_weights(
     let (found, wanted) = (stored.len(), layout.tensors().len());
     if found != wanted {
         let problem = format!(
-            "holds {found} tensors, this network has {wanted}; it was written for another configuration"
+            "holds {found} tensors, but this network has {wanted}; it was written for another configuration"
         );
         return Err(NetworkError::checkpoint(path, problem));
     }
@@ -132,10 +132,10 @@ pub fn load_weights(
     Ok(Weights::new(Arc::clone(layout), numbers))
 }
 
-/// The tensor of that name.
+/// Finds a tensor by its name.
 ///
 /// # Errors
-/// [`NetworkError::Checkpoint`], naming `path`, when there is none.
+/// [`NetworkError::Checkpoint`], naming `path`, if there is no tensor of that name.
 pub fn find_tensor<'a>(
     tensors: &'a [StoredTensor],
     name: &str,
@@ -144,13 +144,13 @@ pub fn find_tensor<'a>(
     let mut tensors = tensors.iter();
     tensors
         .find(|tensor| tensor.name == name)
-        .ok_or_else(|| NetworkError::checkpoint(path, format!("lacks the tensor {name}")))
+        .ok_or_else(|| NetworkError::checkpoint(path, format!("has no tensor {name}")))
 }
 
-/// Writes tensors, and what they are of, with the SHA-256 of their numbers.
+/// Writes tensors, their origin and the SHA-256 of their numbers.
 ///
 /// # Errors
-/// [`NetworkError::Io`] when the file cannot be written; an existing file is then left as it was.
+/// [`NetworkError::Io`] if the file cannot be written. An existing file then stays unchanged.
 pub fn write_tensors(
     tensors: &[StoredTensor],
     origin: &Origin,
@@ -173,11 +173,11 @@ pub fn write_tensors(
     write_whole(path, &bytes).map_err(NetworkError::io(path))
 }
 
-/// The tensors of a file with at most `most_bytes` of numbers, which has to be of this origin.
+/// Reads the tensors of a file of this origin with at most `most_bytes` bytes of numbers.
 ///
 /// # Errors
-/// [`NetworkError::Checkpoint`] when the file is truncated, too large, damaged or of another origin, or holds other numbers than
-/// 32- and 64-bit floats.
+/// [`NetworkError::Checkpoint`] if the file is truncated, too large, damaged, of another origin, or holds other types
+/// than 32- and 64-bit floats.
 pub fn read_tensors(
     path: &Path,
     most_bytes: u64,
@@ -185,11 +185,11 @@ pub fn read_tensors(
 ) -> Result<Vec<StoredTensor>, NetworkError> {
     let io = NetworkError::io(path);
     let bad = |problem: String| NetworkError::checkpoint(path, problem);
-    // The size first: nothing is read, and no room made, for what cannot be a checkpoint.
+    // A file that is too large is refused before it is read and before memory is allocated.
     let size = std::fs::metadata(path).map_err(io)?.len();
     if size > most_bytes + HEADER_BYTES {
         return Err(bad(format!(
-            "is {size} bytes long, a checkpoint of this network at most {most_bytes}"
+            "is {size} bytes long, but a checkpoint of this network has at most {most_bytes} bytes"
         )));
     }
     let mut bytes = Vec::new();
@@ -199,15 +199,15 @@ pub fn read_tensors(
     file.take(most).read_to_end(&mut bytes).map_err(io)?;
     let broken = |error: safetensors::SafeTensorError| {
         bad(format!(
-            "is not a whole safetensors file ({error}); delete it and run the same training again"
+            "is not a complete safetensors file ({error}); delete it and run the same training again"
         ))
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
     let (of_file, digest) = Origin::of_header(header.metadata().as_ref());
     if let Some(difference) = of_file.difference(origin) {
         return Err(bad(format!(
-            "belongs to another run than the config.json beside it: its {difference}; put back the file, or the \
-             config.json, that it was made with"
+            "belongs to another run than the config.json beside it: its {difference}; restore the file and the \
+             config.json of the same run"
         )));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
@@ -225,7 +225,7 @@ pub fn read_tensors(
                 }
                 other => {
                     return Err(bad(format!(
-                        "{name} holds {other:?}, expected 32- or 64-bit floats"
+                        "{name} has the type {other:?}, expected 32- or 64-bit floats"
                     )));
                 }
             };

@@ -1,4 +1,4 @@
-//! Learned tensors in half precision: how weights travel when they are handed on to be used, not to be trained further.
+//! Weights in half precision, the format of packed models. They are for forecasts only, not for further training.
 
 use super::layout::Layout;
 use super::learned::Weights;
@@ -6,26 +6,28 @@ use crate::NetworkError;
 use half::f16;
 use std::sync::Arc;
 
-/// A learned tensor in IEEE 754 binary16.
+/// A tensor of weights in IEEE 754 binary16.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct HalfTensor {
     /// Its name in the network.
     pub name: String,
     /// Its shape.
     pub shape: Vec<usize>,
-    /// Its numbers, two bytes each, in row-major order.
+    /// Its numbers, two bytes each (little-endian), in row-major order.
     pub bytes: Vec<u8>,
 }
 
 impl Weights {
-    /// The learned tensors that forecasts need, in order, rounded to half precision: all but those that
-    /// [only training reads](crate::weights::TensorLayout::is_training_only).
+    /// The tensors that forecasts need, in order and rounded to half precision. Tensors that
+    /// [only training reads](crate::weights::TensorLayout::is_training_only) are left out.
     ///
     /// # Errors
-    /// [`NetworkError::Weights`] for a number that half precision has no room for: NaN, or at least 65,520 in size.
+    /// [`NetworkError::Weights`] for a number that half precision cannot hold: NaN, or an absolute value of 65,520 or
+    /// more.
     ///
     /// # Numerics
-    /// A number is rounded to 11 significant bits: off by at most 2^-11 of its size, or by 2^-25 where it is smaller than 2^-14.
+    /// Numbers are rounded to 11 significant bits. The relative error is at most 2^-11; numbers below 2^-14 have an
+    /// absolute error of at most 2^-25.
     pub fn to_half(&self) -> Result<Vec<HalfTensor>, NetworkError> {
         let needed = self.iter().filter(|(tensor, _)| !tensor.is_training_only());
         needed
@@ -35,7 +37,8 @@ impl Weights {
                     let size = |largest: f32, x: &f32| if x.is_nan() { f32::NAN } else { largest.max(x.abs()) };
                     let largest = numbers.iter().fold(0.0, size);
                     let problem = format!(
-                        "holds numbers as large as {largest}, and half precision ends at 65504; train it with a smaller step size"
+                        "has a weight of size {largest}, but half precision holds at most 65504; train with a smaller \
+                         step size"
                     );
                     return Err(NetworkError::weights(tensor.name(), problem));
                 }
@@ -48,12 +51,11 @@ impl Weights {
             .collect()
     }
 
-    /// The learned tensors of a layout from what was rounded of those of another network of the same configuration. Those that only
-    /// training reads are 0.
+    /// Weights from the rounded tensors of a network of the same configuration. Tensors that only training reads are 0.
     ///
     /// # Errors
-    /// [`NetworkError::Weights`] when there are other names, shapes or counts of tensors than the layout has, or one holds NaN or
-    /// infinity.
+    /// [`NetworkError::Weights`] if names, shapes or counts of the tensors differ from the layout's, or if a tensor
+    /// holds NaN or infinity.
     pub fn from_half(layout: &Arc<Layout>, tensors: &[HalfTensor]) -> Result<Self, NetworkError> {
         let needed = || {
             layout
@@ -65,7 +67,7 @@ impl Weights {
         if let Some(other) = tensors.iter().find(|tensor| !known(&tensor.name)) {
             return Err(NetworkError::weights(
                 &other.name,
-                "is no tensor of this network",
+                "does not belong to this network",
             ));
         }
         let mut numbers = vec![0.0; layout.count()];
@@ -73,7 +75,7 @@ impl Weights {
             let name = wanted.name();
             let mut named = tensors.iter().filter(|tensor| tensor.name == name);
             let (Some(tensor), None) = (named.next(), named.next()) else {
-                return Err(NetworkError::weights(name, "is missing, or there twice"));
+                return Err(NetworkError::weights(name, "is missing or duplicate"));
             };
             if tensor.shape != wanted.shape() {
                 let problem = format!(
@@ -116,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn every_weight_comes_back_within_the_rounding() {
+    fn every_weight_is_restored_up_to_rounding() {
         let learned = weights();
         let packed = learned.to_half().unwrap();
         let again = Weights::from_half(learned.layout(), &packed).unwrap();
@@ -129,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_without_room_are_refused() {
+    fn numbers_beyond_half_precision_are_refused() {
         for (large, fits) in [(65_519.0, true), (65_520.0, false), (f32::NAN, false)] {
             let learned = weights();
             let mut numbers = learned.numbers().to_vec();
@@ -145,7 +147,7 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(64))]
 
         #[test]
-        fn what_does_not_fit_is_refused(index in any::<prop::sample::Index>(), kind in 0..7) {
+        fn tensors_that_do_not_fit_are_refused(index in any::<prop::sample::Index>(), kind in 0..7) {
             let learned = weights();
             let mut packed = learned.to_half().unwrap();
             let index = index.index(packed.len());
@@ -155,7 +157,7 @@ mod tests {
                 2 => packed[index].name.push('x'),
                 3 => packed[index].shape.push(1),
                 4 => packed[index].bytes.truncate(1),
-                5 => packed[index].bytes[..2].copy_from_slice(&[0, 0x7c]), // infinite
+                5 => packed[index].bytes[..2].copy_from_slice(&[0, 0x7c]), // infinity
                 _ => packed[index].bytes[..2].copy_from_slice(&[1, 0xfc]), // NaN
             }
             prop_assert!(Weights::from_half(learned.layout(), &packed).is_err());

@@ -1,27 +1,28 @@
-//! Which learned tensors a network has, in which order, and how they begin.
+//! The tensors of a network: names, order, shapes and initial values.
 
 use crate::kernel::Sizes;
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 use std::ops::Range;
 
-/// How a tensor begins.
+/// The initial values of a tensor.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Initial {
     /// Uniform in ±`bound`, then multiplied by `scale`.
     Uniform {
-        /// Largest number drawn.
+        /// Largest absolute value drawn.
         bound: f64,
-        /// Multiplied in single precision afterwards.
+        /// Factor, multiplied in single precision.
         scale: f64,
     },
-    /// Every number is this.
+    /// All numbers have this value.
     Constant(f64),
-    /// These numbers. As many are drawn and left, so that what is drawn afterwards does not depend on it.
+    /// These numbers. As many random numbers are drawn and discarded, so that later draws are the same as with
+    /// [`Uniform`](Self::Uniform).
     DrawnAway(Vec<f64>),
 }
 
-/// One learned tensor.
+/// One tensor of weights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TensorLayout {
     name: String,
@@ -37,25 +38,25 @@ impl TensorLayout {
         &self.name
     }
 
-    /// Its shape; numbers lie row by row.
+    /// Its shape; its numbers are in row-major order.
     pub fn shape(&self) -> &[usize] {
         &self.shape
     }
 
-    /// Where its numbers stand among those of all tensors.
+    /// The range of its numbers among those of all tensors.
     pub fn span(&self) -> Range<usize> {
         self.first..self.first + self.shape.iter().product::<usize>()
     }
 
-    /// Whether only the training loss reads it, so that a model that is handed on goes without it.
+    /// Whether only the training loss reads it; packed models leave it out.
     pub fn is_training_only(&self) -> bool {
         self.training_only
     }
 }
 
-/// The learned tensors of a network, in order.
+/// The tensors of a network, in order.
 ///
-/// A network declares its layers when it is made, and finds their weights by the handles that it gets.
+/// A network declares its layers when it is built, and gets a handle for each, with which it finds the weights.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Layout {
     tensors: Vec<TensorLayout>,
@@ -68,20 +69,20 @@ pub struct Layout {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Linear {
-    /// Its number among the affine maps of the layout.
+    /// Index among the affine maps of the layout.
     pub number: usize,
-    /// The number of its weight among the tensors of the layout; its bias is the next one.
+    /// Index of its weight among the tensors of the layout; its bias is the next tensor.
     pub tensor: usize,
-    /// Where its numbers begin among all learned ones.
+    /// Index of its first number among all weights.
     pub first: usize,
-    /// Numbers in a row of x.
+    /// Width of x.
     pub inputs: usize,
-    /// Numbers in a row of y.
+    /// Width of y.
     pub outputs: usize,
 }
 
 impl Linear {
-    /// Where its numbers stand among all learned ones.
+    /// The range of its numbers among all weights.
     pub fn span(self) -> Range<usize> {
         self.first..self.first + self.outputs * (self.inputs + 1)
     }
@@ -91,11 +92,11 @@ impl Linear {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct EncoderLayer {
-    /// Its number among the encoder layers of the layout.
+    /// Index among the encoder layers of the layout.
     pub number: usize,
-    /// The number of its first tensor among those of the layout.
+    /// Index of its first tensor among those of the layout.
     pub tensor: usize,
-    /// Where its numbers begin among all learned ones.
+    /// Index of its first number among all weights.
     pub first: usize,
     /// Width, heads and hidden width.
     pub sizes: Sizes,
@@ -104,7 +105,7 @@ pub struct EncoderLayer {
 }
 
 impl EncoderLayer {
-    /// Where its numbers stand among all learned ones.
+    /// The range of its numbers among all weights.
     pub fn span(self) -> Range<usize> {
         self.first..self.first + self.sizes.count()
     }
@@ -126,12 +127,12 @@ impl Layout {
         &self.encoder_layers
     }
 
-    /// How many numbers there are in all.
+    /// Number of weights in all tensors.
     pub fn count(&self) -> usize {
         self.count
     }
 
-    /// Declares a tensor and gives its number.
+    /// Declares a tensor and returns its index.
     pub fn tensor(&mut self, name: String, shape: &[usize], initial: Initial) -> usize {
         self.tensors.push(TensorLayout {
             name,
@@ -144,32 +145,32 @@ impl Layout {
         self.tensors.len() - 1
     }
 
-    /// Declares a tensor that begins uniform in ±`bound`.
+    /// Declares a tensor with initial values uniform in ±`bound`.
     pub fn uniform(&mut self, name: String, shape: &[usize], bound: f64) -> usize {
         self.tensor(name, shape, Initial::Uniform { bound, scale: 1.0 })
     }
 
-    /// Declares a tensor of equal numbers.
+    /// Declares a tensor whose initial values are all `value`.
     pub fn constant(&mut self, name: String, shape: &[usize], value: f64) -> usize {
         self.tensor(name, shape, Initial::Constant(value))
     }
 
-    /// Says that only the training loss reads this tensor.
+    /// Marks a tensor that only the training loss reads.
     ///
     /// # Panics
-    /// When no tensor has this number.
+    /// If no tensor has this index.
     pub fn mark_training_only(&mut self, tensor: usize) {
         self.tensors[tensor].training_only = true;
     }
 
-    /// Declares an affine map whose weight and bias begin uniform in ±1/sqrt(inputs).
+    /// Declares an affine map whose initial weight and bias are uniform in ±1/sqrt(inputs).
     pub fn linear(&mut self, name: &str, inputs: usize, outputs: usize) -> Linear {
         let bound = 1.0 / (inputs as f64).sqrt();
         let begin = Initial::Uniform { bound, scale: 1.0 };
         self.linear_beginning(name, [inputs, outputs], begin.clone(), begin)
     }
 
-    /// Declares an affine map that begins as said.
+    /// Declares an affine map with these initial values.
     pub fn linear_beginning(
         &mut self,
         name: &str,
@@ -191,11 +192,13 @@ impl Layout {
         linear
     }
 
-    /// Declares an encoder layer: a Xavier-uniform joint projection of query, key and value, biases of 0 there.
+    /// Declares an encoder layer. The joint projection of query, key and value is initially Xavier-uniform with biases
+    /// of 0; the feed-forward layers are as in [`linear`](Self::linear), and the output projection too, with a bias of
+    /// 0.
     pub fn encoder_layer(&mut self, name: &str, sizes: Sizes, dropout: f64) -> EncoderLayer {
         let Sizes { width, hidden, .. } = sizes;
         let (first, tensor) = (self.count, self.tensors.len());
-        // In the order of `Sizes`.
+        // The same order as in `Sizes`.
         let bound = (6.0 / (4 * width) as f64).sqrt();
         self.uniform(
             format!("{name}.self_attn.in_proj_weight"),
@@ -231,7 +234,7 @@ impl Layout {
         layer
     }
 
-    /// Initial numbers, drawn in the order of the tensors; the same on every machine.
+    /// Initial values, drawn in the order of the tensors; the same on every machine.
     pub fn initial(&self, mut rng: ChaCha8Rng) -> Vec<f64> {
         let mut numbers = Vec::with_capacity(self.count);
         for tensor in &self.tensors {

@@ -1,11 +1,11 @@
-//! Learned numbers, and what they are called.
+//! The weights of a network with their names.
 
 use super::layout::{Layout, TensorLayout};
 use crate::NetworkError;
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 
-/// The learned numbers of a network, in the order of their [`Layout`].
+/// The weights of a network, in the order of their [`Layout`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Weights {
     layout: Arc<Layout>,
@@ -13,25 +13,25 @@ pub struct Weights {
 }
 
 impl Weights {
-    /// Numbers in the order of the layout.
+    /// Weights from numbers in the order of the layout.
     ///
     /// # Panics
-    /// When there are more or fewer numbers than the layout has.
+    /// If the count of `numbers` differs from the layout's.
     pub fn new(layout: Arc<Layout>, numbers: Vec<f32>) -> Self {
-        assert_eq!(numbers.len(), layout.count(), "numbers of this layout");
+        assert_eq!(numbers.len(), layout.count(), "number of weights");
         Self { layout, numbers }
     }
 
-    /// Initial numbers, drawn in the order of the tensors; the same on every machine.
+    /// Initial weights, drawn in the order of the tensors; the same on every machine.
     pub fn initial(layout: &Arc<Layout>, rng: ChaCha8Rng) -> Self {
         let numbers = layout.initial(rng).into_iter().map(|x| x as f32);
         Self::new(Arc::clone(layout), numbers.collect())
     }
 
-    /// Checks that they are of this layout.
+    /// Checks that the weights have this layout.
     ///
     /// # Errors
-    /// [`NetworkError::Shape`] when they are of another one.
+    /// [`NetworkError::Shape`] if they have another one.
     pub fn ensure_of(&self, layout: &Arc<Layout>) -> Result<(), NetworkError> {
         if Arc::ptr_eq(&self.layout, layout) || self.layout == *layout {
             return Ok(());
@@ -39,27 +39,27 @@ impl Weights {
         let (wanted, got) = (layout.count(), self.count());
         Err(NetworkError::shape(
             "weights",
-            format!("those of this network, {wanted} numbers"),
-            format!("{got} numbers of another one"),
+            format!("the {wanted} weights of this network"),
+            format!("{got} weights of another network"),
         ))
     }
 
-    /// Names, shapes and places.
+    /// Names, shapes and positions of the tensors.
     pub fn layout(&self) -> &Arc<Layout> {
         &self.layout
     }
 
-    /// How many numbers there are.
+    /// Number of weights.
     pub fn count(&self) -> usize {
         self.numbers.len()
     }
 
-    /// All numbers, tensor after tensor.
+    /// All weights, tensor after tensor.
     pub fn numbers(&self) -> &[f32] {
         &self.numbers
     }
 
-    /// Each tensor with its numbers, row by row.
+    /// Each tensor with its numbers in row-major order.
     pub fn iter(&self) -> impl Iterator<Item = (&TensorLayout, &[f32])> {
         let tensors = self.layout.tensors().iter();
         tensors.map(|tensor| (tensor, &self.numbers[tensor.span()]))

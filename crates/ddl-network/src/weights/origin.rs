@@ -1,8 +1,8 @@
-//! What a checkpoint is of, so that a file that lies beside the wrong configuration is noticed.
+//! The origin of a checkpoint. It detects a file that lies beside the wrong configuration.
 
 use std::collections::{BTreeMap, HashMap};
 
-/// The facts that decide the numbers of a checkpoint, by name: configuration, seed, data.
+/// Named facts that determine the numbers of a checkpoint: configuration, seed, data.
 ///
 /// They are written into the header of the file. A file of another origin is refused, even if all shapes fit.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -20,7 +20,8 @@ impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Origin {
 }
 
 impl Origin {
-    /// The first fact, by name, in which this origin is not `other`, in words; `None` when they agree.
+    /// Describes the first fact, in the order of the names, in which this origin differs from `other`. `None` if they
+    /// are equal.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let names = self.0.keys().chain(other.0.keys());
         let name = names
@@ -28,7 +29,7 @@ impl Origin {
             .min()?;
         let in_words = |origin: &Self| {
             let value = origin.0.get(name);
-            value.map_or_else(|| "nothing".to_owned(), String::clone)
+            value.map_or_else(|| "missing".to_owned(), String::clone)
         };
         Some(format!(
             "{name} is {}, not {}",
@@ -37,7 +38,7 @@ impl Origin {
         ))
     }
 
-    /// As the header of a safetensors file holds it, with the SHA-256 of the file's numbers, in one entry.
+    /// The header of a safetensors file: one entry with the origin and the SHA-256 of the file's numbers.
     pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
         let facts = self
             .0
@@ -49,7 +50,8 @@ impl Origin {
         HashMap::from([(HEADER.to_owned(), facts.to_string())])
     }
 
-    /// What the header of a safetensors file says (nothing if it is not ours), and the SHA-256 of its numbers, if any.
+    /// The origin in the header of a safetensors file, empty if another program wrote the file; and the SHA-256 of its
+    /// numbers, if the header has it.
     pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
         let mut origin = Self(
@@ -62,9 +64,9 @@ impl Origin {
     }
 }
 
-/// Name of the header's entry.
+/// Name of the entry in the header.
 const HEADER: &str = "origin";
-/// Name of the fact that is none of the origin: the SHA-256 of the file's numbers.
+/// Name of the SHA-256 of the file's numbers in this entry.
 const DIGEST: &str = "numbers.sha256";
 
 #[cfg(test)]
@@ -72,16 +74,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_header_brings_it_back() {
+    fn an_origin_is_read_back_from_its_header() {
         let origin = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
         let header = origin.to_header("ab12");
         let digest = Some("ab12".to_owned());
         assert_eq!(Origin::of_header(Some(&header)), (origin, digest));
-        let nothing = (Origin::default(), None);
-        assert_eq!(Origin::of_header(None), nothing);
+        let empty = (Origin::default(), None);
+        assert_eq!(Origin::of_header(None), empty);
         let foreign = HashMap::from([(HEADER.to_owned(), "[1".to_owned())]);
-        assert_eq!(Origin::of_header(Some(&foreign)), nothing);
-        // of a version without a digest
+        assert_eq!(Origin::of_header(Some(&foreign)), empty);
+        // A file of a version without a digest.
         let old = HashMap::from([(HEADER.to_owned(), r#"{"fold":"eth"}"#.to_owned())]);
         let eth = Origin::from_iter([("fold", "eth")]);
         assert_eq!(Origin::of_header(Some(&old)), (eth, None));

@@ -1,4 +1,4 @@
-//! Bounded rollouts arrive in time and are never too fast; what is told of a step is what it was made with.
+//! Bounded rollouts end on the goal within the top speed, and a rollout's factors reproduce its steps.
 
 use super::scenes::{Question, WINDOWS, configs, distance, goals};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
@@ -13,7 +13,7 @@ use nalgebra::Vector2;
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// Rounding of positions some ten metres from the origin to `f32`, twelve times over (m).
+/// Bound of the rounding of positions to `f32` over twelve steps, some ten metres from the origin (m).
 const ROUNDING: f64 = 1e-4;
 
 fn with_dynamics() -> Vec<StarConfig> {
@@ -62,7 +62,8 @@ proptest! {
     }
 }
 
-/// Step `done` of `ddl-dynamics` in f64, with an emitted factor, of a pedestrian that was observed so.
+/// The step after `done` steps, by `ddl-dynamics` in f64 with an emitted factor, of a pedestrian with these observed
+/// positions.
 fn step(
     (from, goal): (Position, Position),
     [a, b, c]: [f64; 3],
@@ -94,7 +95,7 @@ fn step(
 }
 
 #[test]
-fn the_factors_are_those_of_the_steps() {
+fn factors_reproduce_the_steps() {
     let windows: Vec<&Window> = WINDOWS.iter().take(8).collect();
     for config in with_dynamics() {
         let network = MotionNetwork::new(config.clone(), 5).unwrap();
@@ -119,7 +120,7 @@ fn the_factors_are_those_of_the_steps() {
                         let seen = (window.observed(i), done);
                         let expected = step((here, goal), factor, (&config, rule), seen);
                         let off = distance(next, expected);
-                        // next to the goal, rounding decides where a plain step leads to
+                        // Close to the goal the result of an Euler step depends on rounding.
                         let undecided = rule == StepRule::Euler && distance(here, goal) < 1e-2;
                         assert!(off < 1e-4 || undecided, "{config:?}, {rule:?}: {off} m off");
                         compared += usize::from(!undecided);
@@ -134,7 +135,7 @@ fn the_factors_are_those_of_the_steps() {
 }
 
 #[test]
-fn only_dynamics_have_factors() {
+fn only_variants_with_dynamics_have_factors() {
     for config in configs() {
         let network = MotionNetwork::new(config, 5).unwrap();
         let rollout = &Question::bounded(1).ask(&network, &[&WINDOWS[0]])[0];

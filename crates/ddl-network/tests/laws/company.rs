@@ -1,10 +1,11 @@
-//! Who else is there: nothing to a perceptron, something to STAR.
+//! Interaction: forecasts of STAR depend on the other pedestrians, those of the perceptron do not.
 
 use super::scenes::{Question, WINDOWS, distance, recommended};
 use ddl_data::{HORIZON, Window};
 use ddl_network::{BackboneKind, MotionNetwork, Variant, WindowRollout};
 
-/// Largest distance (m) of forecasts among others from those alone: of who comes first in a window, and of everybody.
+/// Largest distance (m) between the forecasts of a pedestrian with others and alone: of the first pedestrian of each
+/// window, and of all pedestrians.
 fn furthest(backbone: BackboneKind) -> [f64; 2] {
     let network = MotionNetwork::new(recommended(backbone, Variant::Full), 5).unwrap();
     let question = Question::bounded(2);
@@ -33,7 +34,7 @@ fn furthest(backbone: BackboneKind) -> [f64; 2] {
 }
 
 #[test]
-fn star_sees_others_and_a_perceptron_does_not() {
+fn star_depends_on_others_and_a_perceptron_does_not() {
     let [first, any] = furthest(BackboneKind::Perceptron);
     assert_eq!(first.to_bits(), 0.0_f64.to_bits(), "{first} m");
     assert!(any < 1e-4, "{any} m");

@@ -1,4 +1,4 @@
-//! What holds of every network, whatever its weights, on simulated crowds.
+//! Properties of networks with any weights, on simulated crowds.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

@@ -1,4 +1,4 @@
-//! Forecasts move with the world.
+//! Forecasts are equivariant to translations and, in the pedestrian's own frame, to rotations.
 
 use super::scenes::{WINDOWS, configs, distance, goals, recommended};
 use ddl_data::{Position, Window};
@@ -8,7 +8,7 @@ use ddl_network::{
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-/// How far forecasts in the moved world lie from moved forecasts at most (m).
+/// Largest distance (m) between the forecast in a moved scene and the moved forecast.
 fn off(config: StarConfig, window: &Window, moved: impl Fn(Position) -> Position) -> f64 {
     let network = MotionNetwork::new(config, 5).unwrap();
     let forecast = |world: &dyn Fn(Position) -> Position| {
@@ -31,7 +31,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
-    fn with_the_scene(
+    fn forecasts_are_translated_with_the_scene(
         config in prop::sample::select(configs()),
         window in any::<Index>(),
         [x, y] in [-6e6..6e6_f64, -6e6..6e6_f64],
@@ -40,10 +40,10 @@ proptest! {
         prop_assert!(off < 1e-4, "{off} m");
     }
 
-    /// A perceptron reads everything in the pedestrian's own frame. STAR does not: where everybody is in the scene it reads in the
-    /// axes of the world.
+    /// A perceptron reads all inputs in the pedestrian's own frame. STAR reads the positions in the scene in the axes
+    /// of the world.
     #[test]
-    fn with_every_turn_of_it_in_the_own_frame(
+    fn forecasts_of_a_perceptron_in_the_own_frame_are_rotated_with_the_scene(
         variant in prop::sample::select(vec![Variant::Full, Variant::NoDynamics]),
         window in any::<Index>(),
         angle in 0.0..std::f64::consts::TAU,

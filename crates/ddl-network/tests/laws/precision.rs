@@ -1,11 +1,11 @@
-//! What half precision in the feed-forward blocks changes about forecasts.
+//! The effect of half precision in the feed-forward blocks on forecasts.
 
 use super::scenes::{Question, WINDOWS, distance};
 use ddl_data::{Position, Window};
 use ddl_network::{ForecastWindows as _, MotionNetwork, Precision, StarConfig, Variant};
 
 #[test]
-fn half_precision_changes_forecasts_a_little_and_weights_not_at_all() {
+fn half_precision_changes_forecasts_slightly_and_no_weights() {
     let config = StarConfig {
         feed_forward_width: 96,
         ..StarConfig::published(Variant::Full)
@@ -25,7 +25,7 @@ fn half_precision_changes_forecasts_a_little_and_weights_not_at_all() {
             (precision, &weights)
         );
         let found = forecasts(&network);
-        // Other weights are packed in the same precision.
+        // `with_weights` keeps the precision.
         let again = MotionNetwork::new(network.config().clone(), 4).unwrap();
         let again = again.in_precision(precision).with_weights(weights.clone());
         assert_eq!(forecasts(&again.unwrap()), found);

@@ -1,4 +1,4 @@
-//! Proposals: what they are, what they depend on, and what they do not.
+//! Proposals: shape, probabilities and dependence on the inputs.
 
 use super::scenes::{WINDOWS, distance, with_threads};
 use ddl_data::{OBSERVED, Position, Remembered, WINDOW, Window};
@@ -39,7 +39,7 @@ fn seen(window: &Window, i: usize) -> PedestrianView {
     }
 }
 
-/// Everybody in all windows but the crowd: a whole chunk and more, some of whom are alone.
+/// All pedestrians of all windows but the crowd: more than one batch, and some of them alone.
 static VIEWS: LazyLock<Vec<PedestrianView>> = LazyLock::new(|| {
     let windows = WINDOWS[..WINDOWS.len() - 1].iter();
     let mut views: Vec<_> = windows
@@ -53,7 +53,7 @@ static VIEWS: LazyLock<Vec<PedestrianView>> = LazyLock::new(|| {
     views
 });
 
-/// A view of somebody who walks at `speed` (m/s) with `neighbours` ahead.
+/// A view of a pedestrian at constant velocity, `speed` (m/s), with `neighbours` ahead.
 fn view(speed: f64, neighbours: usize) -> PedestrianView {
     let walk = |speed: f64, x: f64, y: f64| {
         std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
@@ -67,7 +67,7 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
     }
 }
 
-/// Somebody who went on at a distance of `aside` metres.
+/// An earlier pedestrian at 1 m/s, `aside` metres to the left.
 fn earlier(aside: f64) -> Remembered {
     let track: [Position; WINDOW] = std::array::from_fn(|t| [0.4 * (t as f64 - 7.0), aside]);
     Remembered {
@@ -85,7 +85,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
     #[test]
-    fn a_pedestrian_alone_and_among_others(
+    fn proposals_have_the_same_bits_alone_and_among_others(
         chosen in prop::collection::vec(any::<Index>(), 1..150),
         looked_at in any::<Index>(),
         published in any::<bool>(),
@@ -109,7 +109,7 @@ proptest! {
 }
 
 #[test]
-fn what_is_proposed_from_the_observation_alone_stays_beside_what_is_remembered() {
+fn the_memory_branch_adds_endpoints_and_keeps_the_others() {
     let network = network(small());
     let memory = network.config().memory.clone().unwrap();
     let mut remembering = view(1.2, 2);
@@ -127,7 +127,7 @@ fn what_is_proposed_from_the_observation_alone_stays_beside_what_is_remembered()
     }
     let of_memory: f64 = both.weights[12..].iter().sum();
     assert!((of_memory - share).abs() < 1e-9);
-    // Not more of them are looked at than the network is made for, and these in any order.
+    // Only the first `memory.remembered` earlier pedestrians count, in any order.
     remembering.remembered = (0..20).map(|j| earlier(0.1 * f64::from(j))).collect();
     let mut looked_at = remembering.clone();
     looked_at.remembered.truncate(memory.remembered);
@@ -143,7 +143,7 @@ fn what_is_proposed_from_the_observation_alone_stays_beside_what_is_remembered()
     looked_at.remembered.reverse();
     let pairs = forwards.iter().zip(ends(&looked_at));
     assert!(pairs.map(|(&a, b)| distance(a, b)).fold(0.0, f64::max) < 1e-4);
-    // And each counts.
+    // Each of them counts.
     looked_at.remembered.pop();
     assert_ne!(ends(&looked_at), forwards);
 }
@@ -159,7 +159,7 @@ fn apart(a: &PedestrianView, b: &PedestrianView) -> f64 {
 }
 
 #[test]
-fn only_near_neighbours_count_in_any_order() {
+fn near_neighbours_count_in_any_order_and_far_ones_do_not() {
     assert!(network(small()).propose(&[]).unwrap().is_empty());
     let pedestrian = view(1.1, 4);
     let mut shuffled = pedestrian.clone();
@@ -168,18 +168,18 @@ fn only_near_neighbours_count_in_any_order() {
     let mut with_far = pedestrian.clone();
     with_far.neighbours.push([[40.0, 3.0]; OBSERVED]);
     assert!(apart(&pedestrian, &with_far) < 1e-9);
-    // and a neighbour in the way does
+    // Neighbours ahead count.
     assert!(apart(&pedestrian, &view(1.1, 0)) > 1e-3);
-    // more neighbours than are looked at
+    // Neighbours beyond the limit do not count.
     let crowd = view(1.0, 30);
     let mut seen = crowd.clone();
     seen.neighbours.truncate(8);
     assert!(apart(&crowd, &seen) < 1e-9);
 }
 
-/// What `ddl_star::TorchProposals` of the same configuration and seed gave, computed by libtorch 2.11 in `f32`.
+/// The expected numbers are of `ddl_star::TorchProposals` with the same configuration and seed (libtorch 2.11, `f32`).
 #[test]
-fn as_libtorch_proposes() {
+fn proposals_are_those_of_libtorch() {
     let config = ProposalConfig {
         members: 2,
         ends: 3,

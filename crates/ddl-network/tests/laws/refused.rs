@@ -1,4 +1,4 @@
-//! What forecasts refuse, by typed errors.
+//! Typed errors for invalid inputs and configurations.
 
 use super::scenes::{WINDOWS, goals};
 use ddl_data::{Position, Window};
@@ -18,24 +18,24 @@ fn network(variant: Variant) -> MotionNetwork {
 }
 
 #[test]
-fn goals_noise_and_shares_that_do_not_fit_the_windows() {
+fn goals_noise_and_shares_that_do_not_fit_the_windows_are_refused() {
     let network = network(Variant::Full);
     let windows: Vec<Window> = WINDOWS.iter().take(6).map(Window::without_future).collect();
     let whole = WINDOWS.iter().take(6);
     let goals: Vec<_> = whole.map(|window| goals(window, 3)).collect();
-    let refuse = |goals: &[Goals], noise: Noise, shares: Option<&[Vec<f64>]>, said: &str| {
+    let refuse = |goals: &[Goals], noise: Noise, shares: Option<&[Vec<f64>]>, expected: &str| {
         let refused = network.forecast_windows(&windows, goals, noise, StepRule::Bounded, shares);
         let error = refused.unwrap_err();
         assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
-        assert!(error.to_string().contains(said), "{error}");
+        assert!(error.to_string().contains(expected), "{error}");
     };
     let draws = |count| Noise::Draws { count, seed: 1 };
     refuse(&goals, draws(2), None, "3 goals, 2 noise vectors");
     refuse(&goals, draws(0), None, "0 noise vectors");
-    let bad_goals = |change: &dyn Fn(&mut Vec<Goals>), said: &str| {
+    let bad_goals = |change: &dyn Fn(&mut Vec<Goals>), expected: &str| {
         let mut goals = goals.clone();
         change(&mut goals);
-        refuse(&goals, Noise::Expected, None, said);
+        refuse(&goals, Noise::Expected, None, expected);
     };
     bad_goals(&|goals| drop(goals.remove(0)), "goals of 6 windows, got 5");
     bad_goals(
@@ -49,13 +49,13 @@ fn goals_noise_and_shares_that_do_not_fit_the_windows() {
         none,
     );
 
-    let bad_shares = |change: &dyn Fn(&mut Vec<Vec<f64>>), said: &str| {
+    let bad_shares = |change: &dyn Fn(&mut Vec<Vec<f64>>), expected: &str| {
         let mut shares: Vec<_> = windows
             .iter()
             .map(|window| vec![1.0; window.len()])
             .collect();
         change(&mut shares);
-        refuse(&goals, Noise::Expected, Some(&shares), said);
+        refuse(&goals, Noise::Expected, Some(&shares), expected);
     };
     let of = "a share from 0 to 1 for every pedestrian of 6 windows";
     bad_shares(&|shares| drop(shares.remove(0)), of);
@@ -69,17 +69,17 @@ type Fault<T> = (fn(&mut T), &'static str);
 
 fn check_all<T: Clone>(good: &T, check: fn(&T) -> Result<(), NetworkError>, faults: &[Fault<T>]) {
     check(good).unwrap();
-    for (change, said) in faults {
+    for (change, expected) in faults {
         let mut bad = good.clone();
         change(&mut bad);
         let error = check(&bad).unwrap_err();
         assert!(matches!(error, NetworkError::Config { .. }), "{error}");
-        assert!(error.to_string().contains(said), "{error}");
+        assert!(error.to_string().contains(expected), "{error}");
     }
 }
 
 #[test]
-fn configurations_out_of_range() {
+fn configurations_out_of_range_are_refused() {
     let published = StarConfig::published(Variant::Full);
     check_all(
         &published,
@@ -123,7 +123,7 @@ fn configurations_out_of_range() {
 }
 
 #[test]
-fn weights_of_another_network() {
+fn weights_of_another_network_are_refused() {
     let others = network(Variant::Star).weights().clone();
     let refused = network(Variant::Full).with_weights(others.clone());
     let error = refused.unwrap_err();

@@ -1,4 +1,4 @@
-//! A window's forecast has the same bits alone and among others, and with every number of threads.
+//! The forecast of a window has the same bits alone and together with other windows, with any number of threads.
 
 use super::scenes::{Question, WINDOWS, configs, with_threads};
 use ddl_data::Window;
@@ -30,7 +30,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
 
     #[test]
-    fn a_window_alone_and_among_others(
+    fn forecasts_have_the_same_bits_alone_and_among_others(
         config in prop::sample::select(configs()),
         precision in prop::sample::select(vec![Precision::F32, Precision::Bf16]),
         question in questions(),
@@ -50,7 +50,7 @@ proptest! {
 }
 
 #[test]
-fn a_crowd_with_any_number_of_threads() {
+fn forecasts_of_a_crowd_have_the_same_bits_with_any_number_of_threads() {
     let crowd = WINDOWS.last().unwrap();
     for config in [
         StarConfig::published(Variant::Full),

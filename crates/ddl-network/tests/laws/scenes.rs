@@ -30,7 +30,7 @@ pub(crate) static WINDOWS: LazyLock<Vec<Window>> = LazyLock::new(|| {
     windows
 });
 
-/// So many goals for everybody, that depend on the window alone: where it really ends, and places around.
+/// Goals for each pedestrian, a function of the window: its true endpoint, and positions around it.
 pub(crate) fn goals(window: &Window, count: usize) -> Vec<Vec<Position>> {
     let around = |[x, y]: Position, k: usize| {
         let (sin, cos) = (2.0 * k as f64).sin_cos();
@@ -45,7 +45,7 @@ pub(crate) fn goals(window: &Window, count: usize) -> Vec<Vec<Position>> {
         .collect()
 }
 
-/// Shares of 0 to 1 that depend on the window alone.
+/// Shares from 0 to 1, a function of the window.
 pub(crate) fn shares(window: &Window) -> Vec<f64> {
     (0..window.len()).map(|i| (i % 5) as f64 / 4.0).collect()
 }

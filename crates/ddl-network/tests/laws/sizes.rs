@@ -1,4 +1,4 @@
-//! How many numbers networks have.
+//! Numbers of weights.
 
 use ddl_network::{
     BackboneKind, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, Variant,
@@ -10,7 +10,7 @@ fn check(least: u64, count: usize) {
 }
 
 #[test]
-fn numbers_are_as_many_as_published_and_no_fewer_than_a_file_must_have() {
+fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
     let published = StarConfig::published(Variant::Full);
     let network = MotionNetwork::new(published.clone(), 1).unwrap();
     assert_eq!(network.weights().count(), 827_443);

@@ -1,4 +1,4 @@
-//! Weights in files: they come back, and broken files are refused.
+//! Weights are read from files as they were written, and broken files are refused.
 
 use ddl_network::weights::{
     Origin, StoredNumbers, StoredTensor, Weights, load_weights, numbers_digest, read_tensors,
@@ -24,7 +24,7 @@ fn origin() -> Origin {
     Origin::from_iter([("fold", "corridor"), ("seed", "7")])
 }
 
-/// The file with its tensors changed, and the digest of what they are then.
+/// The file with changed tensors and a digest that fits them.
 fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) -> Vec<u8> {
     let file = SafeTensors::deserialize(whole).unwrap();
     let mut tensors: Vec<_> = file
@@ -49,14 +49,14 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) 
     safetensors::serialize(views(), Some(header)).unwrap()
 }
 
-fn refuse(bytes: &[u8], said: &str) {
+fn refuse(bytes: &[u8], expected: &str) {
     let folder = tempfile::tempdir().unwrap();
     let broken = folder.path().join("broken.safetensors");
     std::fs::write(&broken, bytes).unwrap();
     let network = network(Variant::Full, 2);
     let error = load_weights(network.weights().layout(), &origin(), &broken).unwrap_err();
     assert!(matches!(error, NetworkError::Checkpoint { .. }), "{error}");
-    assert!(error.to_string().contains(said), "{said}: {error}");
+    assert!(error.to_string().contains(expected), "{expected}: {error}");
     assert!(error.to_string().contains("broken.safetensors"), "{error}");
 }
 
@@ -96,20 +96,20 @@ fn weights_survive_the_file() {
 fn broken_files_are_refused() {
     let whole = saved(network(Variant::Full, 1).weights(), &origin());
     for length in [0, 7, 100, whole.len() / 2, whole.len() - 1] {
-        refuse(&whole[..length], "not a whole safetensors file");
+        refuse(&whole[..length], "not a complete safetensors file");
     }
     refuse(&vec![0; whole.len() * 3 + (2 << 20)], "bytes long");
     let mut turned = whole.clone();
     let last = turned.len() - 4;
     turned[last] ^= 1;
     refuse(&turned, "the SHA-256 of its numbers");
-    // What was meant, and carries the right digest.
+    // A change before writing, so that the digest is right.
     let renamed = forged(&whole, |name, _, _| {
         if name == "fusion_layer.bias" {
             *name = "xusion_layer.bias".to_owned();
         }
     });
-    refuse(&renamed, "lacks the tensor fusion_layer.bias");
+    refuse(&renamed, "has no tensor fusion_layer.bias");
     for number in [f32::NAN, f32::INFINITY] {
         let poisoned = forged(&whole, |_, _, bytes| {
             bytes[..4].copy_from_slice(&number.to_le_bytes());
@@ -121,7 +121,7 @@ fn broken_files_are_refused() {
 }
 
 #[test]
-fn files_of_something_else_are_refused() {
+fn files_of_another_network_or_run_are_refused() {
     let network = network(Variant::Full, 1);
     let star = self::network(Variant::Star, 2);
     let shape = "output_layer.weight has shape";
@@ -137,7 +137,7 @@ fn files_of_something_else_are_refused() {
     refuse(&elsewhere, "its fold is plaza, not corridor");
     let file = SafeTensors::deserialize(&elsewhere).unwrap();
     let foreign = safetensors::serialize(file.iter(), None).unwrap();
-    refuse(&foreign, "its fold is nothing, not corridor");
+    refuse(&foreign, "its fold is missing, not corridor");
 }
 
 fn double(shape: &[usize], numbers: Vec<f64>) -> StoredTensor {
@@ -160,7 +160,7 @@ fn tensors_of_either_precision_are_kept_as_they_are() {
         read[0].double(&[3], &path).unwrap()[2].to_bits(),
         1e300_f64.to_bits()
     );
-    // in single precision infinite
+    // 1e300 is infinite in single precision.
     let error = read[0].single(&[3], &path).unwrap_err().to_string();
     assert!(error.contains("NaN or infinite"), "{error}");
     let error = read[0].double(&[1, 3], &path).unwrap_err().to_string();
@@ -190,7 +190,7 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
             .join("no such folder")
             .join("model.safetensors"),
     );
-    // A folder of that name cannot be replaced by a file.
+    // A file cannot replace a folder.
     let taken = folder.path().join("taken");
     std::fs::create_dir_all(taken.join("kept")).unwrap();
     nowhere(&taken);

@@ -1,12 +1,12 @@
-//! Four rows at a time, which makes sums over a row a matter of few instructions.
+//! Four rows at a time: their sums share the few instructions that add across lanes.
 
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
 
-/// The usual width of a row, in vectors: loops over it are spelled out.
+/// The usual width of a row, in vectors. Loops over it are unrolled.
 pub(super) const USUAL: usize = 2;
 
-/// Four rows of the usual width where `FIXED`, of any other one otherwise.
+/// Four rows, of the usual width if `FIXED`, otherwise of any width.
 pub(super) struct Four<const FIXED: bool> {
     usual: [[Lanes; USUAL]; DEPTH],
     wide: Vec<[Lanes; DEPTH]>,
@@ -48,7 +48,7 @@ impl<const FIXED: bool> Four<FIXED> {
         }
     }
 
-    /// Sums over each row, still spread over the lanes.
+    /// Partial sums over each row, one for each lane.
     #[inline(always)]
     pub(super) fn sums<S: Simd>(&self, simd: S) -> Vectors<S> {
         let mut sums = [simd.splat(0.0); DEPTH];
@@ -73,16 +73,16 @@ impl<const FIXED: bool> Four<FIXED> {
     }
 }
 
-/// Means over `width` numbers of sums that stand in four vectors: that of row k in the lanes 4 i + k.
+/// Means over `width` numbers, from four vectors of partial sums. Lanes 4 i + k hold the mean of row k.
 #[inline(always)]
 pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> S::Floats {
-    // Lane 4 i + k: a part of the sum of row k.
+    // Lane 4 i + k holds a part of the sum of row k.
     let [a, b, c, d] = simd.transpose(sums);
     let parts = simd.add(simd.add(a, b), simd.add(c, d));
     simd.mul(simd.sum_of_quarters(parts), simd.splat(1.0 / width as f32))
 }
 
-/// Which numbers of t are dropped: a function of (seed, row, column) alone, of 24 random bits.
+/// Decides which numbers of t are dropped: a function of only (seed, row, column), with 24 random bits.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::kernel) struct Decisions {
     seed: u64,
@@ -91,7 +91,7 @@ pub(in crate::kernel) struct Decisions {
 }
 
 impl Decisions {
-    /// `None` when nothing is dropped.
+    /// `None` if nothing is dropped.
     pub(in crate::kernel) fn new(dropout: Dropout) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(24)?;
         Some(Self {

@@ -1,4 +1,4 @@
-//! Against the formula in double precision, and what dropout decides.
+//! Comparison with the formula in double precision, and decisions of dropout.
 
 use super::{AddNorm, Decisions, Normal};
 use crate::kernel::dropout::Dropout;
@@ -92,7 +92,7 @@ impl NormCase {
         results
     }
 
-    /// By definition, with `factors` for t: y, gx and the gradients of weight and bias.
+    /// By the definition, with the dropout `factors` of t: y, gx, and the gradients of weight and bias.
     fn expected(&self, factors: &[f64]) -> [Vec<f64>; 4] {
         let n = self.width as f64;
         let (mut y, mut gx) = (Vec::new(), Vec::new());
@@ -128,7 +128,7 @@ proptest! {
 
     #[test]
     fn rows_are_normalised_and_their_gradients_are_those_of_the_formula(
-        // Of two numbers the gradient is next to 0 whatever they are: nothing but rounding.
+        // With a width of 2 the gradient is almost 0 for any numbers, so that only rounding would be compared.
         width in 3..70_usize,
         rows in 0..12_usize,
         p in prop_oneof![Just(0.0), 0.05..0.9],
@@ -138,7 +138,7 @@ proptest! {
         for set in InstructionSet::available() {
             let dropout = Dropout { p, seed };
             let results = case.run(set, Some(dropout));
-            // What was decided shows in the gradient of t.
+            // The gradient of t shows the decisions.
             let factors: Vec<f64> = results.gx.iter().zip(&results.gt)
                 .map(|(gx, gt)| if *gt == 0.0 && *gx != 0.0 { 0.0 } else { 1.0 / (1.0 - p) })
                 .collect();
@@ -146,7 +146,7 @@ proptest! {
                 prop_assert_eq!(&results.gx, &results.gt);
             }
             let [y, gx, weight, bias] = case.expected(&factors);
-            // Rows of two nearly equal numbers have a derivative of some hundreds, and errors like it.
+            // Rows of nearly equal numbers have a derivative of some hundreds, and errors in proportion.
             let tolerance = if width < 8 { 2e-3 } else { 2e-5 };
             assert_close("y", &results.y, &y, tolerance);
             assert_close("gx", &results.gx, &gx, tolerance);

@@ -1,11 +1,11 @@
-//! Products of matrices of plain rows.
+//! Products of row-major matrices.
 
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
 const BLOCK: usize = 32;
 
-/// 32 columns of all rows together, then the next 32; padded with zeros.
+/// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Matrix {
     pub(super) rows: usize,
@@ -14,10 +14,10 @@ pub(super) struct Matrix {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Start<'a> {
-    /// In every row the same numbers.
+    /// The same numbers in every row.
     Row(&'a [Lanes]),
     Zero,
-    /// What is there already.
+    /// The present contents.
     There,
 }
 
@@ -109,7 +109,7 @@ fn tile<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// sum + A B for 32 columns of A from `first`: the usual width, all of whose bounds are known.
+/// sum + A B for 32 columns of A from `first`. At this usual width the compiler knows all bounds.
 #[inline(always)]
 fn add_block<S: Simd, const R: usize, const V: usize>(
     simd: S,
@@ -193,7 +193,7 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
         for r in 0..R {
             let into = sums.row_mut(row + r);
             for v in 0..V {
-                // Added at the end: sums of sums are more exact than one long one.
+                // Added at the end, because partial sums have smaller rounding errors than one long sum.
                 let at = first + v * LANES;
                 let total = simd.add(load(simd, into, at), sum[r][v]);
                 store(simd, total, into, at);

@@ -1,4 +1,4 @@
-//! Against the formula in double precision.
+//! Comparison with the formula in double precision.
 
 use super::Affine;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
@@ -26,7 +26,7 @@ impl TiledKernel for All<'_> {
     }
 }
 
-/// Σ over t of a(i, t) b(t, j), added to what was there.
+/// Adds Σ over t of a(i, t) b(t, j) to the present contents.
 fn product(
     [rows, depth, columns]: [usize; 3],
     a: impl Fn(usize, usize) -> f64,

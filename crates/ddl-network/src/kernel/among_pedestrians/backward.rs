@@ -1,9 +1,8 @@
-//! From the gradient of mixed values to that of queries, keys and values.
+//! The backward pass: from the gradient of mixed values to those of queries, keys and values.
 //!
-//! With weights `w_ij = e_ij s_i`, where `s_i` is 1 over the sum of the powers `e_ij`, gradients `g_i` of mixed values and
-//! drop factors `d_ij`: `dv_j = Σ_i d_ij w_ij g_i`, and the gradient of the score of (i, j) is
-//! `w_ij (d_ij g_i · v_j − g_i · mixed_i)`.
-//! The powers are made anew from the scores: that is faster than to fetch them from where they would have to be kept.
+//! With weights `w_ij = e_ij s_i`, where `s_i` is 1 over the sum of the powers `e_ij`, gradients `g_i` of mixed values
+//! and drop factors `d_ij`: `dv_j = Σ_i d_ij w_ij g_i`, and the gradient of the score of (i, j) is `w_ij (d_ij g_i ·
+//! v_j − g_i · mixed_i)`. The powers are computed again from the scores, which is faster than to store and load them.
 
 use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
@@ -14,7 +13,7 @@ pub(super) struct SceneBackward<'a> {
     pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a [f32],
-    /// By two queries and group of heads.
+    /// For each pair of queries and group of heads.
     pub(super) normalisers: &'a [[Lanes; 2]],
     pub(super) mixed_gradient: &'a [f32],
     pub(super) qkv_gradient: &'a mut [f32],
@@ -26,7 +25,7 @@ impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
         let task = self.job.task.clone();
         self.buffers.load_codes(&task);
         for group in 0..task.heads.groups() {
-            // The number of quads is spelled out for the usual one, which takes the loops over quads away.
+            // The usual number of quads is a constant, so that the compiler unrolls the loops over quads.
             match (task.heads.quads(), task.decisions.is_some()) {
                 (1, false) => self.group::<S, false>(simd, group, 1),
                 (1, true) => self.group::<S, true>(simd, group, 1),
@@ -52,7 +51,7 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
             for quad in 0..quads {
                 let (of_key, of_value) = spread(simd, buffers, key, quad, quads);
                 let part = HeadPart::new(task.heads, group, quad);
-                // Queries were scaled to scores that are powers of two.
+                // Undoes the scaling of the queries, which makes scores exponents of two.
                 let of_key = simd.scaled(of_key, simd.splat(std::f32::consts::LN_2));
                 part.store_sum(simd, of_key, key_gradient);
                 part.store_sum(simd, of_value, value_gradient);
@@ -71,7 +70,7 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
         }
     }
 
-    /// Gradients of mixed values into lanes, with what normalises the weights; no gradients of queries yet.
+    /// Loads gradients of mixed values and normalisers into lanes, and sets the gradients of queries to 0.
     #[inline(always)]
     fn load_gradients<S: Simd>(&mut self, simd: S, group: usize, quads: usize) {
         let (job, buffers) = (&self.job, &mut *self.buffers);
@@ -109,7 +108,7 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     }
 }
 
-/// Weights with which the queries took a key's value, times their sum, and gradients of their scores.
+/// For one key: the queries' weights times their sum, and the gradients of the scores.
 #[inline(always)]
 fn weigh<S: Simd, const DROP: bool>(
     simd: S,
@@ -147,7 +146,7 @@ fn weigh<S: Simd, const DROP: bool>(
     }
 }
 
-/// Adds to the gradients of all queries; gives those of a key and its value, still apart for even and odd queries.
+/// Adds to the gradients of all queries. Returns those of a key and its value, separately for even and odd queries.
 #[inline(always)]
 fn spread<S: Simd>(
     simd: S,

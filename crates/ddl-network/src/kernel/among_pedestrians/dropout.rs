@@ -1,4 +1,4 @@
-//! Which attention weights are dropped: a function of (seed, batch entry, query, key, head) alone, of 24 random bits.
+//! Dropout of attention weights: a function of only (seed, batch entry, query, key, head), with 24 random bits.
 
 use crate::kernel::dropout::{Dropout, Threshold, mixed};
 use crate::kernel::heads::{head_of, row_of};
@@ -7,25 +7,25 @@ use ddl_simd::{LANES, Lanes};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WeightDecisions {
     seed: u64,
-    /// A weight is kept when its 24 bits are this or more.
+    /// A weight is kept if its 24 bits are at least this.
     least: i32,
     /// 1 / (1 - p).
     scale: f32,
 }
 
 impl WeightDecisions {
-    /// `None` when nothing is dropped.
+    /// `None` if nothing is dropped.
     pub(super) fn new(dropout: Dropout) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(24)?;
         Some(Self {
-            // Seeds that follow one another must not give the queries of one another.
+            // Consecutive seeds must not give the same bits to shifted queries.
             seed: mixed(dropout.seed),
             least: least.cast_signed(),
             scale,
         })
     }
 
-    /// What multiplies a weight: 0 or 1 / (1 - p).
+    /// The factor of a weight: 0 or 1 / (1 - p).
     #[cfg(test)]
     pub(super) fn factor(&self, entry: usize, query: usize, key: usize, head: usize) -> f32 {
         let query = self.query(entry, query);
@@ -56,7 +56,7 @@ impl WeightDecisions {
 
     #[inline(always)]
     fn decide(&self, value: u32) -> f32 {
-        // Of 24 bits, so that the comparison may be of signed numbers, which all instruction sets have.
+        // With 24 bits a signed comparison is right, which all instruction sets have.
         if (value >> 8).cast_signed() >= self.least {
             self.scale
         } else {
@@ -89,7 +89,7 @@ impl LaneBits {
     }
 }
 
-/// The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), a word of the query before and in between.
+/// The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with a word of the query before it and within.
 #[inline(always)]
 fn hash(query: QueryBits, key: u32, head: u32) -> u32 {
     let value = (key << 8).wrapping_add(head) ^ query.low;
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
     use crate::kernel::tests::chance::Decided;
 
-    /// Over entries and queries in rows, keys and heads in columns.
+    /// Decisions with entries and queries in rows, keys and heads in columns.
     fn decided(p: f64, seed: u64) -> Decided {
         let (pedestrians, heads) = (60, 8);
         let decisions = WeightDecisions::new(Dropout { p, seed }).unwrap();

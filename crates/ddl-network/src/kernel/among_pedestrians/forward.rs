@@ -1,4 +1,4 @@
-//! From queries, keys and values to mixed values.
+//! The forward pass: from queries, keys and values to mixed values.
 
 use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
@@ -10,7 +10,7 @@ pub(super) struct SceneForward<'a> {
     pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a mut [f32],
-    /// By two queries and group of heads.
+    /// For each pair of queries and group of heads.
     pub(super) normalisers: &'a mut [[Lanes; 2]],
 }
 
@@ -19,7 +19,7 @@ impl Kernel for Buffered<'_, SceneForward<'_>, SceneBuffers> {
     fn run<S: Simd>(mut self, simd: S) {
         let task = self.job.task.clone();
         for group in 0..task.heads.groups() {
-            // The number of quads is spelled out for the usual one, which takes the loops over quads away.
+            // The usual number of quads is a constant, so that the compiler unrolls the loops over quads.
             match (task.heads.quads(), task.decisions.is_some()) {
                 (1, false) => self.group::<S, false>(simd, group, 1),
                 (1, true) => self.group::<S, true>(simd, group, 1),
@@ -36,7 +36,7 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
         let (task, row) = (&self.job.task, self.job.task.heads.row());
         self.buffers.load(simd, task, self.job.qkv, group, quads);
         let buffers = &mut *self.buffers;
-        // A key that is not seen would have the weight 0, so leaving it out changes no bit.
+        // A key that is not visible would have the weight 0, so that leaving it out changes no bit.
         buffers.weights.resize(task.keys.len(), Lanes::ZERO);
         let normalisers = self.job.normalisers.chunks_exact_mut(task.heads.groups());
         let rows = self.job.mixed.chunks_mut(2 * row).zip(normalisers);

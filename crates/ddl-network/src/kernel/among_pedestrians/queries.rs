@@ -1,4 +1,4 @@
-//! What the forward and the backward kernel share: a scene's rows in lanes, and room for what is computed of them.
+//! Shared parts of the forward and the backward kernel: a scene's rows in lanes, and buffers.
 
 use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
@@ -6,13 +6,13 @@ use crate::kernel::scenes::SceneView;
 use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
 use std::ops::Range;
 
-/// A block of queries of a scene, with the keys that they read.
+/// A block of queries of a scene and the keys that they read.
 #[derive(Clone, Debug)]
 pub(super) struct SceneTask<'a> {
     pub(super) scene: SceneView<'a>,
-    /// The queries, two by two.
+    /// The pairs of queries.
     pub(super) twos: Range<usize>,
-    /// A range of pedestrians of the scene that holds every key the queries see.
+    /// A range of pedestrians of the scene that contains all keys visible to the queries.
     pub(super) keys: Range<usize>,
     pub(super) entry: usize,
     pub(super) decisions: Option<WeightDecisions>,
@@ -20,12 +20,12 @@ pub(super) struct SceneTask<'a> {
 }
 
 impl SceneTask<'_> {
-    /// Indices in the scene of the pedestrians whose queries these are.
+    /// Indices, in the scene, of the queries' pedestrians.
     pub(super) fn queries(&self) -> Range<usize> {
         2 * self.twos.start..self.scene.pedestrians.min(2 * self.twos.end)
     }
 
-    /// The task split into blocks of queries. A block reads few keys where pedestrians are sorted by position.
+    /// The task split into blocks of queries. If pedestrians are sorted by position, a block reads few keys.
     pub(super) fn blocks(self) -> impl Iterator<Item = Self> {
         let Range { start, end } = self.twos;
         (start..end).step_by(TWOS_AT_ONCE).map(move |first| {
@@ -43,33 +43,34 @@ impl SceneTask<'_> {
     }
 }
 
-/// Pairs of queries in a block: few enough for the cache, many enough to share the keys they load.
+/// Pairs of queries in a block. It is small enough for the cache, and large enough to share the loaded keys.
 pub(super) const TWOS_AT_ONCE: usize = 256;
 
-/// Room for one group of heads of a task, kept from task to task.
+/// Buffers for one group of heads of a task, reused by the next task.
 ///
-/// Queries lie two by two, a pedestrian in each half of the lanes; keys lie one by one, the same in both halves, so that
-/// two queries meet a key in one operation and no sum goes across lanes.
+/// A vector holds two queries, one in each half of the lanes, or one key in both halves. So one operation combines two
+/// queries with a key, and there are no sums across lanes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SceneBuffers {
-    /// By two queries and quad of the head's numbers, scaled so that scores are powers of two.
+    /// For each pair of queries and quad of the head's numbers; scaled so that scores are exponents of two.
     pub(super) queries: Vec<Quad>,
     pub(super) keys: Vec<Quad>,
     pub(super) values: Vec<Quad>,
-    /// By two queries and quad: gradient of what they mixed, over the sum of their weights.
+    /// For each pair of queries and quad: gradient of the mixed values, over the sum of the weights.
     pub(super) mixed_gradients: Vec<Quad>,
     pub(super) query_gradients: Vec<Quad>,
-    /// By two queries: largest score, and the mixed values' product with their gradient, over the sum of weights.
+    /// For each pair of queries: largest score, and the product of mixed values and their gradient, over the sum of the
+    /// weights.
     pub(super) inner: Vec<[Lanes; 2]>,
     pub(super) bits: Vec<LaneBits>,
-    /// Scores, then weights; by key in the forward pass, by two queries in the backward pass.
+    /// Scores, then weights: for each key in the forward pass, for each pair of queries in the backward pass.
     pub(super) weights: Vec<Lanes>,
     pub(super) score_gradients: Vec<Lanes>,
-    /// By two queries and key: see [`Seen::code`](crate::kernel::scenes::Seen::code).
+    /// For each pair of queries and key: see [`Seen::code`](crate::kernel::scenes::Seen::code).
     pub(super) codes: Vec<u8>,
 }
 
-/// What is added to the scores of two queries, by the code of what they see.
+/// The terms added to the scores of two queries, indexed by the visibility code.
 pub(super) static UNSEEN: [Lanes; 4] = {
     let mut table = [Lanes([f32::NEG_INFINITY; LANES]); 4];
     let mut lane = 0;
@@ -82,7 +83,7 @@ pub(super) static UNSEEN: [Lanes; 4] = {
 };
 
 impl SceneBuffers {
-    /// Codes of a task that is of a whole scene.
+    /// Loads the codes of a task that covers a whole scene.
     pub(super) fn load_codes(&mut self, task: &SceneTask<'_>) {
         let pedestrians = task.scene.pedestrians;
         self.codes.clear();

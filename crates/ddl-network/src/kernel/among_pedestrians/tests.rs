@@ -1,4 +1,4 @@
-//! Against the formula in double precision.
+//! Comparison with the formula in double precision.
 
 use super::dropout::WeightDecisions;
 use super::queries::TWOS_AT_ONCE;
@@ -170,8 +170,8 @@ fn agrees_in_large_scenes() {
     SceneCase::new(21, STAR, &[2 * TWOS_AT_ONCE + 21], (2, 1), 1.5).check(5e-6);
 }
 
-/// Scores of several hundred: weights of almost 0 and 1, and sums of powers that would overflow without the largest
-/// score taken off. Scores are rounded by 3e-5, hence weights as well.
+/// Scores of several hundred give weights of almost 0 and 1. Sums of powers would overflow if the largest score were
+/// not subtracted. Scores have rounding errors of 3e-5, and so have the weights.
 #[test]
 fn bears_big_scores() {
     let case = SceneCase::new(6, STAR, &[9, 30], (2, 1), 20.0);

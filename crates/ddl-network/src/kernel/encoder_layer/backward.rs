@@ -1,5 +1,5 @@
-//! From the gradient of a layer's output to those of its input and weights, a few rows at a time.
-//! Each piece of rows adds up gradients of weights of its own; these are added in the order of the rows.
+//! The backward pass of a layer, a few rows at a time. Each piece of rows has separate sums for the gradients of the
+//! weights, which are then added in the order of the rows.
 
 use super::forward::ROWS;
 use super::keep::{Kept, KeptRows};
@@ -14,14 +14,14 @@ use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
 pub(super) enum Parts<'a> {
-    /// Side by side in every row.
+    /// Concatenated in every row.
     Together(&'a [f32]),
-    /// Each a matrix of its own.
+    /// Separate matrices.
     Apart(Vec<&'a [f32]>),
 }
 
 impl<'a> Parts<'a> {
-    /// The rows from `first` on, as many as there are in `rows`.
+    /// `rows` rows from `first` on.
     fn rows(&self, index: usize, width: usize, first: usize, rows: usize) -> MatrixColumns<'a> {
         match self {
             Self::Together(all) => {
@@ -36,7 +36,7 @@ impl<'a> Parts<'a> {
 }
 
 impl EncoderKernel {
-    /// What follows attention, backwards: the gradient of x so far, and that of what attention has mixed.
+    /// The backward pass of the part after attention: the gradient of x so far, and that of the mixed values.
     pub(super) fn before_attention(
         &self,
         kept: &Kept,
@@ -65,7 +65,7 @@ impl EncoderKernel {
         for (sum, term) in of_z.iter_mut().zip(through.iter()) {
             *sum += term;
         }
-        // Their contents are not needed any more.
+        // The buffers are reused; their contents are no longer needed.
         let (mut gx, mut of_mixed) = (through, of_fed);
         let first = Sublayer {
             norm: &self.norm1,
@@ -77,7 +77,7 @@ impl EncoderKernel {
         (gx, of_mixed)
     }
 
-    /// The gradients of x and t of a [`Sublayer`]; those of its weights are added up.
+    /// The gradients of x and t of a [`Sublayer`]. Those of its weights are added to sums.
     fn sublayer_backward(
         &self,
         layer: &Sublayer<'_>,
@@ -111,7 +111,7 @@ impl EncoderKernel {
         add_up(&sums, of_weights);
     }
 
-    /// Adds the gradients of x through the projections from `first` on, and those of their weights.
+    /// Adds the gradient of x through the projections from `first` on, and the gradients of their weights.
     pub(super) fn project_backward(
         &self,
         first: usize,
@@ -160,7 +160,7 @@ fn add_up<const N: usize>(sums: &[Buffer], mut into: [&mut [f32]; N]) {
     }
 }
 
-/// y = norm(x + d(t)), or of an affine map of t.
+/// y = norm(x + d(t)), where t can be the output of an affine map.
 struct Sublayer<'a> {
     norm: &'a AddNorm,
     map: Option<(&'a Affine, &'a [f32])>,
@@ -177,7 +177,7 @@ struct NormBackward<'a> {
     decisions: Option<(Decisions, usize)>,
     of_x: &'a mut [f32],
     of_t: &'a mut [f32],
-    /// Gradients of the weight and bias of the normalisation, and of those of the map.
+    /// Gradients of weight and bias of the normalisation, and of the affine map.
     sums: &'a mut [f32],
 }
 
@@ -216,7 +216,7 @@ struct ProjectBackward<'a> {
     width: usize,
     x: &'a [f32],
     gx: &'a mut [f32],
-    /// Gradients of all weights, then of all biases.
+    /// Gradients of all matrices, then of all biases.
     sums: &'a mut [f32],
 }
 

@@ -1,4 +1,4 @@
-//! From the input of a layer to its output, a few rows at a time.
+//! The forward pass of a layer, a few rows at a time.
 
 use super::keep::{Kept, KeptAttention, KeptRows};
 use super::layer::{Dropouts, EncoderKernel};
@@ -10,18 +10,18 @@ use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
-/// Rows that are computed together. Always the same, so that sums over rows are.
+/// Rows that are computed together. The constant number makes sums over rows independent of the threads.
 pub(super) const ROWS: usize = 256;
 
 pub(super) enum Targets<'a> {
-    /// Side by side in every row.
+    /// Concatenated in every row.
     Together(&'a mut [f32]),
-    /// Each into a matrix of its own.
+    /// Separate matrices.
     Apart(Vec<&'a mut [f32]>),
 }
 
 impl<'a> Targets<'a> {
-    /// Takes the first rows off, `numbers` of each matrix.
+    /// Splits off the first rows, `numbers` numbers of each matrix.
     fn split_off(&mut self, projections: usize, numbers: usize) -> Targets<'a> {
         match self {
             Self::Together(all) => {
@@ -50,7 +50,7 @@ impl<'a> Targets<'a> {
 }
 
 impl EncoderKernel {
-    /// Queries, keys and values, or those of them from `first` on.
+    /// Computes queries, keys and values, beginning with projection `first`.
     pub(super) fn project(&self, first: usize, x: &[f32], mut targets: Targets<'_>) {
         let width = self.sizes.width;
         assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
@@ -91,7 +91,7 @@ impl EncoderKernel {
         (y, kept)
     }
 
-    /// y = norm(x + d(t)), of an affine map of t where there is one.
+    /// y = norm(x + d(t)), or with an affine map of t if there is one.
     fn add_norm(
         &self,
         norm: &AddNorm,

@@ -1,4 +1,4 @@
-//! What outlives the forward pass: for later tokens and for the gradient.
+//! Results of the forward pass that later tokens and the backward pass need.
 
 use crate::kernel::among_pedestrians::Attended;
 use crate::kernel::buffer::Buffer;
@@ -37,7 +37,7 @@ pub(super) struct KeptRows {
     pub(super) scales: Buffer,
 }
 
-/// Keys and values of tokens, `[rows, width]` each; also what their gradients are added to.
+/// Keys and values of tokens, or their gradients: `[rows, width]` each.
 #[derive(Debug)]
 pub(crate) struct Remembered {
     pub(crate) key: Buffer,

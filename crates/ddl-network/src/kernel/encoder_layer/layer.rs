@@ -1,4 +1,4 @@
-//! The learned numbers of a layer: where they stand, and as its passes read them.
+//! The weights of a layer: their order, and the layout for its passes.
 
 use crate::Precision;
 use crate::kernel::add_norm::AddNorm;
@@ -11,10 +11,11 @@ use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
 
-/// z = norm(x + d(W mixed + b)), y = norm(z + d(f(z))): `mixed` by attention from queries, keys and values, which are
-/// affine in x, f the feed-forward block.
-/// Results and gradients do not depend on the number of threads, results neither on the other rows that are computed
-/// along (attention among pedestrians aside). The instruction sets agree to rounding.
+/// z = norm(x + d(W mixed + b)), y = norm(z + d(f(z))). `mixed` is the output of attention, whose queries, keys and
+/// values are affine in x; f is the feed-forward block; d is dropout.
+///
+/// Results and gradients do not depend on the number of threads. Apart from spatial attention, the result of a row does
+/// not depend on the other rows. Results of different instruction sets agree up to rounding.
 #[derive(Clone, Debug)]
 pub(crate) struct EncoderKernel {
     pub(super) sizes: Sizes,
@@ -71,8 +72,8 @@ impl EncoderKernel {
         })
     }
 
-    /// Takes over learned numbers, in the order of [`Sizes`], for a feed-forward block in that precision. There is no backward
-    /// pass in bf16.
+    /// Replaces the weights, in the order of [`Sizes`]. The feed-forward block computes in this precision; bf16 has no
+    /// backward pass.
     pub(crate) fn update(&mut self, weights: &[f32], precision: Precision) {
         let width = self.sizes.width;
         let [w, b, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces(weights);
@@ -89,12 +90,15 @@ impl EncoderKernel {
 
 /// Sizes of an encoder layer.
 ///
-/// Its learned numbers stand one after the other, matrices by rows: weight `[3 width, width]` and bias of queries, keys
-/// and values; weight and bias of the map after attention; of the feed-forward block the weight `[hidden, width]` and
-/// bias before `ReLU` and those after it; weight and bias of the first normalisation and of the second.
+/// The weights of a layer, in this order, with row-major matrices:
+/// - weight `[3 width, width]` and bias of queries, keys and values,
+/// - weight `[width, width]` and bias of the map after attention,
+/// - weight `[hidden, width]` and bias of the feed-forward block before `ReLU`,
+/// - weight `[width, hidden]` and bias after it,
+/// - weight and bias of the first normalisation, and of the second.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sizes {
-    /// Numbers of a token.
+    /// Width of a token.
     pub width: usize,
     /// Attention heads, a divisor of the width.
     pub heads: usize,
@@ -105,7 +109,7 @@ pub struct Sizes {
 const PIECES: usize = 12;
 
 impl Sizes {
-    /// Learned numbers in all.
+    /// Number of weights.
     pub fn count(self) -> usize {
         self.lengths().iter().sum()
     }

@@ -1,4 +1,4 @@
-//! What must hold for every layer. That it is the layer of libtorch is tested where both meet, in `ddl-star`.
+//! Properties of any layer. `ddl-star` compares it with the layer of libtorch.
 
 use super::{Dropouts, EncoderKernel, Remembered, Sizes};
 use crate::Precision;
@@ -27,7 +27,7 @@ struct LayerCase {
     dropouts: Dropouts,
 }
 
-/// Output, gradient of the input, of the weights and of the memory.
+/// Output, and gradients of the input, of the weights and of the memory.
 type Results = [Vec<f32>; 4];
 
 impl LayerCase {
@@ -78,7 +78,7 @@ impl LayerCase {
         [y.to_vec(), gx.to_vec(), of_weights, Vec::new()]
     }
 
-    /// What is remembered of x is a token of the memory as well.
+    /// The keys and values of x are also a token of the memory.
     fn over(&self, layer: &EncoderKernel) -> Results {
         let mut memory = vec![layer.remember(&self.x)];
         memory.extend(self.memory.iter().map(|[key, value]| Remembered {
@@ -163,7 +163,7 @@ fn gradients_are_slopes() {
                 };
                 dot(&run(&case)[0], &case.gy)
             };
-            // So that all numbers together move by this much.
+            // The scale makes the norm of the whole change equal to the step.
             let step = 0.005 / square.sqrt();
             let quotient = (loss(step) - loss(-step)) / (2.0 * step);
             let error = (quotient / square - 1.0).abs();

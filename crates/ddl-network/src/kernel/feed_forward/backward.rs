@@ -1,6 +1,6 @@
-//! The backward pass: groups of hidden units in parallel.
-//! The derivatives of a unit's weights belong to one group alone, so that nothing has to be added up over threads but
-//! gx, which is small: `rows * width` for each group. The groups are always the same, and so are the sums.
+//! The backward pass, parallel over groups of hidden units. The gradients of a unit's weights belong to a single group.
+//! So only gx, which is small (`rows * width` for each group), has to be added over the groups. The groups do not
+//! depend on the number of threads, and neither do the sums.
 
 use std::ops::DerefMut;
 
@@ -15,19 +15,20 @@ use crate::kernel::threads::each;
 use ddl_simd::{Simd, TiledKernel};
 
 const GROUPS: usize = 8;
-/// Rows that a group goes through before the groups' gx are added up: they fit the second-level cache.
+/// Number of rows after which the groups' gx are added: these rows fit the second-level cache.
 const SPAN: usize = 512;
-/// Rows whose hidden activations of one block are kept for the derivatives of the weights, in the first-level cache.
+/// Number of rows whose hidden activations of one block are kept, in the first-level cache, for the weights' gradients.
 const KEPT: usize = 64;
 
 impl FeedForward {
-    /// The derivative with respect to x, and those with respect to the weights added to `grads`.
-    ///
-    /// With the same dropout as in [`Self::forward`], whose decisions are made again.
+    /// The gradient of x; the gradients of the weights are added to `grads`.
     /// `x`, `gy` `[rows, width]` -> `gx` `[rows, width]`, overwritten.
-    /// An entry differs from the exact one by at most (width + hidden + 16) 2^-24 (for gx), (width + rows + 16) 2^-24 (for
-    /// the others) times the formula with the absolute values of all its terms; where W1 x + b1 is 0 to rounding the
-    /// derivative of `ReLU` may be taken as 0 or 1. Nothing depends on the number of threads.
+    ///
+    /// `dropout` must be that of [`Self::forward`]; its decisions are computed again.
+    ///
+    /// The error of an entry is at most a factor times the formula with the absolute values of all its terms. The
+    /// factor is (width + hidden + 16) 2^-24 for gx and (width + rows + 16) 2^-24 for the others. If W1 x + b1 is 0 up
+    /// to rounding, the derivative of `ReLU` may be 0 or 1. Results do not depend on the number of threads.
     pub(crate) fn backward(
         &self,
         x: &[f32],
@@ -94,9 +95,9 @@ impl FeedForward {
 
 struct Scratch {
     gx: BlockRows,
-    /// Sums over a span of the derivatives of W1, rows hidden units, for one block of them.
+    /// Gradients of W1 summed over a span, for one block of hidden units; rows are hidden units.
     w1: Vec<Panel>,
-    /// Likewise of W2, rows entries of y.
+    /// Gradients of W2 likewise; rows are entries of y.
     w2: Vec<Panel>,
     hidden: Vec<Block>,
     gradient: Vec<Block>,
@@ -196,7 +197,7 @@ impl TiledKernel for UnitsBackward<'_, '_> {
     }
 }
 
-/// Sums of derivatives with respect to the weights, laid out as the weights that a layer takes over.
+/// Gradients of the weights, with the shapes of [`FeedForward::update`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Gradients<N = Vec<f32>> {
     /// `[hidden, width]`, by rows.
@@ -231,7 +232,7 @@ impl<N: DerefMut<Target = [f32]>> Gradients<N> {
         );
     }
 
-    /// What belongs to the first `units` blocks of hidden units, to the next, and so on.
+    /// Parts of `units` blocks of hidden units each.
     pub(super) fn parts(&mut self, width: usize, units: usize) -> Vec<UnitGradients<'_>> {
         let hidden = self.b1.len();
         let size = units * BLOCK;

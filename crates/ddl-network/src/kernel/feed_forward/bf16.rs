@@ -1,6 +1,6 @@
-//! The forward pass with products of bf16 numbers, summed up in `f32`: twice as many multiplications an instruction.
-//! A product A B takes two numbers of a row of A and two rows of B at a time. So A is held with neighbours in a row paired,
-//! B with neighbours in a column.
+//! The forward pass with products of bf16 numbers and sums in `f32`: an instruction has twice as many multiplications.
+//! It multiplies two numbers of a row of A with two rows of B. So A is stored in pairs of neighbours in a row, and B in
+//! pairs of neighbours in a column.
 
 use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
 use super::product::{load_tile, store_tile};
@@ -107,7 +107,7 @@ impl PairKernel for PairForward<'_> {
             squares,
         } = self;
         let columns = weights.columns;
-        // The blocks of the first rows, those of the next ones, and so on.
+        // All blocks of the first rows, then those of the next rows, and so on.
         let mut rounded_x = vec![[PairedRow::ZERO; ROWS]; columns * x.rows() / ROWS];
         for (tile, rounded) in rounded_x.iter_mut().enumerate() {
             let (row, column) = (tile / columns * ROWS, tile % columns);
@@ -143,7 +143,7 @@ impl PairKernel for PairForward<'_> {
     }
 }
 
-/// relu(W1 x + b1) of a block of units, for some rows, in `f32`.
+/// relu(W1 x + b1) for a block of units and some rows, in `f32`.
 #[inline(always)]
 fn activate<P: Pairs>(
     pairs: P,
@@ -166,8 +166,8 @@ fn activate<P: Pairs>(
     store_tile(simd, &sum, hidden, 0);
 }
 
-/// Rows of a [`Sums`]: with all columns of a block they fill half of the 32 registers of AVX-512, as two operations a cycle
-/// of six cycles each need at least twelve.
+/// Rows of a [`Sums`]. With all columns of a block they fill 16 of the 32 registers of AVX-512. Two operations in a
+/// cycle, each with a latency of six cycles, need at least twelve.
 const ROWS: usize = 8;
 
 type Sums<P> = ddl_simd::Tile<<P as Pairs>::Simd, ROWS, PARTS>;

@@ -1,4 +1,4 @@
-//! Thirty-two numbers, the unit that matrices are cut into, and rows made of them.
+//! Blocks of 32 numbers, and rows that consist of them.
 
 use ddl_simd::LANES;
 use std::cell::RefCell;
@@ -7,7 +7,7 @@ pub(super) const BLOCK: usize = 32;
 
 pub(super) const PARTS: usize = BLOCK / LANES;
 
-/// A piece of a row of a matrix. Aligned, because a register's load that crosses a cache line costs two.
+/// A piece of a row of a matrix. It is aligned, because a load that crosses a cache line costs two loads.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Block(pub(super) [f32; BLOCK]);
@@ -24,7 +24,7 @@ impl Block {
         block
     }
 
-    /// The sixteen numbers from 16 `part` on.
+    /// The sixteen numbers from index 16 `part` on.
     #[inline(always)]
     pub(super) fn part(&self, part: usize) -> &[f32; LANES] {
         &self.0.as_chunks().0[part]
@@ -65,17 +65,17 @@ pub(super) fn tile_mut<const R: usize>(rows: &mut [Block], first: usize) -> &mut
         .expect("rows in whole tiles")
 }
 
-/// Rows are padded to a multiple of this, which every tile of accumulators divides.
+/// The number of rows is padded to a multiple of this, which is a multiple of the rows of each tile of accumulators.
 pub(super) const ROWS: usize = 8;
 
-/// Memory that a thread keeps for the next matrices: fresh pages would take as long as a tenth of a backward pass.
+/// Number of free matrices that a thread keeps. Fresh pages would take as long as a tenth of a backward pass.
 const SPARE: usize = 32;
 
 thread_local! {
     static SPARES: RefCell<Vec<Vec<Block>>> = const { RefCell::new(Vec::new()) };
 }
 
-/// All first blocks of the rows, then all second ones, and so on.
+/// Rows in blocks: first the first block of each row, then the second, and so on.
 pub(super) struct BlockRows {
     blocks: Vec<Block>,
     rows: usize,
@@ -96,7 +96,7 @@ impl BlockRows {
         result
     }
 
-    /// Rows of `width` numbers, followed by rows of zeros until there are a multiple of [`ROWS`].
+    /// Rows of `width` numbers, and rows of zeros up to a multiple of [`ROWS`].
     pub(super) fn padded(from: &[f32], width: usize) -> Self {
         let count = from.len() / width;
         let mut result = Self::any(count.next_multiple_of(ROWS), width.div_ceil(BLOCK));
@@ -123,7 +123,7 @@ impl BlockRows {
         &mut self.blocks[column * self.rows..][..self.rows]
     }
 
-    /// Writes as many rows as `into` has, of `width` numbers each.
+    /// Copies rows of `width` numbers to all rows of `into`.
     pub(super) fn write(&self, into: &mut [f32], width: usize) {
         for (row, into) in into.chunks_exact_mut(width).enumerate() {
             for (column, into) in into.chunks_mut(BLOCK).enumerate() {
@@ -136,7 +136,7 @@ impl BlockRows {
         }
     }
 
-    /// Adds the rows from `first` to those of `sums`, as many as these are.
+    /// Adds rows from `first` on to all rows of `sums`.
     pub(super) fn add_to(&self, first: usize, sums: &mut [f32], width: usize) {
         for (row, sums) in (first..).zip(sums.chunks_exact_mut(width)) {
             for (column, sums) in sums.chunks_mut(BLOCK).enumerate() {
@@ -149,7 +149,7 @@ impl BlockRows {
 impl Drop for BlockRows {
     fn drop(&mut self) {
         let blocks = std::mem::take(&mut self.blocks);
-        // At the end of a thread there is no place to keep it any more.
+        // At the end of a thread its free memory is gone already.
         let _ = SPARES.try_with(|spares| {
             let mut spares = spares.borrow_mut();
             if spares.len() < SPARE {

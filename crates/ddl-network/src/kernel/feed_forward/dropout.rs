@@ -1,4 +1,4 @@
-//! Which hidden activations are dropped: a function of (seed, row, unit) alone, of 16 random bits.
+//! Dropout of hidden activations: a function of only (seed, row, unit), with 16 random bits.
 
 use super::block::{Block, ROWS};
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
@@ -6,19 +6,19 @@ use ddl_simd::{LANES, Simd};
 
 #[derive(Clone, Debug)]
 pub(super) struct UnitDecisions {
-    /// An activation is kept when its 16 bits, shifted to the upper half, are this or more.
+    /// An activation is kept if its 16 bits, shifted to the upper half, are at least this.
     least: u32,
     /// 1 / (1 - p).
     pub(super) scale: f32,
-    /// Of every row, up to a whole number of tiles.
+    /// Keys of all rows, padded to a whole number of tiles.
     rows: Vec<RowKey>,
 }
 
 impl UnitDecisions {
-    /// Those of the rows 0 .. `rows`; `None` when nothing is dropped.
+    /// The decisions for the rows 0 .. `rows`; `None` if nothing is dropped.
     pub(super) fn new(dropout: Dropout, rows: usize) -> Option<Self> {
         let Threshold { least, scale } = dropout.threshold(16)?;
-        // Seeds that follow one another must not give the rows of one another.
+        // Consecutive seeds must not give the same bits to shifted rows.
         let seed = mixed(dropout.seed);
         Some(Self {
             least: least << 16,

@@ -1,4 +1,4 @@
-//! The forward pass: tiles of rows in parallel.
+//! The forward pass, parallel over tiles of rows.
 
 use super::bf16::PairForward;
 use super::block::{BlockRows, ROWS};
@@ -8,17 +8,19 @@ use super::tile::Tile;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::each;
 
-/// Rows of a tile at most: x and y of the tile and a block's weights fit the second-level cache.
+/// Largest number of rows in a tile. Its x and y and a block's weights fit the second-level cache.
 const TILE: usize = 256;
 
 impl FeedForward {
     /// y for every row of x.
     /// `x` `[rows, width]` -> `y` `[rows, width]`, overwritten.
-    /// For finite sums, an entry differs from the exact one by at most (width + hidden + 8) 2^-24 times the same formula
-    /// with the absolute values of all its terms and without `ReLU`. It does not depend on the number of threads nor on the other rows.
     ///
-    /// In bf16 x, W1, W2 and the hidden activations are rounded to it first, each by at most 2^-9 of itself; sums and biases
-    /// are `f32`, and what is said above holds of the formula with rounded numbers.
+    /// For finite sums, the error of an entry is at most (width + hidden + 8) 2^-24 times a sum. The sum is the formula
+    /// with the absolute values of all its terms and without `ReLU`. An entry depends neither on the number of threads
+    /// nor on the other rows.
+    ///
+    /// In bf16, x, W1, W2 and the hidden activations are rounded first, with a relative error of at most 2^-9. Sums and
+    /// biases are `f32`, and the bound above holds for the formula with rounded numbers.
     pub(crate) fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
         let weights = &self.weights;
         let width = weights.width;
@@ -29,7 +31,7 @@ impl FeedForward {
         if rows == 0 {
             return;
         }
-        // As many tiles for each thread. A row's result does not depend on its tile.
+        // Each thread gets the same number of tiles. The result of a row does not depend on its tile.
         let tiles = rows
             .div_ceil(TILE)
             .next_multiple_of(rayon::current_num_threads());

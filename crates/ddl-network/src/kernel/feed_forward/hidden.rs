@@ -1,4 +1,4 @@
-//! One block of hidden units of a few rows.
+//! One block of hidden units for a few rows.
 
 use super::block::{Block, BlockRows, PARTS, tile};
 use super::product::{multiply, store_tile};
@@ -34,8 +34,7 @@ pub(super) fn activate<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// From activations to the derivatives with respect to what `ReLU` is applied to: W2^T gy times `scale`, 0 where an
-/// activation is 0.
+/// Replaces activations by the gradients of the inputs of `ReLU`: W2^T gy times `scale`, or 0 if the activation is 0.
 #[inline(always)]
 pub(super) fn deactivate<S: Simd, const R: usize, const V: usize>(
     simd: S,

@@ -1,4 +1,4 @@
-//! The weights of the block, as its passes read them.
+//! The feed-forward block with its weights in the layout of the kernels.
 
 use super::bf16::Squares;
 use super::weights::BlockWeights;
@@ -9,8 +9,8 @@ use ddl_simd::{Dispatch, PairDispatch};
 
 /// y = W2 d(relu(W1 x + b1)) + b2, with dropout d.
 ///
-/// A row of `hidden` activations is never stored: 32 of them are computed for a few rows, used, and forgotten; the
-/// backward pass computes them again.
+/// The hidden activations are not stored: 32 of them are computed for a few rows and used at once. The backward pass
+/// computes them again.
 #[derive(Clone, Debug)]
 pub(crate) struct FeedForward {
     pub(super) weights: BlockWeights,
@@ -20,7 +20,7 @@ pub(crate) struct FeedForward {
 }
 
 impl FeedForward {
-    /// A block whose weights are all 0. Any width and hidden width will do; both are padded to multiples of 32.
+    /// A block whose weights are all 0. Any width and hidden width are allowed; both are padded to multiples of 32.
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
             weights: BlockWeights::new(width, hidden),
@@ -30,15 +30,15 @@ impl FeedForward {
         }
     }
 
-    /// Arranges weights for the kernels, in bf16 for the forward pass alone.
-    /// W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, by rows.
+    /// Replaces the weights: W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, row-major. bf16
+    /// has no backward pass.
     pub(crate) fn update(&mut self, weights: [&[f32]; 4], precision: Precision) {
         self.weights.update(weights);
         self.rounded = (precision == Precision::Bf16)
             .then(|| Squares::round(&self.weights, self.pair_dispatch));
     }
 
-    /// The same with other instructions than the fastest, bf16 emulated; `None` when the machine lacks them.
+    /// The same with this instruction set and bf16 emulated; `None` if the processor does not support it.
     #[cfg(test)]
     pub(in crate::kernel) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
         self.dispatch = Dispatch::new(set)?;

@@ -1,9 +1,9 @@
-//! Products of small matrices whose result stays in registers.
+//! Products of small matrices, with the result in registers.
 
 use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
 use ddl_simd::{Simd, Tile};
 
-/// sum + A B for R rows of A and V parts of the columns of B, from part `part`.
+/// sum + A B for R rows of A and V parts of the columns of B, beginning with part `part`.
 /// A `[R, 32]`, B `[32, 32]`.
 #[inline(always)]
 pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
@@ -28,8 +28,8 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     sum
 }
 
-/// A^T B for R columns of A, from column `first`, and V parts of the columns of B, from part `part`.
-/// A `[t, 32]`, B `[t, 32]`.
+/// A^T B for R columns of A, beginning with column `first`, and V parts of the columns of B, beginning with part
+/// `part`. A `[t, 32]`, B `[t, 32]`.
 #[inline(always)]
 pub(super) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
     simd: S,
@@ -84,7 +84,7 @@ pub(super) fn store_tile<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// sum + A B, the sum in memory.
+/// sum + A B, with the sum in memory.
 /// `sum` and A `[R, 32]`, B `[32, 32]`.
 #[inline(always)]
 pub(super) fn add_product<S: Simd, const R: usize, const V: usize>(
@@ -100,7 +100,7 @@ pub(super) fn add_product<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// sum + A^T B, the sum in memory.
+/// sum + A^T B, with the sum in memory.
 /// `sum` `[32, 32]`, A and B `[t, 32]`.
 #[inline(always)]
 pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
@@ -115,7 +115,7 @@ pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
             let mut tile: Tile<S, R, V> = multiply_transposed(simd, a, first, b, part);
             for r in 0..R {
                 for v in 0..V {
-                    // Added at the end: sums of sums are more exact than one long one.
+                    // Added at the end, because partial sums have smaller rounding errors than one long sum.
                     tile[r][v] = simd.add(tile[r][v], simd.load(sum[r].part(part + v)));
                 }
             }

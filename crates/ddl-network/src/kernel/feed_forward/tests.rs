@@ -1,4 +1,4 @@
-//! Against the formula in double precision, and what must hold for every layer.
+//! Comparison with the formula in double precision, and properties of any layer.
 
 mod bf16;
 mod exact;
@@ -125,7 +125,7 @@ proptest! {
         prop_assert_eq!(doubled(&once.w2), twice.w2);
     }
 
-    /// With W1 and W2 the unit matrix and everything active, y and gx show which units were kept.
+    /// If W1 and W2 are the unit matrix and all units are active, y and gx show which units are kept.
     #[test]
     fn both_passes_drop_the_same_units(rows in 1..200_usize, p in 0.01..0.99, seed: u64) {
         const WIDTH: usize = 64;

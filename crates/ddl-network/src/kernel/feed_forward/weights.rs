@@ -1,9 +1,9 @@
-//! The weights as the kernels read them.
+//! The weights in the layout of the kernels.
 
 use super::block::{BLOCK, Block, Panel, transpose};
 
-/// Squares of 32 x 32 weights, those of one block of hidden units together, and padded with zeros: a unit of the padding
-/// is 0 and adds nothing.
+/// Squares of 32 x 32 weights, grouped by block of hidden units and padded with zeros. A unit of the padding is 0 and
+/// contributes nothing.
 #[derive(Clone, Debug)]
 pub(super) struct BlockWeights {
     pub(super) width: usize,
@@ -76,25 +76,25 @@ pub(super) struct Unit<'a> {
 }
 
 impl<'a> Unit<'a> {
-    /// W1, rows hidden units.
+    /// W1; rows are hidden units.
     #[inline]
     pub(super) fn w1(self, column: usize) -> &'a Panel {
         &self.weights.w1[self.unit * self.weights.columns + column]
     }
 
-    /// W1^T, rows entries of x.
+    /// W1^T; rows are entries of x.
     #[inline]
     pub(super) fn w1_transposed(self, column: usize) -> &'a Panel {
         &self.weights.w1_transposed[self.unit * self.weights.columns + column]
     }
 
-    /// W2, rows entries of y.
+    /// W2; rows are entries of y.
     #[inline]
     pub(super) fn w2(self, column: usize) -> &'a Panel {
         &self.weights.w2[self.unit * self.weights.columns + column]
     }
 
-    /// W2^T, rows hidden units.
+    /// W2^T; rows are hidden units.
     #[inline]
     pub(super) fn w2_transposed(self, column: usize) -> &'a Panel {
         &self.weights.w2_transposed[self.unit * self.weights.columns + column]

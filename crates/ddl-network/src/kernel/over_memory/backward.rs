@@ -1,4 +1,4 @@
-//! From the gradient of mixed values to that of queries, keys and values.
+//! The backward pass: from the gradient of mixed values to those of queries, keys and values.
 //!
 //! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
 //! `w_e (g · v_e − Σ_f w_f g · v_f)`.
@@ -12,22 +12,22 @@ use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};
 
 pub(super) struct MemoryBackward<'a> {
     pub(super) heads: Heads,
-    /// Where the rows start in the whole.
+    /// Index of the first number of these rows in the whole.
     pub(super) first: usize,
     pub(super) query: &'a [f32],
     pub(super) memory: &'a [KeyValue<'a>],
     pub(super) own: KeyValue<'a>,
     pub(super) mixed_gradient: &'a [f32],
-    /// Of these rows alone.
+    /// Only of these rows.
     pub(super) query_gradient: &'a mut [f32],
-    /// Of these rows alone: the remembered tokens, then the own one.
+    /// Only of these rows: the cached tokens, then the own token.
     pub(super) token_gradients: Vec<KeyValueMut<'a>>,
 }
 
 impl Kernel for Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // The usual width is spelled out, which takes the loops over quads away.
+        // The usual width is a constant, so that the compiler unrolls the loops over quads.
         match self.job.heads.width {
             DEPTH => self.rows(simd, DEPTH, 1),
             width => {
@@ -90,7 +90,7 @@ impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
         for ((weight, taken), (token, gradients)) in weights.zip(tokens) {
             let weight = simd.load(&weight.0);
             let score_gradient = simd.mul(weight, simd.sub(simd.load(&taken.0), mean));
-            // Queries were scaled to scores that are powers of two.
+            // Undoes the scaling of the queries, which makes scores exponents of two.
             let key_weight = simd.mul(score_gradient, simd.splat(std::f32::consts::LN_2));
             for quad in 0..quads {
                 let of_key = weighted(simd, key_weight, simd.read(&query[quad]));

@@ -1,4 +1,4 @@
-//! From queries, keys and values to mixed values.
+//! The forward pass: from queries, keys and values to mixed values.
 
 use super::tokens::{KeyValue, MemoryBuffers, SixteenHeads, accumulate, soften, weighted};
 use crate::kernel::heads::Heads;
@@ -7,19 +7,19 @@ use ddl_simd::{DEPTH, Kernel, LANES, Simd, ZERO_QUAD};
 
 pub(super) struct MemoryForward<'a> {
     pub(super) heads: Heads,
-    /// Where the rows start in the whole.
+    /// Index of the first number of these rows in the whole.
     pub(super) first: usize,
     pub(super) query: &'a [f32],
     pub(super) memory: &'a [KeyValue<'a>],
     pub(super) own: KeyValue<'a>,
-    /// Of these rows alone.
+    /// Only of these rows.
     pub(super) mixed: &'a mut [f32],
 }
 
 impl Kernel for Buffered<'_, MemoryForward<'_>, MemoryBuffers> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        // The usual width is spelled out, which takes the loops over quads away.
+        // The usual width is a constant, so that the compiler unrolls the loops over quads.
         match self.job.heads.width {
             DEPTH => self.rows(simd, DEPTH, 1),
             width => {

@@ -1,4 +1,4 @@
-//! Against the formula in double precision.
+//! Comparison with the formula in double precision.
 
 use super::{KeyValue, KeyValueMut, OverMemory, OverMemoryGradients};
 use crate::kernel::tests::attention::Attention;
@@ -6,7 +6,7 @@ use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
 use ddl_simd::InstructionSet;
 use proptest::prelude::*;
 
-/// Tokens are keys and values, oldest first, the own one last.
+/// Tokens are keys and values, the oldest first and the own token last.
 struct MemoryCase {
     heads: (usize, usize),
     query: Vec<f32>,
@@ -20,7 +20,7 @@ struct MemoryResults<T> {
     tokens: Vec<[Vec<T>; 2]>,
 }
 
-/// What is in the gradients before.
+/// Initial contents of the gradients.
 const BEFORE: f32 = 0.25;
 
 impl MemoryCase {

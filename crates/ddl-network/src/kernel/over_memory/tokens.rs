@@ -1,11 +1,11 @@
-//! Sixteen heads, one after the other across rows, four of their numbers (a quad) at a time, as they lie in memory.
+//! The layout of sixteen heads in lanes, in sequence across rows, four of their numbers (a quad) at a time.
 //!
-//! Rows and heads make one index here, since every row has a memory of its own. What there is one of for each head (a
-//! score, a weight) lies where transposing pieces of four lanes brings it: head 4 k + i in lane 4 i + k.
+//! Rows and heads are one index here, because every row has a separate memory. Scores and weights, one for each head,
+//! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
 use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
 
-/// Keys and values of one token a row, `[rows, heads, head width]` each.
+/// Keys and values of one token for each row, `[rows, heads, head width]` each.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct KeyValue<'a> {
     pub(crate) key: &'a [f32],
@@ -36,22 +36,22 @@ impl<'a> KeyValueMut<'a> {
     }
 }
 
-/// Room for sixteen heads, kept from group to group.
+/// Buffers for sixteen heads, reused by the next group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MemoryBuffers {
-    /// By quad, scaled so that scores are powers of two.
+    /// For each quad; scaled so that scores are exponents of two.
     pub(super) query: Vec<Quad>,
-    /// By quad.
+    /// For each quad.
     pub(super) mixed_gradient: Vec<Quad>,
-    /// By quad.
+    /// For each quad.
     pub(super) query_gradient: Vec<Quad>,
-    /// By token: scores, then powers.
+    /// For each token: scores, then powers.
     pub(super) powers: Vec<Lanes>,
-    /// By token: the value's product with the gradient of what was mixed.
+    /// For each token: the product of its value and the gradient of the mixed values.
     pub(super) taken: Vec<Lanes>,
 }
 
-/// Where sixteen heads lie in a slice: `numbers` from `first` on, fewer than sixteen heads at its end.
+/// The position of sixteen heads in a slice: `numbers` from `first` on. The last group may have fewer heads.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SixteenHeads {
     pub(super) first: usize,
@@ -60,7 +60,7 @@ pub(super) struct SixteenHeads {
 }
 
 impl SixteenHeads {
-    /// Of the group that starts at `at` of `length` numbers, `first` being added to it in the whole slice.
+    /// The group at index `at` of a piece of `length` numbers that begins at `first` in the whole slice.
     #[inline(always)]
     pub(super) fn new(first: usize, at: usize, length: usize, width: usize) -> Self {
         Self {
@@ -70,7 +70,7 @@ impl SixteenHeads {
         }
     }
 
-    /// The numbers of a quad; those that lack are 0. A slice that is too short is repeated.
+    /// Loads the numbers of a quad; missing numbers are 0. A slice that is too short is repeated.
     #[inline(always)]
     pub(super) fn load<S: Simd>(self, simd: S, from: &[f32], quad: usize) -> Vectors<S> {
         let first = if self.first < from.len() {
@@ -96,7 +96,7 @@ impl SixteenHeads {
         }
     }
 
-    /// Adds to the numbers of a quad. The slice starts with the group.
+    /// Adds to the numbers of a quad. The slice begins with the group.
     #[inline(always)]
     pub(super) fn add<S: Simd>(self, simd: S, sum: Vectors<S>, into: &mut [f32], quad: usize) {
         if self.whole()
@@ -114,7 +114,7 @@ impl SixteenHeads {
         }
     }
 
-    /// Sets the numbers of a quad. The slice starts with the group.
+    /// Stores the numbers of a quad. The slice begins with the group.
     #[inline(always)]
     pub(super) fn store<S: Simd>(self, simd: S, values: Vectors<S>, into: &mut [f32], quad: usize) {
         if self.whole()
@@ -131,13 +131,13 @@ impl SixteenHeads {
         }
     }
 
-    /// Whether the numbers of the sixteen heads lie as those of a quad.
+    /// Whether the numbers of the sixteen heads have the layout of a single quad.
     #[inline(always)]
     fn whole(self) -> bool {
         self.width == DEPTH && self.numbers == LANES * DEPTH
     }
 
-    /// The place of a number after the first, and where it stands in a quad.
+    /// Calls `f` with the index of each number after the first, and its position in a quad.
     #[inline(always)]
     fn each(self, quad: usize, mut f: impl FnMut(usize, usize, usize)) {
         let numbers = quad * DEPTH..self.width.min((quad + 1) * DEPTH);
@@ -186,7 +186,7 @@ pub(super) fn weighted<S: Simd>(simd: S, weight: S::Floats, numbers: Vectors<S>)
     result
 }
 
-/// Into `powers` 2^(score − largest score) for every token, the own one last; 1 over their sum.
+/// Sets `powers` to 2^(score − largest score) for all tokens, the own token last. Returns 1 over their sum.
 #[inline(always)]
 pub(super) fn soften<S: Simd>(
     simd: S,

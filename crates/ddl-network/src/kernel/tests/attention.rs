@@ -1,7 +1,6 @@
-//! Attention as the formula says, one query after the other, in f64.
+//! The formula of attention in f64, one query at a time.
 
-/// One query over `keys` and `values`, whose weights are multiplied by `factors`, with the gradients of
-/// Σ `gradient` · mixed.
+/// One query over `keys` and `values`, with weights multiplied by `factors`, and the gradients of Σ `gradient` · mixed.
 pub(crate) struct Attention<'a> {
     pub(crate) query: &'a [f64],
     pub(crate) keys: &'a [&'a [f64]],

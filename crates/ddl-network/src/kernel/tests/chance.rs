@@ -1,4 +1,4 @@
-//! Whether decisions of dropout look like chance.
+//! Statistical tests of dropout decisions.
 
 /// Decisions in rows and columns, scaled to a mean of 0 and a variance of 1.
 pub(crate) struct Decided {
@@ -7,7 +7,7 @@ pub(crate) struct Decided {
 }
 
 impl Decided {
-    /// With the probability `p` that a place is dropped.
+    /// Decisions with the probability `p` of being dropped.
     pub(crate) fn new(
         p: f64,
         [rows, columns]: [usize; 2],
@@ -22,7 +22,7 @@ impl Decided {
         }
     }
 
-    /// The share is right over all, in every row and in every column, and neighbours decide apart.
+    /// The share is right in total, in every row and in every column, and neighbours are uncorrelated.
     pub(crate) fn assert_like_chance(&self) {
         let (values, columns) = (&self.values, self.columns);
         let score = |values: &mut dyn ExactSizeIterator<Item = &f64>| {
@@ -36,7 +36,7 @@ impl Decided {
             (0..columns).map(|first| score(&mut values[first..].iter().step_by(columns)));
         let scores: Vec<f64> = of_rows.chain(of_columns).collect();
         assert!(scores.iter().all(|score| score.abs() < 5.5), "{scores:?}");
-        // They vary as chance has it, not less: the sum of squares over the count is 1 to 5 standard errors.
+        // Their variance is that of independent decisions: the mean square is 1 within 5 standard errors.
         let mean = scores.iter().map(|score| score * score).sum::<f64>() / scores.len() as f64;
         let error = (2.0 / scores.len() as f64).sqrt();
         assert!((mean - 1.0).abs() < 5.0 * error, "{mean}");
@@ -46,7 +46,7 @@ impl Decided {
         }
     }
 
-    /// One decides nothing about the other, not even some rows later.
+    /// The decisions of both are uncorrelated, also with an offset of some rows.
     pub(crate) fn assert_apart_from(&self, name: &str, other: &Self) {
         for rows in 0..4 {
             let later = &other.values[rows * self.columns..];
@@ -55,7 +55,8 @@ impl Decided {
     }
 }
 
-/// The mean of products is normal with standard error 1 / sqrt(count): five of them are rare.
+/// The mean of products is normal with the standard error 1 / sqrt(count), so that more than 5 standard errors are
+/// rare.
 fn assert_uncorrelated(name: &str, a: &[f64], b: &[f64]) {
     let products = a.iter().zip(b).map(|(a, b)| a * b);
     let count = a.len().min(b.len()) as f64;

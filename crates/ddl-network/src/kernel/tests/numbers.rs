@@ -1,4 +1,4 @@
-//! Numbers to test with, how far results are apart, and what is refused.
+//! Random numbers for tests, comparison of results, and expected panics.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,13 +13,13 @@ impl Numbers {
         word ^ (word >> 31)
     }
 
-    /// Even in [−`bound`, `bound`].
+    /// Uniform in [−`bound`, `bound`].
     pub(crate) fn even(&mut self, count: usize, bound: f32) -> Vec<f32> {
         let number = |word: u64| bound * ((word >> 40) as f32 / 8_388_608.0 - 1.0);
         (0..count).map(|_| number(self.word())).collect()
     }
 
-    /// Who sees whom: itself always, others three times in four.
+    /// Visibility masks: a pedestrian sees itself, and others with probability 3/4.
     pub(crate) fn visible(&mut self, sizes: &[usize], frames: usize) -> Vec<bool> {
         let mut visible = Vec::new();
         for size in sizes.repeat(frames) {
@@ -31,7 +31,7 @@ impl Numbers {
     }
 }
 
-/// Whom each pedestrian sees, of the squares of all scenes and frames.
+/// Visible pedestrians of each pedestrian, from the square masks of all scenes and frames.
 pub(crate) fn lists(sizes: &[usize], mut visible: &[bool]) -> Vec<Vec<u32>> {
     let mut lists = Vec::new();
     while !visible.is_empty() {
@@ -47,7 +47,7 @@ pub(crate) fn lists(sizes: &[usize], mut visible: &[bool]) -> Vec<Vec<u32>> {
     lists
 }
 
-/// Panics where a result is further from the expected one than `tolerance` times the largest of all.
+/// Panics if a result differs from the expected one by more than `tolerance` times the largest of all.
 pub(crate) fn assert_close(what: &str, results: &[f32], expected: &[f64], tolerance: f64) {
     assert_eq!(results.len(), expected.len(), "{what}");
     let largest = expected.iter().fold(1e-3_f64, |a, b| a.max(b.abs()));

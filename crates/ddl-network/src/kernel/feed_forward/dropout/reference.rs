@@ -1,4 +1,4 @@
-//! The decisions one by one, and whether they look like chance.
+//! The decisions one by one, and tests of their randomness.
 
 use super::{Dropout, mixed};
 use crate::kernel::tests::chance::Decided;
@@ -13,7 +13,7 @@ fn bits(seed: u64, row: usize, unit: usize) -> u32 {
     if lane < 16 { word & 0xffff } else { word >> 16 }
 }
 
-/// 0 for a unit that is dropped, else what it is scaled by.
+/// The factor of a unit: 0 if it is dropped, otherwise 1 / (1 - p).
 pub(crate) fn factor(dropout: Dropout, row: usize, unit: usize) -> f64 {
     let dropped = (dropout.p * 65_536.0).round().min(65_535.0);
     if f64::from(bits(dropout.seed, row, unit)) < dropped {
@@ -25,12 +25,12 @@ pub(crate) fn factor(dropout: Dropout, row: usize, unit: usize) -> f64 {
 
 #[test]
 fn decisions_stay_what_they_are() {
-    // Bit l is whether unit 32 `block` + l is kept at p = 1/2.
+    // Bit l: whether unit 32 `block` + l is kept at p = 1/2.
     let kept = |seed: u64, row: usize, block: usize| -> u32 {
         let kept = |l: usize| u32::from(bits(seed, row, 32 * block + l) >= 32_768);
         (0..32).map(|l| kept(l) << l).sum()
     };
-    // Computed by a program in another language, written from the description.
+    // Computed by an independent program in another language.
     assert_eq!(kept(0, 0, 0), 0xbd60_8ba1);
     assert_eq!(kept(1, 0, 0), 0xdb4c_c23e);
     assert_eq!(kept(1, 1, 0), 0x6aa3_de8c);

@@ -1,4 +1,4 @@
-//! The forward pass in bf16, against the formula of rounded numbers in double precision.
+//! Comparison of the forward pass in bf16 with the formula for rounded numbers in double precision.
 
 use super::exact::Case;
 use super::{FeedForward, UNIT, assert_near};
@@ -19,7 +19,7 @@ pub(super) fn layers(case: &Case) -> Vec<FeedForward> {
 }
 
 pub(super) fn run(case: &Case, layer: &FeedForward) -> Vec<f32> {
-    // Overwritten.
+    // The forward pass overwrites it.
     let mut y = vec![f32::NAN; case.x.len()];
     layer.forward(&case.x, case.dropout, &mut y);
     y
@@ -34,8 +34,8 @@ fn bf16(value: f64) -> f64 {
     (value / step).round_ties_even() * step
 }
 
-/// y and what it may be off by: rounding of sums, and activations so near the middle of two bf16 numbers that they may be
-/// rounded to either.
+/// y and the bound of its error: the rounding of sums, and activations so close to the middle of two bf16 numbers that
+/// they may be rounded to either.
 fn exact(case: &Case) -> [Vec<f64>; 2] {
     let (width, hidden) = (case.width, case.hidden);
     let rounded = |numbers: &[f32]| -> Vec<f64> {
@@ -45,7 +45,7 @@ fn exact(case: &Case) -> [Vec<f64>; 2] {
     let [x, w1, w2] = [&case.x, &case.w1, &case.w2].map(|numbers| rounded(numbers));
     let [mut values, mut bounds] = [Vec::new(), Vec::new()];
     for (row, x) in x.chunks_exact(width).enumerate() {
-        // Each with the sum of its terms' absolute values, and its doubt.
+        // Each with the sum of its terms' absolute values, and the bound of the ambiguity.
         let activations: Vec<[f64; 3]> = (0..hidden)
             .map(|j| {
                 let b = f64::from(case.b1[j]);
@@ -56,7 +56,7 @@ fn exact(case: &Case) -> [Vec<f64>; 2] {
                 let (value, size) = (factor * sum.max(0.0), factor * size);
                 let off = (width + 4) as f64 * UNIT * size;
                 let ends = [value - off, value + off].map(|end| (bf16(end) - bf16(value)).abs());
-                // No farther than the computed one, and 2^-8 of that.
+                // At most the error of the computed one, and 2^-8 of its size.
                 [bf16(value), 1.01 * size, ends[0].max(ends[1])]
             })
             .collect();

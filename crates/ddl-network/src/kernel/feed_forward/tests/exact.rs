@@ -18,8 +18,8 @@ pub(super) struct Case {
     pub(super) dropout: Option<Dropout>,
 }
 
-/// Sums, each with the sum of its terms' absolute values, and what it may differ by because a unit may count as active
-/// or not.
+/// Sums, each with the sum of its terms' absolute values, and the possible difference from units whose activity is
+/// ambiguous.
 pub(super) struct Sums {
     pub(super) values: Vec<f64>,
     pub(super) sizes: Vec<f64>,
@@ -45,7 +45,7 @@ impl Sums {
 
 pub(super) struct Exact {
     pub(super) y: Sums,
-    /// With respect to x, W1, b1, W2, b2.
+    /// Gradients of x, W1, b1, W2, b2.
     pub(super) gradients: [Sums; 5],
 }
 
@@ -77,7 +77,7 @@ impl Case {
     }
 
     pub(super) fn run(&self, layer: &FeedForward) -> (Vec<f32>, Vec<f32>, Gradients) {
-        // Both are overwritten.
+        // The passes overwrite both.
         let [mut y, mut gx] = [vec![f32::NAN; self.x.len()], vec![f32::NAN; self.x.len()]];
         let mut grads = Gradients::zeros(self.width, self.hidden);
         layer.forward(&self.x, self.dropout, &mut y);
@@ -85,7 +85,7 @@ impl Case {
         (y, gx, grads)
     }
 
-    /// 0 for a unit that is dropped, else what it is scaled by.
+    /// The factor of a unit: 0 if it is dropped, otherwise 1 / (1 - p).
     pub(super) fn factor(&self, row: usize, unit: usize) -> f64 {
         self.dropout
             .map_or(1.0, |dropout| reference::factor(dropout, row, unit))
