@@ -1,5 +1,6 @@
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
+use crate::forecast::watch::Watch;
 use crate::forecast::watched_place::{OtherPlace, WatchedPlace};
 use crate::model::ddl::Ddl;
 use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
@@ -45,9 +46,8 @@ use std::borrow::Borrow;
 #[derive(Debug, Clone)]
 pub struct LiveForecaster<M = Ddl> {
     model: M,
-    tracks: LiveTracks,
+    watch: Watch,
     regions: Option<AdaptiveRegions>,
-    place: Option<WatchedPlace>,
 }
 
 /// What is forecast from one frame on.
@@ -73,9 +73,8 @@ impl<M> LiveForecaster<M> {
     pub fn new(model: M) -> Self {
         Self {
             model,
-            tracks: LiveTracks::new(),
+            watch: Watch::new(LiveTracks::new()),
             regions: None,
-            place: None,
         }
     }
 
@@ -86,7 +85,7 @@ impl<M> LiveForecaster<M> {
     pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
         let tracks = LiveTracks::with_frame_step(frame_step)?;
         Ok(Self {
-            tracks,
+            watch: Watch::new(tracks),
             ..Self::new(model)
         })
     }
@@ -94,9 +93,9 @@ impl<M> LiveForecaster<M> {
     /// The same, with incomplete observations filled in as the completion allows; [`Window::made_up`] counts the filled-in
     /// positions.
     #[must_use]
-    pub fn completing(self, completion: Completion) -> Self {
-        let tracks = self.tracks.completing(completion);
-        Self { tracks, ..self }
+    pub fn completing(mut self, completion: Completion) -> Self {
+        self.watch.tracks = self.watch.tracks.completing(completion);
+        self
     }
 
     /// The same, with regions that keep their share in this place: they follow what is seen, as [`AdaptiveRegions`] tells.
@@ -123,42 +122,39 @@ impl<M> LiveForecaster<M> {
     /// Forgets everybody and the last frame: any frame may come next, as when a tracker starts anew. What is remembered of
     /// the place stays, and what regions have learned of it.
     pub fn clear(&mut self) {
-        self.tracks.clear();
+        self.watch.clear();
         if let Some(regions) = &mut self.regions {
             regions.clear();
-        }
-        if let Some(place) = &mut self.place {
-            place.interrupt();
         }
     }
 
     /// What is remembered of the place, to be [saved](SceneMemory::write); `None` unless the forecaster was asked to
     /// [remember](LiveForecaster::remembering).
     pub fn memory(&self) -> Option<&SceneMemory> {
-        self.place.as_ref().map(WatchedPlace::memory)
+        self.place().map(WatchedPlace::memory)
     }
 
     /// Why the memory that was given is no longer used; `None` while it is.
     pub fn refused_memory(&self) -> Option<&OtherPlace> {
-        self.place.as_ref()?.refused()
+        self.place()?.refused()
     }
 
     /// The place that is remembered, for its [file](crate::MemoryFile).
     pub fn place(&self) -> Option<&WatchedPlace> {
-        self.place.as_ref()
+        self.watch.place.as_ref()
     }
 
     /// Decides whether the memory that was given is of this place by those seen so far, where no more are to come
     /// ([`WatchedPlace::end_trial`]).
     pub fn end_trial(&mut self) {
-        if let Some(place) = &mut self.place {
+        if let Some(place) = &mut self.watch.place {
             place.end_trial();
         }
     }
 
     /// What is remembered of the frames so far.
     pub fn tracks(&self) -> &LiveTracks {
-        &self.tracks
+        &self.watch.tracks
     }
 
     /// Adds a frame, and forecasts from it by `forecast` where there is somebody to forecast; all or nothing.
@@ -168,24 +164,12 @@ impl<M> LiveForecaster<M> {
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
         forecast: impl FnOnce(&M, &Window) -> Result<F, ForecastError>,
     ) -> Result<Option<LiveForecast<F>>, DdlError> {
-        let people: Vec<_> = people.into_iter().collect();
-        let tracks = self.tracks.after(frame, people.iter().copied())?;
-        let now = match tracks.window() {
-            None => None,
-            Some(window) => {
-                let window = match &self.place {
-                    Some(place) => place.recalling(window),
-                    None => window,
-                };
-                let forecast = forecast(&self.model, &window)?;
-                Some(LiveForecast { window, forecast })
-            }
-        };
-        if let Some(place) = &mut self.place {
-            place.observe(frame, people, now.as_ref().map(|now| &now.window))?;
-        }
-        self.tracks = tracks;
-        Ok(now)
+        let people = people.into_iter().collect();
+        let model = &self.model;
+        let made = self
+            .watch
+            .push(frame, people, |window| forecast(model, window))?;
+        Ok(made.map(|(window, forecast)| LiveForecast { window, forecast }))
     }
 
     fn adapted(&mut self, window: &Window, forecast: Forecast) -> Forecast {
@@ -226,19 +210,10 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     ///
     /// # Errors
     /// When the model has no memory branch, or the memory another number of raw frames in a step.
-    pub fn remembering(self, memory: SceneMemory) -> Result<Self, DdlError> {
+    pub fn remembering(mut self, memory: SceneMemory) -> Result<Self, DdlError> {
         let place = WatchedPlace::new(self.model.borrow(), memory)?;
-        let (camera, its) = (self.tracks.frame_step(), place.memory().frame_step());
-        if camera != its {
-            return Err(DdlError::MemoryFrameStep {
-                camera,
-                memory: its,
-            });
-        }
-        Ok(Self {
-            place: Some(place),
-            ..self
-        })
+        self.watch.remember(place)?;
+        Ok(self)
     }
 
     /// The same, with the evidence for every hypothesis that it goes to its goal: what [`Ddl::forecast_certified`] says of the
