@@ -182,11 +182,6 @@ impl<R: BufRead> FrameReader<R> {
         self.whole(&name.clone())
     }
 
-    /// Whether lines can be read at all: a header that is none makes every line after it wrong.
-    pub fn knows_its_format(&self) -> bool {
-        self.kind.is_some()
-    }
-
     /// Whether the observations so far name scenes.
     pub fn names_scenes(&self) -> bool {
         self.named.is_some_and(|(named, _)| named)

@@ -91,6 +91,8 @@ impl LiveScenes {
     pub const MOST_SCENES: usize = 1_000;
     /// Windows that wait at most.
     pub const MOST_WAITING: usize = 10_000;
+    /// Pedestrians of a batch that answers soon: several cameras of a dozen, and never more than one crowd.
+    pub const BATCH: usize = 50;
     /// Time without a frame after which a scene is forgotten.
     pub const SILENCE: Duration = Duration::from_mins(10);
 
@@ -141,6 +143,11 @@ impl LiveScenes {
     #[must_use]
     pub fn forgetting_after(self, silence: Duration) -> Self {
         Self { silence, ..self }
+    }
+
+    /// Raw frames in one step of 0.4 s.
+    pub fn frame_step(&self) -> i64 {
+        self.unseen.frame_step()
     }
 
     /// Adds a frame of a scene, everybody's positions (m) in any order. `None` is the scene of a stream that names none, and
