@@ -54,6 +54,15 @@ pub fn tracker() -> String {
     csv(&filmed(&rows("plaza", 40, 50), 4))
 }
 
+/// What the program `cameras` of the pages writes: the same of two cameras, line by line in turn.
+pub fn cameras() -> String {
+    let tracks = tracker();
+    let mut lines = tracks.lines();
+    let header = lines.next().unwrap_or_default();
+    let both = lines.map(|line| format!("hall,{line}\nyard,{line}\n"));
+    format!("scene,{header}\n{}", both.collect::<String>())
+}
+
 /// The same as a camera sees it that is faster: so many frames a step.
 fn filmed(tracks: &[Row], frames: i64) -> Vec<Row> {
     let mut all = Vec::new();

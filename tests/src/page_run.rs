@@ -29,7 +29,7 @@ pub struct PageFolder {
 }
 
 impl PageFolder {
-    /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's `crates`.
+    /// The files of [`page_inputs`], `ddl`, `tracker` and `cameras` on the search path, `target/release/ddl`, and the checkout's `crates`.
     pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let bin = tempfile::tempdir().expect("a temporary folder can be made");
@@ -42,7 +42,8 @@ impl PageFolder {
         link(program::path(), here.join("target/release/ddl"));
         link(program::path(), bin.path().join("ddl"));
         link(&checkout.join("crates"), here.join("crates"));
-        write_tracker(bin.path());
+        write_program(&bin.path().join("tracker"), &page_inputs::tracker());
+        write_program(&bin.path().join("cameras"), &page_inputs::cameras());
         Self {
             folder,
             bin,
@@ -113,13 +114,13 @@ impl PageFolder {
     }
 }
 
-fn write_tracker(bin: &Path) {
+/// A program that prints these lines.
+fn write_program(program: &Path, lines: &str) {
     use std::os::unix::fs::PermissionsExt as _;
-    let program = bin.join("tracker");
-    let text = format!("#!/bin/sh\ncat <<'END'\n{}END\n", page_inputs::tracker());
-    std::fs::write(&program, text).expect("a program can be written");
+    let text = format!("#!/bin/sh\ncat <<'END'\n{lines}END\n");
+    std::fs::write(program, text).expect("a program can be written");
     let mode = std::fs::Permissions::from_mode(0o755);
-    std::fs::set_permissions(&program, mode).expect("a program can be made executable");
+    std::fs::set_permissions(program, mode).expect("a program can be made executable");
 }
 
 /// What one command did.
