@@ -184,7 +184,7 @@ fn what_is_kept_is_bounded() {
         .unwrap_err()
         .to_string();
     assert!(
-        error.contains("more than 1000") && error.contains("10 minutes"),
+        error.contains("more than 2000") && error.contains("10 minutes"),
         "{error}"
     );
     // A frame is waited for no longer.

@@ -87,8 +87,9 @@ pub struct SceneForecast {
 }
 
 impl LiveScenes {
-    /// Scenes at a time: as many as a [`FrameReader`](ddl_data::FrameReader) reads.
-    pub const MOST_SCENES: usize = 1_000;
+    /// Scenes at a time: twice as many as a [`FrameReader`](ddl_data::FrameReader) reads, so that those which it has just
+    /// forgotten have room beside the new ones.
+    pub const MOST_SCENES: usize = 2_000;
     /// Windows that wait at most.
     pub const MOST_WAITING: usize = 10_000;
     /// Pedestrians of a batch that answers soon: several cameras of a dozen, and never more than one crowd.

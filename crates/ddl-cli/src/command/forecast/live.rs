@@ -61,6 +61,9 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
     if let Some(note) = units.note_of_run(false) {
         tell(format_args!("note: {note}"));
     }
+    if let Some(step) = units.live_frame_step()? {
+        begin(forecast, model, watching, step)?;
+    }
     let mut stream = Stream {
         forecast,
         model,
@@ -75,9 +78,6 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
         taken: 0,
         answered: 0,
     };
-    if let Some(step) = units.live_frame_step()? {
-        stream.begin(step)?;
-    }
     stream.follow(&Frames::of_standard_input()?, &units)?;
     stream
         .left_out
@@ -95,6 +95,30 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
     Ok(())
 }
 
+/// Begins to watch, as soon as it is known how many frames make a step.
+fn begin(
+    forecast: &Forecast,
+    model: &Ddl,
+    watching: &Mutex<Watching>,
+    step: i64,
+) -> anyhow::Result<()> {
+    let scenes = LiveScenes::with_frame_step(step)?;
+    let scenes = scenes.completing(forecast.tracks.completion());
+    let scenes = if forecast.latest {
+        scenes.latest_only()
+    } else {
+        scenes
+    };
+    let mut watching = lock(watching);
+    let Watching { scenes: to, memory } = &mut *watching;
+    let scenes = to.insert(scenes);
+    match memory {
+        // What is wrong with the file of the only scene is told before its first frame.
+        Some(memory) => memory.begin(None, scenes, model),
+        None => Ok(()),
+    }
+}
+
 /// What is kept of the scenes.
 struct Watching {
     /// `None` until it is known how many frames make a step.
@@ -108,34 +132,34 @@ fn lock(watching: &Mutex<Watching>) -> MutexGuard<'_, Watching> {
 }
 
 impl Watching {
-    /// Adds a frame; the scenes that were forgotten, because they have been silent.
-    fn observe(&mut self, frame: Frame, model: &Ddl) -> anyhow::Result<Vec<SceneName>> {
+    /// Ends the scenes that have been silent, when another one begins.
+    fn forget_silent(&mut self) -> (Vec<SceneName>, anyhow::Result<()>) {
         let Some(scenes) = &mut self.scenes else {
-            return Ok(Vec::new());
+            return (Vec::new(), Ok(()));
         };
-        let name = frame.scene.clone();
-        let silent = if frame.is_first {
-            scenes.silent()
-        } else {
-            Vec::new()
-        };
-        let mut ended = Ok(());
+        let (silent, mut ended) = (scenes.silent(), Ok(()));
         for scene in &silent {
             if let Some(memory) = &mut self.memory {
                 ended = ended.and(memory.end(Some(scene), scenes));
             }
             scenes.forget(Some(scene));
         }
-        let begun = match &mut self.memory {
-            None => Ok(()),
-            Some(memory) => memory.begin(name.as_ref(), scenes, model),
+        (silent, ended)
+    }
+
+    fn observe(&mut self, frame: Frame, model: &Ddl) -> anyhow::Result<()> {
+        let Some(scenes) = &mut self.scenes else {
+            return Ok(());
         };
+        let Some(memory) = &mut self.memory else {
+            return Ok(scenes.observe_frame(frame)?);
+        };
+        let name = frame.scene.clone();
+        // A scene whose memory cannot be used is forecast without.
+        let begun = memory.begin(name.as_ref(), scenes, model);
         scenes.observe_frame(frame)?;
-        if let Some(memory) = &mut self.memory {
-            memory.tell_refusal(name.as_ref(), scenes);
-        }
-        ended.and(begun)?;
-        Ok(silent)
+        memory.tell_refusal(name.as_ref(), scenes);
+        begun
     }
 
     fn write_when_due(&mut self) {
@@ -213,25 +237,6 @@ impl Stream<'_> {
         watching.scenes.as_ref().map_or(0, LiveScenes::waiting)
     }
 
-    /// Begins to watch, as soon as it is known how many frames make a step.
-    fn begin(&mut self, step: i64) -> anyhow::Result<()> {
-        let scenes = LiveScenes::with_frame_step(step)?;
-        let scenes = scenes.completing(self.forecast.tracks.completion());
-        let scenes = if self.forecast.latest {
-            scenes.latest_only()
-        } else {
-            scenes
-        };
-        let mut watching = lock(self.watching);
-        let Watching { scenes: to, memory } = &mut *watching;
-        let scenes = to.insert(scenes);
-        match memory {
-            // What is wrong with the file of the only scene is told before its first frame.
-            Some(memory) => memory.begin(None, scenes, self.model),
-            None => Ok(()),
-        }
-    }
-
     /// Adds a frame. `rate`: frames that follow each other in a second, where the lines say so.
     fn take(&mut self, frame: Frame, rate: Option<f64>, units: &Units) -> anyhow::Result<()> {
         if std::mem::take(&mut self.is_empty)
@@ -250,7 +255,7 @@ impl Stream<'_> {
             tell(format_args!(
                 "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read them differently"
             ));
-            self.begin(step)?;
+            begin(self.forecast, self.model, self.watching, step)?;
         }
         let early = std::mem::take(&mut self.early).into_iter();
         for frame in early.chain([frame]) {
@@ -266,10 +271,16 @@ impl Stream<'_> {
 
     fn observe(&mut self, frame: Frame) -> anyhow::Result<()> {
         let frame = on_the_ground(frame, self.homography.as_ref())?;
-        for scene in lock(self.watching).observe(frame, self.model)? {
+        let mut watching = lock(self.watching);
+        let (silent, ended) = if frame.is_first {
+            watching.forget_silent()
+        } else {
+            (Vec::new(), Ok(()))
+        };
+        for scene in silent {
             self.onward.forget(&scene);
         }
-        Ok(())
+        watching.observe(frame, self.model).and(ended)
     }
 
     fn answer_batch(&mut self) -> anyhow::Result<()> {
