@@ -1,9 +1,10 @@
-//! How many cameras one core forecasts, `cargo bench -p ddl --bench cameras`; `-- 60 150` for these numbers of cameras alone.
+//! How many cameras one core forecasts, `cargo bench -p ddl --bench cameras`; `-- 60 150` for these numbers of cameras
+//! alone.
 //!
-//! Every camera sees 12 pedestrians and gives 2.5 frames a second, at moments of its own. All work is done on one thread,
-//! and all of it is real: frames are observed and forecast by a built-in model, 20 hypotheses each. Time is simulated:
-//! work takes its processor time, and waiting takes none. So a busy machine disturbs little, and hours pass in seconds.
-//! One run is by the clock.
+//! Every camera sees 12 pedestrians and gives 2.5 frames a second, at moments of its own. All work is done on one
+//! thread, and all of it is real: frames are observed and forecast by a built-in model, 20 hypotheses each. Time is
+//! simulated: work takes its processor time, and waiting takes none. So a busy machine disturbs little, and hours pass
+//! in seconds. One run is by the clock.
 
 mod cameras;
 mod queue;
@@ -56,7 +57,8 @@ fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
     }
     writeln!(
         out,
-        "\n| cameras | busy, % | p50, ms | p99, ms | dropped, % | p99 if all frames come at once, ms |\n|---:|---:|---:|---:|---:|---:|"
+        "\n| cameras | busy, % | p50, ms | p99, ms | dropped, % | p99 if all frames come at once, ms |\n\
+         |---:|---:|---:|---:|---:|---:|"
     )?;
     let frames = |cameras: usize| {
         if is_measured {

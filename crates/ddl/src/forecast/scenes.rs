@@ -14,18 +14,18 @@ use std::time::{Duration, Instant};
 ///
 /// A frame is [observed](Self::observe) at once, whatever is being forecast: scenes do not wait for each other. Where
 /// somebody can be forecast from it, its window waits. Waiting windows of any scenes make a [batch](Self::next_batch),
-/// the oldest first, which one call of a model forecasts. Whether a window is forecast alone or in a batch, and what other
-/// scenes do in between, changes no bit of its forecast: it is that of a [`LiveForecaster`](crate::LiveForecaster) of this
-/// scene alone.
+/// the oldest first, which one call of a model forecasts. Whether a window is forecast alone or in a batch, and what
+/// other scenes do in between, changes no bit of its forecast: it is that of a
+/// [`LiveForecaster`](crate::LiveForecaster) of this scene alone.
 ///
 /// # Overload
-/// Every window waits, up to [`MOST_WAITING`](Self::MOST_WAITING); then frames are refused until some are forecast. With
-/// [`latest_only`](Self::latest_only) one window of each scene waits at most: a later frame takes its place in the queue,
-/// which is [counted](Self::dropped). Tracks and memory take every frame all the same.
+/// Every window waits, up to [`MOST_WAITING`](Self::MOST_WAITING); then frames are refused until some are forecast.
+/// With [`latest_only`](Self::latest_only) one window of each scene waits at most: a later frame takes its place in the
+/// queue, which is [counted](Self::dropped). Tracks and memory take every frame all the same.
 ///
 /// # What is kept
-/// What a `LiveForecaster` keeps, of each scene; at most [`MOST_SCENES`](Self::MOST_SCENES) of them. A scene of which no
-/// frame has come for [`SILENCE`](Self::SILENCE) is forgotten when another one begins, or by
+/// What a `LiveForecaster` keeps, of each scene; at most [`MOST_SCENES`](Self::MOST_SCENES) of them. A scene of which
+/// no frame has come for [`SILENCE`](Self::SILENCE) is forgotten when another one begins, or by
 /// [`forget_silent`](Self::forget_silent). Regions that adapt are the caller's: one
 /// [`AdaptiveRegions`](ddl_eval::AdaptiveRegions) a scene.
 ///
@@ -87,8 +87,8 @@ pub struct SceneForecast {
 }
 
 impl LiveScenes {
-    /// Scenes at a time: twice as many as a [`FrameReader`](ddl_data::FrameReader) reads, so that those which it has just
-    /// forgotten have room beside the new ones.
+    /// Scenes at a time: twice as many as a [`FrameReader`](ddl_data::FrameReader) reads, so that those which it has
+    /// just forgotten have room beside the new ones.
     pub const MOST_SCENES: usize = 2_000;
     /// Windows that wait at most.
     pub const MOST_WAITING: usize = 10_000;
@@ -103,7 +103,8 @@ impl LiveScenes {
         Self::of(LiveTracks::new())
     }
 
-    /// No scene seen yet, with another number of raw frames in a step of 0.4 s, such as 10 of cameras at 25 frames a second.
+    /// No scene seen yet, with another number of raw frames in a step of 0.4 s, such as 10 of cameras at 25 frames a
+    /// second.
     ///
     /// # Errors
     /// [`DdlError::Live`] if the step does not lie in 1..=2^31.
@@ -151,8 +152,8 @@ impl LiveScenes {
         self.unseen.frame_step()
     }
 
-    /// Adds a frame of a scene, everybody's positions (m) in any order. `None` is the scene of a stream that names none, and
-    /// is never forgotten for its silence.
+    /// Adds a frame of a scene, everybody's positions (m) in any order. `None` is the scene of a stream that names
+    /// none, and is never forgotten for its silence.
     ///
     /// # Errors
     /// [`DdlError::Live`] for a frame that is out of order within its scene, a position that is not finite or somebody

@@ -30,8 +30,8 @@ impl Watch {
         Ok(())
     }
 
-    /// Adds a frame; where somebody can be forecast from it, the window with what the memory recalls, and what is made of
-    /// it. All or nothing.
+    /// Adds a frame; where somebody can be forecast from it, the window with what the memory recalls, and what is made
+    /// of it. All or nothing.
     pub(crate) fn push<T, E>(
         &mut self,
         frame: i64,

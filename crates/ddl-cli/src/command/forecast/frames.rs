@@ -1,4 +1,5 @@
-//! Frames of standard input, read on a thread of its own: who forecasts never waits for a line while something can be forecast.
+//! Frames of standard input, read on a thread of its own: who forecasts never waits for a line while something can be
+//! forecast.
 
 use ddl::data::{DataError, Frame, FrameReader};
 use std::io::{BufRead, stdin};
@@ -43,8 +44,8 @@ impl Frames {
     }
 }
 
-/// Sends every frame. In a stream that names scenes a wrong line is left out: it is no reason to stop what other cameras
-/// are answered. Any other stream ends there, after what was read before.
+/// Sends every frame. In a stream that names scenes a wrong line is left out: it is no reason to stop what other
+/// cameras are answered. Any other stream ends there, after what was read before.
 fn read<R: BufRead>(mut frames: FrameReader<R>, to: &SyncSender<Incoming>) {
     loop {
         let incoming = match frames.next_frame() {

@@ -47,7 +47,8 @@ impl KeptMemory {
                 "--memory {at} is a folder, and the lines name no scenes; name a file, or give the lines a column scene"
             ),
             (Some(_), false) => bail!(
-                "--memory {at} is a file of one place, and the lines name scenes; name a folder that is there, for a file of each scene"
+                "--memory {at} is a file of one place, and the lines name scenes; name a folder that is there, \
+                 for a file of each scene"
             ),
             _ => Ok(()),
         }

@@ -321,7 +321,8 @@ impl Stream<'_> {
             .text(self.model, (windows, scenes), Clock::WHOLE, onward)
     }
 
-    /// A forecast that fails is left out where there are other scenes; the first of all says what is wrong with the call.
+    /// A forecast that fails is left out where there are other scenes; the first of all says what is wrong with the
+    /// call.
     fn failed(&mut self, error: anyhow::Error, is_named: bool) -> anyhow::Result<()> {
         if !is_named || self.answered == 0 {
             return Err(error);
