@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod bounded_motion;
+mod cameras;
 mod errors;
 mod evaluate;
 mod examples;

@@ -73,11 +73,21 @@ fn sample() -> Vec<Row> {
         .expect("every row of the sample has four numbers")
 }
 
-/// What the program `tracker` of the pages writes: the first ten steps of the sample at 10 frames a second, 4 a step.
+/// The output of the program `tracker` of the pages: the first ten steps of the sample at 10 frames per second, 4 per
+/// step.
 pub fn tracker() -> String {
     let mut first = sample();
     first.retain(|row| row.0 < 10);
     csv(&filmed(&first, 4))
+}
+
+/// The output of the program `cameras` of the pages: the same tracks from two cameras, alternating line by line.
+pub fn cameras() -> String {
+    let tracks = tracker();
+    let mut lines = tracks.lines();
+    let header = lines.next().unwrap_or_default();
+    let both = lines.map(|line| format!("hall,{line}\nyard,{line}\n"));
+    format!("scene,{header}\n{}", both.collect::<String>())
 }
 
 /// The same tracks from a faster camera with `frames` frames per step.

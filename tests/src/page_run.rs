@@ -38,8 +38,8 @@ pub struct PageFolder {
 }
 
 impl PageFolder {
-    /// The files of [`page_inputs`], `ddl` and `tracker` on the search path, `target/release/ddl`, and the checkout's
-    /// `crates` and `datasets/sample.csv`.
+    /// The files of [`page_inputs`], `ddl`, `tracker` and `cameras` on the search path, `target/release/ddl`, and the
+    /// checkout's `crates` and `datasets/sample.csv`.
     pub fn new(checkout: &Path, datasets: Option<PathBuf>) -> Self {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let bin = tempfile::tempdir().expect("a temporary folder can be made");
@@ -55,7 +55,8 @@ impl PageFolder {
         std::fs::create_dir(here.join("datasets")).expect("a folder can be made");
         let sample = "datasets/sample.csv";
         link(&checkout.join(sample), here.join(sample));
-        write_tracker(bin.path());
+        write_program(&bin.path().join("tracker"), &page_inputs::tracker());
+        write_program(&bin.path().join("cameras"), &page_inputs::cameras());
         Self {
             folder,
             bin,
@@ -124,13 +125,13 @@ impl PageFolder {
     }
 }
 
-fn write_tracker(bin: &Path) {
+/// A program that prints these lines.
+fn write_program(program: &Path, lines: &str) {
     use std::os::unix::fs::PermissionsExt as _;
-    let program = bin.join("tracker");
-    let text = format!("#!/bin/sh\ncat <<'END'\n{}END\n", page_inputs::tracker());
-    std::fs::write(&program, text).expect("a program can be written");
+    let text = format!("#!/bin/sh\ncat <<'END'\n{lines}END\n");
+    std::fs::write(program, text).expect("a program can be written");
     let mode = std::fs::Permissions::from_mode(0o755);
-    std::fs::set_permissions(&program, mode).expect("a program can be made executable");
+    std::fs::set_permissions(program, mode).expect("a program can be made executable");
 }
 
 /// The result of one command.

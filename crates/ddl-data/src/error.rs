@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::{Convention, PedestrianId, PedestrianName};
+use crate::{Convention, PedestrianId, PedestrianName, SceneName, SceneNameError};
 
 /// A file of tracks cannot be read: the file, the line, the field and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -93,14 +93,72 @@ pub(crate) enum FormatProblem {
         frame: i64,
         first_line: usize,
     },
+<<<<<<< HEAD
     #[error("frame {frame} comes after frame {last}; a stream of tracks must be in order of time")]
     OutOfOrder { frame: i64, last: i64 },
     #[error("more than {limit} pedestrians in frame {frame}; does the frame number increase?")]
     Crowd { frame: i64, limit: usize },
+=======
+    #[error(
+        "frame {frame}{} comes after frame {last}; tracks that are read as they arrive must be in order of time",
+        of(.scene)
+    )]
+    OutOfOrder {
+        scene: Option<SceneName>,
+        frame: i64,
+        last: i64,
+    },
+    #[error(transparent)]
+    Scene(#[from] SceneNameError),
+    #[error("track.scene must be a text, such as \"hall\", found {found}")]
+    SceneIsNoText { found: String },
+    #[error(
+        "{} on line {first_line}; name the scene of every observation, or of none",
+        if *.named { "a scene is named here, but none" } else { "track.scene is missing, but there is one" }
+    )]
+    MixedScenes { named: bool, first_line: usize },
+    #[error(
+        "scene {scene} would be one more than {limit}; a scene is forgotten when none of its lines has come for {minutes} minutes; \
+         give the other scenes to another `ddl forecast -`"
+    )]
+    TooManyScenes {
+        scene: SceneName,
+        limit: usize,
+        minutes: u64,
+    },
+    #[error(
+        "a file is of one recording, and this one names scenes; write it to `ddl forecast -`, or make a file of each scene without the names"
+    )]
+    ScenesInFile,
+    #[error(
+        "more than {limit} people in {}; does the frame number count on?",
+        crowded(.scene, *.frame)
+    )]
+    Crowd {
+        scene: Option<SceneName>,
+        frame: i64,
+        limit: usize,
+    },
+>>>>>>> cameras/cameras
     #[error("the line is longer than {limit} bytes; is it a file of tracks?")]
     LongLine { limit: usize },
     #[error("not a well-formed table: {detail}")]
     Table { detail: String },
+}
+
+fn of(scene: &Option<SceneName>) -> String {
+    let of = |scene| format!(" of scene {scene}");
+    scene.as_ref().map(of).unwrap_or_default()
+}
+
+/// The frames whose people are counted together.
+fn crowded(scene: &Option<SceneName>, frame: i64) -> String {
+    match scene {
+        None => format!("frame {frame}"),
+        Some(scene) => {
+            format!("the frames that are not whole yet, one of them frame {frame} of scene {scene}")
+        }
+    }
 }
 
 fn wanted(name: &str) -> &'static str {

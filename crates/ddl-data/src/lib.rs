@@ -80,6 +80,7 @@ mod rate;
 mod recording;
 mod remembered;
 mod rule;
+mod scene_name;
 pub mod simulate;
 mod summary;
 mod track;
@@ -104,6 +105,7 @@ pub use rate::{InSteps, RateError, whole_frame_step};
 pub use recording::Recording;
 pub use remembered::Remembered;
 pub use rule::WindowRule;
+pub use scene_name::{SceneName, SceneNameError};
 pub use summary::{Hole, Summary};
 pub use track::{
     COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,

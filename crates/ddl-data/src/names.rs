@@ -107,11 +107,7 @@ impl Numbering {
         }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.words.is_empty()
-    }
-
-    /// The number of a word, and the shared word.
+    /// The number of a word, and the word to be kept.
     pub(crate) fn number(&mut self, word: &str) -> (PedestrianId, Arc<str>) {
         if let Some((word, &number)) = self.numbers.get_key_value(word) {
             return (PedestrianId(number), Arc::clone(word));

@@ -14,6 +14,15 @@ pub enum DdlError {
          ({camera} per step): use a memory of the same frame rate, or a new file", rate(*.memory), rate(*.camera)
     )]
     MemoryFrameStep { camera: i64, memory: i64 },
+    #[error(
+        "another scene would be more than {limit}; a scene is forgotten when no frame of it has come for {minutes} minutes: \
+         watch the others in another process"
+    )]
+    TooManyScenes { limit: usize, minutes: u64 },
+    #[error(
+        "{limit} frames wait to be forecast from; forecast some before the next is observed, or keep the latest of each scene alone"
+    )]
+    TooManyWaiting { limit: usize },
     #[error(transparent)]
     Memory(#[from] ddl_memory::MemoryError),
     #[error(transparent)]

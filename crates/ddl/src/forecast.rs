@@ -6,6 +6,8 @@ pub(crate) mod live;
 pub(crate) mod memory_file;
 pub(crate) mod name;
 pub(crate) mod recording_player;
+pub(crate) mod scenes;
 pub(crate) mod shaped;
 pub(crate) mod walk;
+pub(crate) mod watch;
 pub(crate) mod watched_place;

@@ -111,6 +111,7 @@ pub use forecast::clearance::Clearance;
 pub use forecast::live::{LiveForecast, LiveForecaster};
 pub use forecast::memory_file::MemoryFile;
 pub use forecast::recording_player::RecordingPlayer;
+pub use forecast::scenes::{LiveScenes, SceneBatch, SceneForecast};
 pub use forecast::watched_place::{OtherPlace, WatchedPlace};
 pub use goals::model::GoalModel;
 pub use goals::recipe::{GoalRecipe, ProposalRecipe};

@@ -1,5 +1,6 @@
 //! Tracks from a tracker, line by line.
 
+use std::collections::BTreeMap;
 use std::io::BufReader;
 
 use ddl_data::{Completion, Frame, FrameReader, LiveTracks};
@@ -15,12 +16,14 @@ pub fn read(bytes: &[u8]) {
         answers(FrameReader::new(pieces, "tracker"), text.len()),
         whole
     );
-    let mut tracks = LiveTracks::new().completing(Completion::USUAL);
-    let mut last = None;
+    let mut scenes = BTreeMap::new();
     for frame in whole.iter().flatten() {
+        let unseen = || LiveTracks::new().completing(Completion::USUAL);
+        let tracks = scenes.entry(&frame.scene).or_insert_with(unseen);
+        let last = tracks.last_frame();
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
-        last = Some(frame.number);
-        let pedestrians = || frame.people.iter().copied();
+        assert_eq!(frame.is_first, last.is_none());
+        let people = || frame.people.iter().copied();
         assert!(
             pedestrians()
                 .all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))

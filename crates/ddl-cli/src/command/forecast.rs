@@ -1,5 +1,7 @@
+mod frames;
 mod json_lines;
 mod kept_memory;
+mod left_out;
 mod live;
 mod table;
 
@@ -10,10 +12,11 @@ use crate::telling::tell;
 use crate::tracks::Tracks;
 use anyhow::bail;
 use clap::{Args, ValueEnum};
-use ddl::data::{HORIZON, OBSERVED, Window};
+use ddl::data::{HORIZON, OBSERVED, SceneName, Window};
 use ddl::dynamics::LyapunovCertificate;
 use ddl::eval::AdaptiveRegions;
 use ddl::{Calibration, CertifiedForecast, Ddl, Forecaster as _};
+use std::collections::BTreeMap;
 use std::io::IsTerminal as _;
 use std::path::PathBuf;
 
@@ -25,6 +28,7 @@ use std::path::PathBuf;
         ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
         tracker | ddl forecast - --fps 10 --one --format jsonl\n  \
         tracker | ddl forecast - --fps 10 --memory hall.memory\n  \
+        trackers | ddl forecast - --fps 10 --latest --format jsonl\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
 pub(crate) struct Forecast {
     #[command(flatten)]
@@ -43,10 +47,18 @@ pub(crate) struct Forecast {
     /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
     /// missing, written every minute and at the end
     ///
-    /// Use one file for each camera. The first 30 pedestrians show whether the memory is of this place; if it is not,
-    /// the file is left unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
+    /// Use one file for each camera; for a stream of several scenes an existing folder, which gets a file SCENE.memory
+    /// for each. The first 30 pedestrians show whether the memory is of this place; if it is not, the file is left
+    /// unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
     #[arg(long, value_name = "FILE")]
     memory: Option<PathBuf>,
+    /// With `-`: if frames arrive faster than they are forecast, forecast only the latest of each scene, and report how
+    /// many were dropped
+    ///
+    /// Without it every frame is forecast, and the writer of the stream has to wait. Tracks and memory use every frame in
+    /// both cases. With a file as input nearly all frames would be dropped.
+    #[arg(long)]
+    latest: bool,
     /// Add to every hypothesis the evidence that it approaches its goal at every step
     ///
     /// A certificate holds when the distance to the goal falls at each of the 12 steps, along a flow that descends
@@ -90,10 +102,15 @@ struct Onward {
     headed: bool,
     /// Whether the warning about unfamiliar motions has been given.
     warned: bool,
-    regions: AdaptiveRegions,
+    /// Of each scene.
+    regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
 
+/// Windows in order of time, and the scene of each; no scenes where the tracks name none.
+type Windows<'a> = (&'a [Window], &'a [Option<SceneName>]);
+
 struct Moment<'a> {
+    scene: Option<&'a SceneName>,
     window: &'a Window,
     forecast: &'a ddl::Forecast,
     certified: Option<&'a CertifiedForecast>,
@@ -110,6 +127,11 @@ impl Forecast {
         if self.memory.is_some() && !self.tracks.are_live() {
             bail!(
                 "--memory is for live tracks from standard input: `tracker | ddl forecast - --memory FILE`"
+            );
+        }
+        if self.latest && !self.tracks.are_live() {
+            bail!(
+                "--latest is for tracks as they come; write them to standard input: `trackers | ddl forecast - --latest`"
             );
         }
         if let Some(memory) = &self.memory {
@@ -129,7 +151,7 @@ impl Forecast {
         let observed = self.tracks.observed(model.config())?;
         let text = self.text(
             &model,
-            &observed.windows,
+            (&observed.windows, &[]),
             observed.clock,
             &mut Onward::default(),
         )?;
@@ -170,10 +192,11 @@ impl Forecast {
     fn text(
         &self,
         model: &Ddl,
-        windows: &[Window],
+        (windows, scenes): Windows<'_>,
         clock: Clock,
         onward: &mut Onward,
     ) -> anyhow::Result<String> {
+        let scene = |i: usize| scenes.get(i).and_then(Option::as_ref);
         let (mut certified, mut forecasts);
         let moments: Vec<Moment<'_>> = if self.certificate {
             certified = if self.one {
@@ -182,10 +205,12 @@ impl Forecast {
                 model.forecast_certified(windows)?
             };
             if !self.region.is_empty() {
-                certified = onward.adapted_certified(windows, certified);
+                certified = onward.adapted_certified((windows, scenes), certified);
             }
             let pairs = windows.iter().zip(&certified);
-            pairs.map(|pair| Moment::certified(pair, clock)).collect()
+            let each = pairs.enumerate();
+            each.map(|(i, pair)| Moment::certified(pair, scene(i), clock))
+                .collect()
         } else {
             forecasts = if self.one {
                 model.forecast_one(windows)?
@@ -193,10 +218,12 @@ impl Forecast {
                 model.forecast_all(windows)?
             };
             if !self.region.is_empty() {
-                forecasts = onward.adapted(windows, forecasts);
+                forecasts = onward.adapted((windows, scenes), forecasts);
             }
             let pairs = windows.iter().zip(&forecasts);
-            pairs.map(|pair| Moment::plain(pair, clock)).collect()
+            let each = pairs.enumerate();
+            each.map(|(i, pair)| Moment::plain(pair, scene(i), clock))
+                .collect()
         };
         warn_of_violation(&moments);
         onward.warned = onward.warned || self.warn_of_unfamiliar(&moments);
@@ -231,7 +258,7 @@ impl Forecast {
              flatter{later}",
             all.count(),
             ddl::UNFAMILIAR,
-            moment.window.name(i),
+            moment.who(i),
             moment.observed_until(),
         ));
         true
@@ -239,22 +266,36 @@ impl Forecast {
 }
 
 impl Onward {
-    fn adapted(&mut self, windows: &[Window], forecasts: Vec<ddl::Forecast>) -> Vec<ddl::Forecast> {
-        let pairs = windows.iter().zip(forecasts);
+    fn regions(&mut self, scenes: &[Option<SceneName>], i: usize) -> &mut AdaptiveRegions {
+        let scene = scenes.get(i).cloned().flatten();
+        self.regions.entry(scene).or_default()
+    }
+
+    fn adapted(
+        &mut self,
+        (windows, scenes): Windows<'_>,
+        forecasts: Vec<ddl::Forecast>,
+    ) -> Vec<ddl::Forecast> {
+        let pairs = windows.iter().zip(forecasts).enumerate();
         pairs
-            .map(|(window, forecast)| self.regions.adapt(window, forecast))
+            .map(|(i, (window, forecast))| self.regions(scenes, i).adapt(window, forecast))
             .collect()
     }
 
     fn adapted_certified(
         &mut self,
-        windows: &[Window],
+        (windows, scenes): Windows<'_>,
         mut certified: Vec<CertifiedForecast>,
     ) -> Vec<CertifiedForecast> {
-        for (window, certified) in windows.iter().zip(&mut certified) {
-            certified.forecast = self.regions.adapt(window, certified.forecast.clone());
+        for (i, (window, certified)) in windows.iter().zip(&mut certified).enumerate() {
+            let forecast = certified.forecast.clone();
+            certified.forecast = self.regions(scenes, i).adapt(window, forecast);
         }
         certified
+    }
+
+    fn forget(&mut self, scene: &SceneName) {
+        self.regions.remove(&Some(scene.clone()));
     }
 }
 
@@ -270,8 +311,13 @@ fn probability(text: &str) -> Result<f64, String> {
 }
 
 impl<'a> Moment<'a> {
-    fn plain((window, forecast): (&'a Window, &'a ddl::Forecast), clock: Clock) -> Self {
+    fn plain(
+        (window, forecast): (&'a Window, &'a ddl::Forecast),
+        scene: Option<&'a SceneName>,
+        clock: Clock,
+    ) -> Self {
         Self {
+            scene,
             window,
             forecast,
             certified: None,
@@ -279,8 +325,13 @@ impl<'a> Moment<'a> {
         }
     }
 
-    fn certified((window, certified): (&'a Window, &'a CertifiedForecast), clock: Clock) -> Self {
+    fn certified(
+        (window, certified): (&'a Window, &'a CertifiedForecast),
+        scene: Option<&'a SceneName>,
+        clock: Clock,
+    ) -> Self {
         Self {
+            scene,
             window,
             forecast: &certified.forecast,
             certified: Some(certified),
@@ -290,6 +341,15 @@ impl<'a> Moment<'a> {
 
     fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
         Some(self.certified?.certificate(i, hypothesis))
+    }
+
+    /// A pedestrian as messages name it.
+    fn who(&self, i: usize) -> String {
+        let name = self.window.name(i);
+        match self.scene {
+            None => name.to_string(),
+            Some(scene) => format!("{name} of scene {scene}"),
+        }
     }
 
     fn observed_until(&self) -> FrameNumber {
@@ -312,9 +372,9 @@ fn warn_of_violation(moments: &[Moment<'_>]) {
     });
     if let Some((moment, i, hypothesis, violation)) = first {
         tell(format_args!(
-            "warning: not all certificates hold; the first violation is of pedestrian {}, observed until frame {}, \
-             hypothesis {hypothesis}: {violation}",
-            moment.window.name(i),
+            "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
+             observed until frame {}, hypothesis {hypothesis}: {violation}",
+            moment.who(i),
             moment.observed_until(),
         ));
     }

@@ -7,12 +7,14 @@ use super::place::FilePlace;
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
 use crate::recording::Recording;
-use crate::{Observation, PedestrianId, PedestrianNames, Position};
+use crate::{Observation, PedestrianId, PedestrianNames, Position, SceneName};
 
 pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 
 #[derive(Debug)]
 pub(super) struct TrackRow {
+    /// The scene that the line names, if it does.
+    pub(super) scene: Option<SceneName>,
     pub(super) frame: i64,
     pub(super) pedestrian: PedestrianField,
     pub(super) position: Position,
@@ -30,6 +32,7 @@ impl TrackRow {
     ) -> Result<Self, FormatError> {
         let at = |field: usize| FilePlace::field(line, field);
         Ok(Self {
+            scene: None,
             frame: at(f).read(origin, field::integer(frame, "frame"))?,
             pedestrian: at(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
             position: [
@@ -47,6 +50,9 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
         return Err(FilePlace::line(1)
             .wrong(origin, FormatProblem::Empty)
             .into());
+    }
+    if let Some(row) = rows.iter().find(|row| row.scene.is_some()) {
+        return Err(row.place.wrong(origin, FormatProblem::ScenesInFile).into());
     }
     let (mut placed, names) = numbered(rows);
     refuse_duplicates(&mut placed, &names, origin)?;

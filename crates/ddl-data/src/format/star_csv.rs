@@ -42,6 +42,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         let y = place(3).read(origin, field::coordinate(ys[index], "y"))?;
         let x = place(4).read(origin, field::coordinate(xs[index], "x"))?;
         Ok(TrackRow {
+            scene: None,
             frame,
             pedestrian: PedestrianField::Number(pedestrian, None),
             position: [x, y],

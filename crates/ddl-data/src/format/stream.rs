@@ -1,8 +1,9 @@
 //! Reading of tracks frame by frame, while they arrive.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::io::{BufRead, Read as _};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use super::field::PedestrianField;
 use super::kind::Format;
@@ -12,7 +13,7 @@ use super::table::TrackColumns;
 use super::{blanks, trajnet};
 use crate::error::{DataError, FormatError, FormatProblem};
 use crate::names::Numbering;
-use crate::{PedestrianId, PedestrianNames, Position};
+use crate::{PedestrianId, PedestrianName, PedestrianNames, Position, SceneName};
 
 const LONGEST_LINE: usize = 1 << 16;
 /// Most pedestrians of one frame, beyond any crowd a tracker sees. It bounds the memory if the frame number never
@@ -20,11 +21,19 @@ const LONGEST_LINE: usize = 1 << 16;
 const LARGEST_CROWD: usize = 100_000;
 /// Words that are remembered: more than any frame has.
 const MOST_WORDS: usize = 2 * LARGEST_CROWD;
+/// Scenes at a time: beyond what one machine forecasts.
+const MOST_SCENES: usize = 1_000;
+/// Silence after which a scene is forgotten.
+const SILENCE: Duration = Duration::from_mins(10);
 
-/// The positions of all pedestrians at one frame.
+/// Everybody of one scene at one moment.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Frame {
+    /// The scene that the lines name; `None` where they name none, and all are of one.
+    pub scene: Option<SceneName>,
+    /// Whether nothing of the scene is known from before: it is its first frame, or the first since the scene was forgotten.
+    pub is_first: bool,
     /// The raw frame number.
     pub number: i64,
     /// Pedestrians and their positions (m), in the order of the lines.
@@ -39,8 +48,14 @@ pub struct Frame {
 /// the format: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`, `obsmat`). Files
 /// of the `star` convention are not in order of time and cannot be streamed.
 ///
-/// Pedestrians may be words; a number stays a number, also beside words. Memory is bounded: it holds the pedestrians of
-/// one frame, at most 100,000, and the last 200,000 words. A pedestrian whose word was forgotten gets a new id.
+/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of frames that are not
+/// whole yet, 100,000 at most, and the last 200,000 words: whose word was forgotten is somebody new.
+///
+/// # Scenes
+/// A table with a column `scene`, or lines of JSON with a field `track.scene`, are of several scenes, whose lines come in
+/// any order: a frame is whole when a later one of the *same* scene comes, or an empty line right after a line of the
+/// scene, or at the end. Only within a scene must frames be in order of time. There are at most 1,000 scenes at a time;
+/// one of which no line has come for 10 minutes is forgotten, after its last frame was given out.
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,
@@ -50,12 +65,40 @@ pub struct FrameReader<R> {
     /// The frame rate that scenes state.
     rate: trajnet::Rate,
     words: Numbering,
-    /// Pedestrian numbers not written as plain digits, such as `17.0`: the first 200,000 of them.
-    numbers: BTreeSet<Box<str>>,
+    /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
+    numbers: BTreeSet<(Option<SceneName>, Box<str>)>,
+    scenes: BTreeMap<Option<SceneName>, Scene>,
+    /// The last frames of scenes that were forgotten.
+    left: VecDeque<Frame>,
+    /// The scene of the last observation.
+    spoken_of: Option<SceneName>,
+    /// Whether the first observation names a scene, and its line.
+    named: Option<(bool, usize)>,
+    /// People in frames that are not whole yet.
+    unfinished: usize,
+    silence: Duration,
+    ended: bool,
+}
+
+#[derive(Debug)]
+struct Scene {
     current: Option<Growing>,
     /// The last frame that was returned.
     last: Option<i64>,
-    ended: bool,
+    /// Whether it has named pedestrians by words.
+    has_words: bool,
+    heard: Instant,
+}
+
+impl Scene {
+    fn unseen() -> Self {
+        Self {
+            current: None,
+            last: None,
+            has_words: false,
+            heard: Instant::now(),
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -84,25 +127,38 @@ impl<R: BufRead> FrameReader<R> {
             rate: trajnet::Rate::default(),
             words: Numbering::remembering(MOST_WORDS),
             numbers: BTreeSet::new(),
-            current: None,
-            last: None,
+            scenes: BTreeMap::new(),
+            left: VecDeque::new(),
+            spoken_of: None,
+            named: None,
+            unfinished: 0,
+            silence: SILENCE,
             ended: false,
         }
     }
 
-    /// The next complete frame; blocks until it has arrived. `None` at the end.
+    /// The same, with another time after which a scene of which no line comes is forgotten.
+    #[must_use]
+    pub fn forgetting_after(self, silence: Duration) -> Self {
+        Self { silence, ..self }
+    }
+
+    /// The next whole frame; waits for it. `None` at the end.
     ///
     /// # Errors
     /// If the input cannot be read, or a line is wrong: see [`FormatError`]. After an error the reader continues with
     /// the next line.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, DataError> {
         while !self.ended {
+            if let Some(frame) = self.left.pop_front() {
+                return Ok(Some(frame));
+            }
             let Some(text) = self.line()? else {
                 self.ended = true;
                 break;
             };
             if text.trim().is_empty() {
-                if let Some(frame) = self.whole() {
+                if let Some(frame) = self.whole(&self.spoken_of.clone()) {
                     return Ok(Some(frame));
                 }
                 continue;
@@ -114,12 +170,22 @@ impl<R: BufRead> FrameReader<R> {
                 return Ok(Some(frame));
             }
         }
-        Ok(self.whole())
+        Ok(self.unfinished())
     }
 
-    /// The part of the current frame that has been read, for callers that stop after an error.
+    /// A frame that is being read, as far as it has been; `None` where there is no other. For who gives up after an error.
     pub fn unfinished(&mut self) -> Option<Frame> {
-        self.whole()
+        if let Some(frame) = self.left.pop_front() {
+            return Some(frame);
+        }
+        let mut scenes = self.scenes.iter();
+        let (name, _) = scenes.find(|(_, scene)| scene.current.is_some())?;
+        self.whole(&name.clone())
+    }
+
+    /// Whether the observations so far name scenes.
+    pub fn names_scenes(&self) -> bool {
+        self.named.is_some_and(|(named, _)| named)
     }
 
     /// Frames per second, where a line so far has stated it: the `fps` of TrajNet++ scenes.
@@ -196,23 +262,61 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// Adds an observation. Returns the previous frame if this observation starts a new one.
+    /// Adds an observation; the frame before of its scene, if this is the first of a new one.
     fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, FormatError> {
-        let reached = self.current.as_ref().map(|growing| growing.frame.number);
-        if let Some(last) = reached.or(self.last)
+        self.refuse_mixed(seen.scene.is_some())?;
+        self.hear(&seen.scene)?;
+        self.spoken_of.clone_from(&seen.scene);
+        let name = seen.scene.clone();
+        let scene = self
+            .scenes
+            .entry(name.clone())
+            .or_insert_with(Scene::unseen);
+        let reached = scene.current.as_ref().map(|growing| growing.frame.number);
+        if let Some(last) = reached.or(scene.last)
             && (seen.frame < last || (reached.is_none() && seen.frame == last))
         {
             let frame = seen.frame;
-            return Err(self.wrong(FormatProblem::OutOfOrder { frame, last }));
+            return Err(self.wrong(FormatProblem::OutOfOrder {
+                scene: name,
+                frame,
+                last,
+            }));
         }
         let before = if reached == Some(seen.frame) {
             None
         } else {
-            self.whole()
+            self.whole(&name)
         };
-        let line = self.lines;
-        let growing = self.current.get_or_insert_with(|| Growing {
+        let (pedestrian, word) = self.numbered(&name, seen.who);
+        let (line, limit) = (self.lines, LARGEST_CROWD);
+        let scene = self
+            .scenes
+            .entry(name.clone())
+            .or_insert_with(Scene::unseen);
+        let known = scene.current.as_ref();
+        if let Some(&first_line) = known.and_then(|known| known.lines.get(&pedestrian)) {
+            let word = word.map(|word| PedestrianName::Word(word.to_string()));
+            let problem = FormatProblem::Duplicate {
+                pedestrian: Box::new(word.unwrap_or(pedestrian.into())),
+                frame: seen.frame,
+                first_line,
+            };
+            return Err(self.wrong(problem));
+        }
+        // A frame that was given out has left room for one.
+        if self.unfinished == limit {
+            return Err(self.wrong(FormatProblem::Crowd {
+                scene: name,
+                frame: seen.frame,
+                limit,
+            }));
+        }
+        let is_first = scene.last.is_none();
+        let growing = scene.current.get_or_insert_with(|| Growing {
             frame: Frame {
+                scene: name,
+                is_first,
                 number: seen.frame,
                 people: Vec::new(),
                 names: PedestrianNames::default(),
@@ -220,44 +324,85 @@ impl<R: BufRead> FrameReader<R> {
             lines: BTreeMap::new(),
             words: BTreeMap::new(),
         });
-        let pedestrian = match seen.pedestrian {
-            PedestrianField::Number(number, None) => PedestrianId(number),
-            // After a word, `1e3` is a word as well, unless it was a number before.
-            PedestrianField::Number(number, Some(text))
-                if self.words.is_empty() || self.numbers.contains(&text) =>
-            {
-                if self.numbers.len() < MOST_WORDS {
-                    self.numbers.insert(text);
-                }
-                PedestrianId(number)
-            }
-            field => {
-                let (id, word) = self.words.number(&field.written());
-                growing.words.insert(id, word);
-                id
-            }
-        };
-        if let Some(&first_line) = growing.lines.get(&pedestrian) {
-            let names = PedestrianNames::new(std::mem::take(&mut growing.words));
-            let problem = FormatProblem::Duplicate {
-                pedestrian: Box::new(names.of(pedestrian)),
-                frame: seen.frame,
-                first_line,
-            };
-            return Err(self.wrong(problem));
-        }
-        if growing.lines.len() == LARGEST_CROWD {
-            let (frame, limit) = (seen.frame, LARGEST_CROWD);
-            return Err(self.wrong(FormatProblem::Crowd { frame, limit }));
-        }
+        growing.words.extend(word.map(|word| (pedestrian, word)));
         growing.lines.insert(pedestrian, line);
         growing.frame.people.push((pedestrian, seen.position));
+        self.unfinished += 1;
         Ok(before)
     }
 
-    fn whole(&mut self) -> Option<Frame> {
-        let growing = self.current.take()?;
-        self.last = Some(growing.frame.number);
+    /// Lines that name a scene and lines that name none are not of one stream.
+    fn refuse_mixed(&mut self, named: bool) -> Result<(), FormatError> {
+        match *self.named.get_or_insert((named, self.lines)) {
+            (first, first_line) if first != named => {
+                Err(self.wrong(FormatProblem::MixedScenes { named, first_line }))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Makes room for the scene, if it is not known, and forgets what has been silent.
+    fn hear(&mut self, name: &Option<SceneName>) -> Result<(), FormatError> {
+        let silence = self.silence;
+        match self.scenes.get_mut(name) {
+            Some(scene) if name.is_none() || scene.heard.elapsed() < silence => {
+                scene.heard = Instant::now();
+                return Ok(());
+            }
+            _ => {}
+        }
+        let silent = |scene: &Scene| scene.heard.elapsed() >= silence;
+        let scenes = self.scenes.iter();
+        let silent = scenes.filter(|(_, scene)| silent(scene));
+        let silent: Vec<_> = silent.map(|(name, _)| name.clone()).collect();
+        for name in silent {
+            let frame = self.whole(&name);
+            self.left.extend(frame);
+            self.scenes.remove(&name);
+        }
+        if let Some(scene) = name
+            && self.scenes.len() == MOST_SCENES
+        {
+            return Err(self.wrong(FormatProblem::TooManyScenes {
+                scene: scene.clone(),
+                limit: MOST_SCENES,
+                minutes: silence.as_secs() / 60,
+            }));
+        }
+        Ok(())
+    }
+
+    /// The number of a pedestrian of the scene, and its word if it has one.
+    fn numbered(&mut self, name: &Option<SceneName>, who: Who) -> (PedestrianId, Option<Arc<str>>) {
+        let who = match who {
+            Who::Number(number, None) => return (PedestrianId(number), None),
+            // after a word, `1e3` is one as well, unless it was a number before
+            Who::Number(number, Some(text)) => {
+                let has_words = self.scenes.get(name).is_some_and(|scene| scene.has_words);
+                let written = (name.clone(), text);
+                if !has_words || self.numbers.contains(&written) {
+                    if self.numbers.len() < MOST_WORDS {
+                        self.numbers.insert(written);
+                    }
+                    return (PedestrianId(number), None);
+                }
+                Who::Number(number, Some(written.1))
+            }
+            word @ Who::Word(_) => word,
+        };
+        if let Some(scene) = self.scenes.get_mut(name) {
+            scene.has_words = true;
+        }
+        let (id, word) = self.words.number(&who.written());
+        (id, Some(word))
+    }
+
+    /// The frame of the scene as far as it has been read.
+    fn whole(&mut self, name: &Option<SceneName>) -> Option<Frame> {
+        let scene = self.scenes.get_mut(name)?;
+        let growing = scene.current.take()?;
+        scene.last = Some(growing.frame.number);
+        self.unfinished -= growing.frame.people.len();
         Some(Frame {
             names: PedestrianNames::new(growing.words),
             ..growing.frame

@@ -5,17 +5,20 @@ use csv::{ErrorKind, StringRecord};
 use super::field;
 use super::place::FilePlace;
 use super::rows::{FIELDS, TrackRow};
+use crate::SceneName;
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
-const FEWER: &str = "frame, pedestrian, x, y; put a comma between two fields, not at the end of a row and not as a \
-                      decimal point";
-/// The expected fields for a row without a comma.
+/// A further column, of streams alone.
+const SCENE: &str = "scene";
+const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for a decimal point";
+/// The fields of a row that is one field.
 const ONE: &str = "frame, pedestrian, x, y, separated by commas";
 
 /// The expected fields, for a row with too few or too many.
 fn names(expected: usize, found: usize) -> &'static str {
     match found {
+        _ if expected > COLUMNS.len() => "frame, pedestrian, x, y and scene",
         1 => ONE,
         _ if found > expected => FEWER,
         _ => FIELDS,
@@ -43,6 +46,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
 #[derive(Debug)]
 pub(super) struct TrackColumns {
     places: [usize; 4],
+    scene: Option<usize>,
     count: usize,
 }
 
@@ -77,9 +81,13 @@ impl TrackColumns {
             let detail = "found numbers; put the line frame,pedestrian,x,y above them".to_owned();
             return Err(wrong(None, detail));
         }
-        let mut places = [None; 4];
+        let (mut places, mut scene) = ([None; 4], None);
         for (index, name) in header.iter().enumerate() {
-            // Spreadsheets often capitalise headers.
+            // Spreadsheets like capitals.
+            if name.eq_ignore_ascii_case(SCENE) && scene.is_none() {
+                scene = Some(index);
+                continue;
+            }
             let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
             let Some(column) = column else {
                 let advice = advice(name, header);
@@ -100,6 +108,7 @@ impl TrackColumns {
         }
         Ok(Self {
             places: columns,
+            scene,
             count: header.len(),
         })
     }
@@ -111,7 +120,17 @@ impl TrackColumns {
         origin: &str,
     ) -> Result<TrackRow, FormatError> {
         let field = |column: usize| (column + 1, record.get(column).unwrap_or_default());
-        TrackRow::of(line, origin, self.places.map(field))
+        let row = TrackRow::of(line, origin, self.places.map(field))?;
+        let Some(column) = self.scene else {
+            return Ok(row);
+        };
+        let (number, text) = field(column);
+        let scene = SceneName::new(text).map_err(FormatProblem::from);
+        let scene = FilePlace::field(line, number).read(origin, scene)?;
+        Ok(TrackRow {
+            scene: Some(scene),
+            ..row
+        })
     }
 }
 
@@ -125,6 +144,10 @@ fn advice(name: &str, header: &StringRecord) -> String {
         "t" | "time" | "timestamp" => return "rename it to frame, and count frames".to_owned(),
         "observeduntil" => {
             return "this is a table of forecasts; give the tracks that they were made from"
+                .to_owned();
+        }
+        "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if !known(SCENE) => {
+            return "for `ddl forecast -` rename it scene, for anything else leave it out"
                 .to_owned();
         }
         "frameid" | "framenumber" | "frameno" | "framenr" | "frameindex" => Some("frame"),

@@ -11,7 +11,7 @@ use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
-use crate::{PedestrianName, Position};
+use crate::{PedestrianName, Position, SceneName};
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
 #[expect(
@@ -104,6 +104,8 @@ struct SceneFields {
 
 #[derive(Deserialize)]
 struct TrackFields {
+    #[serde(default)]
+    scene: Option<Value>,
     #[serde(default, deserialize_with = "as_written")]
     f: Option<Value>,
     #[serde(default, deserialize_with = "as_written")]
@@ -174,7 +176,16 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     };
     let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
+    let scene = match track.scene {
+        None => None,
+        Some(Value::String(name)) => Some(SceneName::new(&name)?),
+        Some(other) => {
+            let found = field::quoted(&other.to_string());
+            return Err(FormatProblem::SceneIsNoText { found });
+        }
+    };
     Ok(Some(TrackRow {
+        scene,
         frame,
         pedestrian,
         position: [x, y],

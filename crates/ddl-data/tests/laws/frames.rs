@@ -1,10 +1,12 @@
 //! Tracks read frame by frame equal those of the whole file.
 
+use std::collections::{BTreeMap, VecDeque};
 use std::fmt::Write as _;
+use std::time::Duration;
 
 use ddl_data::{
     Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Position,
-    Recording, parse_recording, write_recording,
+    Recording, SceneName, parse_recording, write_recording,
 };
 use proptest::prelude::*;
 
@@ -142,6 +144,150 @@ fn a_constant_frame_number_does_not_fill_the_memory() {
     let full = reader.next_frame().unwrap().unwrap();
     assert_eq!((full.number, full.people.len()), (0, 100_000));
     assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
+}
+
+/// The frames of each scene, in order, whatever stands between them.
+fn by_scene(frames: Vec<Frame>) -> BTreeMap<Option<SceneName>, Vec<Frame>> {
+    let mut scenes = BTreeMap::<_, Vec<_>>::new();
+    for frame in frames {
+        scenes.entry(frame.scene.clone()).or_default().push(frame);
+    }
+    scenes
+}
+
+proptest! {
+    #[test]
+    fn interleaved_scenes_are_read_as_each_alone(
+        rows in prop::collection::btree_set((0..3_usize, 0..20_i64, 0..4_usize), 1..60),
+        turns in prop::collection::vec(0..3_usize, 60),
+        as_json: bool,
+    ) {
+        let names = ["hall", "Tür 2", "7"];
+        let who = ["1", "17.0", "7f3e", "4"];
+        let line = |&(scene, frame, id): &(usize, i64, usize)| {
+            let (scene, who, x) = (names[scene], who[id], 0.5 * frame as f64);
+            if as_json {
+                format!("{{\"track\":{{\"scene\":\"{scene}\",\"f\":{frame},\"p\":\"{who}\",\"x\":{x},\"y\":0}}}}\n")
+            } else {
+                format!("{x},0, {scene} ,{frame},{who}\n")
+            }
+        };
+        let head = if as_json { "" } else { "x,y,Scene,frame,pedestrian\n" };
+        let mut queues: Vec<VecDeque<_>> = (0..3)
+            .map(|scene| rows.iter().filter(|row| row.0 == scene).collect())
+            .collect();
+        let mut mixed = head.to_owned();
+        for scene in turns.into_iter().chain((0..3).cycle().take(180)) {
+            mixed.extend(queues[scene].pop_front().map(line));
+        }
+        let mixed = by_scene(frames(mixed.as_bytes()).unwrap());
+        for (scene, name) in names.into_iter().enumerate() {
+            let lines = rows.iter().filter(|row| row.0 == scene).map(line);
+            let alone = frames((head.to_owned() + &lines.collect::<String>()).as_bytes()).unwrap();
+            let seen = |frames: &[Frame]| -> Vec<_> {
+                let people = |frame: &Frame| -> Vec<_> {
+                    let people = frame.people.iter();
+                    people.map(|&(id, place)| (frame.names.of(id), place)).collect()
+                };
+                frames.iter().map(|frame| (frame.number, frame.is_first, people(frame))).collect()
+            };
+            let name = Some(SceneName::new(name).unwrap());
+            let mixed = mixed.get(&name).cloned().unwrap_or_default();
+            prop_assert_eq!(seen(&mixed), seen(&alone));
+        }
+    }
+}
+
+#[test]
+fn what_is_wrong_with_scenes_is_named() {
+    let long = "a".repeat(65);
+    for (text, needles) in [
+        (
+            format!("scene,frame,pedestrian,x,y\n{long},0,1,2,3\n"),
+            ["line 2, field 1: scene has 65 bytes", "shorter name"],
+        ),
+        (
+            "frame,pedestrian,x,y,scene\n0,1,2,3,\n".to_owned(),
+            ["line 2, field 5: scene is empty", "name the camera"],
+        ),
+        (
+            "frame,pedestrian,x,y,scene\n0,1,2,3,a\u{7}b\n".to_owned(),
+            ["line 2, field 5: scene must not hold control", "leave them out"],
+        ),
+        (
+            "frame,pedestrian,x,y,scene\n0,1,2,3\n".to_owned(),
+            ["line 2: 4 fields where 5", "x, y and scene"],
+        ),
+        (
+            "frame,pedestrian,x,y,scene\n5,1,2,3,a\n9,1,2,3,b\n4,1,2,3,a\n".to_owned(),
+            ["line 4: frame 4 of scene a comes after frame 5", "in order of time"],
+        ),
+        (
+            "frame,pedestrian,x,y,scene,scene\n".to_owned(),
+            ["line 1, field 6", "scene"],
+        ),
+        (
+            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":7}}\n".to_owned(),
+            ["line 1: track.scene must be a text", "found 7"],
+        ),
+        (
+            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n"
+                .to_owned(),
+            ["line 2: track.scene is missing, but there is one on line 1", "or of none"],
+        ),
+        (
+            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n"
+                .to_owned(),
+            ["line 2: a scene is named here, but none on line 1", "or of none"],
+        ),
+    ] {
+        let message = frames(text.as_bytes()).unwrap_err().to_string();
+        for needle in needles {
+            assert!(message.contains(needle), "{message}");
+        }
+    }
+    let file = b"frame,pedestrian,x,y,scene\n0,1,2,3,a\n";
+    let refused = parse_recording(file, "t.csv", Format::Table).unwrap_err();
+    let told = "t.csv, line 2: a file is of one recording, and this one names scenes";
+    assert!(refused.to_string().starts_with(told), "{refused}");
+}
+
+#[test]
+fn an_empty_line_ends_the_frame_of_the_scene_before_it() {
+    let text = "scene,frame,pedestrian,x,y\na,0,1,2,3\nb,0,1,2,3\n\na,0,2,2,3\n";
+    let read = frames(text.as_bytes()).unwrap();
+    let read = read
+        .iter()
+        .map(|frame| (frame.scene.as_ref().unwrap().as_str(), frame.people.len()));
+    assert_eq!(read.collect::<Vec<_>>(), [("b", 1), ("a", 2)]);
+}
+
+#[test]
+fn scenes_that_fall_silent_make_room() {
+    let mut text = "scene,frame,pedestrian,x,y\n".to_owned();
+    for scene in 0..1_001 {
+        writeln!(text, "{scene},5,1,2,3").unwrap();
+    }
+    text += "7,0,1,2,3\n";
+    let mut reader = FrameReader::new(text.as_bytes(), "tracker");
+    let error = reader.next_frame().unwrap_err().to_string();
+    assert!(
+        error.starts_with("tracker, line 1002: scene 1000 would be one more than 1000")
+            && error.contains("10 minutes"),
+        "{error}"
+    );
+    let early = reader.next_frame().unwrap_err().to_string();
+    assert!(
+        early.contains("frame 0 of scene 7 comes after frame 5"),
+        "{early}"
+    );
+    assert_eq!(std::iter::from_fn(|| reader.unfinished()).count(), 1_000);
+    // Where silence begins at once, every frame is the first of its scene.
+    let reader = FrameReader::new(text.as_bytes(), "tracker");
+    let mut reader = reader.forgetting_after(Duration::ZERO);
+    let read: Vec<Frame> = std::iter::from_fn(|| reader.next_frame().unwrap()).collect();
+    assert_eq!(read.len(), 1_002);
+    assert!(read.iter().all(|frame| frame.is_first));
 }
 
 fn written(rows: &[Observation], format: Format) -> String {

@@ -1,5 +1,6 @@
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
+use crate::forecast::watch::Watch;
 use crate::forecast::watched_place::{OtherPlace, WatchedPlace};
 use crate::model::ddl::Ddl;
 use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
@@ -46,9 +47,8 @@ use std::borrow::Borrow;
 #[derive(Debug, Clone)]
 pub struct LiveForecaster<M = Ddl> {
     model: M,
-    tracks: LiveTracks,
+    watch: Watch,
     regions: Option<AdaptiveRegions>,
-    place: Option<WatchedPlace>,
 }
 
 /// The forecast from one frame.
@@ -74,9 +74,8 @@ impl<M> LiveForecaster<M> {
     pub fn new(model: M) -> Self {
         Self {
             model,
-            tracks: LiveTracks::new(),
+            watch: Watch::new(LiveTracks::new()),
             regions: None,
-            place: None,
         }
     }
 
@@ -88,16 +87,16 @@ impl<M> LiveForecaster<M> {
     pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
         let tracks = LiveTracks::with_frame_step(frame_step)?;
         Ok(Self {
-            tracks,
+            watch: Watch::new(tracks),
             ..Self::new(model)
         })
     }
 
     /// Fills incomplete observations in as the completion allows. [`Window::made_up`] counts the filled-in positions.
     #[must_use]
-    pub fn completing(self, completion: Completion) -> Self {
-        let tracks = self.tracks.completing(completion);
-        Self { tracks, ..self }
+    pub fn completing(mut self, completion: Completion) -> Self {
+        self.watch.tracks = self.watch.tracks.completing(completion);
+        self
     }
 
     /// Adapts the regions to the observations of this place so that they keep their share, see [`AdaptiveRegions`]. All
@@ -124,42 +123,39 @@ impl<M> LiveForecaster<M> {
     /// Forgets all tracks and the last frame, as when a tracker restarts: any frame may follow. The memory of the place
     /// and the adapted regions are kept.
     pub fn clear(&mut self) {
-        self.tracks.clear();
+        self.watch.clear();
         if let Some(regions) = &mut self.regions {
             regions.clear();
-        }
-        if let Some(place) = &mut self.place {
-            place.interrupt();
         }
     }
 
     /// The memory of the place, to be [saved](SceneMemory::write); `None` unless
     /// [requested](LiveForecaster::remembering).
     pub fn memory(&self) -> Option<&SceneMemory> {
-        self.place.as_ref().map(WatchedPlace::memory)
+        self.place().map(WatchedPlace::memory)
     }
 
     /// The reason why the given memory is no longer used; `None` while it is.
     pub fn refused_memory(&self) -> Option<&OtherPlace> {
-        self.place.as_ref()?.refused()
+        self.place()?.refused()
     }
 
     /// The watched place, for its [memory file](crate::MemoryFile).
     pub fn place(&self) -> Option<&WatchedPlace> {
-        self.place.as_ref()
+        self.watch.place.as_ref()
     }
 
     /// Decides from the pedestrians so far whether the given memory is of this place; call it when no more will follow
     /// ([`WatchedPlace::end_trial`]).
     pub fn end_trial(&mut self) {
-        if let Some(place) = &mut self.place {
+        if let Some(place) = &mut self.watch.place {
             place.end_trial();
         }
     }
 
     /// The tracks of the frames so far.
     pub fn tracks(&self) -> &LiveTracks {
-        &self.tracks
+        &self.watch.tracks
     }
 
     /// Adds a frame and forecasts from it with `forecast` if there are pedestrians to forecast; changes all or nothing.
@@ -169,24 +165,12 @@ impl<M> LiveForecaster<M> {
         people: impl IntoIterator<Item = (PedestrianId, Position)>,
         forecast: impl FnOnce(&M, &Window) -> Result<F, ForecastError>,
     ) -> Result<Option<LiveForecast<F>>, DdlError> {
-        let people: Vec<_> = people.into_iter().collect();
-        let tracks = self.tracks.after(frame, people.iter().copied())?;
-        let now = match tracks.window() {
-            None => None,
-            Some(window) => {
-                let window = match &self.place {
-                    Some(place) => place.recalling(window),
-                    None => window,
-                };
-                let forecast = forecast(&self.model, &window)?;
-                Some(LiveForecast { window, forecast })
-            }
-        };
-        if let Some(place) = &mut self.place {
-            place.observe(frame, people, now.as_ref().map(|now| &now.window))?;
-        }
-        self.tracks = tracks;
-        Ok(now)
+        let people = people.into_iter().collect();
+        let model = &self.model;
+        let made = self
+            .watch
+            .push(frame, people, |window| forecast(model, window))?;
+        Ok(made.map(|(window, forecast)| LiveForecast { window, forecast }))
     }
 
     fn adapted(&mut self, window: &Window, forecast: Forecast) -> Forecast {
@@ -226,20 +210,11 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     /// empty one replaces it.
     ///
     /// # Errors
-    /// When the model has no memory branch, or the memory has another number of raw frames in a step.
-    pub fn remembering(self, memory: SceneMemory) -> Result<Self, DdlError> {
+    /// When the model has no memory branch, or the memory another number of raw frames in a step.
+    pub fn remembering(mut self, memory: SceneMemory) -> Result<Self, DdlError> {
         let place = WatchedPlace::new(self.model.borrow(), memory)?;
-        let (camera, its) = (self.tracks.frame_step(), place.memory().frame_step());
-        if camera != its {
-            return Err(DdlError::MemoryFrameStep {
-                camera,
-                memory: its,
-            });
-        }
-        Ok(Self {
-            place: Some(place),
-            ..self
-        })
+        self.watch.remember(place)?;
+        Ok(self)
     }
 
     /// Like [`push`](Self::push), with evidence for every hypothesis that it approaches its goal: the result of

@@ -2,12 +2,14 @@
 
 use super::Moment;
 use crate::clock::FrameNumber;
-use ddl::data::{HORIZON, PedestrianName};
+use ddl::data::{HORIZON, PedestrianName, SceneName};
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
 #[derive(Serialize)]
 struct Line<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene: Option<&'a SceneName>,
     observed_until: FrameNumber,
     pedestrian: PedestrianName,
     /// Number of made-up positions: before the first observation, and in holes.
@@ -93,6 +95,7 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
                 .collect();
             let made_up = moment.window.made_up(i);
             let line = Line {
+                scene: moment.scene,
                 observed_until: moment.observed_until(),
                 pedestrian: moment.window.name(i),
                 padded: made_up.padded,

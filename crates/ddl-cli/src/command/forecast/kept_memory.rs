@@ -1,93 +1,163 @@
-//! The file of a place's memory: read when a stream begins, and written while frames arrive.
+//! The memories of places in their files: read when a scene begins, and written as frames come.
 
-use crate::interrupt::Interrupt;
 use crate::telling::{tell, words};
-use anyhow::Context as _;
-use ddl::data::{PedestrianId, Position, Window};
+use anyhow::{Context as _, bail};
+use ddl::data::SceneName;
 use ddl::memory::SceneMemory;
-use ddl::{Ddl, DdlError, MemoryFile, WatchedPlace};
-use std::path::Path;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use ddl::{Ddl, DdlError, LiveScenes, MemoryFile, WatchedPlace};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
-/// The memory of `--memory`, if given. Ctrl-C also writes it, from a separate thread.
-pub(super) struct KeptMemory(Option<Arc<Mutex<Kept>>>);
-
-type SeenFrame = (i64, Vec<(PedestrianId, Position)>);
+/// The memory that `--memory` names: a file of one place, or a folder with a file for each scene.
+pub(super) struct KeptMemory {
+    at: PathBuf,
+    is_folder: bool,
+    /// `None` for a scene whose file cannot be used.
+    kept: BTreeMap<Option<SceneName>, Option<Kept>>,
+}
 
 struct Kept {
     file: MemoryFile,
     /// The memory in the file, until the number of frames in a step is known.
     read: Option<SceneMemory>,
-    place: Option<WatchedPlace>,
-    /// The frames until then.
-    early: Vec<SeenFrame>,
     is_refusal_told: bool,
 }
 
 impl KeptMemory {
-    /// Reads the file if it exists, and checks that it can be written.
-    pub(super) fn open(path: Option<&Path>, model: &Ddl) -> anyhow::Result<Self> {
-        let Some(path) = path else {
-            return Ok(Self(None));
-        };
+    /// Reads the file, if there is one. What would keep it from being written is found here.
+    pub(super) fn open(path: &Path, model: &Ddl) -> anyhow::Result<Self> {
         model.goal_model().remembered_at_once()?;
-        let kept = Arc::new(Mutex::new(Kept::open(path)?));
-        let of_handler = Arc::clone(&kept);
-        Interrupt::catch_until(2, move |_| {
-            if let Err(error) = lock(&of_handler).end() {
-                tell(format_args!("error: {}", words(&error)));
-            }
-            std::process::exit(130);
-        })?;
-        Ok(Self(Some(kept)))
+        let is_folder = path.is_dir();
+        let mut kept = BTreeMap::new();
+        if !is_folder {
+            kept.insert(None, Some(Kept::open(path)?));
+        }
+        Ok(Self {
+            at: path.to_owned(),
+            is_folder,
+            kept,
+        })
     }
 
-    fn kept(&self) -> Option<MutexGuard<'_, Kept>> {
-        self.0.as_deref().map(lock)
-    }
-
-    /// Starts to remember, once the number of frames in a step is known.
-    pub(super) fn begin(&self, model: &Ddl, frame_step: Option<i64>) -> anyhow::Result<()> {
-        match (self.kept(), frame_step) {
-            (Some(mut kept), Some(step)) => kept.begin(model, step),
+    /// Refuses a stream of one scene with a folder, and one of several with a file.
+    pub(super) fn ensure_fits(&self, scene: Option<&SceneName>) -> anyhow::Result<()> {
+        let at = self.at.display();
+        match (scene, self.is_folder) {
+            (None, true) => bail!(
+                "--memory {at} is a folder, and the lines name no scenes; name a file, or give the lines a column scene"
+            ),
+            (Some(_), false) => bail!(
+                "--memory {at} is a file of one place, and the lines name scenes; name a folder that is there, \
+                 for a file of each scene"
+            ),
             _ => Ok(()),
         }
     }
 
-    /// Adds the memory before this frame to the window that ends in it, then remembers the frame.
-    pub(super) fn watch(
-        &self,
-        frame: &SeenFrame,
-        window: Option<Window>,
-    ) -> anyhow::Result<Option<Window>> {
-        match self.kept() {
-            Some(mut kept) => kept.watch(frame, window),
-            None => Ok(window),
+    /// Begins to remember a scene that is not known yet, once it is known how many frames make a step.
+    pub(super) fn begin(
+        &mut self,
+        scene: Option<&SceneName>,
+        scenes: &mut LiveScenes,
+        model: &Ddl,
+    ) -> anyhow::Result<()> {
+        if scenes.place(scene).is_some() {
+            return Ok(());
         }
+        if let Some(name) = scene {
+            if self.kept.contains_key(&scene.cloned()) {
+                return Ok(());
+            }
+            // Should it fail, it is not tried again at every frame.
+            self.kept.insert(scene.cloned(), None);
+            let kept = Kept::open(&self.at.join(file_name(name)))?;
+            self.kept.insert(scene.cloned(), Some(kept));
+        }
+        let Some(Some(kept)) = self.kept.get_mut(&scene.cloned()) else {
+            return Ok(());
+        };
+        let begun = kept.begin(scene, scenes, model);
+        if begun.is_err() {
+            self.kept.insert(scene.cloned(), None);
+        }
+        begun
     }
 
-    /// Writes the file if a minute has passed. If that fails, forecasts continue.
-    pub(super) fn write_when_due(&self) {
-        let Some(mut kept) = self.kept().filter(|kept| kept.file.is_due()) else {
-            return;
-        };
-        if let Err(error) = kept.write() {
+    /// Says so where the memory of a scene turned out to be of another place.
+    pub(super) fn tell_refusal(&mut self, scene: Option<&SceneName>, scenes: &LiveScenes) {
+        if let Some(Some(kept)) = self.kept.get_mut(&scene.cloned())
+            && let Some(other) = scenes.place(scene).and_then(WatchedPlace::refused)
+            && !std::mem::replace(&mut kept.is_refusal_told, true)
+        {
             tell(format_args!(
-                "warning: {}; the next attempt follows",
-                words(&error)
+                "warning: {}: {other}; the file stays as it is, and what is seen now is not kept in it: give another --memory FILE for this place",
+                kept.file.path().display()
             ));
         }
     }
 
-    /// Writes the file at the end of the stream.
-    pub(super) fn end(&self) -> anyhow::Result<()> {
-        self.kept().map_or(Ok(()), |mut kept| kept.end())
+    /// Writes the files where a minute has passed. Where that fails, forecasts go on.
+    pub(super) fn write_when_due(&mut self, scenes: &LiveScenes) {
+        for (scene, kept) in &mut self.kept {
+            let Some(kept) = kept.as_mut().filter(|kept| kept.file.is_due()) else {
+                continue;
+            };
+            let Some(place) = scenes.place(scene.as_ref()) else {
+                continue;
+            };
+            if let Err(error) = kept.file.write(place) {
+                tell(format_args!(
+                    "warning: {}; it is tried again",
+                    words(&error.into())
+                ));
+            }
+        }
     }
-}
 
-/// Also after a panic of the other thread: a memory is consistent after every call.
-fn lock(kept: &Mutex<Kept>) -> MutexGuard<'_, Kept> {
-    kept.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Writes the file of a scene that has ended, and lets go of it.
+    pub(super) fn end(
+        &mut self,
+        scene: Option<&SceneName>,
+        scenes: &mut LiveScenes,
+    ) -> anyhow::Result<()> {
+        let Some(Some(mut kept)) = self.kept.remove(&scene.cloned()) else {
+            return Ok(());
+        };
+        scenes.end_trial(scene);
+        let Some(place) = scenes.place(scene) else {
+            return Ok(());
+        };
+        let why = kept.file.end(place)?;
+        match why.filter(|_| !kept.is_refusal_told) {
+            Some(why) => tell(format_args!("warning: {why}")),
+            None if place.refused().is_none() && place.memory().last_frame().is_some() => {
+                tell(format_args!(
+                    "note: {} remembers {} stretches, 8 s of one pedestrian each",
+                    kept.file.path().display(),
+                    place.memory().stretches()
+                ));
+            }
+            None => {}
+        }
+        Ok(())
+    }
+
+    /// Writes all files at the end of the stream; the error is the first.
+    pub(super) fn end_all(&mut self, scenes: &mut LiveScenes) -> anyhow::Result<()> {
+        let names: Vec<_> = self.kept.keys().cloned().collect();
+        let ends: Vec<_> = names
+            .iter()
+            .map(|scene| self.end(scene.as_ref(), scenes))
+            .collect();
+        let mut failed = ends.into_iter().filter_map(Result::err);
+        let Some(first) = failed.next() else {
+            return Ok(());
+        };
+        for other in failed {
+            tell(format_args!("error: {}", words(&other)));
+        }
+        Err(first)
+    }
 }
 
 impl Kept {
@@ -96,83 +166,58 @@ impl Kept {
         Ok(Self {
             file,
             read,
-            place: None,
-            early: Vec::new(),
             is_refusal_told: false,
         })
     }
 
-    fn begin(&mut self, model: &Ddl, camera: i64) -> anyhow::Result<()> {
-        if self.place.is_some() {
-            return Ok(());
-        }
+    fn begin(
+        &mut self,
+        scene: Option<&SceneName>,
+        scenes: &mut LiveScenes,
+        model: &Ddl,
+    ) -> anyhow::Result<()> {
+        let camera = scenes.frame_step();
         let memory = match self.read.take() {
             Some(memory) => memory,
             None => SceneMemory::new(camera, SceneMemory::DEFAULT_CAPACITY)?,
         };
-        let its = memory.frame_step();
-        if its != camera {
-            let memory = its;
-            return Err(DdlError::MemoryFrameStep { camera, memory })
-                .with_context(|| self.file.path().display().to_string());
-        }
-        let place = self.place.insert(WatchedPlace::new(model, memory)?);
-        for (number, people) in self.early.drain(..) {
-            place.observe(number, people, None)?;
-        }
-        Ok(())
-    }
-
-    fn watch(
-        &mut self,
-        (number, people): &SeenFrame,
-        window: Option<Window>,
-    ) -> anyhow::Result<Option<Window>> {
-        let people = people.iter().copied();
-        let Some(place) = &mut self.place else {
-            self.early.push((*number, people.collect()));
-            return Ok(window);
-        };
-        let window = window.map(|window| place.recalling(window));
-        place.observe(*number, people, window.as_ref())?;
-        if let (Some(other), false) = (place.refused(), self.is_refusal_told) {
-            tell(format_args!(
-                "warning: {}: {other}; the file is unchanged, and this watch is not saved in it: give another --memory \
-                 FILE for this place",
-                self.file.path().display()
-            ));
-            self.is_refusal_told = true;
-        }
-        Ok(window)
-    }
-
-    fn write(&mut self) -> anyhow::Result<()> {
-        match &self.place {
-            Some(place) => Ok(self.file.write(place)?),
-            None => Ok(()),
-        }
-    }
-
-    fn end(&mut self) -> anyhow::Result<()> {
-        let Some(place) = &mut self.place else {
-            return Ok(());
-        };
-        place.end_trial();
-        let why = self.file.end(place)?;
-        match why.filter(|_| !self.is_refusal_told) {
-            Some(why) => {
-                self.is_refusal_told = true;
-                tell(format_args!("warning: {why}"));
+        let place = WatchedPlace::new(model, memory)?;
+        let begun = scenes.remember(scene, place);
+        match begun {
+            Err(error @ DdlError::MemoryFrameStep { .. }) => {
+                Err(error).with_context(|| self.file.path().display().to_string())
             }
-            None if place.refused().is_none() && place.memory().last_frame().is_some() => {
-                tell(format_args!(
-                    "note: {} remembers {} stretches, 8 s of one pedestrian each",
-                    self.file.path().display(),
-                    place.memory().stretches()
-                ));
-            }
-            None => {}
+            begun => Ok(begun?),
         }
-        Ok(())
+    }
+}
+
+/// The file of a scene: whatever may mean something in a path is written as `%` and two hexadecimal digits.
+fn file_name(scene: &SceneName) -> String {
+    let mut name = String::new();
+    for byte in scene.as_str().bytes() {
+        if byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_') {
+            name.push(byte.into());
+        } else {
+            name += &format!("%{byte:02X}");
+        }
+    }
+    name + ".memory"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_scene_leads_out_of_the_folder() {
+        for (scene, file) in [
+            ("hall", "hall.memory"),
+            ("../hall", "%2E%2E%2Fhall.memory"),
+            ("a b", "a%20b.memory"),
+            ("C:\\é", "C%3A%5C%C3%A9.memory"),
+        ] {
+            assert_eq!(file_name(&SceneName::new(scene).unwrap()), file);
+        }
     }
 }

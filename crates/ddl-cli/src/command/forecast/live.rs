@@ -1,98 +1,350 @@
-//! `ddl forecast -`: forecasts from every frame of a tracker's lines.
+//! `ddl forecast -`: from the lines of trackers, a forecast a frame.
 
+use super::frames::{Frames, Incoming};
 use super::kept_memory::KeptMemory;
+use super::left_out::LeftOut;
 use super::{Forecast, Onward};
 use crate::clock::Clock;
+use crate::interrupt::Interrupt;
 use crate::recordings;
 use crate::telling::{tell, words};
 use crate::units::{Units, live_step};
 use anyhow::{Context as _, bail};
-use ddl::Ddl;
-use ddl::data::{
-    Completion, Doubt, Frame, FrameReader, Homography, LiveTracks, MadeUp, Observation, Recording,
-    Window,
-};
+use ddl::data::{Doubt, Frame, Homography, MadeUp, Observation, Recording, SceneName, Window};
+use ddl::{Ddl, LiveScenes};
 use std::fs::File;
-use std::io::{Write as _, stdin, stdout};
+use std::io::{Write as _, stdout};
 use std::path::Path;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Largest number of frames assumed to be 0.4 s: more may be a hole, or timestamps.
 const LONGEST_STEP: i64 = 1000;
 
-/// Forecasts from every frame once it is complete, until standard input ends or the output is closed.
+/// Windows that wait before no more is read, where every frame is forecast.
+const MOST_WAITING: usize = 64;
+/// Frames that are read between two batches, where only the latest of each scene is forecast.
+const MOST_TAKEN: usize = 4096;
+
+/// Forecasts from every frame as soon as it is whole, until standard input ends or nobody reads on.
 pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     let model = forecast.model()?;
-    let memory = KeptMemory::open(forecast.memory.as_deref(), &model)?;
-    let answered = answer(forecast, &model, &memory);
-    // Keep the memory however the stream ended.
-    let kept = memory.end();
+    let memory = forecast.memory.as_deref();
+    let watching = Watching {
+        scenes: None,
+        memory: memory
+            .map(|path| KeptMemory::open(path, &model))
+            .transpose()?,
+    };
+    let watching = Arc::new(Mutex::new(watching));
+    if memory.is_some() {
+        // Ctrl-C writes the memory too, from a thread of its own.
+        let of_handler = Arc::clone(&watching);
+        Interrupt::catch_until(2, move |_| {
+            if let Err(error) = lock(&of_handler).end() {
+                tell(format_args!("error: {}", words(&error)));
+            }
+            std::process::exit(130);
+        })?;
+    }
+    let answered = answer(forecast, &model, &watching);
+    // however the stream ended, what was seen is kept
+    let kept = lock(&watching).end();
     if let (Err(_), Err(error)) = (&answered, &kept) {
         tell(format_args!("error: {}", words(error)));
     }
     answered.and(kept)
 }
 
-fn answer(forecast: &Forecast, model: &Ddl, memory: &KeptMemory) -> anyhow::Result<()> {
+fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyhow::Result<()> {
     let units = forecast.tracks.live_units(model.config())?;
     let homography = units.homography()?;
     if let Some(note) = units.note_of_run(false) {
         tell(format_args!("note: {note}"));
     }
-    let mut tracking = Tracking::new(forecast.tracks.completion(), units)?;
-    memory.begin(model, tracking.frame_step())?;
-    let mut output = Output::open(forecast.output.as_deref())?;
-    let mut frames = FrameReader::new(stdin().lock(), "standard input");
-    let (mut onward, mut empty, mut looked_at) = (Onward::default(), true, false);
-    let mut wrong = None;
-    while wrong.is_none() {
-        memory.write_when_due();
-        let frame = frames.next_frame().or_else(|error| {
-            // keep the frames before the bad line
-            wrong = Some(error);
-            Ok::<_, anyhow::Error>(frames.unfinished())
-        })?;
-        let Some(frame) = frame else { break };
-        empty = false;
-        let frame = on_the_ground(frame, homography.as_ref())?;
-        let names = frame.names.clone();
-        let seen = (frame.number, frame.people.clone());
-        let window = tracking.push(frame, frames.rate())?;
-        memory.begin(model, tracking.frame_step())?;
-        let Some(window) = memory.watch(&seen, window)? else {
-            continue;
-        };
-        let window = window.with_names(names);
-        if !looked_at {
-            looked_at = warn_of_speeds(&window)?;
-        }
-        let text = forecast.text(model, &[window], Clock::WHOLE, &mut onward)?;
-        output
-            .write(&text)
-            .with_context(|| match &forecast.output {
-                Some(path) => format!(
-                    "cannot continue to write {0}, which holds the forecasts so far (another run with --output {0} \
-                     replaces them)",
-                    path.display()
-                ),
-                None => "cannot write to standard output".to_owned(),
-            })?;
+    if let Some(step) = units.live_frame_step()? {
+        begin(forecast, model, watching, step)?;
     }
-    if let Some(wrong) = wrong {
-        return Err(wrong.into());
-    }
-    if empty {
+    let mut stream = Stream {
+        forecast,
+        model,
+        watching,
+        homography,
+        early: Vec::new(),
+        output: Output::open(forecast.output.as_deref())?,
+        onward: Onward::default(),
+        left_out: LeftOut::default(),
+        is_empty: true,
+        looked_at: false,
+        taken: 0,
+        answered: 0,
+    };
+    stream.follow(&Frames::of_standard_input()?, &units)?;
+    stream
+        .left_out
+        .end(stream.answered, lock(watching).scenes.as_ref())?;
+    if stream.is_empty {
         bail!(
             "standard input holds no tracks: the first line must be frame,pedestrian,x,y, followed by a row for each \
              pedestrian and frame"
         );
     }
-    if !onward.headed {
+    if !stream.onward.headed {
         bail!(
             "standard input: no pedestrian was observed long enough to be forecast; give --fps or --frame-step if \
                  frame numbers are not 0.4 s apart"
         );
     }
     Ok(())
+}
+
+/// Begins to watch, as soon as it is known how many frames make a step.
+fn begin(
+    forecast: &Forecast,
+    model: &Ddl,
+    watching: &Mutex<Watching>,
+    step: i64,
+) -> anyhow::Result<()> {
+    let scenes = LiveScenes::with_frame_step(step)?;
+    let scenes = scenes.completing(forecast.tracks.completion());
+    let scenes = if forecast.latest {
+        scenes.latest_only()
+    } else {
+        scenes
+    };
+    let mut watching = lock(watching);
+    let Watching { scenes: to, memory } = &mut *watching;
+    let scenes = to.insert(scenes);
+    match memory {
+        // What is wrong with the file of the only scene is told before its first frame.
+        Some(memory) => memory.begin(None, scenes, model),
+        None => Ok(()),
+    }
+}
+
+/// What is kept of the scenes.
+struct Watching {
+    /// `None` until it is known how many frames make a step.
+    scenes: Option<LiveScenes>,
+    memory: Option<KeptMemory>,
+}
+
+/// After a panic of the other thread too: scenes and memories are whole after every call.
+fn lock(watching: &Mutex<Watching>) -> MutexGuard<'_, Watching> {
+    watching.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Watching {
+    /// Ends the scenes that have been silent, when another one begins.
+    fn forget_silent(&mut self) -> (Vec<SceneName>, anyhow::Result<()>) {
+        let Some(scenes) = &mut self.scenes else {
+            return (Vec::new(), Ok(()));
+        };
+        let (silent, mut ended) = (scenes.silent(), Ok(()));
+        for scene in &silent {
+            if let Some(memory) = &mut self.memory {
+                ended = ended.and(memory.end(Some(scene), scenes));
+            }
+            scenes.forget(Some(scene));
+        }
+        (silent, ended)
+    }
+
+    fn observe(&mut self, frame: Frame, model: &Ddl) -> anyhow::Result<()> {
+        let Some(scenes) = &mut self.scenes else {
+            return Ok(());
+        };
+        let Some(memory) = &mut self.memory else {
+            return Ok(scenes.observe_frame(frame)?);
+        };
+        let name = frame.scene.clone();
+        // A scene whose memory cannot be used is forecast without.
+        let begun = memory.begin(name.as_ref(), scenes, model);
+        scenes.observe_frame(frame)?;
+        memory.tell_refusal(name.as_ref(), scenes);
+        begun
+    }
+
+    fn write_when_due(&mut self) {
+        if let (Some(memory), Some(scenes)) = (&mut self.memory, &self.scenes) {
+            memory.write_when_due(scenes);
+        }
+    }
+
+    fn end(&mut self) -> anyhow::Result<()> {
+        match (&mut self.memory, &mut self.scenes) {
+            (Some(memory), Some(scenes)) => memory.end_all(scenes),
+            _ => Ok(()),
+        }
+    }
+}
+
+struct Stream<'a> {
+    forecast: &'a Forecast,
+    model: &'a Ddl,
+    watching: &'a Mutex<Watching>,
+    homography: Option<Homography>,
+    /// The frames until it is known how many of them make a step: one of each scene.
+    early: Vec<Frame>,
+    output: Output,
+    onward: Onward,
+    left_out: LeftOut,
+    is_empty: bool,
+    /// Whether the speeds of the first people have been looked at.
+    looked_at: bool,
+    /// Frames that were taken since the last batch.
+    taken: usize,
+    /// Frames that were answered.
+    answered: u64,
+}
+
+impl Stream<'_> {
+    /// Takes whatever has come before it forecasts, so that what waits is known, and waits for more only where nothing
+    /// waits to be forecast.
+    fn follow(&mut self, frames: &Frames, units: &Units) -> anyhow::Result<()> {
+        let wrong = loop {
+            let waiting = self.waiting();
+            let is_full = if self.forecast.latest {
+                self.taken >= MOST_TAKEN && waiting > 0
+            } else {
+                waiting >= MOST_WAITING
+            };
+            let incoming = match waiting {
+                0 => match frames.wait() {
+                    None => break None,
+                    incoming => incoming,
+                },
+                _ if is_full => None,
+                _ => frames.come(),
+            };
+            match incoming {
+                None => self.answer_batch()?,
+                Some(Incoming::Frame(frame, rate)) => {
+                    if let Err(error) = self.take(frame, rate, units) {
+                        break Some(error);
+                    }
+                }
+                Some(Incoming::Wrong(error)) => self.left_out.wrong(&error.into()),
+                Some(Incoming::End(error)) => break Some(error.into()),
+            }
+        };
+        // what came before the bad line is not lost
+        while self.waiting() > 0 {
+            self.answer_batch()?;
+        }
+        wrong.map_or(Ok(()), Err)
+    }
+
+    fn waiting(&self) -> usize {
+        let watching = lock(self.watching);
+        watching.scenes.as_ref().map_or(0, LiveScenes::waiting)
+    }
+
+    /// Adds a frame. `rate`: frames that follow each other in a second, where the lines say so.
+    fn take(&mut self, frame: Frame, rate: Option<f64>, units: &Units) -> anyhow::Result<()> {
+        if std::mem::take(&mut self.is_empty)
+            && let Some(memory) = &lock(self.watching).memory
+        {
+            memory.ensure_fits(frame.scene.as_ref())?;
+        }
+        self.taken += 1;
+        if lock(self.watching).scenes.is_none() {
+            let mut early = self.early.iter();
+            let Some(first) = early.find(|early| early.scene == frame.scene) else {
+                self.early.push(frame);
+                return Ok(());
+            };
+            let (step, reason) = step(units, frame.number - first.number, rate)?;
+            tell(format_args!(
+                "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read them differently"
+            ));
+            begin(self.forecast, self.model, self.watching, step)?;
+        }
+        let early = std::mem::take(&mut self.early).into_iter();
+        for frame in early.chain([frame]) {
+            let is_named = frame.scene.is_some();
+            match self.observe(frame) {
+                // The other scenes go on.
+                Err(error) if is_named => self.left_out.wrong(&error),
+                observed => observed?,
+            }
+        }
+        Ok(())
+    }
+
+    fn observe(&mut self, frame: Frame) -> anyhow::Result<()> {
+        let frame = on_the_ground(frame, self.homography.as_ref())?;
+        let mut watching = lock(self.watching);
+        let (silent, ended) = if frame.is_first {
+            watching.forget_silent()
+        } else {
+            (Vec::new(), Ok(()))
+        };
+        for scene in silent {
+            self.onward.forget(&scene);
+        }
+        watching.observe(frame, self.model).and(ended)
+    }
+
+    fn answer_batch(&mut self) -> anyhow::Result<()> {
+        self.taken = 0;
+        let batch = {
+            let mut watching = lock(self.watching);
+            watching.write_when_due();
+            let Some(scenes) = &mut watching.scenes else {
+                return Ok(());
+            };
+            self.left_out.dropped(scenes);
+            scenes.next_batch(LiveScenes::BATCH)
+        };
+        for window in &batch.windows {
+            if !self.looked_at {
+                self.looked_at = warn_of_speeds(window)?;
+            }
+        }
+        match self.text(&batch.windows, &batch.scenes) {
+            Ok(text) => return self.write(&text, batch.windows.len()),
+            // It does not say of which window; those before it are answered.
+            Err(_) if batch.windows.len() > 1 => {}
+            Err(error) => return self.failed(error, batch.scenes.iter().any(Option::is_some)),
+        }
+        for (window, scene) in batch.windows.iter().zip(&batch.scenes) {
+            let one = (std::slice::from_ref(window), std::slice::from_ref(scene));
+            match self.text(one.0, one.1) {
+                Ok(text) => self.write(&text, 1)?,
+                Err(error) => self.failed(error, scene.is_some())?,
+            }
+        }
+        Ok(())
+    }
+
+    fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
+        let onward = &mut self.onward;
+        self.forecast
+            .text(self.model, (windows, scenes), Clock::WHOLE, onward)
+    }
+
+    /// A forecast that fails is left out where there are other scenes; the first of all says what is wrong with the
+    /// call.
+    fn failed(&mut self, error: anyhow::Error, is_named: bool) -> anyhow::Result<()> {
+        if !is_named || self.answered == 0 {
+            return Err(error);
+        }
+        self.left_out.wrong(&error);
+        Ok(())
+    }
+
+    fn write(&mut self, text: &str, frames: usize) -> anyhow::Result<()> {
+        self.answered += frames as u64;
+        self.output
+            .write(text)
+            .with_context(|| match &self.forecast.output {
+                Some(path) => format!(
+                    "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces them)",
+                    path.display()
+                ),
+                None => "cannot write to standard output".to_owned(),
+            })
+    }
 }
 
 struct Output {
@@ -167,75 +419,21 @@ fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::R
     Ok(frame)
 }
 
-/// Live tracks whose frame step may be unknown until the first two frames.
-struct Tracking {
-    completion: Completion,
-    units: Units,
-    tracks: Option<LiveTracks>,
-    first: Option<Frame>,
-}
-
-impl Tracking {
-    fn new(completion: Completion, units: Units) -> anyhow::Result<Self> {
-        let tracks = match units.live_frame_step()? {
-            None => None,
-            Some(step) => Some(LiveTracks::with_frame_step(step)?.completing(completion)),
-        };
-        Ok(Self {
-            completion,
-            units,
-            tracks,
-            first: None,
-        })
+/// Frame numbers in a step where no option gives them, and why so many; `apart`: those between the first two frames.
+fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
+    if let Some(rate) = rate {
+        let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
+            format!("standard input: the scenes give {rate} frames a second, and the first two frames are {apart} apart")
+        })?;
+        return Ok((step, format!("by the fps of the scenes, {rate}")));
     }
-
-    /// Raw frames in a step, once known.
-    fn frame_step(&self) -> Option<i64> {
-        self.tracks.as_ref().map(LiveTracks::frame_step)
+    if let Some(remembered) = units.remembered_live_frame_step()? {
+        return Ok(remembered);
     }
-
-    /// Adds a frame; returns the window that ends there, if it has pedestrians to forecast. `rate`: frames per second
-    /// according to the lines.
-    fn push(&mut self, frame: Frame, rate: Option<f64>) -> anyhow::Result<Option<Window>> {
-        if let Some(tracks) = &mut self.tracks {
-            return Ok(tracks.push(frame.number, frame.people)?);
-        }
-        let Some(first) = self.first.take() else {
-            self.first = Some(frame);
-            return Ok(None);
-        };
-        let (step, reason) = self.step(frame.number - first.number, rate)?;
-        tell(format_args!(
-            "note: frame numbers are assumed to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step if this \
-             is wrong"
-        ));
-        let tracks = LiveTracks::with_frame_step(step)?.completing(self.completion);
-        let tracks = self.tracks.insert(tracks);
-        tracks.push(first.number, first.people)?;
-        Ok(tracks.push(frame.number, frame.people)?)
+    if apart > LONGEST_STEP {
+        bail!(
+            "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are in 0.4 s"
+        );
     }
-
-    /// Frame numbers in a step that no option gives, with the reason; `apart`: difference of the first two frame
-    /// numbers.
-    fn step(&self, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
-        if let Some(rate) = rate {
-            let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
-                format!(
-                    "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} \
-                     apart"
-                )
-            })?;
-            return Ok((step, format!("from the fps of the scenes, {rate}")));
-        }
-        if let Some(remembered) = self.units.remembered_live_frame_step()? {
-            return Ok(remembered);
-        }
-        if apart > LONGEST_STEP {
-            bail!(
-                "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps \
-                 or --frame-step"
-            );
-        }
-        Ok((apart, "the difference of the first two frames".to_owned()))
-    }
+    Ok((apart, "as the first two are".to_owned()))
 }

@@ -39,7 +39,13 @@ const COLUMNS: [&str; 12] = [
     "filled",
     "familiarity",
 ];
+<<<<<<< HEAD
 /// Further columns for the certificate of a position.
+=======
+/// A column before them, where the tracks name scenes.
+const SCENE: &str = "scene";
+/// Further columns: what its certificate says of a position.
+>>>>>>> cameras/cameras
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
 /// The table of these moments, with a column of radii for each requested region.
@@ -52,11 +58,15 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
         let columns = COLUMNS
             .iter()
             .chain(certified.then_some(&CERTIFIED).into_iter().flatten());
+        let named = moments.iter().any(|moment| moment.scene.is_some());
+        let columns = named.then_some(&SCENE).into_iter().chain(columns);
         let names = columns.map(|&name| name.to_owned());
         writer.write_record(names.chain(regions.iter().map(|level| format!("radius_{level}"))))?;
     }
     for moment in moments {
         let frames = moment.frames();
+        // One field, or none.
+        let scene = Vec::from_iter(moment.scene);
         for i in 0..moment.window.len() {
             let made_up = moment.window.made_up(i);
             for hypothesis in 0..moment.forecast.hypotheses() {
@@ -89,8 +99,10 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
                     };
                     let radii: Vec<Option<f64>> = regions.iter().map(radius).collect();
                     match distances.as_mut().and_then(Iterator::next) {
-                        None => writer.serialize((row, radii))?,
-                        Some(distance) => writer.serialize((row, distance, holds, radii))?,
+                        None => writer.serialize((&scene, row, radii))?,
+                        Some(distance) => {
+                            writer.serialize((&scene, row, distance, holds, radii))?;
+                        }
                     }
                 }
             }

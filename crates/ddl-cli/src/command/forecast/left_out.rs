@@ -1,0 +1,95 @@
+//! What is left out of a stream and told: lines that are wrong, and frames for which there was no time.
+
+use crate::telling::{tell, words};
+use anyhow::anyhow;
+use ddl::LiveScenes;
+use std::time::{Duration, Instant};
+
+/// From one telling of a kind to the next, so that a flood of lines does not become a flood of messages.
+const PAUSE: Duration = Duration::from_secs(10);
+
+#[derive(Debug, Default)]
+pub(super) struct LeftOut {
+    wrong: Seldom,
+    dropped: Seldom,
+}
+
+/// Counts what happens, and tells of it now and then.
+#[derive(Debug, Default)]
+struct Seldom {
+    count: u64,
+    told: u64,
+    last: Option<Instant>,
+}
+
+impl Seldom {
+    /// How many there were since the last telling, if it is time to tell.
+    fn to_tell(&mut self) -> Option<u64> {
+        let new = self.count - self.told;
+        if new == 0 || self.last.is_some_and(|last| last.elapsed() < PAUSE) {
+            return None;
+        }
+        self.last = Some(Instant::now());
+        self.told = self.count;
+        Some(new)
+    }
+}
+
+impl LeftOut {
+    /// A line, or a frame, of one scene cannot be used. The others go on.
+    pub(super) fn wrong(&mut self, error: &anyhow::Error) {
+        self.wrong.count += 1;
+        if let Some(new) = self.wrong.to_tell() {
+            let others = match new {
+                1 => String::new(),
+                _ => format!(" (the last of {new})"),
+            };
+            tell(format_args!(
+                "error: {}{others}; this is left out, and the stream goes on",
+                words(error)
+            ));
+        }
+    }
+
+    /// Frames that were dropped so far.
+    pub(super) fn dropped(&mut self, scenes: &LiveScenes) {
+        self.dropped.count = scenes.dropped();
+        if let Some(new) = self.dropped.to_tell() {
+            tell(format_args!(
+                "warning: {} not forecast, because a later one of the scene came first",
+                frames(new)
+            ));
+        }
+    }
+
+    /// Tells the sums at the end of the stream; an error if lines were wrong.
+    pub(super) fn end(&self, forecast: u64, scenes: Option<&LiveScenes>) -> anyhow::Result<()> {
+        let dropped = scenes.map_or(0, LiveScenes::dropped);
+        if dropped > 0 {
+            let most = scenes.and_then(LiveScenes::most_dropped);
+            let most =
+                most.map(|(scene, count)| format!(", most of them of scene {scene} ({count})"));
+            tell(format_args!(
+                "note: {} forecast, and {dropped} dropped, because a later one came first{}",
+                frames(forecast),
+                most.unwrap_or_default()
+            ));
+        }
+        match self.wrong.count {
+            0 => Ok(()),
+            1 => Err(anyhow!(
+                "standard input: one line or frame was wrong, and was left out"
+            )),
+            count => Err(anyhow!(
+                "standard input: {count} lines or frames were wrong, and were left out"
+            )),
+        }
+    }
+}
+
+fn frames(count: u64) -> String {
+    match count {
+        1 => "1 frame was".to_owned(),
+        count => format!("{count} frames were"),
+    }
+}

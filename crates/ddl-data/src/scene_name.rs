@@ -1,0 +1,105 @@
+//! How a stream of several scenes names each of them.
+
+use std::fmt;
+use std::sync::Arc;
+
+use serde::{Serialize, Serializer};
+use thiserror::Error;
+
+/// The name of a scene, that is of a camera, in a stream of several.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SceneName(Arc<str>);
+
+impl SceneName {
+    /// The longest name, in bytes: a file can be named after a scene wherever its name has to be escaped.
+    pub const LONGEST: usize = 64;
+
+    /// A name of 1 to 64 bytes without control characters; blanks around it do not count.
+    ///
+    /// # Errors
+    /// [`SceneNameError`] for any other text.
+    pub fn new(text: &str) -> Result<Self, SceneNameError> {
+        let text = text.trim();
+        if text.is_empty() {
+            return Err(SceneNameError::Empty);
+        }
+        if text.len() > Self::LONGEST {
+            return Err(SceneNameError::TooLong { found: text.len() });
+        }
+        if text.chars().any(char::is_control) {
+            let found = text.to_owned();
+            return Err(SceneNameError::Control { found });
+        }
+        Ok(Self(text.into()))
+    }
+
+    /// The name.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
+}
+
+impl fmt::Display for SceneName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&self.0)
+    }
+}
+
+impl Serialize for SceneName {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(&self.0)
+    }
+}
+
+/// Why a text is not the name of a scene.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the messages say what the fields are")]
+pub enum SceneNameError {
+    #[error("scene is empty; name the camera that each row is from")]
+    Empty,
+    #[error(
+        "scene has {found} bytes, and {limit} are allowed; give the camera a shorter name",
+        limit = SceneName::LONGEST
+    )]
+    TooLong { found: usize },
+    #[error("scene must not hold control characters, found {found:?}; leave them out")]
+    Control { found: String },
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn names_are_short_and_printable() {
+        for text in [
+            "",
+            " \t",
+            &"é".repeat(33),
+            "a\u{1b}[0m",
+            "a\nb",
+            "\u{85}a\u{0}",
+        ] {
+            assert!(SceneName::new(text).is_err(), "{text:?}");
+        }
+        assert!(SceneName::new(&"é".repeat(32)).is_ok());
+        let told = SceneName::new("a\u{1b}b").unwrap_err().to_string();
+        assert!(
+            !told.contains('\u{1b}') && told.contains("a\\u{1b}b"),
+            "{told}"
+        );
+    }
+
+    proptest! {
+        #[test]
+        fn a_name_is_itself_again(text in "\\PC{0,80}") {
+            if let Ok(name) = SceneName::new(&text) {
+                prop_assert_eq!(name.as_str(), text.trim());
+                prop_assert_eq!(SceneName::new(name.as_str()), Ok(name));
+            }
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! How many cameras one core forecasts, `cargo bench -p ddl --bench cameras`; `-- 60 150` for these numbers of cameras
+//! alone.
+//!
+//! Every camera sees 12 pedestrians and gives 2.5 frames a second, at moments of its own. All work is done on one
+//! thread, and all of it is real: frames are observed and forecast by a built-in model, 20 hypotheses each. Time is
+//! simulated: work takes its processor time, and waiting takes none. So a busy machine disturbs little, and hours pass
+//! in seconds. One run is by the clock.
+
+mod cameras;
+mod queue;
+
+use cameras::{FRAME, PEDESTRIANS};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, LiveScenes};
+use queue::{Figures, Phases};
+use std::error::Error;
+use std::io::Write as _;
+
+type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
+
+/// Cameras of the table.
+const CAMERAS: [usize; 8] = [1, 10, 30, 60, 100, 150, 200, 300];
+/// Frames that are answered or dropped in a row of the table, at least.
+const FRAMES: usize = 900;
+/// Frames of every camera, at least.
+const FRAMES_EACH: usize = 6;
+
+fn main() -> Result<()> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    // `cargo bench` passes this argument; without it, this only checks that the benchmark runs.
+    let is_measured = arguments.iter().any(|argument| argument == "--bench");
+    let given: Vec<usize> = arguments.iter().filter_map(|it| it.parse().ok()).collect();
+    let counts = match (is_measured, given.is_empty()) {
+        (false, _) => &[1, 3][..],
+        (true, true) => &CAMERAS,
+        (true, false) => &given,
+    };
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    one.install(|| measure(counts, is_measured))
+}
+
+fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    let model = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
+    let sizes: &[usize] = if is_measured {
+        &[1, 2, 4, 8, 16]
+    } else {
+        &[1, 2]
+    };
+    writeln!(out, "| cameras in a batch | ms a camera |\n|---:|---:|")?;
+    let mut alone = 0.0;
+    for &size in sizes {
+        let seconds = queue::service(&model, size, if is_measured { 160 } else { size })?;
+        if size == 1 {
+            alone = seconds;
+        }
+        writeln!(out, "| {size} | {:.2} |", 1e3 * seconds)?;
+    }
+    writeln!(
+        out,
+        "\n| cameras | busy, % | p50, ms | p99, ms | dropped, % | p99 if all frames come at once, ms |\n\
+         |---:|---:|---:|---:|---:|---:|"
+    )?;
+    let frames = |cameras: usize| {
+        if is_measured {
+            (FRAMES / cameras).max(FRAMES_EACH)
+        } else {
+            2
+        }
+    };
+    for &cameras in counts {
+        let own = queue::simulated(&model, cameras, frames(cameras), Phases::Own)?;
+        let at_once = queue::simulated(&model, cameras, frames(cameras), Phases::AtOnce)?;
+        let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * own.latency(share));
+        writeln!(
+            out,
+            "| {cameras} | {:.0} | {p50:.1} | {p99:.1} | {:.1} | {:.0} |",
+            100.0 * own.busy,
+            100.0 * own.dropped_share(),
+            1e3 * at_once.latency(0.99)
+        )?;
+    }
+    let capacity = FRAME / alone;
+    let cameras = if is_measured {
+        (2.0 * capacity).round() as usize
+    } else {
+        2
+    };
+    let cameras = cameras.clamp(1, LiveScenes::MOST_SCENES);
+    let figures = queue::simulated(&model, cameras, frames(cameras).min(20), Phases::Own)?;
+    writeln!(
+        out,
+        "\ntwice as many as one core forecasts ({capacity:.0}): {}",
+        told(cameras, &figures)
+    )?;
+    let (cameras, seconds) = if is_measured { (60, 8.0) } else { (2, 0.5) };
+    let figures = queue::by_the_clock(&model, cameras, seconds)?;
+    writeln!(
+        out,
+        "by the clock, {seconds} s: {}",
+        told(cameras, &figures)
+    )?;
+    let [tracks, waiting] = queue::memory(if is_measured { 1_000 } else { 2 })?;
+    writeln!(
+        out,
+        "memory of a camera: {tracks:.1} KiB, and {waiting:.1} KiB while a frame waits ({PEDESTRIANS} pedestrians each)"
+    )?;
+    Ok(())
+}
+
+fn told(cameras: usize, figures: &Figures) -> String {
+    let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * figures.latency(share));
+    format!(
+        "{cameras} cameras, {} of {} frames forecast, {} dropped for later ones, p50 {p50:.0} ms, p99 {p99:.0} ms",
+        figures.latencies.len(),
+        figures.frames,
+        figures.dropped,
+    )
+}

@@ -1,0 +1,230 @@
+//! Frames that wait for one core.
+
+use crate::Result;
+use crate::cameras::{Camera, FRAME};
+use ddl::data::{Completion, OBSERVED, SceneName};
+use ddl::{Ddl, LiveScenes};
+use rustix::time::{ClockId, clock_gettime};
+use std::collections::BTreeMap;
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Phases {
+    /// Each camera's frames come at moments of its own.
+    Own,
+    AtOnce,
+}
+
+pub(crate) struct Figures {
+    /// Seconds from a frame that is whole to its forecast, in order of their lengths.
+    pub(crate) latencies: Vec<f64>,
+    pub(crate) frames: usize,
+    pub(crate) dropped: u64,
+    /// Share of the time in which there was work.
+    pub(crate) busy: f64,
+}
+
+impl Figures {
+    fn new(mut latencies: Vec<f64>, frames: usize, dropped: u64, busy: f64) -> Result<Self> {
+        if latencies.len() as u64 + dropped != frames as u64 {
+            return Err(format!(
+                "of {frames} frames {} were forecast and {dropped} dropped",
+                latencies.len()
+            )
+            .into());
+        }
+        latencies.sort_by(f64::total_cmp);
+        Ok(Self {
+            latencies,
+            frames,
+            dropped,
+            busy,
+        })
+    }
+
+    pub(crate) fn latency(&self, share: f64) -> f64 {
+        self.latencies[(share * (self.latencies.len() - 1) as f64).round() as usize]
+    }
+
+    pub(crate) fn dropped_share(&self) -> f64 {
+        self.dropped as f64 / self.frames as f64
+    }
+}
+
+fn processor_time() -> f64 {
+    let time = clock_gettime(ClockId::ProcessCPUTime);
+    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+}
+
+fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
+    let before = processor_time();
+    let made = work()?;
+    Ok((made, processor_time() - before))
+}
+
+/// Cameras that have been watched long enough for all their pedestrians to be forecast from the next frame.
+fn watched(cameras: usize) -> Result<(Vec<Camera>, LiveScenes)> {
+    let mut cameras: Vec<Camera> = (0..cameras).map(Camera::new).collect::<Result<_>>()?;
+    let mut scenes = LiveScenes::new()
+        .completing(Completion::USUAL)
+        .latest_only();
+    for camera in &mut cameras {
+        for frame in 0..OBSERVED as i64 - 1 {
+            let seen = camera.frame(frame);
+            scenes.observe(Some(&camera.name), frame, seen)?;
+            // What waits from before does not count.
+            scenes.next_batch(usize::MAX);
+        }
+    }
+    Ok((cameras, scenes))
+}
+
+/// Seconds of processor time a camera and frame, in batches of so many cameras: the median of some batches.
+pub(crate) fn service(model: &Ddl, batch: usize, frames: usize) -> Result<f64> {
+    let (mut cameras, mut scenes) = watched(batch)?;
+    let mut times = Vec::new();
+    for frame in (OBSERVED as i64 - 1..).take(frames.div_ceil(batch)) {
+        let seen: Vec<_> = cameras.iter_mut().map(|it| it.frame(frame)).collect();
+        let ((), seconds) = timed(|| {
+            for (camera, seen) in cameras.iter().zip(seen) {
+                scenes.observe(Some(&camera.name), frame, seen)?;
+            }
+            for made in scenes.forecast(model, usize::MAX) {
+                made.forecast?;
+            }
+            Ok(())
+        })?;
+        times.push(seconds / batch as f64);
+    }
+    times.sort_by(f64::total_cmp);
+    Ok(times[times.len() / 2])
+}
+
+/// Work takes its processor time, and waiting takes none.
+pub(crate) fn simulated(
+    model: &Ddl,
+    cameras: usize,
+    frames: usize,
+    phases: Phases,
+) -> Result<Figures> {
+    let (mut cameras, mut scenes) = watched(cameras)?;
+    let dropped_before = scenes.dropped();
+    let mut due: Vec<(f64, usize, i64)> = Vec::new();
+    for (number, camera) in cameras.iter().enumerate() {
+        let phase = match phases {
+            Phases::Own => camera.phase,
+            Phases::AtOnce => 0.0,
+        };
+        due.extend((0..frames).map(|frame| {
+            let time = FRAME * (frame as f64 + phase);
+            (time, number, (frame + OBSERVED) as i64 - 1)
+        }));
+    }
+    due.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut due = due.into_iter().peekable();
+    // When the frame of each scene that waits came.
+    let mut came: BTreeMap<SceneName, f64> = BTreeMap::new();
+    let (mut now, mut busy, mut latencies) = (0.0, 0.0, Vec::new());
+    loop {
+        if scenes.waiting() == 0 {
+            let Some(&(next, ..)) = due.peek() else { break };
+            now = next.max(now);
+        }
+        let mut work = 0.0;
+        while let Some((time, camera, frame)) = due.next_if(|&(time, ..)| time <= now + work) {
+            let camera = &mut cameras[camera];
+            let seen = camera.frame(frame);
+            let name = Some(&camera.name);
+            work += timed(|| Ok(scenes.observe(name, frame, seen)?))?.1;
+            came.insert(camera.name.clone(), time);
+        }
+        let (made, seconds) = timed(|| Ok(scenes.forecast(model, LiveScenes::BATCH)))?;
+        work += seconds;
+        now += work;
+        busy += work;
+        for made in made {
+            made.forecast?;
+            let scene = made.scene.ok_or("a camera has a name")?;
+            latencies.push(now - came[&scene]);
+        }
+    }
+    let dropped = scenes.dropped() - dropped_before;
+    Figures::new(latencies, cameras.len() * frames, dropped, busy / now)
+}
+
+/// A thread sends frames when they are due; this one observes what has come, forecasts what waits, and goes on.
+pub(crate) fn by_the_clock(model: &Ddl, cameras: usize, seconds: f64) -> Result<Figures> {
+    let (mut cameras, mut scenes) = watched(cameras)?;
+    let dropped_before = scenes.dropped();
+    let frames = (seconds / FRAME) as usize;
+    let count = cameras.len();
+    let (send, received) = mpsc::sync_channel(64);
+    let begun = Instant::now();
+    let sender = std::thread::spawn(move || {
+        cameras.sort_by(|a, b| a.phase.total_cmp(&b.phase));
+        for frame in 0..frames {
+            for camera in &mut cameras {
+                let due = Duration::from_secs_f64(FRAME * (frame as f64 + camera.phase));
+                std::thread::sleep(due.saturating_sub(begun.elapsed()));
+                let number = (frame + OBSERVED) as i64 - 1;
+                let seen = camera.frame(number);
+                if send.send((due, camera.name.clone(), number, seen)).is_err() {
+                    return;
+                }
+            }
+        }
+    });
+    let mut came: BTreeMap<SceneName, Duration> = BTreeMap::new();
+    let (mut latencies, mut busy) = (Vec::new(), 0.0);
+    loop {
+        let next = if scenes.waiting() == 0 {
+            match received.recv() {
+                Ok(next) => Some(next),
+                Err(_) => break,
+            }
+        } else {
+            received.try_recv().ok()
+        };
+        let work = Instant::now();
+        if let Some((due, name, frame, seen)) = next {
+            scenes.observe(Some(&name), frame, seen)?;
+            came.insert(name, due);
+            busy += work.elapsed().as_secs_f64();
+            continue;
+        }
+        for made in scenes.forecast(model, LiveScenes::BATCH) {
+            made.forecast?;
+            let scene = made.scene.ok_or("a camera has a name")?;
+            latencies.push((begun.elapsed() - came[&scene]).as_secs_f64());
+        }
+        busy += work.elapsed().as_secs_f64();
+    }
+    let busy = busy / begun.elapsed().as_secs_f64();
+    sender.join().map_err(|_| "the sender failed")?;
+    let dropped = scenes.dropped() - dropped_before;
+    Figures::new(latencies, count * frames, dropped, busy)
+}
+
+/// KiB of a camera that has been watched, with what makes its load here, and more while a frame of it waits.
+pub(crate) fn memory(cameras: usize) -> Result<[f64; 2]> {
+    let before = resident()?;
+    let (mut seen, mut scenes) = watched(cameras)?;
+    let watched = resident()?;
+    for camera in &mut seen {
+        let frame = OBSERVED as i64 - 1;
+        let seen = camera.frame(frame);
+        scenes.observe(Some(&camera.name), frame, seen)?;
+    }
+    let waiting = resident()?;
+    let each = |bytes: f64| bytes / cameras as f64;
+    Ok([each(watched - before), each(waiting - watched)])
+}
+
+/// KiB of the process.
+fn resident() -> Result<f64> {
+    let status = std::fs::read_to_string("/proc/self/status")?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    let kib = line.and_then(|line| line.split_whitespace().next());
+    Ok(kib.ok_or("no VmRSS in /proc/self/status")?.parse()?)
+}

@@ -1,0 +1,70 @@
+//! One scene that is watched frame by frame: its tracks, and what is remembered of the place.
+
+use crate::error::DdlError;
+use crate::forecast::watched_place::WatchedPlace;
+use ddl_data::{LiveTracks, PedestrianId, Position, Window};
+
+/// What a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes) of each.
+#[derive(Debug, Clone)]
+pub(crate) struct Watch {
+    pub(crate) tracks: LiveTracks,
+    pub(crate) place: Option<WatchedPlace>,
+}
+
+impl Watch {
+    pub(crate) fn new(tracks: LiveTracks) -> Self {
+        let place = None;
+        Self { tracks, place }
+    }
+
+    /// Looks at this memory of the place from now on.
+    ///
+    /// # Errors
+    /// When it has another number of raw frames in a step.
+    pub(crate) fn remember(&mut self, place: WatchedPlace) -> Result<(), DdlError> {
+        let (camera, memory) = (self.tracks.frame_step(), place.memory().frame_step());
+        if camera != memory {
+            return Err(DdlError::MemoryFrameStep { camera, memory });
+        }
+        self.place = Some(place);
+        Ok(())
+    }
+
+    /// Adds a frame; where somebody can be forecast from it, the window with what the memory recalls, and what is made
+    /// of it. All or nothing.
+    pub(crate) fn push<T, E>(
+        &mut self,
+        frame: i64,
+        people: Vec<(PedestrianId, Position)>,
+        make: impl FnOnce(&Window) -> Result<T, E>,
+    ) -> Result<Option<(Window, T)>, DdlError>
+    where
+        DdlError: From<E>,
+    {
+        let tracks = self.tracks.after(frame, people.iter().copied())?;
+        let made = match tracks.window() {
+            None => None,
+            Some(window) => {
+                let window = match &self.place {
+                    Some(place) => place.recalling(window),
+                    None => window,
+                };
+                let made = make(&window)?;
+                Some((window, made))
+            }
+        };
+        if let Some(place) = &mut self.place {
+            place.observe(frame, people, made.as_ref().map(|(window, _)| window))?;
+        }
+        self.tracks = tracks;
+        Ok(made)
+    }
+
+    /// The tracker starts anew: any frame may come next.
+    pub(crate) fn clear(&mut self) {
+        self.tracks.clear();
+        if let Some(place) = &mut self.place {
+            place.interrupt();
+        }
+    }
+}

@@ -1,0 +1,493 @@
+//! Many cameras in one process: each is answered as if it were alone.
+
+use ddl::data::{Completion, PedestrianId, Position, SceneName, Window};
+use ddl::eval::baseline::ConstantVelocity;
+use ddl::eval::{ForecastError, Forecaster};
+use ddl::memory::SceneMemory;
+use ddl::{DdlError, Forecast, LiveForecaster, LiveScenes, Variant, WatchedPlace};
+use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
+use ddl_tests::place::{Place, json_lines};
+use ddl_tests::{bits, drawn_model, program};
+use proptest::prelude::*;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+use std::fmt::Write as _;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::Stdio;
+use std::time::Duration;
+
+type Seen = (i64, Vec<(PedestrianId, Position)>);
+
+fn name(scene: &str) -> SceneName {
+    SceneName::new(scene).unwrap()
+}
+
+/// What a stream is answered: the frame, and the bits of its forecast.
+type Answers = Vec<(i64, Vec<u64>)>;
+
+fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
+    let mut live = LiveForecaster::new(model).completing(Completion::USUAL);
+    let answers = frames.iter().filter_map(|(frame, people)| {
+        let now = live.push(*frame, people.iter().copied()).unwrap()?;
+        Some((now.frame(), bits::of(&now.forecast)))
+    });
+    answers.collect()
+}
+
+/// Frames of three scenes, and in which order they come and are forecast.
+fn streams() -> impl Strategy<Value = (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize)> {
+    let walk = |(scene, frame): (usize, i64), id: i64| {
+        let t = frame as f64;
+        let place = [
+            0.4 * t + id as f64,
+            0.3 * (id as f64 + scene as f64) * t.sin(),
+        ];
+        (PedestrianId(id), place)
+    };
+    let frames = move |scene: usize| {
+        let people = prop::collection::btree_set(0..4_i64, 0..4);
+        prop::collection::btree_map(0..25_i64, people, 0..20).prop_map(move |frames| {
+            let frames = frames.into_iter();
+            let seen = frames.map(|(frame, people)| {
+                let seen = people.into_iter().map(|id| walk((scene, frame), id));
+                (frame, seen.collect())
+            });
+            seen.collect::<Vec<Seen>>()
+        })
+    };
+    let turns = prop::collection::vec((0..3_usize, prop::bool::weighted(0.3)), 80);
+    ((0..3).map(frames).collect::<Vec<_>>(), turns, 1..20_usize)
+}
+
+fn check_interleaved(
+    model: &impl Forecaster,
+    (frames, turns, batch): (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize),
+) -> Result<(), TestCaseError> {
+    let names = ["hall", "yard", "gate"].map(name);
+    let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
+    let mut scenes = LiveScenes::new().completing(Completion::USUAL);
+    let mut latest = scenes.clone().latest_only();
+    let mut answers = BTreeMap::<SceneName, Answers>::new();
+    let mut answers_of_latest = answers.clone();
+    let take = |scenes: &mut LiveScenes, to: &mut BTreeMap<SceneName, Answers>| {
+        for made in scenes.forecast(model, batch) {
+            let frame = made.window.frames()[7];
+            let answers = to.entry(made.scene.unwrap()).or_default();
+            answers.push((frame, bits::of(&made.forecast.unwrap())));
+        }
+    };
+    let rest = (0..3).cycle().take(60).map(|scene| (scene, false));
+    for (scene, forecasts) in turns.into_iter().chain(rest) {
+        if let Some((frame, people)) = queues[scene].pop_front() {
+            for scenes in [&mut scenes, &mut latest] {
+                scenes
+                    .observe(Some(&names[scene]), *frame, people.iter().copied())
+                    .unwrap();
+            }
+        }
+        if forecasts {
+            take(&mut scenes, &mut answers);
+            take(&mut latest, &mut answers_of_latest);
+        }
+    }
+    while scenes.waiting() + latest.waiting() > 0 {
+        take(&mut scenes, &mut answers);
+        take(&mut latest, &mut answers_of_latest);
+    }
+    prop_assert_eq!(scenes.dropped(), 0);
+    let mut dropped = 0;
+    for (name, frames) in names.iter().zip(&frames) {
+        let expected = alone(model, frames);
+        let of_latest = answers_of_latest.remove(name).unwrap_or_default();
+        dropped += expected.len() - of_latest.len();
+        // What is answered is what would be answered without the drops, and the last frame is answered.
+        let all: BTreeMap<_, _> = expected.iter().cloned().collect();
+        prop_assert!(
+            of_latest
+                .iter()
+                .all(|(frame, bits)| all.get(frame) == Some(bits))
+        );
+        if let (Some(last), Some((frame, _))) = (expected.last(), frames.last())
+            && last.0 == *frame
+        {
+            prop_assert_eq!(of_latest.last(), Some(last));
+        }
+        prop_assert_eq!(answers.remove(name).unwrap_or_default(), expected);
+    }
+    prop_assert_eq!(latest.dropped(), dropped as u64);
+    Ok(())
+}
+
+proptest! {
+    #[test]
+    fn each_scene_is_forecast_as_if_it_were_alone(streams in streams()) {
+        check_interleaved(&ConstantVelocity::last_step(), streams)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(6))]
+    #[test]
+    fn so_it_is_by_a_network_in_batches(streams in streams()) {
+        check_interleaved(&drawn_model::of(Variant::Full), streams)?;
+    }
+}
+
+/// Refuses windows in which somebody stands at x = 99.
+struct Picky;
+
+impl Forecaster for Picky {
+    fn name(&self) -> String {
+        "picky".to_owned()
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        if window.observed(0)[7][0] > 98.0 {
+            return Err(ForecastError::model("picky", std::io::Error::other("far")));
+        }
+        ConstantVelocity::last_step().forecast(window)
+    }
+}
+
+#[test]
+fn a_failure_of_one_scene_is_its_own() {
+    let mut scenes = LiveScenes::new();
+    for frame in 0..8 {
+        for (scene, x) in [("a", 0.0), ("b", 99.0), ("c", 1.0)] {
+            let seen = [(PedestrianId(1), [x, 0.0])];
+            scenes.observe(Some(&name(scene)), frame, seen).unwrap();
+        }
+    }
+    let made = scenes.forecast(&Picky, 100);
+    let made: Vec<_> = made.iter().map(|made| made.forecast.is_ok()).collect();
+    assert_eq!(made, [true, false, true]);
+    // and so is a frame that cannot be taken
+    let error = scenes.observe(Some(&name("a")), 3, []).unwrap_err();
+    assert!(matches!(error, DdlError::Live(_)), "{error}");
+    let seen = [(PedestrianId(1), [0.0, 0.0])];
+    for scene in ["a", "c"] {
+        scenes.observe(Some(&name(scene)), 8, seen).unwrap();
+    }
+    assert_eq!(scenes.next_batch(100).windows.len(), 2);
+}
+
+#[test]
+fn what_is_kept_is_bounded() {
+    let mut scenes = LiveScenes::new();
+    for scene in 0..LiveScenes::MOST_SCENES {
+        scenes
+            .observe(Some(&name(&scene.to_string())), 0, [])
+            .unwrap();
+    }
+    let error = scenes
+        .observe(Some(&name("more")), 0, [])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("more than 2000") && error.contains("10 minutes"),
+        "{error}"
+    );
+    // A frame is waited for no longer.
+    let mut scenes = scenes.forgetting_after(Duration::ZERO);
+    scenes.observe(Some(&name("more")), 0, []).unwrap();
+    assert_eq!(scenes.len(), 1);
+    let mut scenes = LiveScenes::new();
+    let seen = [(PedestrianId(1), [0.0, 0.0])];
+    let waiting = LiveScenes::MOST_WAITING as i64;
+    for frame in 0..waiting + 7 {
+        scenes.observe(None, frame, seen).unwrap();
+    }
+    let error = scenes
+        .observe(None, waiting + 7, seen)
+        .unwrap_err()
+        .to_string();
+    assert!(error.contains("10000 frames wait"), "{error}");
+    scenes.next_batch(1);
+    scenes.observe(None, waiting + 7, seen).unwrap();
+}
+
+#[test]
+fn each_scene_remembers_its_place() {
+    let model = drawn_model::of(Variant::Full);
+    let memory = || SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
+    let mut scenes = LiveScenes::with_frame_step(FRAME_STEP).unwrap();
+    for (scene, crowd) in [("hall", "corridor"), ("yard", "plaza")] {
+        let name = name(scene);
+        let place = WatchedPlace::new(&model, memory()).unwrap();
+        scenes.remember(Some(&name), place).unwrap();
+        let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
+        let mut live = live.remembering(memory()).unwrap();
+        let mut seen = BTreeMap::<i64, Vec<_>>::new();
+        for (frame, id, x, y) in own_tracks::of_scene(crowd, 0..400) {
+            seen.entry(frame)
+                .or_default()
+                .push((PedestrianId(id), [x, y]));
+        }
+        let mut windows = Vec::new();
+        for (frame, people) in seen {
+            scenes.observe(Some(&name), frame, people.clone()).unwrap();
+            windows.extend(live.push(frame, people).unwrap().map(|now| now.window));
+        }
+        assert_eq!(scenes.next_batch(usize::MAX).windows, windows);
+        let place = scenes.place(Some(&name)).unwrap();
+        assert_eq!(place.memory(), live.memory().unwrap());
+    }
+}
+
+const LINE: &str = "forecast - --model run --threads 1 --frame-step 10";
+
+/// Recordings of two scenes, whose lines come a frame of each in turn, the second one two frames later.
+fn recordings() -> [(&'static str, Vec<Row>); 2] {
+    let three = own_tracks::three_people(12);
+    let crowd = own_tracks::of_scene("plaza", 0..100).into_iter();
+    let crowd = crowd.map(|(frame, ..)| frame).collect::<BTreeSet<_>>();
+    let frames: Vec<i64> = crowd.into_iter().take(10).collect();
+    let until = frames[frames.len() - 1] + 1;
+    [
+        ("hall", three),
+        ("Tür, 2", own_tracks::of_scene("plaza", frames[0]..until)),
+    ]
+}
+
+fn interleaved(line: impl Fn(&str, &Row) -> String) -> String {
+    let mut text = String::new();
+    let mut queues = recordings().map(|(scene, rows)| (scene, VecDeque::from(rows)));
+    while queues.iter().any(|(_, rows)| !rows.is_empty()) {
+        for (scene, rows) in &mut queues {
+            // Not at the end of a frame: lines of a scene stand between those of another.
+            for row in rows.drain(..rows.len().min(4)) {
+                text += &line(scene, &row);
+            }
+        }
+    }
+    text
+}
+
+fn as_csv(scene: &str, (frame, id, x, y): &Row) -> String {
+    format!("{frame},\"{scene}\",{id},{x},{y}\n")
+}
+
+fn as_json(scene: &str, (frame, id, x, y): &Row) -> String {
+    format!(
+        "{{\"track\":{{\"scene\":\"{scene}\",\"f\":{frame},\"p\":{id},\"x\":{x},\"y\":{y}}}}}\n"
+    )
+}
+
+const HEADER: &str = "frame,scene,pedestrian,x,y\n";
+
+#[test]
+fn interleaved_recordings_are_answered_as_each_alone() {
+    let place = Place::with_model();
+    let options = "--format jsonl --region 0.5,0.9";
+    let mut expected = BTreeMap::new();
+    for (scene, rows) in recordings() {
+        let finished = place.run_on(&own_tracks::csv(&rows), &format!("{LINE} {options}"));
+        expected.insert(scene.to_owned(), json_lines::<Value>(&finished.succeeds()));
+    }
+    assert!(expected.values().all(|lines| lines.len() > 20));
+    for text in [
+        HEADER.to_owned() + &interleaved(as_csv),
+        interleaved(as_json),
+    ] {
+        let finished = place.run_on(&text, &format!("{LINE} {options}"));
+        assert!(!finished.stderr.contains("error"), "{finished:?}");
+        let mut answers = BTreeMap::<String, Vec<Value>>::new();
+        for mut line in json_lines::<Value>(&finished.succeeds()) {
+            let scene = line.as_object_mut().unwrap().remove("scene").unwrap();
+            answers
+                .entry(scene.as_str().unwrap().to_owned())
+                .or_default()
+                .push(line);
+        }
+        assert!(answers == expected, "other answers than alone");
+    }
+}
+
+#[test]
+fn a_table_has_a_column_for_the_scene() {
+    let place = Place::with_model();
+    let text = HEADER.to_owned() + &interleaved(as_csv);
+    let finished = place.run_on(&text, &format!("{LINE} --one"));
+    let mixed = finished.succeeds();
+    assert!(mixed.starts_with("scene,observed_until,pedestrian,"));
+    let mut reader = csv::Reader::from_reader(mixed.as_bytes());
+    let records: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    for (scene, rows) in recordings() {
+        let alone = place.run_on(&own_tracks::csv(&rows), &format!("{LINE} --one"));
+        let alone = alone.succeeds();
+        let mut alone = csv::Reader::from_reader(alone.as_bytes());
+        let alone: Vec<Vec<String>> = alone.deserialize().map(Result::unwrap).collect();
+        let of_scene = records.iter().filter(|record| &record[0] == scene);
+        let of_scene = of_scene.map(|record| record.iter().skip(1).map(str::to_owned).collect());
+        assert_eq!(of_scene.collect::<Vec<Vec<String>>>(), alone);
+    }
+}
+
+#[test]
+fn a_wrong_line_of_one_scene_leaves_the_others_as_they_are() {
+    let place = Place::with_model();
+    let good = HEADER.to_owned() + &interleaved(as_csv);
+    let answers = place.run_on(&good, &format!("{LINE} --one")).succeeds();
+    let mut bad = String::new();
+    for (i, line) in good.lines().enumerate() {
+        let _ = writeln!(bad, "{line}");
+        match i {
+            20 => bad += "-5,hall,1,0,0\n",
+            30 => bad += "200,,1,0,0\n",
+            _ => {}
+        }
+    }
+    let finished = place.run_on(&bad, &format!("{LINE} --one"));
+    assert_eq!(finished.code, Some(1), "{finished:?}");
+    assert!(finished.stdout == answers, "other answers than without");
+    for words in [
+        "line 22: frame -5 of scene hall comes after frame",
+        "this is left out, and the stream goes on",
+        "error: standard input: 2 lines or frames were wrong, and were left out",
+    ] {
+        assert!(finished.stderr.contains(words), "{words}: {finished:?}");
+    }
+}
+
+#[test]
+fn what_does_not_fit_scenes_is_refused() {
+    let place = Place::with_model();
+    std::fs::create_dir(place.at("memories")).unwrap();
+    place.write("scenes.csv", HEADER.to_owned() + &interleaved(as_csv));
+    place.all_fail(&[
+        "forecast scenes.csv --model run => line 2: a file is of one recording",
+        "forecast tracks.csv --model run --latest => --latest is for tracks as they come",
+    ]);
+    let tracks = own_tracks::csv(&own_tracks::three_people(9));
+    let scenes = place.text("scenes.csv");
+    for (input, options, words) in [
+        (
+            &tracks,
+            "--memory memories",
+            "memories is a folder, and the lines name no scenes",
+        ),
+        (
+            &scenes,
+            "--memory new.memory",
+            "new.memory is a file of one place",
+        ),
+    ] {
+        let finished = place.run_on(input, &format!("{LINE} {options}"));
+        assert!(finished.fails().contains(words));
+    }
+    assert!(!place.at("new.memory").exists());
+}
+
+#[test]
+fn each_scene_has_a_memory_file_of_its_own() {
+    let place = Place::with_model();
+    std::fs::create_dir(place.at("memories")).unwrap();
+    place.write("memories/hall.memory", "damaged");
+    let text = HEADER.to_owned() + &interleaved(as_csv);
+    let forgetful = place.run_on(&text, &format!("{LINE} --one")).succeeds();
+    let finished = place.run_on(&text, &format!("{LINE} --one --memory memories"));
+    // What is wrong with one file is told, and its scene is forecast without.
+    assert_eq!(finished.code, Some(1), "{finished:?}");
+    assert_eq!(
+        finished
+            .stderr
+            .matches("hall.memory is not a scene memory")
+            .count(),
+        1
+    );
+    assert_eq!(finished.stdout.lines().count(), forgetful.lines().count());
+    assert_eq!(place.text("memories/hall.memory"), "damaged");
+    place.remove("memories/hall.memory");
+    place
+        .run_on(&text, &format!("{LINE} --one --memory memories"))
+        .succeeds();
+    for (scene, file) in [(0, "hall.memory"), (1, "T%C3%BCr%2C%202.memory")] {
+        let memory = SceneMemory::read(&place.at(&format!("memories/{file}"))).unwrap();
+        let mut alone = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
+        let mut frames = BTreeMap::<i64, Vec<_>>::new();
+        for &(frame, id, x, y) in &recordings()[scene].1 {
+            frames
+                .entry(frame)
+                .or_default()
+                .push((PedestrianId(id), [x, y]));
+        }
+        // The second scene was watched twice.
+        if scene == 0 {
+            for (frame, people) in frames {
+                alone.observe(frame, people).unwrap();
+            }
+            assert_eq!(memory, alone);
+        }
+        assert!(memory.last_frame().is_some());
+    }
+}
+
+#[test]
+fn only_the_latest_frames_are_forecast_and_the_others_counted() {
+    let place = Place::with_model();
+    let text = HEADER.to_owned() + &interleaved(as_csv);
+    let answered = |text: &str| -> BTreeSet<(String, i64)> {
+        let lines = json_lines::<Value>(text).into_iter();
+        lines
+            .map(|line| {
+                (
+                    line["scene"].to_string(),
+                    line["observed_until"].as_i64().unwrap(),
+                )
+            })
+            .collect()
+    };
+    let line = format!("{LINE} --one --format jsonl");
+    let all = answered(&place.run_on(&text, &line).succeeds());
+    let finished = place.run_on(&text, &format!("{line} --latest"));
+    let told = finished.stderr.clone();
+    let latest = answered(&finished.succeeds());
+    assert!(latest.is_subset(&all));
+    for (scene, rows) in recordings() {
+        let last = rows[rows.len() - 1].0;
+        assert!(
+            latest.contains(&(format!("{scene:?}"), last)),
+            "{scene}: {latest:?}"
+        );
+    }
+    let dropped = all.len() - latest.len();
+    let words = format!("and {dropped} dropped, because a later one came first");
+    assert_eq!(told.contains(&words), dropped > 0, "{told}");
+}
+
+#[test]
+fn a_scene_that_falls_silent_blocks_no_other() {
+    let place = Place::with_model();
+    let mut command = program::command(place.path(), &format!("{LINE} --one --format jsonl"));
+    let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut input = child.stdin.take().unwrap();
+    let mut output = BufReader::new(child.stdout.take().unwrap());
+    input.write_all(HEADER.as_bytes()).unwrap();
+    // Never whole, until the end.
+    for frame in [0, 10] {
+        input
+            .write_all(as_csv("silent", &(frame, 1, 0.0, 0.0)).as_bytes())
+            .unwrap();
+    }
+    let mut answer = || -> (String, i64) {
+        let mut line = String::new();
+        output.read_line(&mut line).unwrap();
+        let line: Value = serde_json::from_str(&line).unwrap();
+        (
+            line["scene"].as_str().unwrap().to_owned(),
+            line["observed_until"].as_i64().unwrap(),
+        )
+    };
+    for frame in 0..6 {
+        let line = as_csv("hall", &(10 * frame, 1, 0.5 * frame as f64, 0.0)) + "\n";
+        input.write_all(line.as_bytes()).unwrap();
+        input.flush().unwrap();
+        if frame > 0 {
+            assert_eq!(answer(), ("hall".to_owned(), 10 * frame));
+        }
+    }
+    drop(input);
+    assert_eq!(answer(), ("silent".to_owned(), 10));
+    assert!(child.wait().unwrap().success());
+}
