@@ -93,14 +93,8 @@ pub(crate) enum FormatProblem {
         frame: i64,
         first_line: usize,
     },
-<<<<<<< HEAD
-    #[error("frame {frame} comes after frame {last}; a stream of tracks must be in order of time")]
-    OutOfOrder { frame: i64, last: i64 },
-    #[error("more than {limit} pedestrians in frame {frame}; does the frame number increase?")]
-    Crowd { frame: i64, limit: usize },
-=======
     #[error(
-        "frame {frame}{} comes after frame {last}; tracks that are read as they arrive must be in order of time",
+        "frame {frame}{} comes after frame {last}; a stream of tracks must be in order of time",
         of(.scene)
     )]
     OutOfOrder {
@@ -113,12 +107,12 @@ pub(crate) enum FormatProblem {
     #[error("track.scene must be a text, such as \"hall\", found {found}")]
     SceneIsNoText { found: String },
     #[error(
-        "{} on line {first_line}; name the scene of every observation, or of none",
-        if *.named { "a scene is named here, but none" } else { "track.scene is missing, but there is one" }
+        "{} on line {first_line}; name the scene of every observation or omit it everywhere",
+        if *.named { "a scene is named here, but not" } else { "track.scene is missing here, but present" }
     )]
     MixedScenes { named: bool, first_line: usize },
     #[error(
-        "scene {scene} would be one more than {limit}; a scene is forgotten when none of its lines has come for {minutes} minutes; \
+        "scene {scene} exceeds the limit of {limit} scenes; a scene is forgotten after {minutes} minutes without a line; \
          give the other scenes to another `ddl forecast -`"
     )]
     TooManyScenes {
@@ -127,11 +121,12 @@ pub(crate) enum FormatProblem {
         minutes: u64,
     },
     #[error(
-        "a file is of one recording, and this one names scenes; write it to `ddl forecast -`, or make a file of each scene without the names"
+        "a file holds one recording, but this one names scenes; pipe it to `ddl forecast -`, or make a file of each \
+         scene without the column"
     )]
     ScenesInFile,
     #[error(
-        "more than {limit} people in {}; does the frame number count on?",
+        "more than {limit} pedestrians in {}; does the frame number increase?",
         crowded(.scene, *.frame)
     )]
     Crowd {
@@ -139,7 +134,6 @@ pub(crate) enum FormatProblem {
         frame: i64,
         limit: usize,
     },
->>>>>>> cameras/cameras
     #[error("the line is longer than {limit} bytes; is it a file of tracks?")]
     LongLine { limit: usize },
     #[error("not a well-formed table: {detail}")]

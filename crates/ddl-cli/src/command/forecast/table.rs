@@ -39,13 +39,9 @@ const COLUMNS: [&str; 12] = [
     "filled",
     "familiarity",
 ];
-<<<<<<< HEAD
-/// Further columns for the certificate of a position.
-=======
-/// A column before them, where the tracks name scenes.
+/// An additional first column, if the tracks name scenes.
 const SCENE: &str = "scene";
-/// Further columns: what its certificate says of a position.
->>>>>>> cameras/cameras
+/// Further columns for the certificate of a position.
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
 /// The table of these moments, with a column of radii for each requested region.
