@@ -355,7 +355,7 @@ fn what_does_not_fit_scenes_is_refused() {
     std::fs::create_dir(place.at("memories")).unwrap();
     place.write("scenes.csv", HEADER.to_owned() + &interleaved(as_csv));
     place.all_fail(&[
-        "forecast scenes.csv --model run => line 2: a file is of one recording",
+        "forecast scenes.csv --model run => line 2: a file holds one recording",
         "forecast tracks.csv --model run --latest => --latest is for tracks as they come",
     ]);
     let tracks = own_tracks::csv(&own_tracks::three_people(9));

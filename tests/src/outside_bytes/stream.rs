@@ -23,7 +23,7 @@ pub fn read(bytes: &[u8]) {
         let last = tracks.last_frame();
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
         assert_eq!(frame.is_first, last.is_none());
-        let people = || frame.people.iter().copied();
+        let pedestrians = || frame.people.iter().copied();
         assert!(
             pedestrians()
                 .all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
@@ -34,7 +34,7 @@ pub fn read(bytes: &[u8]) {
         assert_eq!(window, tracks.window());
         let before = tracks.clone();
         assert!(tracks.push(frame.number, pedestrians()).is_err());
-        assert_eq!(tracks, before);
+        assert_eq!(*tracks, before);
     }
 }
 

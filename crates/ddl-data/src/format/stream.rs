@@ -288,7 +288,7 @@ impl<R: BufRead> FrameReader<R> {
         } else {
             self.whole(&name)
         };
-        let (pedestrian, word) = self.numbered(&name, seen.who);
+        let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
         let (line, limit) = (self.lines, LARGEST_CROWD);
         let scene = self
             .scenes
@@ -373,11 +373,15 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     /// The number of a pedestrian of the scene, and its word if it has one.
-    fn numbered(&mut self, name: &Option<SceneName>, who: Who) -> (PedestrianId, Option<Arc<str>>) {
+    fn numbered(
+        &mut self,
+        name: &Option<SceneName>,
+        who: PedestrianField,
+    ) -> (PedestrianId, Option<Arc<str>>) {
         let who = match who {
-            Who::Number(number, None) => return (PedestrianId(number), None),
+            PedestrianField::Number(number, None) => return (PedestrianId(number), None),
             // after a word, `1e3` is one as well, unless it was a number before
-            Who::Number(number, Some(text)) => {
+            PedestrianField::Number(number, Some(text)) => {
                 let has_words = self.scenes.get(name).is_some_and(|scene| scene.has_words);
                 let written = (name.clone(), text);
                 if !has_words || self.numbers.contains(&written) {
@@ -386,9 +390,9 @@ impl<R: BufRead> FrameReader<R> {
                     }
                     return (PedestrianId(number), None);
                 }
-                Who::Number(number, Some(written.1))
+                PedestrianField::Number(number, Some(written.1))
             }
-            word @ Who::Word(_) => word,
+            word @ PedestrianField::Word(_) => word,
         };
         if let Some(scene) = self.scenes.get_mut(name) {
             scene.has_words = true;

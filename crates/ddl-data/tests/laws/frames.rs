@@ -233,12 +233,12 @@ fn what_is_wrong_with_scenes_is_named() {
         (
             "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n"
                 .to_owned(),
-            ["line 2: track.scene is missing, but there is one on line 1", "or of none"],
+            ["line 2: track.scene is missing here, but present on line 1", "or omit it everywhere"],
         ),
         (
             "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n"
                 .to_owned(),
-            ["line 2: a scene is named here, but none on line 1", "or of none"],
+            ["line 2: a scene is named here, but not on line 1", "or omit it everywhere"],
         ),
     ] {
         let message = frames(text.as_bytes()).unwrap_err().to_string();
@@ -248,7 +248,7 @@ fn what_is_wrong_with_scenes_is_named() {
     }
     let file = b"frame,pedestrian,x,y,scene\n0,1,2,3,a\n";
     let refused = parse_recording(file, "t.csv", Format::Table).unwrap_err();
-    let told = "t.csv, line 2: a file is of one recording, and this one names scenes";
+    let told = "t.csv, line 2: a file holds one recording, but this one names scenes";
     assert!(refused.to_string().starts_with(told), "{refused}");
 }
 
@@ -272,7 +272,7 @@ fn scenes_that_fall_silent_make_room() {
     let mut reader = FrameReader::new(text.as_bytes(), "tracker");
     let error = reader.next_frame().unwrap_err().to_string();
     assert!(
-        error.starts_with("tracker, line 1002: scene 1000 would be one more than 1000")
+        error.starts_with("tracker, line 1002: scene 1000 exceeds the limit of 1000 scenes")
             && error.contains("10 minutes"),
         "{error}"
     );
