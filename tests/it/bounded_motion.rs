@@ -148,7 +148,10 @@ proptest! {
 fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
     let windows = [window(tracks.to_vec())];
     let many = model.forecast_certified(&windows).unwrap().remove(0);
-    let one = model.forecast_one_certified(&windows).unwrap().remove(0);
+    let one = model
+        .forecast_central_certified(&windows)
+        .unwrap()
+        .remove(0);
     for (i, observed) in tracks.iter().enumerate() {
         within_bounds(observed, &many, i)?;
         within_bounds(observed, &one, i)?;
@@ -178,13 +181,13 @@ fn the_certified_forecast_is_the_forecast() {
     let windows = crowd::windows(3, 10);
     for variant in [Variant::Full, Variant::NoGoalShift] {
         let model = drawn_model::of(variant);
-        let model = model.in_precision(Precision::Bf16).unwrap();
+        let model = model.with_precision(Precision::Bf16).unwrap();
         let goals = model.goal_model().goals(&windows).unwrap();
         let many = model.forecast_certified(&windows).unwrap();
-        let one = model.forecast_one_certified(&windows).unwrap();
+        let one = model.forecast_central_certified(&windows).unwrap();
         let plain = [
             model.forecast_all(&windows).unwrap(),
-            model.forecast_one(&windows).unwrap(),
+            model.forecast_central(&windows).unwrap(),
         ];
         for ((certified, plain), hypotheses) in [many, one].iter().zip(&plain).zip([20, 1]) {
             for ((certified, plain), window) in certified.iter().zip(plain).zip(&windows) {
@@ -263,7 +266,7 @@ fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines
 /// single forecast leads to the median of the goals.
 #[test]
 fn filled_in_positions_are_not_evidence() {
-    let mut tracks = LiveTracks::new().completing(Completion::USUAL);
+    let mut tracks = LiveTracks::new().with_completion(Completion::USUAL);
     let pedestrian = PedestrianId(7);
     assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);
     let window = tracks.push(1, [(pedestrian, [0.1, 0.0])]).unwrap().unwrap();
@@ -271,7 +274,7 @@ fn filled_in_positions_are_not_evidence() {
     for model in builtin() {
         let windows = std::slice::from_ref(&window);
         let median = model.goal_model().goals(windows).unwrap()[0][0].median();
-        let one = model.forecast_one(windows).unwrap();
+        let one = model.forecast_central(windows).unwrap();
         assert_eq!(one[0].goal(0, 0), Some(median), "{}", model.source());
     }
 }

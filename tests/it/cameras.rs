@@ -26,7 +26,7 @@ fn name(scene: &str) -> SceneName {
 type Answers = Vec<(i64, Vec<u64>)>;
 
 fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
-    let mut live = LiveForecaster::new(model).completing(Completion::USUAL);
+    let mut live = LiveForecaster::new(model).with_completion(Completion::USUAL);
     let answers = frames.iter().filter_map(|(frame, people)| {
         let now = live.push(*frame, people.iter().copied()).unwrap()?;
         Some((now.frame(), bits::of(&now.forecast)))
@@ -65,7 +65,7 @@ fn check_interleaved(
 ) -> Result<(), TestCaseError> {
     let names = ["hall", "yard", "gate"].map(name);
     let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
-    let mut scenes = LiveScenes::new().completing(Completion::USUAL);
+    let mut scenes = LiveScenes::new().with_completion(Completion::USUAL);
     let mut latest = scenes.clone().latest_only();
     let mut answers = BTreeMap::<SceneName, Answers>::new();
     let mut answers_of_latest = answers.clone();
@@ -238,7 +238,7 @@ const LINE: &str = "forecast - --model run --threads 1 --frame-step 10";
 
 /// Recordings of two scenes, whose lines come a frame of each in turn, the second one two frames later.
 fn recordings() -> [(&'static str, Vec<Row>); 2] {
-    let three = own_tracks::three_people(12);
+    let three = own_tracks::three_pedestrians(12);
     let crowd = own_tracks::of_scene("plaza", 0..100).into_iter();
     let crowd = crowd.map(|(frame, ..)| frame).collect::<BTreeSet<_>>();
     let frames: Vec<i64> = crowd.into_iter().take(10).collect();
@@ -358,7 +358,7 @@ fn what_does_not_fit_scenes_is_refused() {
         "forecast scenes.csv --model run => line 2: a file holds one recording",
         "forecast tracks.csv --model run --latest => --latest is for tracks as they come",
     ]);
-    let tracks = own_tracks::csv(&own_tracks::three_people(9));
+    let tracks = own_tracks::csv(&own_tracks::three_pedestrians(9));
     let scenes = place.text("scenes.csv");
     for (input, options, words) in [
         (

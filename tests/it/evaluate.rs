@@ -60,7 +60,7 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     let (stable, all) = ((model.certified, model.decreasing), (Some(1.0), 1.0));
     assert_eq!(
         stable == all,
-        !protocol.shows_future(),
+        !protocol.gives_future(),
         "{protocol}: {model:?}"
     );
     let plain = named("DDL with plain Euler steps").map(stability);

@@ -32,7 +32,7 @@ fn near_pairs(windows: &[Window], forecasts: &[Forecast], distance: f64) -> usiz
 fn free_and_careful() -> [Ddl; 2] {
     let clearance = Clearance::new(0.5).unwrap();
     let [free, careful] = [0, 1].map(|_| drawn_model::of(Variant::Full));
-    [free, careful.keeping_clear(clearance).unwrap()]
+    [free, careful.with_clearance(clearance).unwrap()]
 }
 
 #[test]
@@ -45,8 +45,8 @@ fn fewer_pairs_come_close_and_all_arrive() {
     for (free, clear) in [
         (free.forecast_all(&windows).unwrap(), clear),
         (
-            free.forecast_one(&windows).unwrap(),
-            careful.forecast_one(&windows).unwrap(),
+            free.forecast_central(&windows).unwrap(),
+            careful.forecast_central(&windows).unwrap(),
         ),
     ] {
         let [before, after] = [&free, &clear].map(|all| near_pairs(&windows, all, 0.5));
@@ -129,7 +129,7 @@ fn models_without_a_flow_are_refused() {
         }
         assert_eq!(live.tracks().last_frame(), None);
         let error = model
-            .keeping_clear(Clearance::new(0.4).unwrap())
+            .with_clearance(Clearance::new(0.4).unwrap())
             .unwrap_err();
         assert!(matches!(error, DdlError::NoFlow { variant: of } if of == variant));
     }

@@ -2,7 +2,9 @@
 //! forecasters that need the future are refused.
 
 use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
-use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEnd, WeightedGoals};
+use ddl::eval::baseline::{
+    ConstantVelocity, GoalSource, StraightLine, TrueEndpoint, WeightedGoals,
+};
 use ddl::eval::{Forecast, ForecastError, leak};
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
 use ddl::{Ddl, Forecaster, Protocol, Remembering, Variant};
@@ -151,7 +153,7 @@ fn forecasters_that_need_the_future_are_refused() {
     let goals = EstimatedGoals::with(GoalEstimatorParams::published());
     let error = goals.0.estimate(windows[0].observed(0)).unwrap_err();
     assert!(error.to_string().contains('9'), "{error}");
-    let (published, oracle) = (StraightLine::to(goals), StraightLine::to(TrueEnd));
+    let (published, oracle) = (StraightLine::to(goals), StraightLine::to(TrueEndpoint));
     for forecaster in [&published as &dyn Forecaster, &oracle] {
         assert!(leak::find(forecaster, &windows[0]).is_err());
         assert!(Protocol::Published.forecast(forecaster, &windows).is_ok());

@@ -111,7 +111,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
     let mut elsewhere = tried(500.0, 9);
     let few = elsewhere.on_trial().unwrap();
     assert!((1..13).contains(&few), "{few}");
-    elsewhere.end_trial();
+    elsewhere.finish_test();
     assert_eq!(elsewhere.on_trial(), Some(few));
     assert_eq!(elsewhere.refused(), None);
     // In its own place it is accepted before 30 pedestrians were seen.

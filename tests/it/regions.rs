@@ -103,7 +103,7 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     };
     let live = LiveForecaster::with_frame_step(&model, step).unwrap();
     let mut plain = live.clone();
-    let mut adapting = live.adapting_regions(AdaptiveRegions::default());
+    let mut adapting = live.with_adaptive_regions(AdaptiveRegions::default());
     let mut certified = adapting.clone();
     let mut expected = AdaptiveRegions::default();
     for frame in (0..30).map(|frame| frame * step) {

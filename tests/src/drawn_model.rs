@@ -3,7 +3,7 @@
 use crate::crowd;
 use crate::folder_contents::{self, Contents};
 use ddl::data::{Convention, Window, WindowRule};
-use ddl::network::weights::{numbers_digest, save_weights};
+use ddl::network::weights::{save_weights, tensors_digest};
 use ddl::network::{
     EpochReport, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig,
     TrainingConfig,
@@ -136,7 +136,7 @@ pub fn experts(config: &RunConfig, positions: &[f64]) -> Vec<u8> {
     let bytes: Vec<u8> = positions.iter().flat_map(|x| x.to_le_bytes()).collect();
     let shape = vec![positions.len() / 40, 20, 2];
     let tracks = TensorView::new(Dtype::F64, shape, &bytes).expect("the tracks are complete");
-    let digest = numbers_digest([("tracks", tracks.clone())]);
+    let digest = tensors_digest([("tracks", tracks.clone())]);
     let header = config.goals_origin().to_header(&digest);
     safetensors::serialize([("tracks", tracks)], Some(header)).expect("the parts make a file")
 }

@@ -48,7 +48,7 @@ impl Golden {
     pub fn of(model: &Ddl) -> Vec<Self> {
         let window = window();
         let forecast = model.forecast(&window).expect("a forecast");
-        let one = model.forecast_one(std::slice::from_ref(&window));
+        let one = model.forecast_central(std::slice::from_ref(&window));
         let one = one.expect("one forecast each").remove(0);
         let familiarity = model.goal_model().familiarity(&window);
         let of_pedestrian = |i: usize| {

@@ -15,7 +15,7 @@ impl Forecaster for One<'_> {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         // One window in, one forecast out.
-        let mut forecasts = self.0.forecast_one(std::slice::from_ref(window))?;
+        let mut forecasts = self.0.forecast_central(std::slice::from_ref(window))?;
         Ok(forecasts.remove(0))
     }
 }

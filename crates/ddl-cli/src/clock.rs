@@ -1,6 +1,6 @@
 //! Frame numbers of tracks whose recordings count frames in finer parts.
 
-use ddl::data::Doubt;
+use ddl::data::PlausibilityWarning;
 use serde::Serialize;
 
 #[derive(Debug, Clone, Copy)]
@@ -30,13 +30,13 @@ impl Clock {
         }
     }
 
-    pub(crate) fn of_doubt(self, doubt: Doubt) -> Doubt {
+    pub(crate) fn of_doubt(self, doubt: PlausibilityWarning) -> PlausibilityWarning {
         match doubt {
-            Doubt::Jump(mut fastest) => {
+            PlausibilityWarning::Jump(mut fastest) => {
                 fastest.frame = self.nearest(fastest.frame);
-                Doubt::Jump(fastest)
+                PlausibilityWarning::Jump(fastest)
             }
-            Doubt::NoSteps { frame_step } => Doubt::NoSteps {
+            PlausibilityWarning::NoSteps { frame_step } => PlausibilityWarning::NoSteps {
                 frame_step: self.nearest(frame_step),
             },
             other => other,

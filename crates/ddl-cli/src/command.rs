@@ -125,7 +125,7 @@ impl KeepClear {
     pub(crate) fn of(&self, model: Ddl) -> Result<Ddl, DdlError> {
         match self.keep_clear {
             None => Ok(model),
-            Some(clearance) => model.keeping_clear(clearance),
+            Some(clearance) => model.with_clearance(clearance),
         }
     }
 }

@@ -1,9 +1,9 @@
 //! A user's own recordings: one per file, in folders or named individually.
 
 use crate::telling::{self, tell};
-use crate::units::{InSteps, Units};
+use crate::units::{ResampledRecording, Units};
 use anyhow::{Context as _, bail};
-use ddl::data::Doubt;
+use ddl::data::PlausibilityWarning;
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
@@ -48,10 +48,13 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<InSteps>> {
+pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<ResampledRecording>> {
     let (read, errors) = read_each(files, units);
     all_read(errors, files.len())?;
-    Ok(read.into_iter().map(|(_, in_steps)| in_steps).collect())
+    Ok(read
+        .into_iter()
+        .map(|(_, resampled_to_steps)| resampled_to_steps)
+        .collect())
 }
 
 /// Prints messages about recordings; a message about several is printed once.
@@ -71,7 +74,7 @@ fn tell_grouped<'a>(kind: &str, of: impl IntoIterator<Item = (&'a str, String)>)
     }
 }
 
-pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a InSteps>) {
+pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ResampledRecording>) {
     let notes = read.into_iter().flat_map(|of| {
         let notes = of.notes.iter();
         notes.map(move |note| (of.recording.name(), note.clone()))
@@ -82,12 +85,12 @@ pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a InSteps>) {
 pub(crate) fn read_each<'f>(
     files: &'f [PathBuf],
     units: &Units,
-) -> (Vec<(&'f Path, InSteps)>, Vec<anyhow::Error>) {
+) -> (Vec<(&'f Path, ResampledRecording)>, Vec<anyhow::Error>) {
     let mut read = Vec::new();
     let mut errors = Vec::new();
     for file in files {
         match units.read(file) {
-            Ok(in_steps) => read.push((file.as_path(), in_steps)),
+            Ok(resampled_to_steps) => read.push((file.as_path(), resampled_to_steps)),
             Err(error) => errors.push(error),
         }
     }
@@ -111,7 +114,7 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 }
 
 /// Warns of suspicious speeds: with wrong units, training and evaluation are meaningless.
-pub(crate) fn warn_of_doubts(read: &[InSteps]) {
+pub(crate) fn warn_of_doubts(read: &[ResampledRecording]) {
     let doubtful = read.iter().filter_map(|of| {
         let doubt = of.recording.speed_doubt()?;
         Some((of.recording.name(), words(&of.clock.of_doubt(doubt))))
@@ -119,14 +122,14 @@ pub(crate) fn warn_of_doubts(read: &[InSteps]) {
     tell_grouped("warning", doubtful);
 }
 
-pub(crate) fn warn_of(doubt: &Doubt) {
+pub(crate) fn warn_of(doubt: &PlausibilityWarning) {
     tell(format_args!("warning: {}", words(doubt)));
 }
 
-pub(crate) fn words(doubt: &Doubt) -> String {
+pub(crate) fn words(doubt: &PlausibilityWarning) -> String {
     let options = match doubt {
-        Doubt::Fast { .. } => " (--homography, --fps)",
-        Doubt::Slow { .. } | Doubt::NoSteps { .. } => " (--fps)",
+        PlausibilityWarning::Fast { .. } => " (--homography, --fps)",
+        PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps)",
         _ => "",
     };
     format!("{doubt}{options}")

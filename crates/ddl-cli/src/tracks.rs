@@ -1,11 +1,13 @@
 use crate::clock::{Clock, FrameNumber};
 use crate::recordings;
 use crate::telling::tell;
-use crate::units::{InSteps, Units};
+use crate::units::{ResampledRecording, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
-use ddl::data::{Completion, Doubt, MadeUp, OBSERVED, Observation, Recording, Window};
+use ddl::data::{
+    Completion, CompletionCounts, OBSERVED, Observation, PlausibilityWarning, Recording, Window,
+};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
@@ -46,7 +48,7 @@ pub(crate) struct Observed {
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
     /// A fault that the speeds suggest: wrong units or a wrong rate give meaningless forecasts.
-    pub(crate) doubt: Option<Doubt>,
+    pub(crate) doubt: Option<PlausibilityWarning>,
     whole: bool,
 }
 
@@ -82,7 +84,7 @@ impl Tracks {
 
     /// Windows of 8 observed steps, one for each frame with pedestrians to forecast, for a run.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<Observed> {
-        let InSteps {
+        let ResampledRecording {
             recording,
             clock,
             guessed,
@@ -115,7 +117,7 @@ impl Tracks {
         }
         let doubt = recording
             .speed_doubt()
-            .filter(|doubt| !matches!(doubt, Doubt::NoSteps { .. }))
+            .filter(|doubt| !matches!(doubt, PlausibilityWarning::NoSteps { .. }))
             .map(|doubt| clock.of_doubt(doubt));
         if let Some(doubt) = &doubt {
             recordings::warn_of(doubt);
@@ -137,7 +139,7 @@ impl Observed {
     /// Notes incomplete observations: a forecast from two positions looks like any other.
     pub(crate) fn tell_what_is_made_up(&self) {
         let windows = self.windows.iter();
-        let all: Vec<MadeUp> = windows
+        let all: Vec<CompletionCounts> = windows
             .flat_map(|window| (0..window.len()).map(|i| window.made_up(i)))
             .collect();
         let late = all.iter().filter(|made_up| made_up.padded > 0).count();

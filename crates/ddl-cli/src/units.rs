@@ -32,7 +32,7 @@ pub(crate) struct Units {
 }
 
 #[derive(Debug)]
-pub(crate) struct InSteps {
+pub(crate) struct ResampledRecording {
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
     /// Whether the frame rate was neither given nor in the file.
@@ -71,7 +71,7 @@ impl Units {
     }
 
     pub(crate) fn are_given(&self) -> bool {
-        self.rate().say_the_rate() || self.homography.is_some()
+        self.rate().have_rate() || self.homography.is_some()
     }
 
     pub(crate) fn as_options(&self) -> String {
@@ -95,13 +95,13 @@ impl Units {
 
     /// Reads the recording in the file, in metres and steps of 0.4 s. The format is recognised. The file is read once,
     /// so that it may be a pipe.
-    pub(crate) fn read(&self, file: &Path) -> anyhow::Result<InSteps> {
+    pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ResampledRecording> {
         let recording = self.in_metres(file)?;
-        let told = recording.frame_time_told();
+        let told = recording.stated_frame_time();
         let notes = self.note_of_rate(&recording).into_iter();
         let mut notes: Vec<String> = notes.chain(self.note_of_run(told.is_none())).collect();
         let rate = match told {
-            _ if self.rate().say_the_rate() => self.rate(),
+            _ if self.rate().have_rate() => self.rate(),
             Some(frame_time) => TrackUnits {
                 dt: Some(frame_time),
                 ..TrackUnits::default()
@@ -113,15 +113,15 @@ impl Units {
                 None => recording,
                 Some(step) => recording.with_frame_step(step)?,
             };
-            return Ok(InSteps {
+            return Ok(ResampledRecording {
                 recording,
                 clock: Clock::WHOLE,
-                guessed: !rate.say_the_rate(),
+                guessed: !rate.have_rate(),
                 notes,
             });
         };
         let steps = recording
-            .in_steps(frame_time)
+            .resampled_to_steps(frame_time)
             .with_context(|| file.display().to_string())?;
         if steps.resampled {
             let reason = match whole_frame_step(frame_time) {
@@ -132,7 +132,7 @@ impl Units {
                 "{reason}: positions are interpolated linearly, every 0.4 s back from the last frame"
             ));
         }
-        Ok(InSteps {
+        Ok(ResampledRecording {
             recording: steps.recording,
             clock: Clock::of_parts(steps.parts),
             guessed: false,
@@ -142,11 +142,11 @@ impl Units {
 
     /// A note if the rate in the file differs from the one given, remembered or guessed.
     fn note_of_rate(&self, recording: &Recording) -> Option<String> {
-        let (rate, told) = (recording.rate()?, recording.frame_time_told()?);
+        let (rate, told) = (recording.rate()?, recording.stated_frame_time()?);
         let apart = recording.frame_step();
         let of_step = |step: i64| TIME_STEP / step as f64;
         let given = self.rate();
-        let otherwise = if given.say_the_rate() {
+        let otherwise = if given.have_rate() {
             given
         } else {
             self.remembered
@@ -166,7 +166,7 @@ impl Units {
 
     /// A note about units taken from the run; `rate`: whether no file gives its rate.
     pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
-        let rate = if rate && !self.rate().say_the_rate() {
+        let rate = if rate && !self.rate().have_rate() {
             rate_option(&self.remembered)
         } else {
             None
@@ -204,7 +204,7 @@ impl Units {
         match self.homography()? {
             None => Ok(recording),
             Some(homography) => homography
-                .on_the_ground(&recording)
+                .to_ground(&recording)
                 .with_context(|| file.display().to_string()),
         }
     }

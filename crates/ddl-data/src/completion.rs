@@ -63,7 +63,7 @@ impl Completion {
         self,
         seen: impl DoubleEndedIterator<Item = (i64, Position)>,
         step: i64,
-    ) -> Option<([Position; OBSERVED], MadeUp)> {
+    ) -> Option<([Position; OBSERVED], CompletionCounts)> {
         let mut earlier = seen.rev();
         let (until, last) = earlier.next()?;
         let mut positions = [last; OBSERVED];
@@ -102,20 +102,20 @@ impl Completion {
         }
         // Interpolation between extremely large positions may overflow to NaN.
         let finite = positions.iter().all(|&position| is_finite(position));
-        finite.then_some((positions, MadeUp { padded, filled }))
+        finite.then_some((positions, CompletionCounts { padded, filled }))
     }
 }
 
 /// How many of the 8 observed positions of a pedestrian were filled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct MadeUp {
+pub struct CompletionCounts {
     /// Positions at the start, before the pedestrian was seen.
     pub padded: usize,
     /// Positions in holes.
     pub filled: usize,
 }
 
-impl MadeUp {
+impl CompletionCounts {
     /// Whether all 8 positions were seen.
     pub fn is_nothing(self) -> bool {
         self == Self::default()

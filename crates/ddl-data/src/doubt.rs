@@ -29,7 +29,7 @@ const OFTEN: f64 = 0.03;
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
-pub enum Doubt {
+pub enum PlausibilityWarning {
     #[error(
         "no pedestrian has positions {frame_step} frames apart, which is taken for a step of 0.4 s; give the frame rate"
     )]
@@ -91,21 +91,21 @@ pub(crate) struct Speeds {
 }
 
 impl Speeds {
-    pub(crate) fn doubt(&self) -> Option<Doubt> {
+    pub(crate) fn doubt(&self) -> Option<PlausibilityWarning> {
         let (Some(median), Some(fastest)) = (self.median, &self.fastest) else {
             let frame_step = self.frame_step;
-            return Some(Doubt::NoSteps { frame_step });
+            return Some(PlausibilityWarning::NoSteps { frame_step });
         };
         if self.farthest < STILL && self.steps >= MANY_STEPS {
             let farthest = self.farthest;
-            Some(Doubt::Still { farthest })
+            Some(PlausibilityWarning::Still { farthest })
         } else if median > IMPLAUSIBLE {
-            Some(Doubt::Fast { median })
+            Some(PlausibilityWarning::Fast { median })
         } else if fastest.speed > JUMP {
-            Some(Doubt::Jump(fastest.clone()))
+            Some(PlausibilityWarning::Jump(fastest.clone()))
         } else {
             let brisk = self.brisk.filter(|&brisk| brisk < CREEPING);
-            brisk.map(|brisk| Doubt::Slow { brisk })
+            brisk.map(|brisk| PlausibilityWarning::Slow { brisk })
         }
     }
 }
@@ -113,7 +113,7 @@ impl Speeds {
 impl Recording {
     /// The first doubt about speeds in [the summary](Self::summary), computed without the rest of the summary.
     #[must_use]
-    pub fn speed_doubt(&self) -> Option<Doubt> {
+    pub fn speed_doubt(&self) -> Option<PlausibilityWarning> {
         self.speeds(&self.tracks()).doubt()
     }
 
@@ -150,8 +150,8 @@ impl Recording {
     }
 }
 
-pub(crate) fn unseen(share: f64) -> Option<Doubt> {
-    (share >= OFTEN).then_some(Doubt::Unseen { share })
+pub(crate) fn unseen(share: f64) -> Option<PlausibilityWarning> {
+    (share >= OFTEN).then_some(PlausibilityWarning::Unseen { share })
 }
 
 /// Distance between the first and last position of a track, m.

@@ -95,7 +95,7 @@ pub(crate) enum FormatProblem {
     },
     #[error(
         "frame {frame}{} comes after frame {last}; a stream of tracks must be in order of time",
-        of(.scene)
+        of(.scene.as_ref())
     )]
     OutOfOrder {
         scene: Option<SceneName>,
@@ -127,7 +127,7 @@ pub(crate) enum FormatProblem {
     ScenesInFile,
     #[error(
         "more than {limit} pedestrians in {}; does the frame number increase?",
-        crowded(.scene, *.frame)
+        crowded(.scene.as_ref(), *.frame)
     )]
     Crowd {
         scene: Option<SceneName>,
@@ -140,13 +140,13 @@ pub(crate) enum FormatProblem {
     Table { detail: String },
 }
 
-fn of(scene: &Option<SceneName>) -> String {
+fn of(scene: Option<&SceneName>) -> String {
     let of = |scene| format!(" of scene {scene}");
-    scene.as_ref().map(of).unwrap_or_default()
+    scene.map(of).unwrap_or_default()
 }
 
 /// The frames whose people are counted together.
-fn crowded(scene: &Option<SceneName>, frame: i64) -> String {
+fn crowded(scene: Option<&SceneName>, frame: i64) -> String {
     match scene {
         None => format!("frame {frame}"),
         Some(scene) => {

@@ -67,7 +67,7 @@ impl<'a> Fold<'a> {
     ///
     /// # Errors
     /// [`DataError::NotATrainingRecording`] for a name that is not a training recording of this fold.
-    pub fn set_apart(mut self, names: &[String]) -> Result<Self, DataError> {
+    pub fn with_validation_recordings(mut self, names: &[String]) -> Result<Self, DataError> {
         for name in names {
             let index = self.training.iter().position(|r| r.name() == name);
             let index = index.ok_or_else(|| DataError::NotATrainingRecording {
@@ -96,13 +96,13 @@ impl<'a> Fold<'a> {
     }
 
     /// Training recordings kept whole for validation.
-    pub fn recordings_set_apart(&self) -> &[&'a Recording] {
+    pub fn validation_recordings(&self) -> &[&'a Recording] {
         &self.set_apart
     }
 
     /// The other training recordings made at the place of this recording; empty where places are not known.
     #[must_use]
-    pub fn training_recordings_of_its_place(&self, recording: &str) -> Vec<&'a Recording> {
+    pub fn training_recordings_of_place(&self, recording: &str) -> Vec<&'a Recording> {
         let place_of = |name: &str| {
             let (convention, _) = self.planned?;
             let mut recordings = convention.recordings.iter();
@@ -147,7 +147,7 @@ impl<'a> Fold<'a> {
     ///
     /// The cut of a recording with n annotated frames lies before the frame with index floor((1 - f) n), where f is
     /// `validation_fraction` (clamped to [0, 1], NaN taken as 0). Windows that span the cut belong to neither side.
-    /// Recordings [set apart](Self::set_apart) are used for validation as a whole.
+    /// Recordings [set apart](Self::with_validation_recordings) are used for validation as a whole.
     #[must_use]
     pub fn training_split(&self, rule: WindowRule, validation_fraction: f64) -> TrainingSplit {
         let mut split = TrainingSplit {
@@ -174,7 +174,7 @@ impl<'a> Fold<'a> {
     /// Training, validation and test windows of the Social-GAN convention: the same windows as in its published folders
     /// `train`, `val` and `test`. Each training recording is cut after its first floor(0.8 n) of n annotated frames
     /// ([`Recording::parts`]). `min_pedestrians` is 2 in the original code, 1 in much later work. Recordings [set
-    /// apart](Self::set_apart) are used for validation as a whole, which the published folders do not do.
+    /// apart](Self::with_validation_recordings) are used for validation as a whole, which the published folders do not do.
     #[must_use]
     pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
         let rule = WindowRule::SocialGan { min_pedestrians };

@@ -82,7 +82,7 @@ impl Homography {
     ///
     /// # Errors
     /// [`HomographyError::Horizon`] where a pixel has no place on the ground.
-    pub fn on_the_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
+    pub fn to_ground(&self, recording: &Recording) -> Result<Recording, HomographyError> {
         let mut observations = recording.observations().to_vec();
         for seen in &mut observations {
             seen.position = self.place(seen, recording.names())?;

@@ -13,15 +13,15 @@
 //!     film += &format!("{t},7,{},50\n", 12 * t);
 //! }
 //! let ground: Homography = "0.01 0 0\n0 0.01 0\n0 0 1".parse()?;
-//! let recording = ground.on_the_ground(&parse_recording(film.as_bytes(), "film.csv", Format::Table)?)?;
-//! let steps = recording.in_steps(0.1)?.recording; // 4 frames a step
+//! let recording = ground.to_ground(&parse_recording(film.as_bytes(), "film.csv", Format::Table)?)?;
+//! let steps = recording.resampled_to_steps(0.1)?.recording; // 4 frames a step
 //! let windows = steps.completed_windows(Completion::USUAL);
 //! let last = windows.last().ok_or("nobody")?;
 //! assert!((last.observed(0)[0][0] - 0.12 * (39.0 - 28.0)).abs() < 1e-9);
 //! assert_eq!(last.made_up(0).filled, 1); // frame 15, on the way from 12 to 17
 //!
 //! // The same as it comes: a window a frame.
-//! let mut tracks = LiveTracks::with_frame_step(4)?.completing(Completion::USUAL);
+//! let mut tracks = LiveTracks::with_frame_step(4)?.with_completion(Completion::USUAL);
 //! let mut frames = FrameReader::new(film.as_bytes(), "camera");
 //! while let Some(frame) = frames.next_frame()? {
 //!     if let Some(window) = tracks.push(frame.number, frame.people)? {
@@ -89,10 +89,10 @@ mod whole_file;
 mod window;
 
 pub use augment::Rotation;
-pub use completion::{Completion, CompletionError, MadeUp};
+pub use completion::{Completion, CompletionCounts, CompletionError};
 pub use convention::Convention;
 pub use dataset::Dataset;
-pub use doubt::{Doubt, Fastest};
+pub use doubt::{Fastest, PlausibilityWarning};
 pub use error::{DataError, FormatError, RecordingError, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
@@ -101,7 +101,7 @@ pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
 pub use locate::{DATASETS_VARIABLE, locate};
 pub use names::{PedestrianName, PedestrianNames};
 pub use neighbours::{NEIGHBOUR_HALF_WIDTH, Neighbours, Places};
-pub use rate::{InSteps, RateError, whole_frame_step};
+pub use rate::{RateError, ResampledRecording, whole_frame_step};
 pub use recording::Recording;
 pub use remembered::Remembered;
 pub use rule::WindowRule;

@@ -18,7 +18,7 @@ const NAME: &str = "live";
 ///
 /// - A frame follows the previous one after one step (0.4 s), after more, or after less where the tracker is faster.
 /// - A pedestrian not seen at one of the 8 steps is not in the window, unless a [`Completion`] is
-///   [requested](Self::completing).
+///   [requested](Self::with_completion).
 /// - A pedestrian absent for a step (0.4 s), or for longer than the longest hole that is filled, is forgotten.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
 /// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.
@@ -98,7 +98,7 @@ impl LiveTracks {
 
     /// The same tracks, with incomplete observations filled in as the completion allows.
     #[must_use]
-    pub fn completing(self, completion: Completion) -> Self {
+    pub fn with_completion(self, completion: Completion) -> Self {
         Self { completion, ..self }
     }
 
@@ -236,7 +236,7 @@ impl Recording {
     /// allows; [`Window::made_up`] counts the filled-in positions.
     #[must_use]
     pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
-        let mut tracks = LiveTracks::of(self).completing(completion);
+        let mut tracks = LiveTracks::of(self).with_completion(completion);
         let mut windows = Vec::new();
         for &frame in self.frames() {
             let positions = self.at(frame).iter();

@@ -21,7 +21,7 @@ const JOINED: f64 = 1.5;
 /// A recording in steps of 0.4 s.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct InSteps {
+pub struct ResampledRecording {
     /// The recording. Its frame numbers count `parts` per frame of the original recording.
     pub recording: Recording,
     /// Parts per original frame; 1 where a step is a whole number of frames.
@@ -58,7 +58,7 @@ impl Recording {
     /// # Errors
     /// [`RateError`] where the time is not positive, observations are more than 1.2 s apart, or frame numbers are too
     /// large.
-    pub fn in_steps(&self, frame_time: f64) -> Result<InSteps, RateError> {
+    pub fn resampled_to_steps(&self, frame_time: f64) -> Result<ResampledRecording, RateError> {
         let frames = TIME_STEP / frame_time;
         if !(frames > 0.0 && frames <= FRAME_STEP_LIMIT as f64) {
             return Err(RateError::FrameTime { found: frame_time });
@@ -70,7 +70,7 @@ impl Recording {
         }
         if let Some(step) = whole_multiple(frames, spacing).filter(|_| self.is_even()) {
             let recording = self.clone().with_frame_step(step)?;
-            return Ok(InSteps {
+            return Ok(ResampledRecording {
                 recording,
                 parts: 1,
                 resampled: false,
@@ -88,7 +88,7 @@ impl Recording {
     /// Seconds per frame number according to the [`rate`](Self::rate) of the file; `None` after the
     /// [`frame_step`](Self::frame_step) was set.
     #[must_use]
-    pub fn frame_time_told(&self) -> Option<f64> {
+    pub fn stated_frame_time(&self) -> Option<f64> {
         Some(1.0 / (self.rate()? * self.frame_step() as f64))
     }
 
@@ -99,7 +99,7 @@ impl Recording {
     }
 
     /// Positions every `step` parts of a frame, counted back from the last frame.
-    fn resampled(&self, parts: i64, step: i64) -> Result<InSteps, RateError> {
+    fn resampled(&self, parts: i64, step: i64) -> Result<ResampledRecording, RateError> {
         let farthest = self.frames().iter().map(|frame| frame.unsigned_abs()).max();
         let limit = FRAME_LIMIT.unsigned_abs() / parts.unsigned_abs();
         let last = *self.frames().last().unwrap_or(&0);
@@ -131,7 +131,7 @@ impl Recording {
             }
         }
         let recording = self.with_observations(step, observations)?;
-        Ok(InSteps {
+        Ok(ResampledRecording {
             recording,
             parts,
             resampled: true,

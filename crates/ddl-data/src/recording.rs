@@ -284,11 +284,11 @@ impl Recording {
     /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [t as f64, 0.0])).collect();
     /// let recording = Recording::new("yard", 10, walk)?;
     /// let first = &recording.observed_windows()[0];
-    /// assert_eq!(recording.onward(first), [[[8.0, 0.0], [9.0, 0.0]]]);
+    /// assert_eq!(recording.futures_of(first), [[[8.0, 0.0], [9.0, 0.0]]]);
     /// # Ok::<(), ddl_data::RecordingError>(())
     /// ```
     #[must_use]
-    pub fn onward(&self, window: &Window) -> Vec<Vec<Position>> {
+    pub fn futures_of(&self, window: &Window) -> Vec<Vec<Position>> {
         let last = window.frames()[OBSERVED - 1];
         let position = |pedestrian: PedestrianId, step: i64| {
             let here = self.at(last + step * window.frame_step());

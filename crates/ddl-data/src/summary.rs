@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::doubt::{self, Doubt, Fastest, Speeds};
+use crate::doubt::{self, Fastest, PlausibilityWarning, Speeds};
 use crate::{
     Completion, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP,
     WindowRule,
@@ -87,7 +87,7 @@ pub struct Hole {
 impl Summary {
     /// Plausibility warnings; empty for a plausible recording.
     #[must_use]
-    pub fn doubts(&self) -> Vec<Doubt> {
+    pub fn doubts(&self) -> Vec<PlausibilityWarning> {
         let speeds = Speeds {
             frame_step: self.frame_step,
             steps: self.steps,
@@ -101,7 +101,7 @@ impl Summary {
             .doubt()
             .into_iter()
             .chain(doubt::unseen(self.unseen))
-            .chain(learning.then_some(Doubt::NothingToLearnFrom))
+            .chain(learning.then_some(PlausibilityWarning::NothingToLearnFrom))
             .collect()
     }
 }

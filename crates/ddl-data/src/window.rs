@@ -6,7 +6,8 @@ use crate::error::WindowError;
 use crate::neighbours::Neighbours;
 use crate::track::{is_finite, is_frame, is_frame_step};
 use crate::{
-    MadeUp, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, Remembered, WINDOW,
+    CompletionCounts, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position,
+    Remembered, WINDOW,
 };
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
@@ -36,7 +37,7 @@ pub struct Window {
     /// Pedestrian-major: pedestrian i has `positions[i * T..(i + 1) * T]`.
     positions: Vec<Position>,
     /// One entry per pedestrian, or empty if nothing was filled in.
-    made_up: Vec<MadeUp>,
+    made_up: Vec<CompletionCounts>,
     /// One list per pedestrian, or empty if nothing is remembered.
     remembered: Vec<Vec<Remembered>>,
 }
@@ -145,7 +146,7 @@ impl Window {
         ids.position(|&id| self.names.names(id, name))
     }
 
-    pub(crate) fn with_made_up(mut self, made_up: Vec<MadeUp>) -> Self {
+    pub(crate) fn with_made_up(mut self, made_up: Vec<CompletionCounts>) -> Self {
         debug_assert!(made_up.is_empty() || made_up.len() == self.len());
         let whole = made_up.iter().all(|made_up| made_up.is_nothing());
         self.made_up = if whole { Vec::new() } else { made_up };
@@ -157,7 +158,7 @@ impl Window {
     ///
     /// # Panics
     /// If `i >= len()`.
-    pub fn made_up(&self, i: usize) -> MadeUp {
+    pub fn made_up(&self, i: usize) -> CompletionCounts {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
         self.made_up.get(i).copied().unwrap_or_default()
     }
@@ -252,14 +253,14 @@ impl Window {
 
     /// Positions of all pedestrians at one step, counted from 0 (m).
     #[must_use]
-    pub fn positions_at(&self, step: usize) -> Vec<Position> {
+    pub fn hypotheses_at(&self, step: usize) -> Vec<Position> {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
     }
 
     /// Neighbours at one step, counted from 0: see [`Neighbours::within_box`].
     #[must_use]
     pub fn neighbours(&self, step: usize, half_width_m: f64) -> Neighbours {
-        Neighbours::within_box(&self.positions_at(step), half_width_m)
+        Neighbours::within_box(&self.hypotheses_at(step), half_width_m)
     }
 
     /// The observation alone, as known when a forecast is made.

@@ -32,7 +32,7 @@ pub(crate) fn walk(start: Position, step: Position) -> Vec<Position> {
 
 pub(crate) fn forecast(pedestrians: usize, hypotheses: &[Vec<Position>]) -> Forecast {
     let k = hypotheses.len() / pedestrians;
-    Forecast::equally_likely(pedestrians, k, hypotheses.concat()).unwrap()
+    Forecast::with_equal_weights(pedestrians, k, hypotheses.concat()).unwrap()
 }
 
 fn at(start: Position, step: Position, t: f64) -> Position {

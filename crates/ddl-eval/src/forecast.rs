@@ -83,7 +83,7 @@ impl Forecast {
     ///
     /// # Errors
     /// As [`Forecast::new`].
-    pub fn equally_likely(
+    pub fn with_equal_weights(
         pedestrians: usize,
         hypotheses: usize,
         positions: Vec<Position>,

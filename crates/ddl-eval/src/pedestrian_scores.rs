@@ -5,7 +5,7 @@ use crate::{
     category::Category,
     metric::{
         amd::DistributionErrors,
-        collision::{self, DISC_RADIUS, collides, collides_with_truth},
+        collision::{self, PEDESTRIAN_RADIUS, collides, collides_with_true_futures},
         displacement::{DisplacementErrors, expected, goal_fde},
         diversity::Diversity,
         kde::kde_nll,
@@ -30,7 +30,7 @@ pub(crate) struct PedestrianScores {
     pub(crate) missed: [bool; 3],
     pub(crate) collides: bool,
     pub(crate) truly_collides: bool,
-    pub(crate) collides_with_truth: bool,
+    pub(crate) collides_with_true_futures: bool,
     pub(crate) goal_fde: Option<f64>,
     pub(crate) kde_nll: Option<f64>,
     pub(crate) distribution: Option<DistributionErrors>,
@@ -45,9 +45,10 @@ pub(crate) struct PedestrianScores {
 impl PedestrianScores {
     pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
         let forecast = scene.forecast();
-        let collides_forecast = collides(&collision::representative_tracks(scene), DISC_RADIUS);
-        let collides_truly = collision::collides_truly(scene, DISC_RADIUS);
-        let collides_with_truth = collides_with_truth(scene, DISC_RADIUS);
+        let collides_forecast =
+            collides(&collision::representative_tracks(scene), PEDESTRIAN_RADIUS);
+        let true_futures_collide = collision::true_futures_collide(scene, PEDESTRIAN_RADIUS);
+        let collides_with_true_futures = collides_with_true_futures(scene, PEDESTRIAN_RADIUS);
         (0..scene.pedestrians())
             .map(|i| Self {
                 min_ade: errors.min_ade(i),
@@ -60,8 +61,8 @@ impl PedestrianScores {
                 most_likely_fde: errors.fde(i)[forecast.most_likely(i)],
                 missed: MISS_DISTANCES.map(|far| errors.min_fde(i) > far),
                 collides: collides_forecast[i],
-                truly_collides: collides_truly[i],
-                collides_with_truth: collides_with_truth[i],
+                truly_collides: true_futures_collide[i],
+                collides_with_true_futures: collides_with_true_futures[i],
                 goal_fde: goal_fde(scene, i),
                 kde_nll: kde_nll(scene, i),
                 distribution: DistributionErrors::of(scene, i),

@@ -25,7 +25,7 @@ pub enum Protocol {
 
 impl Protocol {
     /// The greatest number of hypotheses that any protocol allows: 20.
-    pub const MOST_HYPOTHESES: usize = 20;
+    pub const MAX_HYPOTHESES: usize = 20;
 
     /// All protocols, in display order.
     pub const ALL: [Self; 5] = [
@@ -96,24 +96,24 @@ impl Protocol {
     /// The largest number of hypotheses for each pedestrian: 20 or 1.
     pub const fn hypotheses(self) -> usize {
         match self {
-            Self::Published | Self::Fair | Self::Online => Self::MOST_HYPOTHESES,
+            Self::Published | Self::Fair | Self::Online => Self::MAX_HYPOTHESES,
             Self::Single | Self::OnlineSingle => 1,
         }
     }
 
     /// Whether forecasters see the true future of the windows.
-    pub const fn shows_future(self) -> bool {
+    pub const fn gives_future(self) -> bool {
         matches!(self, Self::Published)
     }
 
     /// Whether forecasters see the part of the recording before a window.
-    pub const fn shows_past(self) -> bool {
+    pub const fn gives_recording_memory(self) -> bool {
         matches!(self, Self::Online | Self::OnlineSingle)
     }
 
     /// The windows as a forecaster sees them: without their futures, except under `published`.
     pub fn visible(self, windows: &[Window]) -> Cow<'_, [Window]> {
-        if self.shows_future() {
+        if self.gives_future() {
             Cow::Borrowed(windows)
         } else {
             Cow::Owned(windows.iter().map(Window::without_future).collect())

@@ -199,7 +199,7 @@ pub fn holds(region: &[Disc], at: Position) -> bool {
 }
 
 /// The radius (m) of a disc with the area of the region, measured on a grid.
-pub fn equal_radius(region: &[Disc]) -> f64 {
+pub fn equivalent_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
         let ends = region
             .iter()
@@ -258,9 +258,9 @@ mod tests {
             centre,
             radius: 1.0,
         });
-        assert!((equal_radius(&discs) - 2.0_f64.sqrt()).abs() < 0.1);
-        assert!((equal_radius(&[discs[0]; 3]) - 1.0).abs() < 0.02);
-        assert!(equal_radius(&[]).abs() < 1e-12);
+        assert!((equivalent_radius(&discs) - 2.0_f64.sqrt()).abs() < 0.1);
+        assert!((equivalent_radius(&[discs[0]; 3]) - 1.0).abs() < 0.02);
+        assert!(equivalent_radius(&[]).abs() < 1e-12);
     }
 
     proptest! {

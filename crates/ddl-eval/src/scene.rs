@@ -100,7 +100,7 @@ impl<'a> Scene<'a> {
     }
 
     /// Positions of the hypotheses of pedestrian `i` at forecast frame `t`, counted from 0; `[K]`, metres.
-    pub fn positions_at(&self, i: usize, t: usize) -> Vec<Position> {
+    pub fn hypotheses_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())
             .map(|k| self.forecast.hypothesis(i, k)[t])
             .collect()

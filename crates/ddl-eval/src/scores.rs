@@ -176,7 +176,7 @@ impl Scores {
             most_likely_fde: Some(mean(|w| w.most_likely_fde)),
             miss_rate_1m: Some(share(|w| w.missed[1])),
             miss_rate_2m: Some(share(|w| w.missed[2])),
-            true_neighbour_collision_rate: Some(share(|w| w.collides_with_truth)),
+            true_neighbour_collision_rate: Some(share(|w| w.collides_with_true_futures)),
             kde_nll: of_several(|w| w.kde_nll),
             amd: of_several(|w| w.distribution.map(|d| d.mahalanobis)),
             amv: several.then(|| amv(mean_covariance(scenes, total))),

@@ -77,8 +77,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{name}\nfold    unseen  tails   mean");
         let (mut total, mut judged) = ([0.0; 2], Judged::default());
         for fold in dataset.folds() {
-            let fold = fold.set_apart(&["uni_examples", "zara03"].map(str::to_owned))?;
-            let unseen = fold.recordings_set_apart().iter();
+            let fold =
+                fold.with_validation_recordings(&["uni_examples", "zara03"].map(str::to_owned))?;
+            let unseen = fold.validation_recordings().iter();
             let unseen: Vec<Vec<_>> = unseen.map(|r| every(within(r, |_, _| true))).collect();
             let training = || fold.training_recordings().iter();
             let tails: Vec<Vec<_>> = training()

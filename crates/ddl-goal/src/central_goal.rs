@@ -69,7 +69,7 @@ impl GoalSet {
 
     /// A set with only the [`central`](Self::central) goal, of weight 1; `observed` are the same positions (m).
     #[must_use]
-    pub fn only_central(&self, observed: &[[f64; 2]]) -> Self {
+    pub fn with_central_only(&self, observed: &[[f64; 2]]) -> Self {
         let experts = self.experts().to_vec();
         Self::new(vec![self.central(observed)], vec![1.0], experts)
     }

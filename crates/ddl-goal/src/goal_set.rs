@@ -7,7 +7,7 @@ use crate::geometric_median::geometric_median;
 use crate::heading::HeadingFrame;
 use crate::points::{Points, is_in_range, squared_distance};
 
-/// Steps of Lloyd's iteration of [`GoalSet::of_ends`].
+/// Steps of Lloyd's iteration of [`GoalSet::from_endpoints`].
 const STEPS: usize = 10;
 
 /// Weighted goals of one pedestrian, most likely first.
@@ -58,12 +58,12 @@ impl GoalSet {
     /// use ddl_goal::{GoalSet, HeadingFrame};
     /// let frame = HeadingFrame::new(&[[0.0, 0.0], [0.0, 1.0]])?; // heading along y
     /// let ends = [[4.0, 0.0], [4.0, 1.0], [9.0, 0.0]];
-    /// let set = GoalSet::of_ends(&frame, &ends, &[0.25, 0.25, 0.5], 2)?;
+    /// let set = GoalSet::from_endpoints(&frame, &ends, &[0.25, 0.25, 0.5], 2)?;
     /// assert_eq!(set.weights(), [0.5, 0.5]);
     /// assert!(set.goals().contains(&[0.0, 10.0])); // 9 m ahead of [0, 1]
     /// # Ok::<(), ddl_goal::GoalError>(())
     /// ```
-    pub fn of_ends(
+    pub fn from_endpoints(
         frame: &HeadingFrame,
         ends: &[[f64; 2]],
         weights: &[f64],

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
 use crate::memory::Seen;
-use crate::track::{MOST_PIECES, RunningTrack, Track};
+use crate::track::{MAX_RUNS, RunningTrack, Track};
 use crate::{MemoryError, SceneMemory};
 
 /// The beginning of a file: format and version.
@@ -136,7 +136,7 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
             .pieces
             .split_last()
             .map_or(&[][..], |(_, earlier)| earlier);
-        if track.pieces.len() > MOST_PIECES || earlier.iter().any(|piece| piece.len() == 0) {
+        if track.pieces.len() > MAX_RUNS || earlier.iter().any(|piece| piece.len() == 0) {
             return Err("a track has too many runs, or too short ones".to_owned());
         }
         memory.stretches += track.stretches();

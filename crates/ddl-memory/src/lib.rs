@@ -14,4 +14,4 @@ pub use memory::SceneMemory;
 pub use recall::FARTHEST;
 pub use replay::Playback;
 pub use summary::MemorySummary;
-pub use track::{LONGEST_ABSENCE, MOST_PIECES};
+pub use track::{MAX_ABSENCE_STEPS, MAX_RUNS};

@@ -24,11 +24,11 @@ const OLDEST: usize = 8;
 /// A stretch contains only positions of observed frames.
 ///
 /// - A missing step ends a run of stretches. A track ends after more than
-///   [`LONGEST_ABSENCE`](crate::LONGEST_ABSENCE) steps without a position. The same id later starts a new track.
+///   [`MAX_ABSENCE_STEPS`](crate::MAX_ABSENCE_STEPS) steps without a position. The same id later starts a new track.
 /// - Two stretches are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
 /// - A track is kept in runs of up to 8 stretches. A run is removed if its first and its last stretch are both similar
 ///   to stretches of an earlier run of the same track (the run right before it does not count). Of the others the
-///   latest [`MOST_PIECES`](crate::MOST_PIECES) are kept. So a pedestrian that stands for an hour takes the space of
+///   latest [`MAX_RUNS`](crate::MAX_RUNS) are kept. So a pedestrian that stands for an hour takes the space of
 ///   three runs.
 /// - The memory holds at most `capacity` stretches. A full memory frees 1/32 of them among the oldest eighth of the
 ///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, each time the
@@ -102,7 +102,7 @@ impl SceneMemory {
 
     /// An empty memory with the same frame step and capacity.
     #[must_use]
-    pub fn emptied(&self) -> Self {
+    pub fn empty_copy(&self) -> Self {
         Self::empty(self.frame_step, self.capacity)
     }
 

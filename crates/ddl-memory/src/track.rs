@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 use crate::piece::{Motion, Piece, SHARED};
 
 /// A track ends after this many steps of 0.4 s (3.2 s) without a position. The same id later starts a new track.
-pub const LONGEST_ABSENCE: i64 = 8;
+pub const MAX_ABSENCE_STEPS: i64 = 8;
 /// Largest number of runs of 8 stretches kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
-pub const MOST_PIECES: usize = 32;
+pub const MAX_RUNS: usize = 32;
 
 /// A pedestrian of this memory: pieces, oldest first. Only the last may be without a stretch.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ impl Track {
             [earlier @ .., _, last] if earlier.iter().any(|old| last.is_repeated_by(old)) => {
                 self.pieces.pop()
             }
-            pieces if pieces.len() == MOST_PIECES => Some(self.pieces.remove(0)),
+            pieces if pieces.len() == MAX_RUNS => Some(self.pieces.remove(0)),
             _ => None,
         };
         self.pieces.push(piece);
@@ -101,7 +101,7 @@ impl RunningTrack {
 
     /// Whether the track has ended by this frame.
     pub(crate) fn is_gone(&self, frame: i64, step: i64) -> bool {
-        frame - self.last > LONGEST_ABSENCE * step
+        frame - self.last > MAX_ABSENCE_STEPS * step
     }
 
     /// Adds a position, unless it lies between two steps. Returns the numbers of stretches added and removed.

@@ -6,6 +6,6 @@ mod operations;
 mod rows;
 
 pub use crate::kernel::{Buffer, Scenes};
-pub use kernels::{KernelBackend, Kernels, RowKeyValues, SeenScenes};
+pub use kernels::{KernelBackend, Kernels, RowKeyValues, VisibleScenes};
 pub use operations::{Backend, Memory, Mode};
 pub use rows::Rows;

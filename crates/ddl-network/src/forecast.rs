@@ -15,6 +15,6 @@ pub use batch::{BatchRollout, ForecastBatch};
 pub use forecast_windows::ForecastWindows;
 pub use motion_bounds::motion_bounds;
 pub use network::MotionNetwork;
-pub use own_frame::motion_unit;
+pub use own_frame::length_unit;
 pub use rollout::{Noise, StepRule, WindowRollout};
 pub use visibility::visibility;

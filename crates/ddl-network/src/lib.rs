@@ -14,7 +14,7 @@
 //! proposes K more.
 //!
 //! ```rust
-//! use ddl_network::{PedestrianView, ProposalConfig, ProposalNetwork, ProposeEnds as _};
+//! use ddl_network::{PedestrianView, ProposalConfig, ProposalNetwork, ProposeEndpoints as _};
 //!
 //! // A pedestrian at 1 m/s, and another 3 m ahead who comes the other way.
 //! let walk = |speed: f64, x: f64| std::array::from_fn(|t| [x + 0.4 * speed * (t as f64 - 7.0), 0.0]);
@@ -56,7 +56,7 @@
 //! | [`BatchRollout`]: positions, factors | `[12, H, P]`: each from the forecast position before it |
 //! | [`backend::Backend::Tokens`] | `[B, P, width]`: B hypotheses, or time steps |
 //! | [`PedestrianView`]: own, neighbours | `[8]`, `[any number][8]` |
-//! | [`ProposedEnds`]: ends, weights | `[members K]` |
+//! | [`ProposedEndpoints`]: ends, weights | `[members K]` |
 //!
 //! ## Weights
 //!
@@ -72,7 +72,7 @@
 //! threads; so have a pedestrian's proposals. They are computed in `f32` with the fastest instructions of the machine:
 //! AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results agree up to rounding.
 //!
-//! [`MotionNetwork::in_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything else
+//! [`MotionNetwork::with_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything else
 //! stay in `f32`. It is faster on processors with AVX-512 BF16; on others the same products are emulated to the bit,
 //! slowly.
 #![cfg_attr(
@@ -100,8 +100,10 @@ pub use config::{
 pub use error::NetworkError;
 pub use forecast::{
     BatchRollout, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout,
-    motion_bounds, motion_unit, visibility,
+    length_unit, motion_bounds, visibility,
 };
 pub use precision::{DeviceChoice, Precision};
-pub use proposal::{PedestrianView, ProposalExample, ProposalNetwork, ProposeEnds, ProposedEnds};
+pub use proposal::{
+    PedestrianView, ProposalExample, ProposalNetwork, ProposeEndpoints, ProposedEndpoints,
+};
 pub use training_report::{EpochReport, ProposalStep, StepReport};

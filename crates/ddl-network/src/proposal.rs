@@ -9,8 +9,10 @@ mod network;
 mod remembered;
 mod seen;
 
-pub use ends::{END_UNIT, PedestrianView, ProposalExample, ProposeEnds, ProposedEnds};
+pub use ends::{
+    ENDPOINT_UNIT, PedestrianView, ProposalExample, ProposeEndpoints, ProposedEndpoints,
+};
 pub use layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers, WAYPOINTS};
 pub use network::ProposalNetwork;
-pub use remembered::{LIKENESSES, REMEMBERED_FEATURES};
+pub use remembered::{REMEMBERED_FEATURES, SIMILARITY_SCALES};
 pub use seen::{NEIGHBOUR_FEATURES, RECENT};

@@ -8,10 +8,9 @@ mod learned;
 mod origin;
 
 pub use crate::kernel::Sizes;
-pub use digest::{DamagedNumbers, check_numbers, numbers_digest};
+pub use digest::{DigestMismatch, check_digest, tensors_digest};
 pub use file::{
-    StoredNumbers, StoredTensor, find_tensor, load_weights, read_tensors, save_weights,
-    write_tensors,
+    StoredTensor, TensorData, find_tensor, load_weights, read_tensors, save_weights, write_tensors,
 };
 pub use half_precision::HalfTensor;
 pub use layout::{EncoderLayer, Initial, Layout, Linear, TensorLayout};

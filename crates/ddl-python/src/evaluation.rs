@@ -9,7 +9,7 @@ use crate::recording::Recording;
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
 use ddl::eval::{Conditions, Protocol, ResultRow};
 use ddl::report::Report;
-use ddl::{DdlError, EvaluationRequest, EvaluationSplit};
+use ddl::{DdlError, EvaluationRequest, Split};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -123,16 +123,19 @@ impl TestSet {
             None => convention.headline_rule(),
         };
         let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
-        let fold_of = dataset.fold(fold).map_err(raised)?;
-        let recordings = fold_of.test_recordings().iter().map(|tracks| Recording {
-            tracks: Arc::new((*tracks).clone()),
-            parts: 1,
-        });
+        let fold_by_name = dataset.fold(fold).map_err(raised)?;
+        let recordings = fold_by_name
+            .test_recordings()
+            .iter()
+            .map(|tracks| Recording {
+                tracks: Arc::new((*tracks).clone()),
+                parts: 1,
+            });
         Ok(Self {
             convention,
             rule,
             fold: fold.to_owned(),
-            windows: Arc::new(fold_of.test_windows(rule)),
+            windows: Arc::new(fold_by_name.test_windows(rule)),
             recordings: recordings.collect(),
         })
     }
@@ -224,7 +227,7 @@ pub(crate) fn evaluate_model(
     let protocols = protocols.iter().map(|word| parsed(word));
     let request = EvaluationRequest {
         protocols: protocols.collect::<PyResult<_>>()?,
-        on: EvaluationSplit::Test,
+        on: Split::Test,
         validation_recordings: Vec::new(),
         test_pedestrians: None,
         commit: String::new(),

@@ -59,7 +59,7 @@ impl Watching {
 
     /// Writes the memory; on success, closes its file.
     fn close(&mut self) -> Result<Option<String>, DdlError> {
-        self.live.end_trial();
+        self.live.finish_test();
         let told = match (&mut self.file, self.live.place()) {
             (Some(file), Some(place)) => file.end(place)?,
             _ => None,
@@ -125,8 +125,8 @@ impl Live {
         })?;
         let live = LiveForecaster::with_frame_step(Arc::clone(&model.0), step).map_err(raised)?;
         let mut live = live
-            .completing(completion(whole))
-            .adapting_regions(AdaptiveRegions::default());
+            .with_completion(completion(whole))
+            .with_adaptive_regions(AdaptiveRegions::default());
         let mut file = None;
         if let Some(path) = memory {
             let (opened, read) = MemoryFile::open(&path).map_err(raised)?;

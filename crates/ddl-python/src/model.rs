@@ -51,9 +51,9 @@ impl Manner {
             |all: Vec<ddl::CertifiedForecast>| all.into_iter().map(Forecasted::Certified).collect();
         Ok(match (self.one, self.certificates) {
             (false, false) => plain(model.forecast_all(windows)?),
-            (true, false) => plain(model.forecast_one(windows)?),
+            (true, false) => plain(model.forecast_central(windows)?),
             (false, true) => certified(model.forecast_certified(windows)?),
-            (true, true) => certified(model.forecast_one_certified(windows)?),
+            (true, true) => certified(model.forecast_central_certified(windows)?),
         })
     }
 
@@ -94,7 +94,7 @@ impl Model {
             let model = Ddl::open(&source, DeviceChoice::Cpu)?;
             match clearance {
                 None => Ok(model),
-                Some(distance) => model.keeping_clear(Clearance::new(distance)?),
+                Some(distance) => model.with_clearance(Clearance::new(distance)?),
             }
         })?;
         Ok(Self(Arc::new(opened.map_err(raised)?)))

@@ -24,7 +24,7 @@ impl Observed {
         completion: Completion,
     ) -> PyResult<Self> {
         let tracks = tracks("past", past, OBSERVED, true)?;
-        let mut live = LiveTracks::new().completing(completion);
+        let mut live = LiveTracks::new().with_completion(completion);
         for frame in 0..OBSERVED {
             let seen = tracks.iter().enumerate().filter_map(|(i, track)| {
                 let position = track[frame];

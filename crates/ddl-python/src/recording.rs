@@ -50,11 +50,11 @@ impl Rate {
                 "fps must be a finite number above 0, the frames per second; found {fps}"
             )));
         }
-        let Some(frame_time) = self.fps.map(f64::recip).or(tracks.frame_time_told()) else {
+        let Some(frame_time) = self.fps.map(f64::recip).or(tracks.stated_frame_time()) else {
             return Ok(Recording::whole(tracks));
         };
         let steps = tracks
-            .in_steps(frame_time)
+            .resampled_to_steps(frame_time)
             .map_err(|error| of_any(&error))?;
         Ok(Recording {
             tracks: Arc::new(steps.recording),
@@ -156,7 +156,7 @@ impl Recording {
         if let Some(rows) = homography {
             let homography = Homography::new(rows).map_err(|error| of_any(&error))?;
             tracks = homography
-                .on_the_ground(&tracks)
+                .to_ground(&tracks)
                 .map_err(|error| of_any(&error))?;
         }
         Rate { fps, frame_step }.of(tracks)

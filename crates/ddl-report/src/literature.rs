@@ -35,7 +35,7 @@ pub struct Literature {
     pub ablation: Vec<AblationRow>,
     /// Baselines on all test windows of the `star` convention, cut by the published rule. Rows on goals are of the
     /// published estimator (100 experts, 20 centres, gamma = 1).
-    pub measured: Vec<MeasuredRow>,
+    pub measured: Vec<BaselineReference>,
 }
 
 /// One row of a published table.
@@ -87,7 +87,7 @@ pub struct AblationRow {
 /// A baseline measured with this project's definitions: `star` files, published test windows.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct MeasuredRow {
+pub struct BaselineReference {
     /// Name of the baseline.
     pub method: String,
     /// Use of the true future, if any.

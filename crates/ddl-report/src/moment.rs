@@ -1,6 +1,6 @@
 //! One moment of a recording with its forecast, as data for galleries and the player.
 
-use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position, Window};
+use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::gallery::Pick;
@@ -50,7 +50,7 @@ pub struct MomentPedestrian {
     pub truth: Vec<Position>,
     /// Number of observed positions that were filled in; `None` where all were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub made_up: Option<MadeUp>,
+    pub made_up: Option<CompletionCounts>,
     /// Similarity of the observed motion to the training data, 0 to 1; `None` where the forecaster does not give it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub familiarity: Option<f64>,
@@ -200,7 +200,7 @@ fn pedestrian(
         pedestrian: window.name(i),
         observed: positions(window.observed(i)),
         truth: positions(truth),
-        made_up: (made_up != MadeUp::default()).then_some(made_up),
+        made_up: (made_up != CompletionCounts::default()).then_some(made_up),
         familiarity: forecast.familiarity(i).map(round),
         hypotheses: (0..forecast.hypotheses()).map(hypothesis).collect(),
     }

@@ -8,7 +8,7 @@
 //! ```rust
 //! use ddl_network::{
 //!     DeviceChoice, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
-//!     ProposalTraining, ProposeEnds,
+//!     ProposalTraining, ProposeEndpoints,
 //! };
 //! use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
 //!

@@ -63,17 +63,17 @@ impl<B: Backend> Backbone<B> for Recurrent {
         seen: &B::Seen,
     ) -> B::Tokens {
         let scene = backend.repeated(scene, backend.entries(relative));
-        let inputs = backend.beside(relative, &scene);
+        let inputs = backend.concatenate(relative, &scene);
         let state = match memory.tokens.pop() {
             None => backend.linear(self.first, &inputs),
             Some(state) => {
                 let state = backend.repeated(&state, backend.entries(relative));
-                backend.linear(self.later, &backend.beside(&inputs, &state))
+                backend.linear(self.later, &backend.concatenate(&inputs, &state))
             }
         };
         let state = backend.spatial_attention(self.neighbours, &backend.relu(&state), seen);
         memory.tokens.push(state.clone());
-        backend.beside(&state, relative)
+        backend.concatenate(&state, relative)
     }
 }
 

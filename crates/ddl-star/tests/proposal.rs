@@ -6,7 +6,7 @@ use ddl_data::Remembered;
 use ddl_network::weights::Origin;
 use ddl_network::{
     DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample,
-    ProposalNetwork, ProposalTraining, ProposeEnds as _, ProposedEnds,
+    ProposalNetwork, ProposalTraining, ProposeEndpoints as _, ProposedEndpoints,
 };
 use ddl_star::{ComputeDevice, ProposalTrainer, StarError, TorchProposals};
 use std::f64::consts::TAU;
@@ -99,7 +99,7 @@ fn oracle(network: &TorchProposals, examples: &[ProposalExample]) -> f64 {
         .map(|example| example.view.clone())
         .collect();
     let proposed = network.propose(&views).unwrap();
-    let nearest = |(proposed, example): (&ProposedEnds, &ProposalExample)| {
+    let nearest = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
         let [x, y] = example.future[11];
         let off = proposed
             .ends
@@ -169,7 +169,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
     // The first endpoints are from the observation only, the others from the memory branch.
     let error = |network: &ProposalNetwork, which: std::ops::Range<usize>| {
         let proposed = network.propose(&views).unwrap();
-        let off = |(proposed, example): (&ProposedEnds, &ProposalExample)| {
+        let off = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
             let [x, y] = example.future[11];
             let ends = proposed.ends[which.clone()].iter();
             let off = ends.map(|end| (end[0] - x).hypot(end[1] - y));
@@ -211,7 +211,7 @@ fn kernels_propose_the_endpoints_of_libtorch() {
         );
         assert_eq!((ours.len(), known.len()), (views.len(), views.len()));
         for (i, (ours, known)) in ours.iter().zip(&known).enumerate() {
-            let numbers = |proposed: &ProposedEnds| {
+            let numbers = |proposed: &ProposedEndpoints| {
                 [proposed.ends.as_flattened(), &proposed.weights].concat()
             };
             let (ours, known) = (numbers(ours), numbers(known));

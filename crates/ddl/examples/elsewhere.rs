@@ -155,7 +155,7 @@ fn measure(model: &Ddl, windows: &[Window]) -> Result<(f64, Vec<String>), Box<dy
     let (mut ours, mut ones, mut lines) = (Vec::new(), Vec::new(), Vec::new());
     for chunk in windows.chunks(CHUNK) {
         let seen = Protocol::Fair.visible(chunk);
-        ones.extend(model.forecast_one(&seen)?);
+        ones.extend(model.forecast_central(&seen)?);
         for (window, forecast) in seen.iter().zip(model.forecast_all(&seen)?) {
             lines.push(straight_lines(window, &forecast)?);
             ours.push(forecast);
@@ -213,7 +213,7 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
     for windows in of_one {
         let seen = Protocol::Fair.visible(windows);
         let ours = Scores::evaluate(windows, &model.forecast_all(&seen)?)?;
-        let one = Scores::evaluate(windows, &model.forecast_one(&seen)?)?;
+        let one = Scores::evaluate(windows, &model.forecast_central(&seen)?)?;
         let of = |velocity: ConstantVelocity| {
             Ok::<_, Box<dyn Error>>(Scores::evaluate(windows, &velocity.forecast_all(&seen)?)?)
         };
@@ -296,7 +296,7 @@ fn print_change(
 ) -> Result<[String; 2], Box<dyn Error>> {
     let scored = |windows: &[Window]| {
         let seen = Protocol::Online.visible(windows);
-        let scores = [model.forecast_all(&seen)?, model.forecast_one(&seen)?];
+        let scores = [model.forecast_all(&seen)?, model.forecast_central(&seen)?];
         let [many, one] = scores.map(|forecasts| Scores::evaluate(windows, &forecasts));
         Ok::<_, Box<dyn Error>>([many?, one?])
     };

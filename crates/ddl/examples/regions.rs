@@ -14,7 +14,7 @@ mod places;
 
 use ddl::data::{Convention, Dataset, OBSERVED, Position, Recording, TIME_STEP, Window};
 use ddl::eval::AdaptiveRegions;
-use ddl::eval::region::{equal_radius, holds};
+use ddl::eval::region::{equivalent_radius, holds};
 use ddl::report::figure::{CoveragePanel, coverage};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _};
 use std::error::Error;
@@ -121,7 +121,7 @@ impl Watched {
         for windows in recording.observed_windows().chunks(CHUNK) {
             for (window, fixed) in windows.iter().zip(model.forecast_all(windows)?) {
                 let adaptive = regions.adapt(window, fixed.clone());
-                let ahead = recording.onward(window);
+                let ahead = recording.futures_of(window);
                 let frame = window.frames()[OBSERVED - 1];
                 moments.push(Moment {
                     minutes: (frame - first) as f64 * step_minutes,
@@ -202,7 +202,7 @@ fn held(forecast: &Forecast, ahead: &[Vec<Position>], level: f64) -> usize {
 fn radii(window: &Window, forecast: &Forecast, level: f64) -> f64 {
     let radius = |i: usize| {
         let region = forecast.region(i, ddl::data::HORIZON - 1, level);
-        region.map_or(0.0, |region| equal_radius(&region))
+        region.map_or(0.0, |region| equivalent_radius(&region))
     };
     (0..window.len()).map(radius).sum()
 }

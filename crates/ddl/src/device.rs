@@ -5,7 +5,7 @@ use crate::error::DdlError;
 use ddl_network::weights::{Layout, Weights};
 use ddl_network::{
     DeviceChoice, ForecastWindows, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork,
-    ProposeEnds, StarConfig,
+    ProposeEndpoints, StarConfig,
 };
 use std::sync::Arc;
 
@@ -102,7 +102,7 @@ impl Device {
         self,
         config: &ProposalConfig,
         read: impl FnOnce(&Arc<Layout>) -> Result<Weights, NetworkError>,
-    ) -> Result<Box<dyn ProposeEnds>, DdlError> {
+    ) -> Result<Box<dyn ProposeEndpoints>, DdlError> {
         match self.0 {
             Opened::Cpu => Ok(Box::new(ProposalNetwork::reading(config.clone(), read)?)),
             #[cfg(feature = "torch")]

@@ -7,7 +7,7 @@
 //! use ddl::network::{StarConfig, TrainingConfig};
 //! use ddl::report::Report;
 //! use ddl::{
-//!     Ddl, DeviceChoice, EvaluationRequest, EvaluationSplit, GoalRecipe, Protocol, RunDirectory,
+//!     Ddl, DeviceChoice, EvaluationRequest, Split, GoalRecipe, Protocol, RunDirectory,
 //!     TrainingRequest, TrainingStage, Variant,
 //! };
 //! use std::ops::ControlFlow;
@@ -40,7 +40,7 @@
 //! let model = Ddl::load("runs/plaza".as_ref(), DeviceChoice::Cpu)?;
 //! let request = EvaluationRequest {
 //!     protocols: vec![Protocol::Fair, Protocol::Single],
-//!     on: EvaluationSplit::Test,
+//!     on: Split::Test,
 //!     validation_recordings: Vec::new(),
 //!     test_pedestrians: Some(500), // a seeded part of the windows; the report says so
 //!     commit: "unknown".to_owned(),
@@ -98,14 +98,14 @@ pub use ddl_network::{DeviceChoice, Precision, Variant};
 pub use device::{Device, cuda_status, prepare};
 pub use error::DdlError;
 pub use evaluation::baselines::measure_baselines;
-pub use evaluation::comparison::{BestOfTwenty, Comparison, compare_on_validation};
+pub use evaluation::comparison::{BestOf20Errors, Comparison, compare_on_validation};
 pub use evaluation::evaluate::{Evaluation, EvaluationProgress, EvaluationRequest, evaluate};
 pub use evaluation::goal_picture::goal_picture;
 pub use evaluation::goals::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
 pub use evaluation::record::{is_evaluated, save_evaluation};
 pub use evaluation::results::Results;
-pub use evaluation::split::EvaluationSplit;
-pub use evaluation::test_set::name_of;
+pub use evaluation::split::Split;
+pub use evaluation::test_set::test_set_name;
 pub use forecast::certified::{CertificateError, CertifiedForecast};
 pub use forecast::clearance::Clearance;
 pub use forecast::live::{LiveForecast, LiveForecaster};
@@ -122,9 +122,9 @@ pub use model::source::ModelSource;
 pub use run::config::{FORMAT, RunConfig, TrainingData};
 pub use run::directory::{RunDirectory, write_atomically};
 pub use run::lock::RunLock;
-pub use run::starting_model::{StartingModel, goals_trained_further, training_further};
+pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal_recipe};
 pub use run::track_units::TrackUnits;
-pub use run::training_data::fold_of;
+pub use run::training_data::fold_by_name;
 pub use run::validation_part::ValidationPart;
 pub use training::best_epoch::best_epoch;
 pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, train};

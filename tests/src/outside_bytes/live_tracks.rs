@@ -13,7 +13,7 @@ pub fn read(bytes: &[u8]) {
     let Ok(tracks) = LiveTracks::with_frame_step(step) else {
         panic!("a step of {step} is allowed");
     };
-    let mut tracks = tracks.completing(completion.expect("within the bounds"));
+    let mut tracks = tracks.with_completion(completion.expect("within the bounds"));
     let mut frame: i64 = choices.byte().into();
     let mut people_of_late: Vec<(i64, usize)> = Vec::new();
     while !choices.is_empty() {

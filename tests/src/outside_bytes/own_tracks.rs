@@ -25,7 +25,7 @@ pub fn read(bytes: &[u8]) {
     };
     cut(&recording);
     let frame_time = FRAME_TIMES[usize::from(*rate) % FRAME_TIMES.len()];
-    if let Ok(steps) = recording.in_steps(frame_time) {
+    if let Ok(steps) = recording.resampled_to_steps(frame_time) {
         bounded(&steps.recording);
         cut(&steps.recording);
     }

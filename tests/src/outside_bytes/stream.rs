@@ -18,7 +18,7 @@ pub fn read(bytes: &[u8]) {
     );
     let mut scenes = BTreeMap::new();
     for frame in whole.iter().flatten() {
-        let unseen = || LiveTracks::new().completing(Completion::USUAL);
+        let unseen = || LiveTracks::new().with_completion(Completion::USUAL);
         let tracks = scenes.entry(&frame.scene).or_insert_with(unseen);
         let last = tracks.last_frame();
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");

@@ -51,10 +51,17 @@ impl Data {
         if errors.is_empty() {
             self.picture.draw(&memories)?;
         }
-        recordings::tell_notes(read.iter().map(|(_, in_steps)| in_steps));
-        let summaries = read
-            .iter()
-            .map(|(file, in_steps)| (file, in_steps.recording.summary(), in_steps.clock));
+        recordings::tell_notes(
+            read.iter()
+                .map(|(_, resampled_to_steps)| resampled_to_steps),
+        );
+        let summaries = read.iter().map(|(file, resampled_to_steps)| {
+            (
+                file,
+                resampled_to_steps.recording.summary(),
+                resampled_to_steps.clock,
+            )
+        });
         let mut text = String::new();
         let mut of_each = Vec::new();
         let mut total = Total::default();
@@ -77,7 +84,10 @@ impl Data {
             writeln!(text, "{memory}")?;
         }
         output::print(&text)?;
-        warn_of_unfamiliar(read.iter().map(|(_, in_steps)| &in_steps.recording))?;
+        warn_of_unfamiliar(
+            read.iter()
+                .map(|(_, resampled_to_steps)| &resampled_to_steps.recording),
+        )?;
         recordings::all_read(errors, files.len())
     }
 }

@@ -8,8 +8,8 @@ use clap::Args;
 use ddl::data::{Convention, Dataset};
 use ddl::report::Report;
 use ddl::{
-    BuiltinModel, Ddl, DdlError, EvaluationRequest, EvaluationSplit, ModelSource, Protocol,
-    Results, RunDirectory,
+    BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory,
+    Split,
 };
 use forecasts::OtherProgram;
 use std::path::PathBuf;
@@ -92,14 +92,14 @@ impl Evaluate {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
         let model =
-            Ddl::open(source, self.machine.device)?.in_precision(self.exactness.precision())?;
+            Ddl::open(source, self.machine.device)?.with_precision(self.exactness.precision())?;
         let model = self.clear.of(model)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),
             on: if self.validation {
-                EvaluationSplit::Validation
+                Split::Validation
             } else {
-                EvaluationSplit::Test
+                Split::Test
             },
             validation_recordings: self.validation_recordings.clone(),
             test_pedestrians: self.test_pedestrians,

@@ -183,7 +183,7 @@ impl Forecast {
         let model = self
             .model
             .load(self.machine.device)?
-            .in_precision(self.exactness.precision())?;
+            .with_precision(self.exactness.precision())?;
         Ok(self.clear.of(model)?)
     }
 
@@ -200,7 +200,7 @@ impl Forecast {
         let (mut certified, mut forecasts);
         let moments: Vec<Moment<'_>> = if self.certificate {
             certified = if self.one {
-                model.forecast_one_certified(windows)?
+                model.forecast_central_certified(windows)?
             } else {
                 model.forecast_certified(windows)?
             };
@@ -213,7 +213,7 @@ impl Forecast {
                 .collect()
         } else {
             forecasts = if self.one {
-                model.forecast_one(windows)?
+                model.forecast_central(windows)?
             } else {
                 model.forecast_all(windows)?
             };

@@ -6,7 +6,7 @@ use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::{OBSERVED, PedestrianName};
 use ddl::goal::GoalSet;
-use ddl::{EvaluationSplit, GoalEvaluation, Remembering};
+use ddl::{GoalEvaluation, Remembering, Split};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -113,8 +113,8 @@ impl Goals {
         let units = self.tracks.units.or_those_of(model.config());
         let dataset = dataset(convention, data, &units)?;
         let on = match measure {
-            Measure::Test => EvaluationSplit::Test,
-            Measure::Validation => EvaluationSplit::Validation,
+            Measure::Test => Split::Test,
+            Measure::Validation => Split::Validation,
         };
         let memory = self.memory.map(|memory| match memory {
             Memory::Place => Remembering::Place,

@@ -85,7 +85,7 @@ impl TestWindows {
         let Some(fold) = fold else {
             let all: Vec<&Recording> = dataset.recordings().iter().collect();
             let windows = all.iter().flat_map(|recording| recording.windows(rule));
-            return Ok((ddl::name_of(&all), windows.collect()));
+            return Ok((ddl::test_set_name(&all), windows.collect()));
         };
         Ok((fold.to_owned(), dataset.fold(fold)?.test_windows(rule)))
     }

@@ -207,7 +207,7 @@ impl Train {
         if said || dataset.convention() != Convention::Own {
             return Ok(part);
         }
-        let part = ValidationPart::of_own(&ddl::fold_of(dataset, fold)?);
+        let part = ValidationPart::of_own(&ddl::fold_by_name(dataset, fold)?);
         if !part.recordings.is_empty() {
             let count = part.recordings.len();
             let whole = if count == 1 {
@@ -246,7 +246,8 @@ impl Train {
         if dataset.convention() != Convention::Own || !usual {
             return Ok(None);
         }
-        let fold = ddl::fold_of(dataset, fold)?.set_apart(&part.recordings)?;
+        let fold =
+            ddl::fold_by_name(dataset, fold)?.with_validation_recordings(&part.recordings)?;
         let rule = dataset.convention().headline_rule();
         let windows = fold
             .training_split(rule, part.share.clamp(0.0, 1.0))
@@ -290,7 +291,7 @@ impl Train {
             Recipe::Recommended => (
                 StarConfig::recommended(self.variant),
                 if further {
-                    ddl::training_further(self.variant)
+                    ddl::fine_tuning_config(self.variant)
                 } else {
                     TrainingConfig::recommended(self.variant)
                 },
@@ -337,7 +338,7 @@ impl Train {
             (GoalsFrom::Retrieved, None) => Ok(GoalRecipe::retrieved(self.seed)),
             (GoalsFrom::Proposed, steps) => {
                 let mut recipe = if further {
-                    ddl::goals_trained_further(self.seed)
+                    ddl::fine_tuning_goal_recipe(self.seed)
                 } else {
                     GoalRecipe::proposed(self.seed)
                 };

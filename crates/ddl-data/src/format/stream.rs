@@ -1,5 +1,7 @@
 //! Reading of tracks frame by frame, while they arrive.
 
+#![expect(clippy::ref_option, reason = "the keys of the map of scenes")]
+
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::io::{BufRead, Read as _};
 use std::sync::Arc;

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use ddl_data::{
-    Completion, CompletionError, MadeUp, OBSERVED, Observation, PedestrianId, Position, Recording,
-    Window,
+    Completion, CompletionCounts, CompletionError, OBSERVED, Observation, PedestrianId, Position,
+    Recording, Window,
 };
 use proptest::prelude::*;
 
@@ -44,7 +44,7 @@ fn by_search(
     until: i64,
     least_seen: usize,
     longest_gap: i64,
-) -> Option<([Position; OBSERVED], MadeUp)> {
+) -> Option<([Position; OBSERVED], CompletionCounts)> {
     let mut places = Vec::new();
     let mut seen = 0;
     for k in 0..OBSERVED as i64 {
@@ -75,7 +75,7 @@ fn by_search(
         places.push([0, 1].map(|axis| first[axis] - share * (last[axis] - first[axis])));
     }
     places.reverse();
-    let made_up = MadeUp {
+    let made_up = CompletionCounts {
         padded: OBSERVED - found,
         filled: found - seen,
     };
@@ -134,7 +134,7 @@ fn only_window(frames: &[i64], completion: Completion) -> Option<Window> {
 fn holes_of_two_frames_are_filled_and_longer_ones_are_not() {
     let made_up = |frames: &[i64]| {
         only_window(frames, Completion::USUAL).map(|window| {
-            let MadeUp { padded, filled } = window.made_up(0);
+            let CompletionCounts { padded, filled } = window.made_up(0);
             (padded, filled, window.made_up(0).seen())
         })
     };

@@ -59,7 +59,10 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     let dataset = Dataset::simulated(2);
     let rule = WindowRule::Complete;
     let fold = dataset.fold("plaza").unwrap();
-    let apart = fold.clone().set_apart(&["crossing".to_owned()]).unwrap();
+    let apart = fold
+        .clone()
+        .with_validation_recordings(&["crossing".to_owned()])
+        .unwrap();
     let split = apart.training_split(rule, 0.25);
     let is_crossing = |w: &&Window| w.recording() == "crossing";
     let of_crossing = split.validation.iter().filter(is_crossing).cloned();
@@ -69,7 +72,9 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     let mut others = fold.training_split(rule, 0.25).training;
     others.retain(|w| !is_crossing(&w));
     assert_eq!(split.training, others);
-    let error = fold.set_apart(&["plaza".to_owned()]).unwrap_err();
+    let error = fold
+        .with_validation_recordings(&["plaza".to_owned()])
+        .unwrap_err();
     let expected = "\"plaza\" is not one of these recordings: corridor";
     assert!(error.to_string().starts_with(expected), "{error}");
 }
@@ -175,7 +180,7 @@ fn a_memory_of_the_place_holds_only_other_training_recordings() {
             let (mut all, mut of_test) = (0, BTreeSet::new());
             for recording in dataset.recordings() {
                 let name = recording.name();
-                let others = names(&fold.training_recordings_of_its_place(name));
+                let others = names(&fold.training_recordings_of_place(name));
                 assert!(
                     others.is_subset(&training) && !others.contains(name),
                     "{name}"

@@ -59,7 +59,7 @@ fn pixels_on_the_horizon_have_no_place() {
     assert_eq!(plain.apply([1.1e7, 0.0]), None);
     let text = b"frame,pedestrian,x,y\n0,1,5,50\n1,1,5,100\n";
     let recording = parse_recording(text, "pixels", Format::Table).unwrap();
-    let error = tilted.on_the_ground(&recording).unwrap_err().to_string();
+    let error = tilted.to_ground(&recording).unwrap_err().to_string();
     assert!(error.contains("pedestrian 1, frame 1"), "{error}");
 }
 

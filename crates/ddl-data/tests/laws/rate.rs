@@ -1,6 +1,8 @@
 //! Recordings at other frame rates.
 
-use ddl_data::{Format, InSteps, Observation, PedestrianId, RateError, Recording, parse_recording};
+use ddl_data::{
+    Format, Observation, PedestrianId, RateError, Recording, ResampledRecording, parse_recording,
+};
 use proptest::prelude::*;
 
 use crate::readers::complaint;
@@ -14,7 +16,7 @@ fn pedestrians(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
     Recording::new("film", spacing, seen.collect()).unwrap()
 }
 
-fn step_seconds(steps: &InSteps, rate: f64) -> f64 {
+fn step_seconds(steps: &ResampledRecording, rate: f64) -> f64 {
     steps.recording.frame_step() as f64 / rate / steps.parts as f64
 }
 
@@ -33,7 +35,7 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
         (7.0, 1, 5, 14, true),
     ] {
         let recording = pedestrians((0..50).map(|t| t * spacing), spacing);
-        let steps = recording.in_steps(1.0 / rate).unwrap();
+        let steps = recording.resampled_to_steps(1.0 / rate).unwrap();
         assert_eq!((steps.parts, steps.resampled), (parts, resampled), "{rate}");
         assert_eq!(steps.recording.frame_step(), step, "{rate}");
         let last = 49 * spacing * parts;
@@ -49,7 +51,10 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
 fn a_few_late_frames_are_left_alone() {
     let late = |late: &'static [i64]| {
         let frames = (0..41_i64).map(|t| 3 + 5 * t + i64::from(late.contains(&t)));
-        pedestrians(frames, 5).in_steps(0.04).unwrap().resampled
+        pedestrians(frames, 5)
+            .resampled_to_steps(0.04)
+            .unwrap()
+            .resampled
     };
     assert!(!late(&[20]));
     assert!(late(&[10, 30]));
@@ -59,7 +64,7 @@ fn a_few_late_frames_are_left_alone() {
 fn a_hole_stays_a_hole() {
     // 24 frames per second, frames 30 to 59 missing: more than a second.
     let seen = (0..30).chain(60..100);
-    let steps = pedestrians(seen, 1).in_steps(1.0 / 24.0).unwrap();
+    let steps = pedestrians(seen, 1).resampled_to_steps(1.0 / 24.0).unwrap();
     let frames = steps.recording.frames();
     let missing = |frame: &&i64| (29 * 5 + 1..60 * 5).contains(*frame);
     assert_eq!(frames.iter().find(missing), None);
@@ -70,15 +75,15 @@ fn a_hole_stays_a_hole() {
 fn invalid_rates_are_refused() {
     let recording = pedestrians(0..20, 1);
     for time in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12] {
-        let error = recording.in_steps(time).unwrap_err();
+        let error = recording.resampled_to_steps(time).unwrap_err();
         assert!(matches!(error, RateError::FrameTime { .. }), "{time}");
     }
     assert_eq!(
-        recording.in_steps(1.5),
+        recording.resampled_to_steps(1.5),
         Err(RateError::TooSlow { apart: 1.5 })
     );
     let far = pedestrians((1 << 52)..(1 << 52) + 20, 1);
-    let error = far.in_steps(1.0 / 24.0).unwrap_err();
+    let error = far.resampled_to_steps(1.0 / 24.0).unwrap_err();
     assert!(matches!(error, RateError::Frames { .. }), "{error}");
 }
 
@@ -91,7 +96,7 @@ proptest! {
         count in 2..60_i64,
     ) {
         let recording = pedestrians((0..count).map(|t| first + t * spacing), spacing);
-        let Ok(steps) = recording.in_steps(1.0 / rate) else {
+        let Ok(steps) = recording.resampled_to_steps(1.0 / rate) else {
             prop_assert!(spacing as f64 / rate > 1.2);
             return Ok(());
         };
@@ -118,7 +123,7 @@ proptest! {
 #[test]
 fn a_jittering_clock_is_resampled() {
     let frames = (0..60_i64).map(|t| 40 * t + [0, 1, -1, 0, 1][(t % 5) as usize]);
-    let steps = pedestrians(frames, 40).in_steps(0.001).unwrap();
+    let steps = pedestrians(frames, 40).resampled_to_steps(0.001).unwrap();
     assert_eq!((steps.parts, steps.resampled), (1, true));
     let recording = &steps.recording;
     assert_eq!(recording.frame_step(), 400);
@@ -162,16 +167,18 @@ fn scenes_of_trajnet_state_the_frame_rate() {
 
     // 24 frame numbers per second, 9.6 in 0.4 s.
     let recording = read(&two);
-    let frame_time = recording.frame_time_told().unwrap();
+    let frame_time = recording.stated_frame_time().unwrap();
     assert!((frame_time - 1.0 / 24.0).abs() < 1e-12, "{frame_time}");
-    let steps = recording.in_steps(frame_time).unwrap();
+    let steps = recording.resampled_to_steps(frame_time).unwrap();
     assert!(steps.resampled);
     let median = steps.recording.summary().median_speed.unwrap();
     assert!((median - 1.3).abs() < 1e-9, "{median}");
 
     // The usual files, with frames 0.4 s apart whatever their numbers, are left unchanged.
     let usual = read(&scene(r#", "fps": 2.5"#));
-    let steps = usual.in_steps(usual.frame_time_told().unwrap()).unwrap();
+    let steps = usual
+        .resampled_to_steps(usual.stated_frame_time().unwrap())
+        .unwrap();
     assert_eq!((steps.recording, steps.resampled), (usual, false));
 }
 

@@ -1,6 +1,6 @@
 //! Summaries of recordings and their plausibility checks.
 
-use ddl_data::{Doubt, Observation, PedestrianId, Recording};
+use ddl_data::{Observation, PedestrianId, PlausibilityWarning, Recording};
 
 /// A pedestrian that walks along x at a speed in metres per frame, for 100 frames.
 fn walk(metres_a_frame: f64) -> Vec<Observation> {
@@ -9,7 +9,7 @@ fn walk(metres_a_frame: f64) -> Vec<Observation> {
         .collect()
 }
 
-fn doubts(seen: Vec<Observation>) -> Vec<Doubt> {
+fn doubts(seen: Vec<Observation>) -> Vec<PlausibilityWarning> {
     Recording::new("yard", 1, seen).unwrap().summary().doubts()
 }
 
@@ -18,8 +18,12 @@ fn implausible_speeds_are_doubted() {
     // 1.3 m/s in steps of 0.4 s.
     assert_eq!(doubts(walk(0.52)), []);
     // The same walk at 25 frames per second, and in pixels.
-    assert!(matches!(doubts(walk(0.052))[..], [Doubt::Slow { brisk }] if brisk < 0.14));
-    assert!(matches!(doubts(walk(30.0))[..], [Doubt::Fast { median }] if median > 70.0));
+    assert!(
+        matches!(doubts(walk(0.052))[..], [PlausibilityWarning::Slow { brisk }] if brisk < 0.14)
+    );
+    assert!(
+        matches!(doubts(walk(30.0))[..], [PlausibilityWarning::Fast { median }] if median > 70.0)
+    );
     // A standing pedestrian causes no doubt, even with the noise of a tracker.
     assert_eq!(doubts(walk(0.001)), []);
 }
@@ -29,7 +33,7 @@ fn degrees_are_doubted() {
     // A walk through a park in degrees of latitude.
     assert!(matches!(
         doubts(walk(5e-6))[..],
-        [Doubt::Still { farthest }] if farthest < 1e-3
+        [PlausibilityWarning::Still { farthest }] if farthest < 1e-3
     ));
 }
 
@@ -45,7 +49,7 @@ fn missing_detections_are_reported() {
         .collect();
     let summary = Recording::new("film", 10, seen).unwrap().summary();
     assert!((summary.unseen - 0.1).abs() < 0.002, "{}", summary.unseen);
-    let [Doubt::Unseen { share }, ..] = summary.doubts()[..] else {
+    let [PlausibilityWarning::Unseen { share }, ..] = summary.doubts()[..] else {
         panic!("{:?}", summary.doubts());
     };
     assert_eq!(share.to_bits(), summary.unseen.to_bits());
@@ -60,7 +64,7 @@ fn a_track_that_jumps_is_reported_with_its_frame() {
         observation.position[1] += 20.0;
     }
     let doubts = doubts(seen);
-    let [Doubt::Jump(fastest)] = &doubts[..] else {
+    let [PlausibilityWarning::Jump(fastest)] = &doubts[..] else {
         panic!("{doubts:?}");
     };
     assert_eq!(
@@ -92,5 +96,8 @@ fn holes_and_training_samples_are_counted() {
     // 50 and 49 positions in a row: 31 and 30 windows of 20.
     assert_eq!(summary.to_learn_from, 61);
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
-    assert_eq!(few.summary().doubts(), [Doubt::NothingToLearnFrom]);
+    assert_eq!(
+        few.summary().doubts(),
+        [PlausibilityWarning::NothingToLearnFrom]
+    );
 }

@@ -22,7 +22,7 @@ use crate::{
 /// P' = P - (1 - share) q q^T / (n^T q)     q = P n     share = min(1, gap / margin)    n^T v' = share n^T v
 /// ```
 ///
-/// ([`slowed_along`](CholeskyMetric::slowed_along)), for one ball after the other. A pedestrian that moves away from a
+/// ([`damped_along`](CholeskyMetric::damped_along)), for one ball after the other. A pedestrian that moves away from a
 /// ball is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
@@ -119,7 +119,7 @@ where
                 let left = metric.quadratic_form(&normal);
                 let slow = round > 0 && left <= free.quadratic_form(&normal) * (share + share);
                 if !slow && normal.dot(&metric.apply(&gradient)) > T::zero() {
-                    metric = metric.slowed_along(&normal, share)?;
+                    metric = metric.damped_along(&normal, share)?;
                     slowed = true;
                 }
             }

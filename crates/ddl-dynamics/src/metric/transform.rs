@@ -55,7 +55,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// y y^T)`, `b = (1 - sqrt(share)) / |y|^2`, whose triangular factor is computed by rotations. A share below
     /// `epsilon^2` times the condition number of `P` is not resolved. The result is `P' (1 + epsilon)`, where the last
     /// term replaces `sigma`.
-    pub fn slowed_along(&self, direction: &SVector<T, D>, share: T) -> Result<Self, DynamicsError> {
+    pub fn damped_along(&self, direction: &SVector<T, D>, share: T) -> Result<Self, DynamicsError> {
         if !(share > T::zero() && share <= T::one()) {
             return Err(DynamicsError::InvalidShare(share.as_f64()));
         }

@@ -25,7 +25,7 @@ fn slowed_along_a_direction_and_no_more<T: Real, const D: usize>(
     let u = scene.start::<T, D>().try_normalize(T::rounded(1e-30));
     let share = (scene.dt::<T>() / T::rounded(100.0)).min(T::one());
     for metric in scene.metrics::<T, D>() {
-        let slowed = metric.slowed_along(&n, share).unwrap();
+        let slowed = metric.damped_along(&n, share).unwrap();
         let (before, after) = (formed(&metric), formed(&slowed));
         let n = n.map(Real::as_f64);
         let share = share.as_f64();
@@ -76,7 +76,7 @@ fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(
     });
     for metric in scene.metrics::<T, D>() {
         for made in [
-            metric.slowed_along(&direction, scene.dt::<T>().min(T::one())),
+            metric.damped_along(&direction, scene.dt::<T>().min(T::one())),
             metric.congruent(&map),
         ]
         .into_iter()
@@ -99,10 +99,10 @@ fn invalid_transforms_are_refused() {
     let metric = CholeskyMetric::<f64, 2>::identity();
     let axis = Vector2::new(1.0, 0.0);
     for share in [0.0, -1.0, 1.5, f64::NAN] {
-        let error = metric.slowed_along(&axis, share).unwrap_err();
+        let error = metric.damped_along(&axis, share).unwrap_err();
         assert!(matches!(error, DynamicsError::InvalidShare(_)), "{error}");
     }
-    let no_direction = metric.slowed_along(&Vector2::zeros(), 0.5);
+    let no_direction = metric.damped_along(&Vector2::zeros(), 0.5);
     assert_eq!(no_direction, Err(DynamicsError::NoDirection));
     for singular in [
         Matrix2::new(1.0, 2.0, 2.0, 4.0),
@@ -116,6 +116,6 @@ fn invalid_transforms_are_refused() {
 fn the_smallest_metric_there_is_can_be_slowed() {
     // The reciprocal of sigma overflows f32.
     let metric = CholeskyMetric::planar(0.0, 0.0, 0.0, 1e-40_f32).unwrap();
-    let slowed = metric.slowed_along(&Vector2::new(1.0, 0.0), 0.5).unwrap();
+    let slowed = metric.damped_along(&Vector2::new(1.0, 0.0), 0.5).unwrap();
     assert!(slowed.eigenvalue_range().smallest > 0.0);
 }

@@ -63,7 +63,7 @@ impl Forecaster for ConstantAcceleration {
                 positions.push(here);
             }
         }
-        Ok(Forecast::equally_likely(window.len(), 1, positions)?)
+        Ok(Forecast::with_equal_weights(window.len(), 1, positions)?)
     }
 }
 

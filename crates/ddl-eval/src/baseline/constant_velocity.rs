@@ -92,7 +92,11 @@ impl Forecaster for ConstantVelocity {
                 }));
             }
         }
-        Ok(Forecast::equally_likely(window.len(), samples, positions)?)
+        Ok(Forecast::with_equal_weights(
+            window.len(),
+            samples,
+            positions,
+        )?)
     }
 }
 

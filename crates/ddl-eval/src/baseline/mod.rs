@@ -10,7 +10,7 @@ use ddl_data::Window;
 pub use constant_acceleration::ConstantAcceleration;
 pub use constant_velocity::ConstantVelocity;
 pub use social_force::SocialForce;
-pub use straight_line::{GoalSource, StraightLine, TrueEnd, WeightedGoals};
+pub use straight_line::{GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
 
 use crate::{Conditions, Forecaster, MeasureError, ResultRow};
 
@@ -64,8 +64,8 @@ pub(crate) fn measure_among(
     }
     rows.push(row(&ConstantAcceleration::bounded(), None)?);
     rows.push(row(&SocialForce, None)?);
-    if conditions.protocol.shows_future() {
-        rows.push(row(&StraightLine::to(TrueEnd), None)?);
+    if conditions.protocol.gives_future() {
+        rows.push(row(&StraightLine::to(TrueEndpoint), None)?);
     }
     Ok(rows)
 }

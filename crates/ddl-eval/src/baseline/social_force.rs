@@ -68,7 +68,7 @@ impl Forecaster for SocialForce {
                 positions[i * HORIZON + t] = pedestrian.position;
             }
         }
-        Ok(Forecast::equally_likely(n, 1, positions)?)
+        Ok(Forecast::with_equal_weights(n, 1, positions)?)
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {

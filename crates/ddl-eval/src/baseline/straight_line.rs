@@ -79,9 +79,9 @@ impl<G: GoalSource + ?Sized> GoalSource for &G {
 
 /// The last true position: an oracle, for the protocol `published` only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct TrueEnd;
+pub struct TrueEndpoint;
 
-impl GoalSource for TrueEnd {
+impl GoalSource for TrueEndpoint {
     fn name(&self) -> String {
         "the TRUE end".to_owned()
     }
@@ -219,7 +219,7 @@ mod tests {
     #[test]
     fn the_oracle_works_only_where_the_future_is_shown() {
         let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
-        let oracle = StraightLine::to(TrueEnd);
+        let oracle = StraightLine::to(TrueEndpoint);
         assert!(Protocol::Published.forecast(&oracle, &windows).is_ok());
         for protocol in [Protocol::Fair, Protocol::Single] {
             let error = protocol.forecast(&oracle, &windows).unwrap_err();

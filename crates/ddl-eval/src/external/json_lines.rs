@@ -62,7 +62,7 @@ impl JsonForecast {
             observed_until: self.observed_until,
             pedestrian: self.pedestrian,
         };
-        if count > Protocol::MOST_HYPOTHESES {
+        if count > Protocol::MAX_HYPOTHESES {
             return Err(in_field("hypotheses", who.too_many_hypotheses()));
         }
         let weighted = self

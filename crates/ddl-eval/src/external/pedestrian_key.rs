@@ -22,7 +22,7 @@ impl PedestrianKey {
     pub(super) fn too_many_hypotheses(&self) -> ExternalProblem {
         ExternalProblem::TooManyHypotheses {
             pedestrian: self.named(),
-            allowed: Protocol::MOST_HYPOTHESES,
+            allowed: Protocol::MAX_HYPOTHESES,
         }
     }
 }

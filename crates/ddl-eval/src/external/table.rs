@@ -165,7 +165,7 @@ impl PedestrianRows {
                 let problem = ExternalProblem::Scattered { hypothesis };
                 return Err(in_field("hypothesis", problem));
             }
-            if self.hypotheses.len() == Protocol::MOST_HYPOTHESES {
+            if self.hypotheses.len() == Protocol::MAX_HYPOTHESES {
                 let problem = self.who.too_many_hypotheses();
                 return Err(in_field("hypothesis", problem));
             }

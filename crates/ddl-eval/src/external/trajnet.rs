@@ -180,8 +180,7 @@ impl<'w, 'a> Reading<'w, 'a> {
             .tracks
             .entry(track.p.clone())
             .or_insert_with(|| (number, Predictions::new()));
-        if predictions.len() == Protocol::MOST_HYPOTHESES && !predictions.contains_key(&prediction)
-        {
+        if predictions.len() == Protocol::MAX_HYPOTHESES && !predictions.contains_key(&prediction) {
             let problem = who().too_many_hypotheses();
             return Err(in_field("track.prediction_number", problem));
         }

@@ -25,7 +25,7 @@ use ddl_data::HORIZON;
 
 use super::{
     gaussian::{Covariance, Moments},
-    kde::LEAST_DEVIATION,
+    kde::MIN_DEVIATION,
 };
 use crate::Scene;
 
@@ -47,7 +47,7 @@ impl DistributionErrors {
         let weights = scene.weights(i);
         let (mut distance, mut covariance) = (0.0, Covariance::default());
         for (t, p) in scene.truth(i).iter().enumerate() {
-            let moments = Moments::of(&scene.positions_at(i, t), &weights);
+            let moments = Moments::of(&scene.hypotheses_at(i, t), &weights);
             let about = scene.forecast().spread(i, t).unwrap_or(0.0).powi(2);
             let axes = moments
                 .covariance
@@ -57,7 +57,7 @@ impl DistributionErrors {
                     yy: about,
                 })
                 .principal_axes()
-                .raised_to(LEAST_DEVIATION * LEAST_DEVIATION);
+                .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
             let off = [p[0] - moments.mean[0], p[1] - moments.mean[1]];
             distance += axes.mahalanobis_squared(off).sqrt();
             covariance = covariance.plus(axes.covariance());

@@ -23,7 +23,7 @@ use ddl_data::Position;
 use crate::Scene;
 
 /// Radius of a pedestrian, metres. Two collide when their centres are closer than twice this.
-pub const DISC_RADIUS: f64 = 0.2;
+pub const PEDESTRIAN_RADIUS: f64 = 0.2;
 
 /// The least distance of two pedestrians that move straight between frames, metres.
 ///
@@ -75,7 +75,7 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
 }
 
 /// Whether the true future of each pedestrian collides with that of another one, forecast or not; `[N]`.
-pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
+pub fn true_futures_collide(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let everybody = scene.everybody();
     let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();
     let hit = collides(&tracks, radius);
@@ -85,7 +85,7 @@ pub fn collides_truly(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
 }
 
 /// Whether the representative forecast of each pedestrian collides with the true future of another; `[N]`.
-pub fn collides_with_truth(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
+pub fn collides_with_true_futures(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let (forecast, everybody) = (scene.forecast(), scene.everybody());
     let runs_into_another = |i: usize| {
         let track = forecast.hypothesis(i, forecast.representative(i));
@@ -104,9 +104,9 @@ mod tests {
     fn each_is_told_alone_and_touching_is_no_collision() {
         let at = |x: f64| [[x, 0.0]; 2];
         let (a, b, c, d) = (at(0.0), at(0.3), at(0.6), at(1.1));
-        let hit = collides(&[&a, &b, &c, &d], DISC_RADIUS);
+        let hit = collides(&[&a, &b, &c, &d], PEDESTRIAN_RADIUS);
         assert_eq!(hit, [true, true, true, false]);
-        assert_eq!(collides(&[&a, &at(0.4)], DISC_RADIUS), [false; 2]);
-        assert_eq!(collides(&[&a], DISC_RADIUS), [false]);
+        assert_eq!(collides(&[&a, &at(0.4)], PEDESTRIAN_RADIUS), [false; 2]);
+        assert_eq!(collides(&[&a], PEDESTRIAN_RADIUS), [false]);
     }
 }

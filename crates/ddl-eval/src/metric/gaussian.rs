@@ -65,7 +65,7 @@ pub struct PrincipalAxes {
 impl PrincipalAxes {
     /// The same axes, with eigenvalues below `least` (square metres) raised to it, so that an inverse exists.
     #[must_use]
-    pub fn raised_to(self, least: f64) -> Self {
+    pub fn with_least_eigenvalues(self, least: f64) -> Self {
         Self {
             variances: self.variances.map(|variance| variance.max(least)),
             ..self

@@ -31,9 +31,9 @@ use super::gaussian::{Moments, PrincipalAxes};
 use crate::Scene;
 
 /// Lower bound of log densities, nats, so that one large error does not dominate the mean.
-pub const LOWEST_LOG_DENSITY: f64 = -20.0;
+pub const MIN_LOG_DENSITY: f64 = -20.0;
 /// Least deviation of a distribution of positions along any direction, metres.
-pub const LEAST_DEVIATION: f64 = 0.01;
+pub const MIN_DEVIATION: f64 = 0.01;
 
 /// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not clipped.
 ///
@@ -58,7 +58,7 @@ pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
         .covariance
         .scaled(factor)
         .principal_axes()
-        .raised_to(LEAST_DEVIATION * LEAST_DEVIATION);
+        .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
     mixture_log_density((points, weights), bandwidth, at)
 }
 
@@ -93,7 +93,7 @@ pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
         .iter()
         .enumerate()
         .map(|(t, &at)| {
-            let positions = scene.positions_at(i, t);
+            let positions = scene.hypotheses_at(i, t);
             let density = match scene.forecast().spread(i, t) {
                 None => log_density(&positions, &weights, at),
                 Some(spread) => {
@@ -105,7 +105,7 @@ pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
                     mixture_log_density((&positions, &weights), round, at)
                 }
             };
-            density.max(LOWEST_LOG_DENSITY)
+            density.max(MIN_LOG_DENSITY)
         })
         .sum();
     Some(-sum / truth.len() as f64)

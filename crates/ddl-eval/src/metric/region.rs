@@ -5,7 +5,7 @@ use ddl_data::HORIZON;
 use crate::{
     Scene,
     metric::displacement::final_displacement,
-    region::{equal_radius, holds},
+    region::{equivalent_radius, holds},
 };
 
 /// Probabilities of the regions that are measured.
@@ -34,7 +34,7 @@ impl RegionScores {
                 let inside = truth.filter(|&(t, &at)| holds(&region(t, level), at));
                 inside.count() as f64 / HORIZON as f64
             }),
-            end_radius: LEVELS.map(|level| equal_radius(&region(HORIZON - 1, level))),
+            end_radius: LEVELS.map(|level| equivalent_radius(&region(HORIZON - 1, level))),
         })
     }
 }

@@ -23,7 +23,7 @@ use super::displacement::{distance, minus, turn};
 use crate::Scene;
 
 /// Within this distance a pedestrian is at the goal, and a shorter step has no direction; metres.
-pub const AT_GOAL: f64 = 1e-3;
+pub const GOAL_TOLERANCE: f64 = 1e-3;
 
 /// Behaviour of one rollout towards its goal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,8 +50,8 @@ impl RolloutStability {
         let mut here = start;
         for &next in path {
             let (before, after) = (distance(here, goal), distance(next, goal));
-            result.decreasing &= after < before || before.max(after) <= AT_GOAL;
-            if before > AT_GOAL && distance(here, next) > AT_GOAL {
+            result.decreasing &= after < before || before.max(after) <= GOAL_TOLERANCE;
+            if before > GOAL_TOLERANCE && distance(here, next) > GOAL_TOLERANCE {
                 let turn = turn(minus(next, here), minus(goal, here)).abs();
                 result.largest_turn = result.largest_turn.max(turn);
             }

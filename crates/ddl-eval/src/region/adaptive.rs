@@ -30,7 +30,7 @@ use crate::Forecast;
 /// for frame in 0..100 {
 ///     // A standing pedestrian with a forecast that says so.
 ///     let window = Window::new("yard", frame, 1, vec![PedestrianId(1)], vec![vec![[1.0, 2.0]; 8]])?;
-///     let forecast = Forecast::equally_likely(1, 1, vec![[1.0, 2.0]; HORIZON])?
+///     let forecast = Forecast::with_equal_weights(1, 1, vec![[1.0, 2.0]; HORIZON])?
 ///         .with_spread(vec![0.5; HORIZON], table.clone())?;
 ///     let fixed = forecast.region_radius(0, 0, 5, 0.9);
 ///     let adapted = regions.adapt(&window, forecast).region_radius(0, 0, 5, 0.9);
@@ -291,7 +291,8 @@ mod tests {
             .collect();
         let stream = forecasts(&tracks, ORDER);
         let mut regions = AdaptiveRegions::default();
-        let bare = Forecast::equally_likely(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
+        let bare =
+            Forecast::with_equal_weights(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
         assert_eq!(regions.adapt(&stream[0].0, bare.clone()), bare);
         assert_eq!(regions.learned(), None);
         let (window, forecast) = &stream[0];

@@ -124,7 +124,7 @@ mod tests {
             .collect();
         // Window i is missed by i + 1 metres.
         let forecasts: Vec<_> = (1..=5)
-            .map(|off| Forecast::equally_likely(1, 1, vec![[f64::from(off), 0.0]; 12]).unwrap())
+            .map(|off| Forecast::with_equal_weights(1, 1, vec![[f64::from(off), 0.0]; 12]).unwrap())
             .collect();
         let refused = block_errors(&windows, &forecasts[1..]);
         assert!(matches!(refused, Err(EvaluationError::Count { .. })));

@@ -9,7 +9,7 @@ use super::{BlockErrors, BlockMetric};
 pub const RESAMPLES: usize = 10_000;
 
 /// Fewest blocks of a fold: fewer blocks give no reliable spread.
-pub const FEWEST_BLOCKS: usize = 10;
+pub const MIN_BLOCKS: usize = 10;
 
 /// Seed of the resamples: the same in every report, so that reports are reproducible bit by bit.
 const SEED: u64 = 0;
@@ -29,7 +29,7 @@ pub struct Interval {
 ///
 /// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it
 /// has, with replacement; its mean is that of the pedestrians in them. `None` without folds, or with a fold of fewer
-/// than [`FEWEST_BLOCKS`].
+/// than [`MIN_BLOCKS`].
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
     let folds: Vec<Vec<PartialSum>> = folds
         .iter()
@@ -59,7 +59,7 @@ impl PartialSum {
 }
 
 pub(super) fn interval(folds: &[Vec<PartialSum>]) -> Option<Interval> {
-    if folds.iter().any(|fold| fold.len() < FEWEST_BLOCKS) {
+    if folds.iter().any(|fold| fold.len() < MIN_BLOCKS) {
         return None;
     }
     let whole = |fold: &Vec<PartialSum>| mean(fold.iter().copied());

@@ -12,8 +12,8 @@ mod bootstrap;
 mod paired;
 
 pub use blocks::{BLOCK_STEPS, BlockErrors, block_errors};
-pub use bootstrap::{FEWEST_BLOCKS, Interval, RESAMPLES, mean_interval};
-pub use paired::{PairedDifference, UnpairedError, paired_difference};
+pub use bootstrap::{Interval, MIN_BLOCKS, RESAMPLES, mean_interval};
+pub use paired::{DifferentWindowsError, PairedDifference, paired_difference};
 
 /// The error of a block that is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -24,7 +24,7 @@ pub struct PairedDifference {
     "the two results have different windows: fold {fold}, {what}; measure both on the same recordings, window rule \
      and subset"
 )]
-pub struct UnpairedError {
+pub struct DifferentWindowsError {
     fold: usize,
     what: String,
 }
@@ -32,7 +32,7 @@ pub struct UnpairedError {
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
 /// The test: if the two were alike, both signs of the difference of a block would be equally likely. `None` without
-/// folds, or with a fold of fewer than [`FEWEST_BLOCKS`](super::FEWEST_BLOCKS) blocks.
+/// folds, or with a fold of fewer than [`MIN_BLOCKS`](super::MIN_BLOCKS) blocks.
 ///
 /// # Errors
 /// The blocks of the two differ in number, recording or pedestrians.
@@ -43,8 +43,8 @@ pub fn paired_difference(
     first: &[&[BlockErrors]],
     second: &[&[BlockErrors]],
     metric: BlockMetric,
-) -> Result<Option<PairedDifference>, UnpairedError> {
-    let unpaired = |fold, what: String| Err(UnpairedError { fold, what });
+) -> Result<Option<PairedDifference>, DifferentWindowsError> {
+    let unpaired = |fold, what: String| Err(DifferentWindowsError { fold, what });
     if first.len() != second.len() {
         let (a, b) = (first.len(), second.len());
         return unpaired(a.min(b), format!("{a} folds against {b}"));

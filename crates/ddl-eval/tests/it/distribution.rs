@@ -3,7 +3,7 @@ use approx::assert_relative_eq;
 use ddl_data::Position;
 use ddl_eval::metric::{
     gaussian::Moments,
-    kde::{LEAST_DEVIATION, log_density},
+    kde::{MIN_DEVIATION, log_density},
 };
 use serde::Deserialize;
 
@@ -35,7 +35,7 @@ fn densities_and_distances_in_deviations_agree_with_scipy_and_numpy() {
         agree(found, case.log_density);
         let moments = Moments::of(&case.points, &case.weights);
         let axes = moments.covariance.principal_axes();
-        let axes = axes.raised_to(LEAST_DEVIATION * LEAST_DEVIATION);
+        let axes = axes.with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
         let off = [case.at[0] - moments.mean[0], case.at[1] - moments.mean[1]];
         agree(axes.mahalanobis_squared(off).sqrt(), case.mahalanobis);
         agree(axes.variances[0], case.eigenvalue);

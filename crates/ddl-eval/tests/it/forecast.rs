@@ -57,6 +57,6 @@ fn layout_is_pedestrian_hypothesis_frame_and_the_heavier_of_two_stays() {
     let kept = (single.certified(0, 0), single.certified(1, 0));
     assert_eq!(kept, (Some(false), Some(true)));
     assert_eq!(single.single(), single);
-    let without = Forecast::equally_likely(1, 2, constant(&ends[..2])).unwrap();
+    let without = Forecast::with_equal_weights(1, 2, constant(&ends[..2])).unwrap();
     assert!(!without.single().has_goals());
 }

@@ -207,7 +207,7 @@ proptest! {
         let n = window.len();
         let truth: Vec<Position> =
             (0..n).flat_map(|i| window.future(i).repeat(k)).collect();
-        let scores = scores(&window, &Forecast::equally_likely(n, k, truth).unwrap());
+        let scores = scores(&window, &Forecast::with_equal_weights(n, k, truth).unwrap());
         let highest = -(std::f64::consts::TAU * 1e-4).ln();
         prop_assert!((scores.kde_nll.unwrap() + highest).abs() < 1e-9);
         prop_assert!(scores.amd.unwrap() < 1e-9);

@@ -3,7 +3,7 @@
 use ddl_data::{Convention, Dataset, WindowRule, locate};
 use ddl_eval::{
     Category, Conditions, Forecaster, Protocol, ResultRow,
-    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEnd},
+    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint},
     category::{Interaction, TrajectoryType},
     leak,
 };
@@ -83,5 +83,5 @@ fn forecasters_that_look_ahead_are_found_out() {
     for forecaster in &honest {
         assert_eq!(leak::find(forecaster, crowded).unwrap(), None);
     }
-    assert!(leak::find(&StraightLine::to(TrueEnd), crowded).is_err());
+    assert!(leak::find(&StraightLine::to(TrueEndpoint), crowded).is_err());
 }

@@ -8,8 +8,8 @@
 
 mod analogues;
 mod estimator;
+mod from_endpoints;
 mod heading;
-mod of_ends;
 mod published;
 mod star_files;
 mod tracks;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{Frames, memory_of, queries, step_of};
 use ddl_data::{OBSERVED, PedestrianId, Position, Remembered, WINDOW};
-use ddl_memory::{FARTHEST, LONGEST_ABSENCE, SceneMemory};
+use ddl_memory::{FARTHEST, MAX_ABSENCE_STEPS, SceneMemory};
 use proptest::prelude::*;
 
 type Stretch = [Position; WINDOW];
@@ -17,7 +17,7 @@ fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
     for (frame, pedestrians) in frames {
         for (id, position) in pedestrians {
             let (first, last) = current.entry(*id).or_insert((*frame, *frame));
-            if frame - *last > LONGEST_ABSENCE * step {
+            if frame - *last > MAX_ABSENCE_STEPS * step {
                 *first = *frame;
             }
             *last = *frame;
@@ -35,7 +35,7 @@ fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
         };
         let last = track.last_key_value().map_or(0, |(frame, _)| *frame);
         let stretches = track.keys().filter_map(stretch).collect();
-        (id, now - last <= LONGEST_ABSENCE * step, stretches)
+        (id, now - last <= MAX_ABSENCE_STEPS * step, stretches)
     };
     tracks.into_iter().map(pedestrian).collect()
 }

@@ -47,9 +47,9 @@ pub fn output_layer(layout: &mut Layout, config: &StarConfig) -> Linear {
     let scale = if neutral { NEAR_NEUTRAL } else { 1.0 };
     let weight = Initial::Uniform { bound, scale };
     let bias = if neutral {
-        Initial::DrawnAway(vec![1.0, 0.0, 1.0])
+        Initial::Fixed(vec![1.0, 0.0, 1.0])
     } else {
         Initial::Uniform { bound, scale: 1.0 }
     };
-    layout.linear_beginning("output_layer", [inputs, outputs], weight, bias)
+    layout.linear_with_initial("output_layer", [inputs, outputs], weight, bias)
 }

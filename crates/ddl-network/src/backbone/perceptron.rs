@@ -54,13 +54,13 @@ impl<B: Backend> Backbone<B> for Perceptron {
         let observed = (0..OBSERVED).map(|t| memory.tokens.get(t).unwrap_or(relative));
         let inputs = observed.fold(relative.clone(), |inputs, x| {
             let x = backend.repeated(x, backend.entries(relative));
-            backend.beside(&inputs, &x)
+            backend.concatenate(&inputs, &x)
         });
         let hidden = backend.relu(&backend.linear(self.hidden, &inputs));
         let token = backend.relu(&backend.linear(self.token, &hidden));
         match self.frame {
             NetworkFrame::World => token,
-            NetworkFrame::Goal => backend.beside(&token, relative),
+            NetworkFrame::Goal => backend.concatenate(&token, relative),
         }
     }
 }

@@ -91,7 +91,7 @@ impl<B: Backend> Backbone<B> for Star {
         let newest = backend.relu(&backend.linear(self.temporal_embedding, relative));
         let temporal = backend.temporal_attention(first, &newest, &memory.caches[0]);
         let scene = backend.repeated(scene, backend.entries(&temporal));
-        let fused = backend.linear(self.fusion, &backend.beside(&temporal, &scene));
+        let fused = backend.linear(self.fusion, &backend.concatenate(&temporal, &scene));
         let among = spatial_encoder(backend, &self.spatial[1], &fused, seen);
         let token = backend.temporal_attention(second, &among, &memory.caches[1]);
         for (cache, layer) in memory.caches.iter_mut().zip(self.temporal) {
@@ -99,7 +99,7 @@ impl<B: Backend> Backbone<B> for Star {
         }
         match self.frame {
             NetworkFrame::World => token,
-            NetworkFrame::Goal => backend.beside(&token, relative),
+            NetworkFrame::Goal => backend.concatenate(&token, relative),
         }
     }
 }

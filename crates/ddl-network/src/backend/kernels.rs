@@ -78,7 +78,7 @@ pub struct RowKeyValues {
 
 /// The visibility masks of some time steps of scenes.
 #[derive(Debug, Clone)]
-pub struct SeenScenes {
+pub struct VisibleScenes {
     /// The scenes, with all their time steps.
     pub scenes: Arc<Scenes>,
     /// A single time step for all batch entries, or one for each entry.
@@ -109,7 +109,7 @@ impl KernelBackend {
 
     /// Records a step of the backward pass. It runs after the steps recorded later, and may add to the gradients of the
     /// weights.
-    pub fn on_the_way_back(&self, step: impl FnOnce(&mut [f32]) + 'static) {
+    pub fn record_backward(&self, step: impl FnOnce(&mut [f32]) + 'static) {
         #[cfg(feature = "training")]
         if let Some(tape) = &self.tape {
             tape.push(step);
@@ -148,7 +148,7 @@ impl KernelBackend {
     ) -> Rc<Rows> {
         let rows = Rc::new(Rows::new(shape, numbers));
         let output = Rc::clone(&rows);
-        self.on_the_way_back(move |of_weights| {
+        self.record_backward(move |of_weights| {
             // Without a gradient the loss does not depend on this output.
             if let Some(gradient) = output.take_gradient() {
                 backward(&gradient, of_weights);
@@ -185,7 +185,7 @@ impl KernelBackend {
 impl Backend for KernelBackend {
     type Tokens = Rc<Rows>;
     type KeyValues = Rc<RowKeyValues>;
-    type Seen = SeenScenes;
+    type Seen = VisibleScenes;
 
     fn entries(&self, x: &Rc<Rows>) -> usize {
         x.shape()[0]
@@ -217,7 +217,7 @@ impl Backend for KernelBackend {
         })
     }
 
-    fn beside(&self, x: &Rc<Rows>, other: &Rc<Rows>) -> Rc<Rows> {
+    fn concatenate(&self, x: &Rc<Rows>, other: &Rc<Rows>) -> Rc<Rows> {
         let (a, b) = (Rc::clone(x), Rc::clone(other));
         let [batch, pedestrians, width] = a.shape();
         let both = width + b.shape()[2];
@@ -258,7 +258,12 @@ impl Backend for KernelBackend {
         })
     }
 
-    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Rows>, seen: &SeenScenes) -> Rc<Rows> {
+    fn spatial_attention(
+        &self,
+        layer: EncoderLayer,
+        x: &Rc<Rows>,
+        seen: &VisibleScenes,
+    ) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
         let frames = seen.scenes.during(seen.steps.clone());
         let (y, kept) = kernel.among_pedestrians(x, frames, dropouts);
@@ -311,7 +316,7 @@ impl Backend for KernelBackend {
             gradient: RefCell::new(None),
         });
         let (token, x) = (Rc::clone(&cached), Rc::clone(x));
-        self.on_the_way_back(move |of_weights| {
+        self.record_backward(move |of_weights| {
             if let Some(gradient) = token.gradient.take() {
                 let of_weights = &mut of_weights[layer.span()];
                 x.add_gradient(kernel.remember_backward(&x, &gradient, of_weights));
@@ -320,7 +325,7 @@ impl Backend for KernelBackend {
         cached
     }
 
-    fn repeated_key_values(&self, cached: &Rc<RowKeyValues>, _: usize) -> Rc<RowKeyValues> {
+    fn repeat_key_values(&self, cached: &Rc<RowKeyValues>, _: usize) -> Rc<RowKeyValues> {
         // The kernels repeat a single batch entry themselves.
         Rc::clone(cached)
     }

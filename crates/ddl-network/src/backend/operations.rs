@@ -33,7 +33,7 @@ pub trait Backend: Debug + Sized + 'static {
     fn relu(&self, x: &Self::Tokens) -> Self::Tokens;
 
     /// Concatenates both along the width: `[B, P, width + width of other]`.
-    fn beside(&self, x: &Self::Tokens, other: &Self::Tokens) -> Self::Tokens;
+    fn concatenate(&self, x: &Self::Tokens, other: &Self::Tokens) -> Self::Tokens;
 
     /// Repeats a single batch entry `batch` times; returns `x` itself if it has `batch` entries already.
     fn repeated(&self, x: &Self::Tokens, batch: usize) -> Self::Tokens;
@@ -58,7 +58,7 @@ pub trait Backend: Debug + Sized + 'static {
     fn key_values(&self, layer: EncoderLayer, x: &Self::Tokens) -> Self::KeyValues;
 
     /// Repeats the keys and values of a single batch entry `batch` times.
-    fn repeated_key_values(&self, cached: &Self::KeyValues, batch: usize) -> Self::KeyValues;
+    fn repeat_key_values(&self, cached: &Self::KeyValues, batch: usize) -> Self::KeyValues;
 }
 
 /// The memory that a backbone has of earlier time steps.
@@ -86,7 +86,7 @@ impl<B: Backend> Memory<B> {
         let of_cache = |cache: &Vec<B::KeyValues>| {
             let cached = cache.iter();
             cached
-                .map(|one| backend.repeated_key_values(one, batch))
+                .map(|one| backend.repeat_key_values(one, batch))
                 .collect()
         };
         Self {

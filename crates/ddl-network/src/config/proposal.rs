@@ -55,7 +55,7 @@ impl ProposalConfig {
     ///
     /// # Panics
     /// On overflow, which [`check`](Self::check) excludes.
-    pub fn least_numbers(&self) -> u64 {
+    pub fn min_weight_count(&self) -> u64 {
         let [members, ends, width, near] =
             [self.members, self.ends, self.width, self.neighbour_width].map(|size| size as u64);
         // Hidden layers, attention, and a position and a probability for each endpoint. Packed models have no
@@ -195,7 +195,7 @@ impl ProposalTraining {
 
     /// Number of nearest endpoints that share the loss at step `step` of `steps`. With a fractional number the last
     /// endpoint has this fraction as its weight.
-    pub fn relaxed_at(&self, step: u64, steps: u64) -> f64 {
+    pub fn relaxed_ends_at(&self, step: u64, steps: u64) -> f64 {
         let done = step as f64 / steps as f64;
         let left = if self.relaxed_share > 0.0 {
             (1.0 - done / self.relaxed_share).max(0.0)
@@ -213,8 +213,8 @@ mod tests {
     #[test]
     fn the_number_of_relaxed_endpoints_falls_to_one() {
         let training = ProposalTraining::default();
-        assert!((training.relaxed_at(0, 1500) - 10.0).abs() < 1e-12);
-        assert!((training.relaxed_at(450, 1500) - 5.5).abs() < 1e-12);
-        assert!((training.relaxed_at(1499, 1500) - 1.0).abs() < 1e-12);
+        assert!((training.relaxed_ends_at(0, 1500) - 10.0).abs() < 1e-12);
+        assert!((training.relaxed_ends_at(450, 1500) - 5.5).abs() < 1e-12);
+        assert!((training.relaxed_ends_at(1499, 1500) - 1.0).abs() < 1e-12);
     }
 }

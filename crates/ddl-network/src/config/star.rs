@@ -81,7 +81,7 @@ impl StarConfig {
     ///
     /// # Panics
     /// On overflow, which [`check`](Self::check) excludes.
-    pub fn least_numbers(&self) -> u64 {
+    pub fn min_weight_count(&self) -> u64 {
         match self.backbone {
             BackboneKind::Star => 2 * self.spatial_layers as u64 * self.layer_numbers() as u64,
             BackboneKind::Perceptron => (self.feed_forward_width * self.model_width) as u64,

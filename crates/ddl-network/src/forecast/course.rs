@@ -3,11 +3,11 @@
 
 use super::batch::ForecastBatch;
 use super::motion_bounds::motion_bounds;
-use super::own_frame::{OwnFrame, motion_unit};
+use super::own_frame::{OwnFrame, length_unit};
 use super::rollout::StepRule;
 use super::visibility::visibility;
 use crate::StarConfig;
-use crate::backend::{Buffer, Rows, Scenes, SeenScenes};
+use crate::backend::{Buffer, Rows, Scenes, VisibleScenes};
 use crate::config::NetworkFrame;
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_dynamics::{
@@ -92,8 +92,8 @@ impl<'a> Observation<'a> {
         self.entries
     }
 
-    pub(super) fn seen(&self, steps: Range<usize>) -> SeenScenes {
-        SeenScenes {
+    pub(super) fn seen(&self, steps: Range<usize>) -> VisibleScenes {
+        VisibleScenes {
             scenes: Arc::clone(&self.scenes),
             steps,
         }
@@ -155,7 +155,7 @@ impl<'a> Course<'a> {
             let frames = goals.iter().flat_map(|goals| {
                 let each = tracks(batch).zip(goals);
                 each.map(|(track, &goal)| {
-                    let unit = motion_unit(track, config.time_step);
+                    let unit = length_unit(track, config.time_step);
                     OwnFrame::new(track[OBSERVED - 1], goal, unit)
                 })
             });

@@ -73,7 +73,7 @@ impl MotionNetwork {
         let output = backbone.output();
         let layout = Arc::new(layout);
         let weights = read(&layout)?;
-        weights.ensure_of(&layout)?;
+        weights.check_layout(&layout)?;
         let kernels = Kernels::new(&layout, weights.numbers(), Precision::F32);
         Ok(Self {
             spread: spread(&config, &weights, output),
@@ -90,7 +90,7 @@ impl MotionNetwork {
     /// # Errors
     /// [`NetworkError::Shape`] if they have another layout.
     pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
-        weights.ensure_of(self.weights.layout())?;
+        weights.check_layout(self.weights.layout())?;
         let layout = weights.layout();
         let kernels = Kernels::new(layout, weights.numbers(), self.precision());
         Ok(Self {
@@ -103,7 +103,7 @@ impl MotionNetwork {
 
     /// The same network with feed-forward blocks in this precision.
     #[must_use]
-    pub fn in_precision(self, precision: Precision) -> Self {
+    pub fn with_precision(self, precision: Precision) -> Self {
         let kernels = Kernels::new(self.weights.layout(), self.weights.numbers(), precision);
         Self {
             kernels: Arc::new(kernels),

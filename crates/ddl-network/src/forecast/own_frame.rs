@@ -65,10 +65,10 @@ impl OwnFrame {
 /// # Examples
 /// ```
 /// let at = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect::<Vec<_>>();
-/// assert!((ddl_network::motion_unit(&at(1.0), 0.4) - 1.0).abs() < 0.02); // walking
-/// assert!((ddl_network::motion_unit(&at(6.0), 0.4) - 3.0).abs() < 0.02); // running
+/// assert!((ddl_network::length_unit(&at(1.0), 0.4) - 1.0).abs() < 0.02); // walking
+/// assert!((ddl_network::length_unit(&at(6.0), 0.4) - 3.0).abs() < 0.02); // running
 /// ```
-pub fn motion_unit(observed: &[Position], time_step: f64) -> f64 {
+pub fn length_unit(observed: &[Position], time_step: f64) -> f64 {
     let steps = observed.len().saturating_sub(1).max(1) as f64;
     let way: f64 = observed
         .windows(2)
@@ -117,7 +117,7 @@ mod tests {
             scale in -6.0..6.0f64,
         ) {
             let track: Vec<Position> = track.iter().map(|p| p.map(|x| x * 10f64.powf(scale))).collect();
-            let unit = motion_unit(&track, 0.4);
+            let unit = length_unit(&track, 0.4);
             let lengths = track.windows(2).map(|p| (p[1][0] - p[0][0]).hypot(p[1][1] - p[0][1]));
             let speed = lengths.sum::<f64>() / 7.0 / 0.4;
             prop_assert!(unit >= 1.0 && speed / unit <= FAST_WALK * (1.0 + 1e-12));

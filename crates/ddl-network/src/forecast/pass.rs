@@ -208,7 +208,7 @@ impl Part<'_> {
     }
 
     fn emit(&self, features: &Rc<Rows>, noise: &Rc<Rows>) -> Buffer {
-        let inputs = self.backend.beside(features, noise);
+        let inputs = self.backend.concatenate(features, noise);
         Buffer::copy(&self.backend.linear(self.pass.layers.output, &inputs))
     }
 

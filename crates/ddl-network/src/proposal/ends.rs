@@ -7,7 +7,7 @@ use std::fmt::Debug;
 
 /// Unit of length of the last layer (m). Endpoints are within a few metres of the point to which the present velocity
 /// leads.
-pub const END_UNIT: f64 = 3.0;
+pub const ENDPOINT_UNIT: f64 = 3.0;
 
 /// The input for one pedestrian: observed positions in the pedestrian's own frame (metres). The origin is its last
 /// position, and its heading is +x.
@@ -32,7 +32,7 @@ pub struct ProposalExample {
 
 /// The endpoints proposed for one pedestrian: first those of all members, then those of all memory branches.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ProposedEnds {
+pub struct ProposedEndpoints {
     /// Endpoints in the pedestrian's frame (metres): members x K of them. Twice as many if the network has a memory
     /// branch and the view has earlier pedestrians.
     pub ends: Vec<Position>,
@@ -41,7 +41,7 @@ pub struct ProposedEnds {
 }
 
 /// A network that proposes endpoints: kernels on the CPU, or libtorch in `ddl-star`.
-pub trait ProposeEnds: Debug + Send + Sync {
+pub trait ProposeEndpoints: Debug + Send + Sync {
     /// Its sizes.
     fn config(&self) -> &ProposalConfig;
 
@@ -54,9 +54,9 @@ pub trait ProposeEnds: Debug + Send + Sync {
     /// Proposes endpoints for each pedestrian.
     ///
     /// # Shapes
-    /// One [`ProposedEnds`] for each view, in the same order: metres ahead and metres to the left.
+    /// One [`ProposedEndpoints`] for each view, in the same order: metres ahead and metres to the left.
     ///
     /// # Errors
     /// If the implementation fails, for example if a device has too little memory.
-    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, NetworkError>;
+    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, NetworkError>;
 }

@@ -1,6 +1,6 @@
 //! The ensemble on the CPU: small perceptrons with attention over the neighbours.
 
-use super::ends::{END_UNIT, PedestrianView, ProposeEnds, ProposedEnds};
+use super::ends::{ENDPOINT_UNIT, PedestrianView, ProposeEndpoints, ProposedEndpoints};
 use super::layers::ProposalLayers;
 use super::member::{MemberKernels, Readings};
 use super::remembered::RememberedRows;
@@ -50,7 +50,7 @@ impl ProposalNetwork {
         let layers = ProposalLayers::new(&mut layout, &config);
         let layout = Arc::new(layout);
         let weights = read(&layout)?;
-        weights.ensure_of(&layout)?;
+        weights.check_layout(&layout)?;
         Ok(Self {
             members: members(&config, &layers, &weights),
             config,
@@ -64,7 +64,7 @@ impl ProposalNetwork {
     /// # Errors
     /// [`NetworkError::Shape`] if they have another layout.
     pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
-        weights.ensure_of(self.weights.layout())?;
+        weights.check_layout(self.weights.layout())?;
         Ok(Self {
             members: members(&self.config, &self.layers, &weights),
             weights,
@@ -77,7 +77,7 @@ impl ProposalNetwork {
         &self.weights
     }
 
-    fn propose_chunk(&self, views: &[PedestrianView]) -> Vec<ProposedEnds> {
+    fn propose_chunk(&self, views: &[PedestrianView]) -> Vec<ProposedEndpoints> {
         let seen = SeenRows::of(views, &self.config);
         let memory = self.config.memory.as_ref();
         let remembered = memory.map_or_else(RememberedRows::default, |memory| {
@@ -87,7 +87,7 @@ impl ProposalNetwork {
         for (&index, share) in remembered.of.iter().zip(&remembered.shares) {
             shares[index] -= share;
         }
-        let none = ProposedEnds {
+        let none = ProposedEndpoints {
             ends: Vec::new(),
             weights: Vec::new(),
         };
@@ -97,8 +97,8 @@ impl ProposalNetwork {
             let (offsets, _) = ends.as_chunks::<2>();
             let places = offsets.iter().map(|&[x, y]| {
                 [
-                    f64::from(x) * END_UNIT + onward[0],
-                    f64::from(y) * END_UNIT + onward[1],
+                    f64::from(x) * ENDPOINT_UNIT + onward[0],
+                    f64::from(y) * ENDPOINT_UNIT + onward[1],
                 ]
             });
             proposed[index].ends.extend(places);
@@ -134,7 +134,7 @@ impl ProposalNetwork {
     }
 }
 
-impl ProposeEnds for ProposalNetwork {
+impl ProposeEndpoints for ProposalNetwork {
     fn config(&self) -> &ProposalConfig {
         &self.config
     }
@@ -143,7 +143,7 @@ impl ProposeEnds for ProposalNetwork {
         Ok(self.weights.clone())
     }
 
-    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, NetworkError> {
+    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, NetworkError> {
         let chunks = views.par_chunks(CHUNK);
         Ok(chunks
             .flat_map_iter(|views| self.propose_chunk(views))

@@ -1,17 +1,17 @@
 //! Inputs of the memory branch from earlier pedestrians of the place.
 
-use super::ends::{END_UNIT, PedestrianView};
+use super::ends::{ENDPOINT_UNIT, PedestrianView};
 use super::seen::{OthersRows, RECENT, velocity};
 use crate::MemoryConfig;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
 
-/// Number of inputs for an earlier pedestrian: 7 vectors and the [likenesses](LIKENESSES). The vectors, relative to the
+/// Number of inputs for an earlier pedestrian: 7 vectors and the [likenesses](SIMILARITY_SCALES). The vectors, relative to the
 /// pedestrian, are: present position, late and early velocity, displacement to the endpoint, endpoint, displacement to
 /// the halfway position; and its late velocity itself. Displacements and endpoint are relative to the pedestrian's
 /// constant velocity.
-pub const REMEMBERED_FEATURES: usize = 14 + LIKENESSES.len();
+pub const REMEMBERED_FEATURES: usize = 14 + SIMILARITY_SCALES.len();
 /// Scales s of the inputs exp(-d / s), where d is the squared distance of an earlier pedestrian.
-pub const LIKENESSES: [f64; 3] = [2.0, 8.0, 32.0];
+pub const SIMILARITY_SCALES: [f64; 3] = [2.0, 8.0, 32.0];
 
 /// Inputs of the memory branch, for the B pedestrians whose views have earlier pedestrians.
 #[derive(Default)]
@@ -54,13 +54,13 @@ impl RememberedRows {
                         now[axis] - here[axis],
                         its_late[axis] - late[axis],
                         its_early[axis] - early[axis],
-                        (end[axis] - now[axis] - late[axis] * seconds) / END_UNIT,
-                        (end[axis] - here[axis] - late[axis] * seconds) / END_UNIT,
-                        (halfway[axis] - now[axis] - late[axis] * seconds / 2.0) / END_UNIT,
+                        (end[axis] - now[axis] - late[axis] * seconds) / ENDPOINT_UNIT,
+                        (end[axis] - here[axis] - late[axis] * seconds) / ENDPOINT_UNIT,
+                        (halfway[axis] - now[axis] - late[axis] * seconds / 2.0) / ENDPOINT_UNIT,
                         its_late[axis],
                     ]
                 });
-                let likenesses = LIKENESSES.map(|scale| (-other.distance / scale).exp());
+                let likenesses = SIMILARITY_SCALES.map(|scale| (-other.distance / scale).exp());
                 support += likenesses[0];
                 let all = features.as_flattened().iter().chain(&likenesses);
                 rows.others.features.extend(all.map(|x| *x as f32));

@@ -6,7 +6,7 @@ use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
 
 /// SHA-256, in hexadecimal, of the name, type, shape and bytes of each tensor, in the order of the names.
-pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView<'a>)>) -> String {
+pub fn tensors_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView<'a>)>) -> String {
     let mut tensors: Vec<_> = tensors.into_iter().collect();
     tensors.sort_by(|one, other| one.0.cmp(other.0));
     let mut hasher = Sha256::new();
@@ -33,18 +33,18 @@ pub fn numbers_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
     "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \
      training again"
 )]
-pub struct DamagedNumbers;
+pub struct DigestMismatch;
 
 /// Checks the numbers of a file against the digest in its header.
 ///
 /// # Errors
-/// [`DamagedNumbers`] if they differ. Files of earlier versions have no digest and are accepted.
-pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DamagedNumbers> {
+/// [`DigestMismatch`] if they differ. Files of earlier versions have no digest and are accepted.
+pub fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DigestMismatch> {
     let Some(expected) = expected else {
         return Ok(());
     };
     let tensors = file.tensors();
-    let found = numbers_digest(
+    let found = tensors_digest(
         tensors
             .iter()
             .map(|(name, view)| (name.as_str(), view.clone())),
@@ -52,6 +52,6 @@ pub fn check_numbers(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(
     if found == expected {
         Ok(())
     } else {
-        Err(DamagedNumbers)
+        Err(DigestMismatch)
     }
 }

@@ -1,6 +1,6 @@
 //! Safetensors files of weights and other tensors. Reading checks them; writing is atomic.
 
-use super::digest::{check_numbers, numbers_digest};
+use super::digest::{check_digest, tensors_digest};
 use super::layout::Layout;
 use super::learned::Weights;
 use super::origin::Origin;
@@ -23,12 +23,12 @@ pub struct StoredTensor {
     /// Its shape.
     pub shape: Vec<usize>,
     /// Its numbers, in row-major order.
-    pub numbers: StoredNumbers,
+    pub numbers: TensorData,
 }
 
 /// The numbers of a [`StoredTensor`], in the precision of the file.
 #[derive(Debug, Clone, PartialEq)]
-pub enum StoredNumbers {
+pub enum TensorData {
     /// 32-bit floats.
     Single(Vec<f32>),
     /// 64-bit floats.
@@ -43,8 +43,8 @@ impl StoredTensor {
     pub fn single(&self, shape: &[usize], path: &Path) -> Result<Vec<f32>, NetworkError> {
         // Checked after the conversion, because a large f64 becomes infinite in f32.
         let numbers = match &self.numbers {
-            StoredNumbers::Single(numbers) => numbers.clone(),
-            StoredNumbers::Double(numbers) => numbers.iter().map(|&number| number as f32).collect(),
+            TensorData::Single(numbers) => numbers.clone(),
+            TensorData::Double(numbers) => numbers.iter().map(|&number| number as f32).collect(),
         };
         self.checked(shape, numbers.iter().all(|number| number.is_finite()), path)?;
         Ok(numbers)
@@ -56,8 +56,8 @@ impl StoredTensor {
     /// As [`single`](Self::single).
     pub fn double(&self, shape: &[usize], path: &Path) -> Result<Vec<f64>, NetworkError> {
         let numbers: Vec<f64> = match &self.numbers {
-            StoredNumbers::Single(numbers) => numbers.iter().map(|&number| number.into()).collect(),
-            StoredNumbers::Double(numbers) => numbers.clone(),
+            TensorData::Single(numbers) => numbers.iter().map(|&number| number.into()).collect(),
+            TensorData::Double(numbers) => numbers.clone(),
         };
         self.checked(shape, numbers.iter().all(|number| number.is_finite()), path)?;
         Ok(numbers)
@@ -78,11 +78,11 @@ impl StoredTensor {
 
     fn bytes(&self) -> (Dtype, Vec<u8>) {
         match &self.numbers {
-            StoredNumbers::Single(numbers) => {
+            TensorData::Single(numbers) => {
                 let bytes = numbers.iter().flat_map(|number| number.to_le_bytes());
                 (Dtype::F32, bytes.collect())
             }
-            StoredNumbers::Double(numbers) => {
+            TensorData::Double(numbers) => {
                 let bytes = numbers.iter().flat_map(|number| number.to_le_bytes());
                 (Dtype::F64, bytes.collect())
             }
@@ -100,7 +100,7 @@ pub fn save_weights(weights: &Weights, origin: &Origin, path: &Path) -> Result<(
         .map(|(tensor, numbers)| StoredTensor {
             name: tensor.name().to_owned(),
             shape: tensor.shape().to_vec(),
-            numbers: StoredNumbers::Single(numbers.to_vec()),
+            numbers: TensorData::Single(numbers.to_vec()),
         })
         .collect();
     write_tensors(&tensors, origin, path)
@@ -168,7 +168,7 @@ pub fn write_tensors(
         })
         .collect::<Result<Vec<_>, _>>()
         .map_err(broken)?;
-    let header = origin.to_header(&numbers_digest(views.iter().cloned()));
+    let header = origin.to_header(&tensors_digest(views.iter().cloned()));
     let bytes = safetensors::serialize(views, Some(header)).map_err(broken)?;
     write_whole(path, &bytes).map_err(NetworkError::io(path))
 }
@@ -203,7 +203,7 @@ pub fn read_tensors(
         ))
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
-    let (of_file, digest) = Origin::of_header(header.metadata().as_ref());
+    let (of_file, digest) = Origin::from_header(header.metadata().as_ref());
     if let Some(difference) = of_file.difference(origin) {
         return Err(bad(format!(
             "belongs to another run than the config.json beside it: its {difference}; restore the file and the \
@@ -211,17 +211,17 @@ pub fn read_tensors(
         )));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_numbers(&file, digest.as_deref()).map_err(|error| bad(error.to_string()))?;
+    check_digest(&file, digest.as_deref()).map_err(|error| bad(error.to_string()))?;
     file.iter()
         .map(|(name, view)| {
             let numbers = match view.dtype() {
                 Dtype::F32 => {
                     let (numbers, _) = view.data().as_chunks();
-                    StoredNumbers::Single(numbers.iter().map(|&b| f32::from_le_bytes(b)).collect())
+                    TensorData::Single(numbers.iter().map(|&b| f32::from_le_bytes(b)).collect())
                 }
                 Dtype::F64 => {
                     let (numbers, _) = view.data().as_chunks();
-                    StoredNumbers::Double(numbers.iter().map(|&b| f64::from_le_bytes(b)).collect())
+                    TensorData::Double(numbers.iter().map(|&b| f64::from_le_bytes(b)).collect())
                 }
                 other => {
                     return Err(bad(format!(

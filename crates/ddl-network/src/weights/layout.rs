@@ -19,7 +19,7 @@ pub enum Initial {
     Constant(f64),
     /// These numbers. As many random numbers are drawn and discarded, so that later draws are the same as with
     /// [`Uniform`](Self::Uniform).
-    DrawnAway(Vec<f64>),
+    Fixed(Vec<f64>),
 }
 
 /// One tensor of weights.
@@ -167,11 +167,11 @@ impl Layout {
     pub fn linear(&mut self, name: &str, inputs: usize, outputs: usize) -> Linear {
         let bound = 1.0 / (inputs as f64).sqrt();
         let begin = Initial::Uniform { bound, scale: 1.0 };
-        self.linear_beginning(name, [inputs, outputs], begin.clone(), begin)
+        self.linear_with_initial(name, [inputs, outputs], begin.clone(), begin)
     }
 
     /// Declares an affine map with these initial values.
-    pub fn linear_beginning(
+    pub fn linear_with_initial(
         &mut self,
         name: &str,
         [inputs, outputs]: [usize; 2],
@@ -241,7 +241,7 @@ impl Layout {
             let count = tensor.span().len();
             match &tensor.initial {
                 Initial::Constant(value) => numbers.resize(numbers.len() + count, *value),
-                Initial::DrawnAway(values) => {
+                Initial::Fixed(values) => {
                     numbers.extend(values);
                     for _ in 0..count {
                         let _: f64 = rng.random();

@@ -32,7 +32,7 @@ impl Weights {
     ///
     /// # Errors
     /// [`NetworkError::Shape`] if they have another one.
-    pub fn ensure_of(&self, layout: &Arc<Layout>) -> Result<(), NetworkError> {
+    pub fn check_layout(&self, layout: &Arc<Layout>) -> Result<(), NetworkError> {
         if Arc::ptr_eq(&self.layout, layout) || self.layout == *layout {
             return Ok(());
         }

@@ -52,7 +52,7 @@ impl Origin {
 
     /// The origin in the header of a safetensors file, empty if another program wrote the file; and the SHA-256 of its
     /// numbers, if the header has it.
-    pub fn of_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
+    pub fn from_header(header: Option<&HashMap<String, String>>) -> (Self, Option<String>) {
         let facts = header.and_then(|header| header.get(HEADER));
         let mut origin = Self(
             facts
@@ -78,14 +78,14 @@ mod tests {
         let origin = Origin::from_iter([("fold", "eth"), ("seed", "1")]);
         let header = origin.to_header("ab12");
         let digest = Some("ab12".to_owned());
-        assert_eq!(Origin::of_header(Some(&header)), (origin, digest));
+        assert_eq!(Origin::from_header(Some(&header)), (origin, digest));
         let empty = (Origin::default(), None);
-        assert_eq!(Origin::of_header(None), empty);
+        assert_eq!(Origin::from_header(None), empty);
         let foreign = HashMap::from([(HEADER.to_owned(), "[1".to_owned())]);
-        assert_eq!(Origin::of_header(Some(&foreign)), empty);
+        assert_eq!(Origin::from_header(Some(&foreign)), empty);
         // A file of a version without a digest.
         let old = HashMap::from([(HEADER.to_owned(), r#"{"fold":"eth"}"#.to_owned())]);
         let eth = Origin::from_iter([("fold", "eth")]);
-        assert_eq!(Origin::of_header(Some(&old)), (eth, None));
+        assert_eq!(Origin::from_header(Some(&old)), (eth, None));
     }
 }

@@ -3,7 +3,7 @@
 use super::scenes::{WINDOWS, distance, with_threads};
 use ddl_data::{OBSERVED, Position, Remembered, WINDOW, Window};
 use ddl_network::{
-    PedestrianView, ProposalConfig, ProposalNetwork, ProposeEnds as _, ProposedEnds,
+    PedestrianView, ProposalConfig, ProposalNetwork, ProposeEndpoints as _, ProposedEndpoints,
 };
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -76,7 +76,7 @@ fn earlier(aside: f64) -> Remembered {
     }
 }
 
-fn bits(proposed: &ProposedEnds) -> Vec<u64> {
+fn bits(proposed: &ProposedEndpoints) -> Vec<u64> {
     let numbers = proposed.ends.as_flattened().iter().chain(&proposed.weights);
     numbers.map(|number| number.to_bits()).collect()
 }

@@ -37,7 +37,7 @@ proptest! {
         chosen in prop::collection::vec(any::<Index>(), 1..10),
         threads in 1..4_usize,
     ) {
-        let network = MotionNetwork::new(config, 5).unwrap().in_precision(precision);
+        let network = MotionNetwork::new(config, 5).unwrap().with_precision(precision);
         let windows: Vec<&Window> = chosen.iter().map(|index| index.get(&WINDOWS)).collect();
         let together = with_threads(threads, || question.ask(&network, &windows));
         prop_assert_eq!(together.len(), windows.len());

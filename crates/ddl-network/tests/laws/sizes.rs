@@ -30,7 +30,7 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
                 ..published.clone()
             };
             let network = MotionNetwork::new(config.clone(), 1).unwrap();
-            check(config.least_numbers(), network.weights().count());
+            check(config.min_weight_count(), network.weights().count());
         }
     }
     for [members, ends, width, layers, neighbour_width] in [
@@ -49,6 +49,6 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
         };
         let network = ProposalNetwork::new(config.clone(), 1).unwrap();
         assert_eq!(config.parameter_count(), network.weights().count());
-        check(config.least_numbers(), network.weights().count());
+        check(config.min_weight_count(), network.weights().count());
     }
 }

@@ -1,8 +1,8 @@
 //! Weights are read from files as they were written, and broken files are refused.
 
 use ddl_network::weights::{
-    Origin, StoredNumbers, StoredTensor, Weights, load_weights, numbers_digest, read_tensors,
-    save_weights, write_tensors,
+    Origin, StoredTensor, TensorData, Weights, load_weights, read_tensors, save_weights,
+    tensors_digest, write_tensors,
 };
 use ddl_network::{
     ForecastWindows as _, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, StarConfig,
@@ -45,7 +45,7 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) 
             )
         })
     };
-    let header = origin().to_header(&numbers_digest(views()));
+    let header = origin().to_header(&tensors_digest(views()));
     safetensors::serialize(views(), Some(header)).unwrap()
 }
 
@@ -144,7 +144,7 @@ fn double(shape: &[usize], numbers: Vec<f64>) -> StoredTensor {
     StoredTensor {
         name: "moments".to_owned(),
         shape: shape.to_vec(),
-        numbers: StoredNumbers::Double(numbers),
+        numbers: TensorData::Double(numbers),
     }
 }
 

@@ -15,7 +15,7 @@
 //!
 //! Moments hold whole millimetres, so that the encoding is exact: `x / 1000` is the original number.
 
-use ddl_data::{HORIZON, MadeUp, OBSERVED, PedestrianName, Position};
+use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
 
 use super::error::{MomentProblem, PageError};
@@ -53,7 +53,7 @@ struct PedestrianData<'a> {
     falls: String,
     certified: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    made_up: Option<MadeUp>,
+    made_up: Option<CompletionCounts>,
 }
 
 /// The part of the true future that must be there.

@@ -3,7 +3,7 @@
 use ddl_data::{PedestrianId, Position, WINDOW, Window};
 use ddl_eval::{
     Forecaster,
-    baseline::{ConstantVelocity, StraightLine, TrueEnd, WeightedGoals},
+    baseline::{ConstantVelocity, StraightLine, TrueEndpoint, WeightedGoals},
 };
 use ddl_report::{
     FigureError,
@@ -170,7 +170,7 @@ const STAR: &str = "class=\"star\"";
 #[test]
 fn every_role_of_a_scene_is_drawn_and_named() {
     let window = window(2);
-    let forecast = StraightLine::to(TrueEnd).forecast(&window).unwrap();
+    let forecast = StraightLine::to(TrueEndpoint).forecast(&window).unwrap();
     let svg = figure::scene(&window, &forecast).unwrap();
     assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
     for text in [

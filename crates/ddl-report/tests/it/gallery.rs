@@ -3,7 +3,7 @@
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_eval::{
     Forecast, Protocol,
-    baseline::{ConstantVelocity, StraightLine, TrueEnd},
+    baseline::{ConstantVelocity, StraightLine, TrueEndpoint},
     metric::displacement::average_displacement,
 };
 use ddl_report::{
@@ -21,7 +21,7 @@ fn windows() -> Vec<Window> {
 
 fn oracle(windows: &[Window]) -> Vec<Forecast> {
     Protocol::Published
-        .forecast(&StraightLine::to(TrueEnd), windows)
+        .forecast(&StraightLine::to(TrueEndpoint), windows)
         .unwrap()
 }
 

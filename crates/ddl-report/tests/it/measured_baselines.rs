@@ -3,7 +3,7 @@
 use ddl_data::{Convention, Dataset, Window, WindowRule, locate};
 use ddl_eval::{
     Conditions, Forecaster, Protocol, ResultRow,
-    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEnd},
+    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint},
 };
 use ddl_report::literature;
 
@@ -33,7 +33,7 @@ fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {
     }
 }
 
-fn measured(name: &str) -> &'static literature::MeasuredRow {
+fn measured(name: &str) -> &'static literature::BaselineReference {
     let mut rows = literature::LITERATURE.measured.iter();
     rows.find(|row| row.method == name).unwrap()
 }
@@ -52,7 +52,7 @@ fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
         Box::new(ConstantAcceleration::unbounded()),
         Box::new(ConstantAcceleration::bounded()),
         Box::new(SocialForce),
-        Box::new(StraightLine::to(TrueEnd)),
+        Box::new(StraightLine::to(TrueEndpoint)),
     ];
     let printed = deterministic
         .into_iter()

@@ -93,7 +93,7 @@ impl Backend for TorchBackend {
         Rc::new(x.relu())
     }
 
-    fn beside(&self, x: &Rc<Tensor>, other: &Rc<Tensor>) -> Rc<Tensor> {
+    fn concatenate(&self, x: &Rc<Tensor>, other: &Rc<Tensor>) -> Rc<Tensor> {
         Rc::new(Tensor::cat(&[&**x, &**other], -1))
     }
 
@@ -136,7 +136,7 @@ impl Backend for TorchBackend {
         Rc::new(self.affine(x, layer.tensor))
     }
 
-    fn repeated_key_values(&self, cached: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {
+    fn repeat_key_values(&self, cached: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {
         Rc::new(cached.expand([batch as i64, -1, -1], false))
     }
 }

@@ -1,5 +1,5 @@
 //! A pedestrian's own frame: the first axis points from its last observed position to its goal; lengths are in its own
-//! [unit](ddl_network::motion_unit).
+//! [unit](ddl_network::length_unit).
 
 use super::own_motion;
 use ddl_data::OBSERVED;

@@ -1,4 +1,4 @@
-//! The observed motion of every pedestrian on tensors: the twins of [`motion_unit`](ddl_network::motion_unit) and
+//! The observed motion of every pedestrian on tensors: the twins of [`length_unit`](ddl_network::length_unit) and
 //! [`motion_bounds`](ddl_network::motion_bounds).
 
 use ddl_dynamics::MotionBounds;
@@ -54,7 +54,7 @@ pub(crate) fn velocities(observed: &Tensor, time_step: f64) -> Tensor {
 mod tests {
     use super::*;
     use ddl_data::Position;
-    use ddl_network::{motion_bounds, motion_unit};
+    use ddl_network::{length_unit, motion_bounds};
     use proptest::prelude::*;
 
     proptest! {
@@ -80,7 +80,7 @@ mod tests {
             let scaled: Vec<Position> = track.iter().map(|p| p.map(|x| x * 10f64.powf(scale))).collect();
             let tensor = Tensor::from_slice(scaled.as_flattened()).reshape([8, 1, 2]);
             let unit = units(&tensor, 0.4).double_value(&[0, 0, 0]);
-            prop_assert!((motion_unit(&scaled, 0.4) / unit - 1.0).abs() < 1e-12);
+            prop_assert!((length_unit(&scaled, 0.4) / unit - 1.0).abs() < 1e-12);
         }
     }
 }

@@ -77,7 +77,7 @@ impl Parameters {
     /// # Errors
     /// [`StarError::Network`] when they are of another layout; the parameters are then unchanged.
     pub fn set(&self, weights: &Weights) -> Result<(), StarError> {
-        weights.ensure_of(&self.layout)?;
+        weights.check_layout(&self.layout)?;
         let _guard = tch::no_grad_guard();
         let numbers = Tensor::f_from_slice(weights.numbers())?;
         self.flat.shallow_clone().f_copy_(&numbers)?;

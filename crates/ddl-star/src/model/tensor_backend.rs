@@ -3,7 +3,7 @@
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
 use super::parameters::Parameters;
-use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, SeenScenes};
+use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, VisibleScenes};
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ impl TensorBackend for KernelBackend {
         let leaf = joined.set_requires_grad(true);
         let joined = leaf.shallow_clone();
         let all = all.to_vec();
-        self.on_the_way_back(move |_| {
+        self.record_backward(move |_| {
             let gradient = leaf.grad();
             if !gradient.defined() {
                 return;
@@ -84,8 +84,8 @@ impl TensorBackend for KernelBackend {
         joined
     }
 
-    fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> SeenScenes {
-        SeenScenes {
+    fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> VisibleScenes {
+        VisibleScenes {
             scenes: Arc::clone(batch.neighbours.scenes()),
             steps,
         }

@@ -6,12 +6,14 @@ use crate::device::ComputeDevice;
 use crate::model::{Parameters, numbers};
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
 use ddl_network::proposal::{
-    AttentionLayers, END_UNIT, LIKENESSES, MemberAffine, ProposalLayers, RECENT, ReadoutLayers,
-    WAYPOINTS,
+    AttentionLayers, ENDPOINT_UNIT, MemberAffine, ProposalLayers, RECENT, ReadoutLayers,
+    SIMILARITY_SCALES, WAYPOINTS,
 };
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::{Layout, Weights};
-use ddl_network::{NetworkError, PedestrianView, ProposalConfig, ProposeEnds, ProposedEnds};
+use ddl_network::{
+    NetworkError, PedestrianView, ProposalConfig, ProposeEndpoints, ProposedEndpoints,
+};
 use std::sync::{Mutex, PoisonError};
 use tch::{Kind, Tensor};
 
@@ -61,9 +63,9 @@ impl TorchProposals {
         })
     }
 
-    /// This network, computed by libtorch, as a `ProposeEnds`.
+    /// This network, computed by libtorch, as a `ProposeEndpoints`.
     #[must_use]
-    pub fn into_proposer(self) -> Box<dyn ProposeEnds> {
+    pub fn into_proposer(self) -> Box<dyn ProposeEndpoints> {
         Box::new(TorchProposer {
             config: self.config.clone(),
             network: Mutex::new(self),
@@ -98,11 +100,11 @@ impl TorchProposals {
     /// Proposes endpoints for each of the pedestrians.
     ///
     /// # Shapes
-    /// One [`ProposedEnds`] for each view, in their order: positions in metres ahead and to the left.
+    /// One [`ProposedEndpoints`] for each view, in their order: positions in metres ahead and to the left.
     ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails, for example for lack of memory.
-    pub fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, StarError> {
+    pub fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, StarError> {
         let _guard = tch::no_grad_guard();
         let mut proposed = Vec::with_capacity(views.len());
         for chunk in views.chunks(CHUNK) {
@@ -121,9 +123,9 @@ impl TorchProposals {
             let (ends, weights) = listed(&alone)?;
             let ends = ends.chunks_exact(each).map(<[_]>::to_vec);
             let weights = weights.chunks_exact(each).map(<[_]>::to_vec);
-            let mut of_chunk: Vec<ProposedEnds> = ends
+            let mut of_chunk: Vec<ProposedEndpoints> = ends
                 .zip(weights)
-                .map(|(ends, weights)| ProposedEnds { ends, weights })
+                .map(|(ends, weights)| ProposedEndpoints { ends, weights })
                 .collect();
             let remembers = chunk.iter().any(|view| !view.remembered.is_empty());
             let branch = self.config.memory.as_ref().filter(|_| remembers);
@@ -174,7 +176,8 @@ impl TorchProposals {
             &remembered.present,
             memory.heads,
         );
-        let alike = (&remembered.distances * (-1.0 / LIKENESSES[0])).exp() * &remembered.present;
+        let alike =
+            (&remembered.distances * (-1.0 / SIMILARITY_SCALES[0])).exp() * &remembered.present;
         let support = sum(&alike).log1p();
         let hidden = self.through(&readout.hidden, code, context, support);
         let more = self.read(readout, &hidden);
@@ -233,7 +236,7 @@ impl TorchProposals {
     fn read(&self, layers: &ReadoutLayers, hidden: &Tensor) -> Proposals {
         let size = hidden.size();
         let (m, b, ends, points) = (size[0], size[1], self.config.ends, WAYPOINTS.len() as i64);
-        let offsets = self.affine(layers.ends, hidden).reshape([m, b, ends, 2]) * END_UNIT;
+        let offsets = self.affine(layers.ends, hidden).reshape([m, b, ends, 2]) * ENDPOINT_UNIT;
         let waypoints = self.affine(layers.waypoints, hidden);
         Proposals {
             ends: offsets,
@@ -307,14 +310,14 @@ impl TorchProposals {
             &now - &here,
             &its_late - &late,
             its_early - self.velocity(&own, RECENT),
-            (&end - &now - &late * seconds) / END_UNIT,
-            (&end - &here - &late * seconds) / END_UNIT,
-            (&halfway - &now - &late * (seconds / 2.0)) / END_UNIT,
+            (&end - &now - &late * seconds) / ENDPOINT_UNIT,
+            (&end - &here - &late * seconds) / ENDPOINT_UNIT,
+            (&halfway - &now - &late * (seconds / 2.0)) / ENDPOINT_UNIT,
             its_late,
         ];
         let axis = |axis: i64| pairs.iter().map(move |pair| pair.select(-1, axis));
         let likeness = |scale: &f64| (&views.remembered.distances / -*scale).exp();
-        let likenesses = LIKENESSES.iter().map(likeness);
+        let likenesses = SIMILARITY_SCALES.iter().map(likeness);
         let features: Vec<Tensor> = axis(0).chain(axis(1)).chain(likenesses).collect();
         Tensor::stack(&features, -1)
     }
@@ -373,7 +376,7 @@ struct TorchProposer {
     network: Mutex<TorchProposals>,
 }
 
-impl ProposeEnds for TorchProposer {
+impl ProposeEndpoints for TorchProposer {
     fn config(&self) -> &ProposalConfig {
         &self.config
     }
@@ -383,7 +386,7 @@ impl ProposeEnds for TorchProposer {
         Ok(network.parameters.to_weights()?)
     }
 
-    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEnds>, NetworkError> {
+    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, NetworkError> {
         let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(network.propose(views)?)
     }

@@ -172,7 +172,7 @@ impl ProposalTrainer {
         let training = &self.training;
         let (rows, views, future) = self.batch(step);
         let weights = LossWeights {
-            relaxed: training.relaxed_at(done, all),
+            relaxed: training.relaxed_ends_at(done, all),
             waypoints: training.waypoint_weight,
             probability: training.probability_weight,
         };

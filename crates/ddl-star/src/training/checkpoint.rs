@@ -5,7 +5,7 @@ use crate::StarError;
 use crate::model::Parameters;
 use ddl_network::NetworkError;
 use ddl_network::weights::{
-    Origin, StoredNumbers, StoredTensor, find_tensor, read_tensors, write_tensors,
+    Origin, StoredTensor, TensorData, find_tensor, read_tensors, write_tensors,
 };
 use std::path::Path;
 use tch::{Device, Kind, Tensor};
@@ -55,7 +55,7 @@ pub(crate) fn save(
     tensors.push(StoredTensor {
         name: PROGRESS.to_owned(),
         shape: vec![extra.progress.len()],
-        numbers: StoredNumbers::Double(extra.progress.clone()),
+        numbers: TensorData::Double(extra.progress.clone()),
     });
     Ok(write_tensors(&tensors, origin, path)?)
 }
@@ -121,8 +121,8 @@ fn stored(name: &str, tensor: &Tensor) -> Result<StoredTensor, StarError> {
         name: name.to_owned(),
         shape: vec![here.numel()],
         numbers: match here.kind() {
-            Kind::Double => StoredNumbers::Double(Vec::try_from(here)?),
-            _ => StoredNumbers::Single(Vec::try_from(here)?),
+            Kind::Double => TensorData::Double(Vec::try_from(here)?),
+            _ => TensorData::Single(Vec::try_from(here)?),
         },
     })
 }

@@ -67,7 +67,7 @@ fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
 fn watched(cameras: usize) -> Result<(Vec<Camera>, LiveScenes)> {
     let mut cameras: Vec<Camera> = (0..cameras).map(Camera::new).collect::<Result<_>>()?;
     let mut scenes = LiveScenes::new()
-        .completing(Completion::USUAL)
+        .with_completion(Completion::USUAL)
         .latest_only();
     for camera in &mut cameras {
         for frame in 0..OBSERVED as i64 - 1 {

@@ -103,7 +103,7 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
     let roll_out = |network: &MotionNetwork| {
         network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None)
     };
-    let count = model.goal_model().remembered_at_once()?;
+    let count = model.goal_model().recalled_per_pedestrian()?;
     let remembering = || memory.recalling(window.clone(), count);
     let parts: [&mut dyn FnMut() -> Result<()>; 5] = [
         &mut || Ok(model.forecast(&remembering()).map(drop)?),

@@ -38,7 +38,7 @@ pub(crate) fn recordings(place: &str) -> Result<Vec<Recording>, Box<dyn Error>> 
     let recordings = files.iter().map(|file| {
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = parse_recording(&std::fs::read(file)?, &name, Format::Table)?;
-        Ok(recording.in_steps(frame_time)?.recording)
+        Ok(recording.resampled_to_steps(frame_time)?.recording)
     });
     recordings.collect()
 }

@@ -13,14 +13,14 @@ const WINDOWS_AT_ONCE: usize = 64;
 
 /// Errors of the best of 20 hypotheses in metres, means over pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct BestOfTwenty {
+pub struct BestOf20Errors {
     /// minADE.
     pub min_ade: f64,
     /// minFDE.
     pub min_fde: f64,
 }
 
-impl BestOfTwenty {
+impl BestOf20Errors {
     fn of(blocks: &[BlockErrors]) -> Self {
         let pedestrians: usize = blocks.iter().map(|block| block.pedestrians).sum();
         let mean = |metric| {
@@ -39,9 +39,9 @@ pub struct Comparison {
     /// Pedestrians in the windows, each counted once for each window.
     pub pedestrians: usize,
     /// The run.
-    pub run: BestOfTwenty,
+    pub run: BestOf20Errors,
     /// The other model.
-    pub other: BestOfTwenty,
+    pub other: BestOf20Errors,
     /// The minADE of the run minus that of the other model, with its interval; `None` where the windows start in fewer
     /// than 10 blocks of 20 s.
     pub difference: Option<PairedDifference>,
@@ -78,8 +78,8 @@ pub fn compare_on_validation(
     let difference = paired_difference(&[&of_run], &[&of_other], BlockMetric::MinAde).ok();
     Ok(Comparison {
         pedestrians: windows.iter().map(Window::len).sum(),
-        run: BestOfTwenty::of(&of_run),
-        other: BestOfTwenty::of(&of_other),
+        run: BestOf20Errors::of(&of_run),
+        other: BestOf20Errors::of(&of_other),
         difference: difference.flatten(),
     })
 }

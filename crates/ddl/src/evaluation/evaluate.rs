@@ -2,7 +2,7 @@ use crate::error::DdlError;
 use crate::evaluation::manner::{GivenGoals, Manner, Way, memory_words};
 use crate::evaluation::published::Published;
 use crate::evaluation::rows::{Forecasted, ResultRows};
-use crate::evaluation::split::EvaluationSplit;
+use crate::evaluation::split::Split;
 use crate::evaluation::straight_lines::straight_lines;
 use crate::evaluation::test_set::TestSet;
 use crate::goals::model::GoalModel;
@@ -32,7 +32,7 @@ pub struct EvaluationRequest {
     /// The protocols.
     pub protocols: Vec<Protocol>,
     /// The windows.
-    pub on: EvaluationSplit,
+    pub on: Split,
     /// Recordings that form the validation part of own recordings, instead of the part that training would keep. Only
     /// for models that were trained on none of these recordings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -80,7 +80,7 @@ pub fn evaluate(
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
     let total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();
     if asked(&WATCHING) {
-        model.goal_model().remembered_at_once()?;
+        model.goal_model().recalled_per_pedestrian()?;
     }
     let mut measuring = Measuring {
         model,
@@ -121,7 +121,7 @@ fn goals_for(
 ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
     match given {
         GivenGoals::Own | GivenGoals::Published => Ok(own.to_vec()),
-        GivenGoals::Central => Ok(sets::only_central(windows, own)),
+        GivenGoals::Central => Ok(sets::with_central_only(windows, own)),
         GivenGoals::WithoutLibrary => model.goals_without_library(windows),
         GivenGoals::WithoutMemory => {
             let nothing = |window: &Window| window.clone().with_remembered(|_| Vec::new());

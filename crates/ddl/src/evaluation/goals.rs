@@ -1,5 +1,5 @@
 use crate::error::DdlError;
-use crate::evaluation::split::EvaluationSplit;
+use crate::evaluation::split::Split;
 use crate::evaluation::test_set::TestSet;
 use crate::goals::model::GoalModel;
 use crate::goals::remembering::Remembering;
@@ -84,7 +84,7 @@ impl GoalErrors {
 pub fn evaluate_goals(
     model: &GoalModel,
     dataset: &Dataset,
-    (on, what): (EvaluationSplit, Option<Remembering>),
+    (on, what): (Split, Option<Remembering>),
 ) -> Result<MeasuredGoals, DdlError> {
     let test = TestSet::of_run(model, dataset, (on, &[]), None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);

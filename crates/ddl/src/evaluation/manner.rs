@@ -43,7 +43,7 @@ pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
         "training recordings of the same place (folds {})",
         folds.join(", ")
     );
-    match (protocol.shows_past(), folds.is_empty()) {
+    match (protocol.gives_recording_memory(), folds.is_empty()) {
         _ if model.goal_model().memory().is_none() => String::new(),
         (false, true) => String::new(),
         (false, false) => format!(", with a memory of {of_place}"),
@@ -61,7 +61,7 @@ impl Manner {
             | GivenGoals::Central
             | GivenGoals::Published
             | GivenGoals::WithoutMemory => goals.words(),
-            GivenGoals::WithoutLibrary => goals.recipe().words_without_library(),
+            GivenGoals::WithoutLibrary => goals.recipe().description_without_library(),
         };
         match self.goals {
             GivenGoals::WithoutMemory | GivenGoals::Published => words,

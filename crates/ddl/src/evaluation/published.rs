@@ -101,7 +101,7 @@ impl Published {
         rolled
             .map(|((rollout, window), goals)| {
                 if !config.variant.uses_goal() {
-                    return shaped::equally_likely(rollout);
+                    return shaped::with_equal_weights(rollout);
                 }
                 let walked = Walked {
                     shares: vec![1.0; window.len()],

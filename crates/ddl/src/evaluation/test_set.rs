@@ -3,9 +3,9 @@
 
 use crate::error::DdlError;
 use crate::error::more_for_validation;
-use crate::evaluation::split::EvaluationSplit;
+use crate::evaluation::split::Split;
 use crate::goals::model::GoalModel;
-use crate::run::training_data::{digest, digest_of_recording, fold_of};
+use crate::run::training_data::{digest, digest_of_recording, fold_by_name};
 use crate::run::validation_part::ValidationPart;
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
@@ -33,15 +33,15 @@ impl TestSet {
     pub(crate) fn of_run(
         goals: &GoalModel,
         dataset: &Dataset,
-        (on, whole): (EvaluationSplit, &[String]),
+        (on, whole): (Split, &[String]),
         pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let wrong = |problem: String| Err(goals.source().wrong(problem));
         let own = dataset.convention() == Convention::Own;
         match on {
-            EvaluationSplit::Test if own => return Self::of_own(goals, dataset, pedestrians),
-            EvaluationSplit::Validation if own && !was_trained_on_some(goals, dataset) => {
+            Split::Test if own => return Self::of_own(goals, dataset, pedestrians),
+            Split::Validation if own && !was_trained_on_some(goals, dataset) => {
                 return Self::own_validation(goals, dataset, whole, pedestrians);
             }
             _ => {}
@@ -59,8 +59,8 @@ impl TestSet {
                     .to_owned(),
             );
         }
-        if on == EvaluationSplit::Test {
-            let fold = fold_of(dataset, &data.fold)?;
+        if on == Split::Test {
+            let fold = fold_by_name(dataset, &data.fold)?;
             return Ok(Self::new(&fold, data.convention, pedestrians));
         }
         let set = Self::kept_by(goals, dataset, pedestrians)?;
@@ -86,7 +86,8 @@ impl TestSet {
                 "kept no validation part; train it with --validation 0.2 or --validation-recordings",
             ));
         }
-        let fold = fold_of(dataset, &data.fold)?.set_apart(&data.validation_recordings)?;
+        let fold = fold_by_name(dataset, &data.fold)?
+            .with_validation_recordings(&data.validation_recordings)?;
         let (rule, fraction) = (data.window_rule, data.validation);
         if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
             return Err(goals.source().wrong(
@@ -113,7 +114,9 @@ impl TestSet {
                 recordings: whole.to_vec(),
             }
         };
-        let fold = dataset.whole().set_apart(&part.recordings)?;
+        let fold = dataset
+            .whole()
+            .with_validation_recordings(&part.recordings)?;
         let kept = (dataset.convention().headline_rule(), part.share);
         let set = Self::validation(&fold, dataset.convention(), kept, pedestrians);
         if set.windows.is_empty() {
@@ -174,7 +177,7 @@ impl TestSet {
         }
         let set = Self {
             convention: dataset.convention(),
-            fold: name_of(&tested),
+            fold: test_set_name(&tested),
             rules: vec![(rule, (0..windows.len()).collect())],
             windows,
             subset: None,
@@ -244,7 +247,7 @@ impl TestSet {
         if fraction > 0.0 {
             parts.push(format!("the last {fraction} of the TRAINING recordings"));
         }
-        let apart = fold.recordings_set_apart();
+        let apart = fold.validation_recordings();
         if !apart.is_empty() {
             let names: Vec<&str> = apart.iter().map(|r| r.name()).collect();
             parts.push(format!("{} whole", names.join(", ")));
@@ -335,7 +338,7 @@ fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
 
 /// A short name in the results for recordings that are tested together.
 #[must_use]
-pub fn name_of(tested: &[&Recording]) -> String {
+pub fn test_set_name(tested: &[&Recording]) -> String {
     match tested {
         [] => String::new(),
         [only] => only.name().to_owned(),

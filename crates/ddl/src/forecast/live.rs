@@ -20,7 +20,7 @@ use std::borrow::Borrow;
 /// # State kept between frames
 /// The last 8 time steps of the pedestrians that are present, so that memory is bounded by their number. The memory of
 /// the place, bounded by its capacity, [if requested](Self::remembering). Where [regions
-/// adapt](Self::adapting_regions), also the forecasts of the last 4.8 s. No state of the networks is kept: their tokens
+/// adapt](Self::with_adaptive_regions), also the forecasts of the last 4.8 s. No state of the networks is kept: their tokens
 /// are relative to goals and to the scene, which change at every frame.
 ///
 /// # Errors
@@ -94,8 +94,8 @@ impl<M> LiveForecaster<M> {
 
     /// Fills incomplete observations in as the completion allows. [`Window::made_up`] counts the filled-in positions.
     #[must_use]
-    pub fn completing(mut self, completion: Completion) -> Self {
-        self.watch.tracks = self.watch.tracks.completing(completion);
+    pub fn with_completion(mut self, completion: Completion) -> Self {
+        self.watch.tracks = self.watch.tracks.with_completion(completion);
         self
     }
 
@@ -103,7 +103,7 @@ impl<M> LiveForecaster<M> {
     /// other parts of the forecasts have the same bits. To continue from what an earlier watch of the place
     /// [learned](AdaptiveRegions::learned), use [`AdaptiveRegions::resuming`].
     #[must_use]
-    pub fn adapting_regions(self, regions: AdaptiveRegions) -> Self {
+    pub fn with_adaptive_regions(self, regions: AdaptiveRegions) -> Self {
         Self {
             regions: Some(regions),
             ..self
@@ -146,10 +146,10 @@ impl<M> LiveForecaster<M> {
     }
 
     /// Decides from the pedestrians so far whether the given memory is of this place; call it when no more will follow
-    /// ([`WatchedPlace::end_trial`]).
-    pub fn end_trial(&mut self) {
+    /// ([`WatchedPlace::finish_test`]).
+    pub fn finish_test(&mut self) {
         if let Some(place) = &mut self.watch.place {
-            place.end_trial();
+            place.finish_test();
         }
     }
 

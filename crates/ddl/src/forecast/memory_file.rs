@@ -72,7 +72,7 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// Writes the memory at the end of a watch, after its [trial](WatchedPlace::end_trial). Returns the reason if the
+    /// Writes the memory at the end of a watch, after its [trial](WatchedPlace::finish_test). Returns the reason if the
     /// file is left unchanged.
     ///
     /// # Errors

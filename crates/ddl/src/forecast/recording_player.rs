@@ -51,7 +51,7 @@ impl<'a> RecordingPlayer<'a> {
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
         let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
-            let seen = recording.onward(window);
+            let seen = recording.futures_of(window);
             let mut moment = Moment::under_way(model.name(), window, forecast, &seen)?;
             moment.frame = frame(window.frames()[OBSERVED - 1]);
             Ok(moment)

@@ -125,9 +125,9 @@ impl LiveScenes {
 
     /// The same, with incomplete observations filled in as the completion allows.
     #[must_use]
-    pub fn completing(self, completion: Completion) -> Self {
+    pub fn with_completion(self, completion: Completion) -> Self {
         Self {
-            unseen: self.unseen.completing(completion),
+            unseen: self.unseen.with_completion(completion),
             ..self
         }
     }
@@ -174,10 +174,11 @@ impl LiveScenes {
     /// # Errors
     /// As [`observe`](Self::observe).
     pub fn observe_frame(&mut self, frame: Frame) -> Result<(), DdlError> {
-        if frame.is_first && frame.scene.is_some() {
-            if let Some(scene) = self.scenes.get_mut(&frame.scene) {
-                scene.watch.clear();
-            }
+        if frame.is_first
+            && frame.scene.is_some()
+            && let Some(scene) = self.scenes.get_mut(&frame.scene)
+        {
+            scene.watch.clear();
         }
         self.add(frame.scene, frame.number, frame.people, frame.names)
     }
@@ -218,6 +219,7 @@ impl LiveScenes {
     }
 
     /// The scene, which begins if it is not known.
+    #[expect(clippy::ref_option, reason = "a key of the map")]
     fn scene(&mut self, name: &Option<SceneName>) -> Result<&mut Scene, DdlError> {
         if !self.scenes.contains_key(name) {
             self.forget_silent();
@@ -253,11 +255,11 @@ impl LiveScenes {
         self.scenes.get(&scene.cloned())?.watch.place.as_ref()
     }
 
-    /// Decides whether the memory of a scene is of its place ([`WatchedPlace::end_trial`]).
-    pub fn end_trial(&mut self, scene: Option<&SceneName>) {
+    /// Decides whether the memory of a scene is of its place ([`WatchedPlace::finish_test`]).
+    pub fn finish_test(&mut self, scene: Option<&SceneName>) {
         let scene = self.scenes.get_mut(&scene.cloned());
         if let Some(place) = scene.and_then(|scene| scene.watch.place.as_mut()) {
-            place.end_trial();
+            place.finish_test();
         }
     }
 

@@ -85,12 +85,12 @@ pub(crate) fn without_goals(
         .forecast_windows(windows, &goals, noise, StepRule::Bounded, None)
         .map_err(|error| ForecastError::model(NAME, error))?
         .into_iter()
-        .map(equally_likely)
+        .map(with_equal_weights)
         .collect()
 }
 
-pub(crate) fn equally_likely(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
-    Ok(Forecast::equally_likely(
+pub(crate) fn with_equal_weights(rollout: WindowRollout) -> Result<Forecast, ForecastError> {
+    Ok(Forecast::with_equal_weights(
         rollout.pedestrians,
         rollout.hypotheses,
         rollout.positions,

@@ -73,7 +73,7 @@ impl WatchedPlace {
     /// # Errors
     /// When the model has no memory branch.
     pub fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
-        let count = model.goal_model().remembered_at_once()?;
+        let count = model.goal_model().recalled_per_pedestrian()?;
         memory.interrupt();
         let known = memory.stretches() >= OtherPlace::FEWEST_STRETCHES;
         let trial = known.then(|| Trial {
@@ -106,7 +106,7 @@ impl WatchedPlace {
 
     /// Ends the test of the memory; call it when no more pedestrians will follow. If there were too few to refuse the
     /// memory, and none of them moved like an earlier one, the test stays [undecided](Self::on_trial).
-    pub fn end_trial(&mut self) {
+    pub fn finish_test(&mut self) {
         if let Some(trial) = &self.trial {
             let tried = trial.tried.len();
             if trial.alike as f64 >= LEAST_SHARE * tried.max(1) as f64 {
@@ -144,7 +144,7 @@ impl WatchedPlace {
             // With this many alike, no later pedestrian can cause a refusal.
             let is_certain = trial.alike as f64 >= LEAST_SHARE * TRIED as f64;
             if is_certain || trial.tried.len() >= TRIED {
-                self.end_trial();
+                self.finish_test();
             }
         }
         Ok(())
@@ -154,7 +154,7 @@ impl WatchedPlace {
         if let Some(trial) = self.trial.take() {
             let (tried, alike) = (trial.tried.len(), trial.alike);
             self.refused = Some(OtherPlace { tried, alike });
-            self.memory = trial.given.emptied();
+            self.memory = trial.given.empty_copy();
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::error::DdlError;
 use crate::run::directory::write_atomically;
 use ddl_data::{Position, TIME_STEP, WINDOW, Window};
 use ddl_goal::ExpertLibrary;
-use ddl_network::weights::{Origin, check_numbers, numbers_digest};
+use ddl_network::weights::{Origin, check_digest, tensors_digest};
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use std::io::Read as _;
@@ -35,7 +35,7 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
     let shape = vec![library.len(), WINDOW, 2];
     let broken = |error: safetensors::SafeTensorError| DdlError::run(path, error.to_string());
     let view = TensorView::new(Dtype::F64, shape, &bytes).map_err(broken)?;
-    let header = origin.to_header(&numbers_digest([(TRACKS, view.clone())]));
+    let header = origin.to_header(&tensors_digest([(TRACKS, view.clone())]));
     let file = safetensors::serialize([(TRACKS, view)], Some(header)).map_err(broken)?;
     write_atomically(path, &file)
 }
@@ -62,7 +62,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         DdlError::run(path, problem)
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
-    let (of_file, digest) = Origin::of_header(header.metadata().as_ref());
+    let (of_file, digest) = Origin::from_header(header.metadata().as_ref());
     if let Some(difference) = of_file.difference(origin) {
         return Err(DdlError::run(
             path,
@@ -73,7 +73,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         ));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_numbers(&file, digest.as_deref())
+    check_digest(&file, digest.as_deref())
         .map_err(|error| DdlError::run(path, error.to_string()))?;
     let view = file
         .tensor(TRACKS)

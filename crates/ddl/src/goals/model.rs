@@ -11,7 +11,7 @@ use crate::model::source::ModelSource;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
 use crate::run::enough_weights;
-use crate::run::training_data::fold_of;
+use crate::run::training_data::fold_by_name;
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
 use ddl_data::{Convention, Dataset, Fold, Position, Recording, WINDOW, Window};
@@ -19,7 +19,9 @@ use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use ddl_memory::Playback;
 use ddl_network::weights::load_weights;
-use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEnds, ProposedEnds};
+use ddl_network::{
+    DeviceChoice, ForecastWindows, MemoryConfig, ProposeEndpoints, ProposedEndpoints,
+};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -38,9 +40,9 @@ pub struct GoalModel {
 #[derive(Debug)]
 enum GoalOrigin {
     Retrieved(GoalEstimator),
-    Proposed(Box<dyn ProposeEnds>),
+    Proposed(Box<dyn ProposeEndpoints>),
     /// Both; the retrieved goals have this share of the probability.
-    Both(Box<dyn ProposeEnds>, GoalEstimator, f64),
+    Both(Box<dyn ProposeEndpoints>, GoalEstimator, f64),
 }
 
 impl GoalModel {
@@ -81,7 +83,7 @@ impl GoalModel {
             None => None,
             Some(recipe) => {
                 recipe.network.check()?;
-                enough_weights::require(&run.proposal(), recipe.network.least_numbers())?;
+                enough_weights::require(&run.proposal(), recipe.network.min_weight_count())?;
                 let origin = config.goals_origin();
                 let read = |layout: &_| load_weights(layout, &origin, &run.proposal());
                 let network = device.proposing(&recipe.network, read)?;
@@ -95,7 +97,7 @@ impl GoalModel {
     pub(crate) fn with_network(
         run: RunDirectory,
         config: RunConfig,
-        network: Option<Box<dyn ProposeEnds>>,
+        network: Option<Box<dyn ProposeEndpoints>>,
     ) -> Result<Self, DdlError> {
         let library = experts::load(
             &config.goals_origin(),
@@ -162,7 +164,7 @@ impl GoalModel {
     /// The origin of the goals, in words.
     pub fn words(&self) -> String {
         match &self.origin {
-            GoalOrigin::Proposed(_) => self.recipe().words_without_library(),
+            GoalOrigin::Proposed(_) => self.recipe().description_without_library(),
             GoalOrigin::Retrieved(_) | GoalOrigin::Both(..) => self.recipe().words(),
         }
     }
@@ -181,7 +183,7 @@ impl GoalModel {
         }
     }
 
-    pub(crate) fn proposal_network(&self) -> Option<&dyn ProposeEnds> {
+    pub(crate) fn proposal_network(&self) -> Option<&dyn ProposeEndpoints> {
         match &self.origin {
             GoalOrigin::Retrieved(_) => None,
             GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(&**network),
@@ -211,14 +213,14 @@ impl GoalModel {
         dataset: &Dataset,
         what: Remembering,
     ) -> Result<Vec<Window>, DdlError> {
-        let count = self.remembered_at_once()?;
+        let count = self.recalled_per_pedestrian()?;
         let fold = self.fold_with_places(dataset)?;
         let of_place = |recording: &str| -> Vec<&Recording> {
             let known = fold.as_ref().filter(|fold| {
                 what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty()
             });
             known.map_or_else(Vec::new, |fold| {
-                fold.training_recordings_of_its_place(recording)
+                fold.training_recordings_of_place(recording)
             })
         };
         let playback = match what {
@@ -233,7 +235,7 @@ impl GoalModel {
     ///
     /// # Errors
     /// When the model has no memory branch.
-    pub fn remembered_at_once(&self) -> Result<usize, DdlError> {
+    pub fn recalled_per_pedestrian(&self) -> Result<usize, DdlError> {
         let memory = self.memory().ok_or_else(|| {
             self.source.wrong(
             "has no memory branch, so it cannot use a memory of the place; train a model with proposed goals, with \
@@ -249,8 +251,10 @@ impl GoalModel {
         if dataset.convention() != data.convention || data.convention == Convention::Own {
             return Ok(None);
         }
-        let fold = fold_of(dataset, &data.fold)?;
-        Ok(Some(fold.set_apart(&data.validation_recordings)?))
+        let fold = fold_by_name(dataset, &data.fold)?;
+        Ok(Some(
+            fold.with_validation_recordings(&data.validation_recordings)?,
+        ))
     }
 
     /// Whether `fair` and `single` forecasts remember training recordings from the place of the test recordings.
@@ -322,7 +326,7 @@ impl GoalModel {
     /// Goals that represent the endpoints of the network, and the retrieved goals where they have a share.
     fn representatives(
         &self,
-        network: &dyn ProposeEnds,
+        network: &dyn ProposeEndpoints,
         retrieval: Option<(&GoalEstimator, f64)>,
         windows: &[Window],
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
@@ -365,8 +369,8 @@ impl GoalModel {
         let clusters = self.clusters;
         let sets: Vec<GoalSet> = (frames, proposed)
             .into_par_iter()
-            .map(|((frame, _), ProposedEnds { ends, weights })| {
-                GoalSet::of_ends(&frame, &ends, &weights, clusters)
+            .map(|((frame, _), ProposedEndpoints { ends, weights })| {
+                GoalSet::from_endpoints(&frame, &ends, &weights, clusters)
             })
             .collect::<Result<_, _>>()
             .map_err(failed)?;

@@ -90,7 +90,7 @@ impl GoalRecipe {
 
     /// The origin of the goals without the expert library, in words.
     #[must_use]
-    pub fn words_without_library(&self) -> String {
+    pub fn description_without_library(&self) -> String {
         match &self.proposal {
             None => {
                 "none: goals are retrieved from the expert library, which is missing".to_owned()

@@ -40,11 +40,11 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
 
 /// The central goal of each pedestrian. Positions before the first observation extrapolate the first observed positions
 /// in a straight line, so they tell nothing about how even a motion is.
-pub(crate) fn only_central(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
+pub(crate) fn with_central_only(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
         let pedestrians = sets.iter().enumerate();
         pedestrians
-            .map(|(i, set)| set.only_central(&window.observed(i)[window.made_up(i).padded..]))
+            .map(|(i, set)| set.with_central_only(&window.observed(i)[window.made_up(i).padded..]))
             .collect()
     };
     windows.iter().zip(sets).map(of_window).collect()

@@ -2,7 +2,7 @@
 
 use ddl_data::{OBSERVED, Places, Position, Remembered, Window};
 use ddl_goal::{HeadingFrame, TrackError};
-use ddl_network::{PedestrianView, ProposalExample, motion_unit};
+use ddl_network::{PedestrianView, ProposalExample, length_unit};
 
 /// A pedestrian's own frame, its unit of length, and the view from it.
 #[derive(Debug)]
@@ -20,12 +20,12 @@ pub(crate) fn of_window(
     neighbours: usize,
     time_step: f64,
 ) -> Result<Vec<Seen>, TrackError> {
-    let last = window.positions_at(OBSERVED - 1);
+    let last = window.hypotheses_at(OBSERVED - 1);
     let places = Places::new(&last);
     (0..window.len())
         .map(|i| {
             let frame = HeadingFrame::new(window.observed(i))?;
-            let unit = motion_unit(window.observed(i), time_step);
+            let unit = length_unit(window.observed(i), time_step);
             let view = PedestrianView {
                 own: in_frame((&frame, unit), window.observed(i)),
                 neighbours: places

@@ -20,7 +20,7 @@ use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 ///
 /// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each of the K = 20 goals, with the
 /// weight of the goal. Each hypothesis follows a flow whose distance to the goal falls at every step. The protocol
-/// `single` calls [`forecast_one`](Self::forecast_one). The model reads the 8 observed frames and the memory of the
+/// `single` calls [`forecast_central`](Self::forecast_central). The model reads the 8 observed frames and the memory of the
 /// window, if it has one.
 ///
 /// # Numerics
@@ -56,7 +56,7 @@ impl Ddl {
     ///
     /// # Errors
     /// [`DdlError::NoFlow`] for the variants without dynamics.
-    pub fn keeping_clear(self, clearance: Clearance) -> Result<Self, DdlError> {
+    pub fn with_clearance(self, clearance: Clearance) -> Result<Self, DdlError> {
         let variant = self.config().star.variant;
         if !variant.dynamics() {
             return Err(DdlError::NoFlow { variant });
@@ -72,7 +72,7 @@ impl Ddl {
     ///
     /// # Errors
     /// For `bf16` on any device but the CPU.
-    pub fn in_precision(self, precision: Precision) -> Result<Self, DdlError> {
+    pub fn with_precision(self, precision: Precision) -> Result<Self, DdlError> {
         if precision != Precision::F32 && self.device != Device::CPU {
             return Err(DdlError::Network(NetworkError::Config {
                 field: "precision",
@@ -86,7 +86,7 @@ impl Ddl {
         let config = self.network.config().clone();
         let network = MotionNetwork::reading(config, |_| self.network.copy_weights())?;
         Ok(Self {
-            network: Box::new(network.in_precision(precision)),
+            network: Box::new(network.with_precision(precision)),
             ..self
         })
     }
@@ -136,7 +136,7 @@ impl Ddl {
 
     pub(crate) fn weights(&self) -> Result<(Weights, Option<Weights>), DdlError> {
         let proposal = self.goals.proposal_network();
-        let proposal = proposal.map(ddl_network::ProposeEnds::copy_weights);
+        let proposal = proposal.map(ddl_network::ProposeEndpoints::copy_weights);
         let proposal = proposal.transpose()?;
         Ok((self.network.copy_weights()?, proposal))
     }
@@ -169,17 +169,17 @@ impl Ddl {
     ///
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all).
-    pub fn forecast_one(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        let goals = sets::only_central(windows, &self.goals.goals(windows)?);
+    pub fn forecast_central(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        let goals = sets::with_central_only(windows, &self.goals.goals(windows)?);
         self.forecast_neutral(windows, goals, self.clearance)
     }
 
-    /// [`forecast_one`](Self::forecast_one) with evidence for every path that it approaches its goal.
+    /// [`forecast_central`](Self::forecast_central) with evidence for every path that it approaches its goal.
     ///
     /// # Errors
-    /// As [`forecast_one`](Self::forecast_one); for the variant without goals
+    /// As [`forecast_central`](Self::forecast_central); for the variant without goals
     /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow).
-    pub fn forecast_one_certified(
+    pub fn forecast_central_certified(
         &self,
         windows: &[Window],
     ) -> Result<Vec<CertifiedForecast>, ForecastError> {
@@ -187,7 +187,7 @@ impl Ddl {
         if !variant.uses_goal() {
             certified::ensure_flow(variant)?;
         }
-        let goals = sets::only_central(windows, &self.goals.goals(windows)?);
+        let goals = sets::with_central_only(windows, &self.goals.goals(windows)?);
         self.neutral(windows, goals, self.clearance)
             .map(Walked::certified)
             .collect()

@@ -123,7 +123,7 @@ fn load_network(
     device: Device,
     weights: &Path,
 ) -> Result<Box<dyn ForecastWindows>, DdlError> {
-    enough_weights::require(weights, config.star.least_numbers())?;
+    enough_weights::require(weights, config.star.min_weight_count())?;
     device.forecasting(&config.star, |layout| {
         load_weights(layout, &config.network_origin(), weights)
     })

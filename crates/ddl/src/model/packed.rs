@@ -9,7 +9,7 @@ use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::sha256;
 use crate::trust::familiarity::TrainingMotions;
 use ddl_network::weights::{HalfTensor, Weights};
-use ddl_network::{ForecastWindows, NetworkError, ProposeEnds};
+use ddl_network::{ForecastWindows, NetworkError, ProposeEndpoints};
 use safetensors::SafeTensors;
 use safetensors::tensor::Dtype;
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ pub(super) struct Header {
 pub(crate) struct Unpacked {
     pub(crate) config: RunConfig,
     pub(crate) network: Box<dyn ForecastWindows>,
-    pub(crate) proposal: Box<dyn ProposeEnds>,
+    pub(crate) proposal: Box<dyn ProposeEndpoints>,
     pub(crate) motions: Option<TrainingMotions>,
 }
 
@@ -186,8 +186,8 @@ pub(crate) fn unpack(
     };
     // Allocate only networks whose sizes match the weights in the file.
     for (tensors, least) in [
-        (&of_network, config.star.least_numbers()),
-        (&of_proposal, recipe.network.least_numbers()),
+        (&of_network, config.star.min_weight_count()),
+        (&of_proposal, recipe.network.min_weight_count()),
     ] {
         let bytes: usize = tensors.iter().map(|tensor| tensor.bytes.len()).sum();
         let numbers = bytes as u64 / 2;

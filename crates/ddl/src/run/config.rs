@@ -1,5 +1,5 @@
 use crate::goals::recipe::GoalRecipe;
-use crate::run::starting_model::StartingModel;
+use crate::run::starting_model::InitialModel;
 use crate::run::track_units::TrackUnits;
 use ddl_data::{Convention, WindowRule};
 use ddl_network::weights::Origin;
@@ -39,7 +39,7 @@ pub struct RunConfig {
     pub patience: Option<usize>,
     /// The model whose weights both networks started with; `None`: random weights.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub from: Option<StartingModel>,
+    pub from: Option<InitialModel>,
     /// The units of own recordings as given to training. Evaluation uses the same units by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub units: Option<TrackUnits>,

@@ -80,7 +80,7 @@ impl RunDirectory {
     ///
     /// # Errors
     /// When a file cannot be read or written.
-    pub fn take_goals_of(&self, other: &Self) -> Result<(), DdlError> {
+    pub fn copy_goals_from(&self, other: &Self) -> Result<(), DdlError> {
         for (from, to) in [
             (other.experts(), self.experts()),
             (other.proposal(), self.proposal()),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The weights that a run started with, as its `config.json` records them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct StartingModel {
+pub struct InitialModel {
     /// The model as given by the user.
     pub model: String,
     /// SHA-256 of the weights of both networks.
@@ -14,7 +14,7 @@ pub struct StartingModel {
 
 /// The training of a trained model's forecasting network on few more recordings: fewer steps with a smaller step size.
 #[must_use]
-pub fn training_further(variant: Variant) -> TrainingConfig {
+pub fn fine_tuning_config(variant: Variant) -> TrainingConfig {
     TrainingConfig {
         epochs: 5,
         learning_rate: 1e-4,
@@ -25,7 +25,7 @@ pub fn training_further(variant: Variant) -> TrainingConfig {
 /// The training of a trained model's proposal network on few more recordings: fewer steps with a smaller step size.
 /// Only the nearest endpoint of each pedestrian is trained, because the endpoints are already spread.
 #[must_use]
-pub fn goals_trained_further(seed: u64) -> GoalRecipe {
+pub fn fine_tuning_goal_recipe(seed: u64) -> GoalRecipe {
     let mut recipe = GoalRecipe::proposed(seed);
     if let Some(proposal) = &mut recipe.proposal {
         proposal.training.steps = 300;

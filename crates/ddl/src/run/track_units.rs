@@ -29,7 +29,7 @@ impl TrackUnits {
 
     /// Whether a frame rate is given.
     #[must_use]
-    pub fn say_the_rate(&self) -> bool {
+    pub fn have_rate(&self) -> bool {
         self.frame_time().is_some() || self.frame_step.is_some()
     }
 }

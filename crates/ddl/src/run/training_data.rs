@@ -14,7 +14,7 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
 ///
 /// # Errors
 /// When it is missing; the message lists the existing folds.
-pub fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
+pub fn fold_by_name<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
     if dataset.convention() == Convention::Own && name == Fold::WHOLE {
         Ok(dataset.whole())
     } else {
@@ -24,7 +24,7 @@ pub fn fold_of<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataErr
 
 pub(crate) fn learned_from<'a>(fold: &'a Fold<'_>) -> impl Iterator<Item = &'a Recording> {
     let learned = fold.training_recordings().iter();
-    learned.chain(fold.recordings_set_apart()).copied()
+    learned.chain(fold.validation_recordings()).copied()
 }
 
 /// SHA-256 of a recording's frames, pedestrians and positions; its name does not matter.

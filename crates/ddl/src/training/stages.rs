@@ -10,9 +10,9 @@ use crate::goals::recipe::GoalRecipe;
 use crate::model::ddl::Ddl;
 use crate::run::config::{FORMAT, RunConfig, TrainingData};
 use crate::run::directory::{RunDirectory, SAVE_EVERY};
-use crate::run::starting_model::StartingModel;
+use crate::run::starting_model::InitialModel;
 use crate::run::training_data::{
-    digest, digest_of_recording, fold_of, learned_from, training_rule,
+    digest, digest_of_recording, fold_by_name, learned_from, training_rule,
 };
 use crate::training::best_epoch::best_epoch;
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
@@ -41,7 +41,8 @@ pub(super) fn train(
         return Err(DdlError::Validation(request.validation));
     }
     let device = Device::open(request.device)?;
-    let fold = fold_of(dataset, &request.fold)?.set_apart(&request.validation_recordings)?;
+    let fold = fold_by_name(dataset, &request.fold)?
+        .with_validation_recordings(&request.validation_recordings)?;
     let window_rule = training_rule(dataset.convention());
     let windows = if request.validation > 0.0 {
         fold.training_split(window_rule, request.validation)
@@ -119,7 +120,7 @@ fn config_of(
     request: &TrainingRequest,
     dataset: &Dataset,
     (fold, window_rule, windows): (&Fold<'_>, WindowRule, &[Window]),
-    (began_with, device): (Option<StartingModel>, Device),
+    (began_with, device): (Option<InitialModel>, Device),
 ) -> RunConfig {
     RunConfig {
         format: FORMAT,
@@ -175,7 +176,7 @@ fn ensure_patience(
     }
     if fold.training_split(rule, validation).validation.is_empty() {
         return Err(DdlError::NothingToValidateOn {
-            recordings: fold.training_recordings().len() + fold.recordings_set_apart().len(),
+            recordings: fold.training_recordings().len() + fold.validation_recordings().len(),
         });
     }
     Ok(())

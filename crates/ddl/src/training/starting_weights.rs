@@ -4,7 +4,7 @@ use crate::model::ddl::Ddl;
 use crate::model::source::ModelSource;
 use crate::run::config::leaves;
 use crate::run::sha256;
-use crate::run::starting_model::StartingModel;
+use crate::run::starting_model::InitialModel;
 use ddl_network::weights::Weights;
 use ddl_network::{DeviceChoice, StarConfig};
 use sha2::{Digest as _, Sha256};
@@ -14,7 +14,7 @@ pub(crate) struct StartingWeights {
     pub(crate) network: Weights,
     /// `None` if all goals are retrieved.
     pub(crate) proposal: Option<Weights>,
-    pub(crate) record: StartingModel,
+    pub(crate) record: InitialModel,
 }
 
 impl StartingWeights {
@@ -45,7 +45,7 @@ impl StartingWeights {
         if let Some(proposal) = &proposal {
             hash(proposal, &mut hasher);
         }
-        let record = StartingModel {
+        let record = InitialModel {
             model: source.to_string(),
             sha256: sha256::in_hex(hasher),
         };

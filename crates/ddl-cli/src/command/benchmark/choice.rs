@@ -113,7 +113,11 @@ impl Choice {
         } else {
             Recipe::Recommended
         };
-        if name == Recipe::Published && protocols.iter().any(|protocol| protocol.shows_past()) {
+        if name == Recipe::Published
+            && protocols
+                .iter()
+                .any(|protocol| protocol.gives_recording_memory())
+        {
             bail!(
                 "the protocol published needs the paper's recipe, whose models have no memory of a place: leave out \
                  published, or online and online-single"

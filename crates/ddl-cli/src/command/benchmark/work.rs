@@ -141,7 +141,7 @@ impl Workers {
             .filter(|task| Record::of(task, out).is_some())
         {
             let (here, there) = (task.run_folder(out), other.run_folder(out));
-            if let Err(error) = RunDirectory::new(here).take_goals_of(&RunDirectory::new(there)) {
+            if let Err(error) = RunDirectory::new(here).copy_goals_from(&RunDirectory::new(there)) {
                 return failure(task, out, &error.to_string());
             }
         }

@@ -3,7 +3,7 @@
 
 use ddl::data::{DataError, Frame, FrameReader};
 use std::io::{BufRead, stdin};
-use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
 /// Frames that are read ahead. When they are there, the thread waits, and whoever writes the lines is held back.
@@ -37,10 +37,7 @@ impl Frames {
 
     /// What has come already; `None` where nothing has, or at the end.
     pub(super) fn come(&self) -> Option<Incoming> {
-        match self.0.try_recv() {
-            Ok(incoming) => Some(incoming),
-            Err(TryRecvError::Empty | TryRecvError::Disconnected) => None,
-        }
+        self.0.try_recv().ok()
     }
 }
 

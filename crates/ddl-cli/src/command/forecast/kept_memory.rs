@@ -6,6 +6,7 @@ use ddl::data::SceneName;
 use ddl::memory::SceneMemory;
 use ddl::{Ddl, DdlError, LiveScenes, MemoryFile, WatchedPlace};
 use std::collections::BTreeMap;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 /// The memory that `--memory` names: a file of one place, or a folder with a file for each scene.
@@ -26,7 +27,7 @@ struct Kept {
 impl KeptMemory {
     /// Reads the file, if there is one. What would keep it from being written is found here.
     pub(super) fn open(path: &Path, model: &Ddl) -> anyhow::Result<Self> {
-        model.goal_model().remembered_at_once()?;
+        model.goal_model().recalled_per_pedestrian()?;
         let is_folder = path.is_dir();
         let mut kept = BTreeMap::new();
         if !is_folder {
@@ -123,7 +124,7 @@ impl KeptMemory {
         let Some(Some(mut kept)) = self.kept.remove(&scene.cloned()) else {
             return Ok(());
         };
-        scenes.end_trial(scene);
+        scenes.finish_test(scene);
         let Some(place) = scenes.place(scene) else {
             return Ok(());
         };
@@ -199,7 +200,7 @@ fn file_name(scene: &SceneName) -> String {
         if byte.is_ascii_alphanumeric() || matches!(byte, b'-' | b'_') {
             name.push(byte.into());
         } else {
-            name += &format!("%{byte:02X}");
+            let _ = write!(name, "%{byte:02X}");
         }
     }
     name + ".memory"

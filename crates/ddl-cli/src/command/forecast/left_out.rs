@@ -24,7 +24,7 @@ struct Seldom {
 
 impl Seldom {
     /// How many there were since the last telling, if it is time to tell.
-    fn to_tell(&mut self) -> Option<u64> {
+    fn take_due(&mut self) -> Option<u64> {
         let new = self.count - self.told;
         if new == 0 || self.last.is_some_and(|last| last.elapsed() < PAUSE) {
             return None;
@@ -39,7 +39,7 @@ impl LeftOut {
     /// A line, or a frame, of one scene cannot be used. The others go on.
     pub(super) fn wrong(&mut self, error: &anyhow::Error) {
         self.wrong.count += 1;
-        if let Some(new) = self.wrong.to_tell() {
+        if let Some(new) = self.wrong.take_due() {
             let others = match new {
                 1 => String::new(),
                 _ => format!(" (the last of {new})"),
@@ -54,7 +54,7 @@ impl LeftOut {
     /// Frames that were dropped so far.
     pub(super) fn dropped(&mut self, scenes: &LiveScenes) {
         self.dropped.count = scenes.dropped();
-        if let Some(new) = self.dropped.to_tell() {
+        if let Some(new) = self.dropped.take_due() {
             tell(format_args!(
                 "warning: {} not forecast, because a later one of the scene came first",
                 frames(new)

@@ -10,7 +10,10 @@ use crate::recordings;
 use crate::telling::{tell, words};
 use crate::units::{Units, live_step};
 use anyhow::{Context as _, bail};
-use ddl::data::{Doubt, Frame, Homography, MadeUp, Observation, Recording, SceneName, Window};
+use ddl::data::{
+    CompletionCounts, Frame, Homography, Observation, PlausibilityWarning, Recording, SceneName,
+    Window,
+};
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
 use std::io::{Write as _, stdout};
@@ -105,7 +108,7 @@ fn begin(
     step: i64,
 ) -> anyhow::Result<()> {
     let scenes = LiveScenes::with_frame_step(step)?;
-    let scenes = scenes.completing(forecast.tracks.completion());
+    let scenes = scenes.with_completion(forecast.tracks.completion());
     let scenes = if forecast.latest {
         scenes.latest_only()
     } else {
@@ -272,7 +275,7 @@ impl Stream<'_> {
     }
 
     fn observe(&mut self, frame: Frame) -> anyhow::Result<()> {
-        let frame = on_the_ground(frame, self.homography.as_ref())?;
+        let frame = to_ground(frame, self.homography.as_ref())?;
         let mut watching = lock(self.watching);
         let (silent, ended) = if frame.is_first {
             watching.forget_silent()
@@ -387,7 +390,7 @@ impl Output {
 
 /// Warns if the speeds in the first complete window look wrong; returns whether it warned.
 fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
-    let whole = (0..window.len()).filter(|&i| window.made_up(i) == MadeUp::default());
+    let whole = (0..window.len()).filter(|&i| window.made_up(i) == CompletionCounts::default());
     let seen: Vec<Observation> = whole
         .flat_map(|i| {
             let pedestrian = window.pedestrians()[i];
@@ -400,13 +403,13 @@ fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
     }
     let recording = Recording::new("standard input", window.frame_step(), seen)?;
     // A jump does not point to wrong units, and a pedestrian may be slow for 3.2 s.
-    if let Some(doubt @ Doubt::Fast { .. }) = &recording.speed_doubt() {
+    if let Some(doubt @ PlausibilityWarning::Fast { .. }) = &recording.speed_doubt() {
         recordings::warn_of(doubt);
     }
     Ok(true)
 }
 
-fn on_the_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Result<Frame> {
+fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Result<Frame> {
     let Some(homography) = homography else {
         return Ok(frame);
     };

@@ -94,7 +94,7 @@ fn pedestrians_may_have_words_for_names() {
     ] {
         let matched = external::read_from(text.as_bytes(), "f", format, &windows, Coverage::Whole);
         let both = [still(1.0, 0.0), still(1.0, 0.0)].concat();
-        let both = Forecast::equally_likely(2, 1, both).unwrap();
+        let both = Forecast::with_equal_weights(2, 1, both).unwrap();
         assert_eq!(matched.unwrap().forecasts, [both], "{format}");
     }
     let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");

@@ -26,7 +26,7 @@ proptest! {
         ends in prop::collection::vec((prop::array::uniform2(-9.0..9.0_f64), 0.01..1.0_f64), 1..120),
     ) {
         let (ends, weights): (Vec<_>, Vec<_>) = ends.into_iter().unzip();
-        let set = |clusters| GoalSet::of_ends(&frame(), &ends, &weights, clusters).unwrap();
+        let set = |clusters| GoalSet::from_endpoints(&frame(), &ends, &weights, clusters).unwrap();
         let mut last = f64::INFINITY;
         for clusters in [1, 5, 150] {
             let set = set(clusters);
@@ -47,8 +47,8 @@ proptest! {
         let (points, weights): (Vec<_>, Vec<_>) = ends.iter().copied().unzip();
         let (reversed, scaled): (Vec<_>, Vec<_>) =
             ends.iter().rev().map(|&(end, weight)| (end, weight * scale)).unzip();
-        let one = GoalSet::of_ends(&frame(), &points, &weights, 8).unwrap();
-        let other = GoalSet::of_ends(&frame(), &reversed, &scaled, 8).unwrap();
+        let one = GoalSet::from_endpoints(&frame(), &points, &weights, 8).unwrap();
+        let other = GoalSet::from_endpoints(&frame(), &reversed, &scaled, 8).unwrap();
         let distance = |set: &GoalSet| mean_distance(set, &points, &weights);
         prop_assert!((distance(&one) - distance(&other)).abs() < 1e-6);
     }
@@ -57,7 +57,7 @@ proptest! {
 #[test]
 fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
     let ends = [[4.0, 0.0], [100.0, 0.0], [5.0, 2.0]];
-    let set = GoalSet::of_ends(&frame(), &ends, &[0.75, 0.0, 0.25], 4).unwrap();
+    let set = GoalSet::from_endpoints(&frame(), &ends, &[0.75, 0.0, 0.25], 4).unwrap();
     assert_eq!(set.weights(), [0.75, 0.25, 0.0, 0.0]);
     assert_eq!(set.goals()[0], frame().to_world([4.0, 0.0]));
     assert_eq!(set.goals()[1], frame().to_world([5.0, 2.0]));
@@ -70,7 +70,7 @@ fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
 
 #[test]
 fn invalid_endpoints_are_reported() {
-    let of = |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::of_ends(
+    let of = |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::from_endpoints(
         &frame(),
         ends,
         weights,
