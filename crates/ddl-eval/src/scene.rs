@@ -36,8 +36,8 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The same, where the window and its forecast are of a part of the pedestrians of another window: metrics that
-    /// look at the others' true futures see everybody in it.
+    /// The same scene within `everybody`, the window with all pedestrians of these frames. Metrics that use the true
+    /// futures of others take them from there.
     ///
     /// # Errors
     /// That window has no future, or is not of the same frames of the same recording with all these pedestrians.

@@ -81,7 +81,7 @@ pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
 
 fn problem(moment: &Moment, truth: Truth) -> Option<MomentProblem> {
     if moment.pedestrians.is_empty() {
-        return Some(MomentProblem::Empty("there is nobody in it"));
+        return Some(MomentProblem::Empty("no pedestrian"));
     }
     let people = moment.pedestrians.len();
     let absent = |pick: &Pick| {

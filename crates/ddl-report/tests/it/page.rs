@@ -287,7 +287,7 @@ fn what_is_not_whole_is_refused_by_name() {
             |m| m.pedestrians[0].hypotheses[1].weight = -0.5,
             "hypothesis 1 of pedestrian 0 has the weight -0.5, which is not between 0 and 1",
         ),
-        (|m| m.pedestrians.clear(), "there is nobody in it"),
+        (|m| m.pedestrians.clear(), "no pedestrian"),
         (
             |m| m.pedestrians[1].hypotheses.clear(),
             "a pedestrian has no hypothesis",
