@@ -113,8 +113,8 @@ fn the_jacobian_is_the_derivative<T: Real, const D: usize>(draw: &MapDraw) -> Te
 }
 for_every_space!(the_jacobian_is_the_derivative, any_maps);
 
-/// `det J` is positive and not below the stated bound of each map; the singular values of a translation are within `[1
-/// - q, 1 + q]`.
+/// `det J` is positive and not below the stated bound of each map. The singular values of a translation are within
+/// `[1 - q, 1 + q]`.
 fn space_is_never_folded<T: Real, const D: usize>(draw: &MapDraw) -> TestCaseResult {
     for chain in chains::<T, D>(draw) {
         for position in draw.positions::<T, D>() {

@@ -196,7 +196,7 @@ pub(crate) fn by_the_clock(model: &Ddl, cameras: usize, seconds: f64) -> Result<
         for made in scenes.forecast(model, LiveScenes::BATCH) {
             made.forecast?;
             let scene = made.scene.ok_or("a camera has a name")?;
-            latencies.push((begun.elapsed() - came[&scene]).as_secs_f64());
+            latencies.push(begun.elapsed().saturating_sub(came[&scene]).as_secs_f64());
         }
         busy += work.elapsed().as_secs_f64();
     }
