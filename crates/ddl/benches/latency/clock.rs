@@ -32,7 +32,7 @@ impl Clock {
     }
 }
 
-/// Seconds of each piece of work, as the median of the turns. The caches are empty_copy before each piece; the first turn
+/// Seconds of each piece of work, as the median of the turns. The caches are emptied before each piece; the first turn
 /// does not count.
 pub(crate) fn side_by_side<const N: usize>(
     clock: Clock,
