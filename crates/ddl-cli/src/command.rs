@@ -138,7 +138,8 @@ fn clearance(text: &str) -> Result<Clearance, String> {
 }
 
 /// Help of the option in commands without progress. Every command that reports takes the option.
-pub(crate) const NO_PROGRESS: &str = "Has no effect: this command shows no progress, but programs can give all commands the same options";
+pub(crate) const NO_PROGRESS: &str = "Has no effect: this command shows no progress, but programs can give all \
+    commands the same options";
 
 /// The form of progress and results: options of every command with one of them.
 #[derive(Debug, Args)]

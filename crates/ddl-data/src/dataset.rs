@@ -58,7 +58,8 @@ impl Dataset {
         }
     }
 
-    /// The user's own recordings, in steps of 0.4 s ([`Recording::resampled_to_steps`]). Each recording can be left out as a
+    /// The user's own recordings, in steps of 0.4 s ([`Recording::resampled_to_steps`]). Each recording can be left out
+    /// as a
     /// fold, which has the recording's name.
     ///
     /// # Errors

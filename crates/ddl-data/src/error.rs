@@ -112,7 +112,8 @@ pub(crate) enum FormatProblem {
     )]
     MixedScenes { named: bool, first_line: usize },
     #[error(
-        "scene {scene} exceeds the limit of {limit} scenes; a scene is forgotten after {minutes} minutes without a line; \
+        "scene {scene} exceeds the limit of {limit} scenes; a scene is forgotten after {minutes} minutes without a \
+         line; \
          give the other scenes to another `ddl forecast -`"
     )]
     TooManyScenes {

@@ -174,7 +174,8 @@ impl<'a> Fold<'a> {
     /// Training, validation and test windows of the Social-GAN convention: the same windows as in its published folders
     /// `train`, `val` and `test`. Each training recording is cut after its first floor(0.8 n) of n annotated frames
     /// ([`Recording::parts`]). `min_pedestrians` is 2 in the original code, 1 in much later work. Recordings [set
-    /// apart](Self::with_validation_recordings) are used for validation as a whole, which the published folders do not do.
+    /// apart](Self::with_validation_recordings) are used for validation as a whole, which the published folders do not
+    /// do.
     #[must_use]
     pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
         let rule = WindowRule::SocialGan { min_pedestrians };

@@ -72,7 +72,8 @@
 //! threads; so have a pedestrian's proposals. They are computed in `f32` with the fastest instructions of the machine:
 //! AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results agree up to rounding.
 //!
-//! [`MotionNetwork::with_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything else
+//! [`MotionNetwork::with_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything
+//! else
 //! stay in `f32`. It is faster on processors with AVX-512 BF16; on others the same products are emulated to the bit,
 //! slowly.
 #![cfg_attr(

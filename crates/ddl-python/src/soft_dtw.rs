@@ -399,7 +399,8 @@ impl SlidingIndex {
         self.index.len()
     }
 
-    /// Tracks, offsets and distances, `(w, n)` each, of the windows nearest to each of the w windows of the track `query`.
+    /// Tracks, offsets and distances, `(w, n)` each, of the windows nearest to each of the w windows of the track
+    /// `query`.
     fn nearest(
         &self,
         py: Python<'_>,

@@ -1,6 +1,7 @@
 //! The built-in models on recordings of places that no model was trained on: `elsewhere FOLDER=FPS ...`.
 //!
-//! Folders hold csv files (frame, pedestrian, x, y in metres). All tables are printed; those of the default model by place
+//! Folders hold csv files (frame, pedestrian, x, y in metres). All tables are printed; those of the default model by
+//! place
 //! go into `docs/elsewhere.md`.
 
 #![expect(clippy::print_stdout, reason = "a program that prints tables")]
@@ -207,7 +208,8 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
         return Ok(());
     }
     println!(
-        "\n| recording (`{name}`) | pedestrian-windows | `fair` | noisy constant velocity | `single` | better constant velocity | regions 50 / 90 % | radius | familiarity |\n\
+        "\n| recording (`{name}`) | pedestrian-windows | `fair` | noisy constant velocity | `single` | better \
+         constant velocity | regions 50 / 90 % | radius | familiarity |\n\
          |---|---|---|---|---|---|---|---|---|"
     );
     for windows in of_one {
@@ -232,7 +234,8 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
             .unwrap_or([f64::NAN; 2])
             .map(|share| 100.0 * share);
         println!(
-            "| {} | {} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}/{:.3} | {half:.1} / {most:.1} % | {:.2} | {:.2} |",
+            "| {} | {} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}/{:.3} | {half:.1} / {most:.1} % | {:.2} | \
+             {:.2} |",
             windows[0].recording(),
             ours.pedestrians,
             ours.min_ade,
@@ -266,7 +269,8 @@ fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<Figures, Box
     };
     println!(
         "\nWith a memory of the recording (protocols `online` and `online-single`, numbers of their own):\n\n\
-         | recording (`{name}`) | minutes | pedestrian-windows | `fair` | `online` | minFDE | `single` | `online-single` | FDE |\n\
+         | recording (`{name}`) | minutes | pedestrian-windows | `fair` | `online` | minFDE | `single` | \
+             `online-single` | FDE |\n\
          |---|---|---|---|---|---|---|---|---|"
     );
     let of_one = || {
@@ -316,7 +320,8 @@ fn print_change(
     Ok([0, 1].map(|at| format!("{} ({:+.1} %)", errors(&after[at]), change(at))))
 }
 
-/// How many were observed to be faster than 3 m/s on average, and the minADE of the model and of straight lines on these.
+/// How many were observed to be faster than 3 m/s on average, and the minADE of the model and of straight lines on
+/// these.
 fn runners(
     windows: &[Window],
     ours: &[Forecast],

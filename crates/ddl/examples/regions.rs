@@ -3,7 +3,8 @@
 //! `docs/regions.md`, and draws `docs/regions.svg`.
 //!
 //! The folder of the convention `star` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The
-//! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on the
+//! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on
+//! the
 //! two recordings that no fold tests, the constants were chosen.
 
 #![expect(clippy::print_stdout, reason = "a program that prints tables")]
@@ -232,7 +233,8 @@ fn reliability(moments: &[Moment], kind: usize) -> [f64; 2] {
 
 fn table(recordings: &[Watched]) -> String {
     let mut table = String::from(
-        "| recording (model) | minutes | forecasts | regions | 90 %: whole | later | any minute | radius | 50 %: whole | later | radius | reliability |\n\
+        "| recording (model) | minutes | forecasts | regions | 90 %: whole | later | any minute | radius | 50 %: \
+         whole | later | radius | reliability |\n\
          |---|---|---|---|---|---|---|---|---|---|---|---|\n",
     );
     for watched in recordings {

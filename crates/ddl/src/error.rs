@@ -15,12 +15,14 @@ pub enum DdlError {
     )]
     MemoryFrameStep { camera: i64, memory: i64 },
     #[error(
-        "another scene would be more than {limit}; a scene is forgotten when no frame of it has come for {minutes} minutes: \
+        "another scene would be more than {limit}; a scene is forgotten when no frame of it has come for {minutes} \
+         minutes: \
          watch the others in another process"
     )]
     TooManyScenes { limit: usize, minutes: u64 },
     #[error(
-        "{limit} frames wait to be forecast from; forecast some before the next is observed, or keep the latest of each scene alone"
+        "{limit} frames wait to be forecast from; forecast some before the next is observed, or keep the latest of \
+         each scene alone"
     )]
     TooManyWaiting { limit: usize },
     #[error(transparent)]

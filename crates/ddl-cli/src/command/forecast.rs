@@ -55,7 +55,8 @@ pub(crate) struct Forecast {
     /// With `-`: if frames arrive faster than they are forecast, forecast only the latest of each scene, and report how
     /// many were dropped
     ///
-    /// Without it every frame is forecast, and the writer of the stream has to wait. Tracks and memory use every frame in
+    /// Without it every frame is forecast, and the writer of the stream has to wait. Tracks and memory use every frame
+    /// in
     /// both cases. With a file as input nearly all frames would be dropped.
     #[arg(long)]
     latest: bool,
@@ -131,7 +132,8 @@ impl Forecast {
         }
         if self.latest && !self.tracks.are_live() {
             bail!(
-                "--latest is for tracks as they come; write them to standard input: `trackers | ddl forecast - --latest`"
+                "--latest is for tracks as they come; write them to standard input: `trackers | ddl forecast - \
+                 --latest`"
             );
         }
         if let Some(memory) = &self.memory {

@@ -34,7 +34,8 @@ const SILENCE: Duration = Duration::from_mins(10);
 pub struct Frame {
     /// The scene that the lines name; `None` where they name none, and all are of one.
     pub scene: Option<SceneName>,
-    /// Whether nothing of the scene is known from before: it is its first frame, or the first since the scene was forgotten.
+    /// Whether nothing of the scene is known from before: it is its first frame, or the first since the scene was
+    /// forgotten.
     pub is_first: bool,
     /// The raw frame number.
     pub number: i64,
@@ -50,11 +51,13 @@ pub struct Frame {
 /// the format: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`, `obsmat`). Files
 /// of the `star` convention are not in order of time and cannot be streamed.
 ///
-/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of frames that are not
+/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of frames that are
+/// not
 /// whole yet, 100,000 at most, and the last 200,000 words: whose word was forgotten is somebody new.
 ///
 /// # Scenes
-/// A table with a column `scene`, or lines of JSON with a field `track.scene`, are of several scenes, whose lines come in
+/// A table with a column `scene`, or lines of JSON with a field `track.scene`, are of several scenes, whose lines come
+/// in
 /// any order: a frame is whole when a later one of the *same* scene comes, or an empty line right after a line of the
 /// scene, or at the end. Only within a scene must frames be in order of time. There are at most 1,000 scenes at a time;
 /// one of which no line has come for 10 minutes is forgotten, after its last frame was given out.
@@ -175,7 +178,8 @@ impl<R: BufRead> FrameReader<R> {
         Ok(self.unfinished())
     }
 
-    /// A frame that is being read, as far as it has been; `None` where there is no other. For who gives up after an error.
+    /// A frame that is being read, as far as it has been; `None` where there is no other. For who gives up after an
+    /// error.
     pub fn unfinished(&mut self) -> Option<Frame> {
         if let Some(frame) = self.left.pop_front() {
             return Some(frame);

@@ -11,7 +11,8 @@ use crate::error::{FormatError, FormatProblem};
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
 /// A further column, of streams alone.
 const SCENE: &str = "scene";
-const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for a decimal point";
+const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for \
+    a decimal point";
 /// The fields of a row that is one field.
 const ONE: &str = "frame, pedestrian, x, y, separated by commas";
 

@@ -231,12 +231,14 @@ fn what_is_wrong_with_scenes_is_named() {
             ["line 1: track.scene must be a text", "found 7"],
         ),
         (
-            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n"
+            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n{\"track\":{\"f\":0,\"p\":1,\
+             \"x\":2,\"y\":3}}\n"
                 .to_owned(),
             ["line 2: track.scene is missing here, but present on line 1", "or omit it everywhere"],
         ),
         (
-            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n"
+            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\
+             \"scene\":\"a\"}}\n"
                 .to_owned(),
             ["line 2: a scene is named here, but not on line 1", "or omit it everywhere"],
         ),

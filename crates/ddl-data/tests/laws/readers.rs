@@ -141,7 +141,7 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
 [1, 2] => 1: the line must be one JSON object
 {"track": {"f": 0, " => 1: the line must be one JSON object
 {"track": {"f": 0, "p": 2, "x": NaN, "y": 3.0}} => 1: the line must be one JSON object (which has no NaN
-{"track": {"f": 0, "f": 1}} => 1: the line must be one JSON object (which has no NaN and no Infinity): track: duplicate field
+{"track": {"f": 0, "f": 1}} => 1: the line must be one JSON object (which has no NaN and no Infinity): track: duplicate
 {"track": {}, "track": {}} => 1: the line must be one JSON object (which has no NaN and no Infinity): duplicate field
 {"track": {"p": 2, "x": 1, "y": 3.0}} => 1: track.f is missing
 {"track": [1, 2, 3, 4]} => 1: track must be a JSON object, found [1, 2, 3, 4]

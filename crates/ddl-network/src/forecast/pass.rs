@@ -13,7 +13,8 @@ use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Pedestrians times hypotheses that are rolled out together: enough to fill the products, and so few that the key-value
+/// Pedestrians times hypotheses that are rolled out together: enough to fill the products, and so few that the
+/// key-value
 /// caches of all time steps stay in the processor's cache. Threads take such parts in turns.
 const ROWS_AT_ONCE: usize = 128;
 

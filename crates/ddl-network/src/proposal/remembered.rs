@@ -5,7 +5,8 @@ use super::seen::{OthersRows, RECENT, velocity};
 use crate::MemoryConfig;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
 
-/// Number of inputs for an earlier pedestrian: 7 vectors and the [likenesses](SIMILARITY_SCALES). The vectors, relative to the
+/// Number of inputs for an earlier pedestrian: 7 vectors and the [likenesses](SIMILARITY_SCALES). The vectors, relative
+/// to the
 /// pedestrian, are: present position, late and early velocity, displacement to the endpoint, endpoint, displacement to
 /// the halfway position; and its late velocity itself. Displacements and endpoint are relative to the pedestrian's
 /// constant velocity.

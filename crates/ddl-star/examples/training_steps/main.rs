@@ -13,7 +13,8 @@
 //! ```console
 //! $ eval "$(cargo xtask env)"
 //! $ cd crates/ddl-star/examples/training_steps
-//! $ g++ -O1 -std=c++17 -shared -fPIC -I$LIBTORCH/include operations.cpp -o operations.so -L$LIBTORCH/lib -lc10 -ltorch_cpu
+//! $ g++ -O1 -std=c++17 -shared -fPIC -I$LIBTORCH/include operations.cpp -o operations.so -L$LIBTORCH/lib -lc10
+//! -ltorch_cpu
 //! $ cargo build -p ddl-star --example training_steps
 //! $ OPERATIONS=operations-1 LD_PRELOAD=./operations.so ../../../../target/debug/examples/training_steps 1 0
 //! $ OPERATIONS=operations-3 LD_PRELOAD=./operations.so ../../../../target/debug/examples/training_steps 3 0

@@ -16,7 +16,8 @@ pub(crate) fn require(path: &Path, min_weight_count: u64) -> Result<(), DdlError
         return Ok(());
     }
     let problem = format!(
-        "is {} bytes long, too short for the network of the config.json beside it, which has more than {min_weight_count} \
+        "is {} bytes long, too short for the network of the config.json beside it, which has more than \
+         {min_weight_count} \
          weights; restore the matching file or config.json, or delete it and run the same `ddl train` command \
          again",
         file.len()

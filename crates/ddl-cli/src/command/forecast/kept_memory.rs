@@ -91,7 +91,8 @@ impl KeptMemory {
             && !std::mem::replace(&mut kept.is_refusal_told, true)
         {
             tell(format_args!(
-                "warning: {}: {other}; the file stays as it is, and what is seen now is not kept in it: give another --memory FILE for this place",
+                "warning: {}: {other}; the file stays as it is, and what is seen now is not kept in it: give another \
+                 --memory FILE for this place",
                 kept.file.path().display()
             ));
         }

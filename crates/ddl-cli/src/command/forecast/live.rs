@@ -258,7 +258,8 @@ impl Stream<'_> {
             };
             let (step, reason) = step(units, frame.number - first.number, rate)?;
             tell(format_args!(
-                "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read them differently"
+                "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read \
+                 them differently"
             ));
             begin(self.forecast, self.model, self.watching, step)?;
         }
@@ -342,7 +343,8 @@ impl Stream<'_> {
             .write(text)
             .with_context(|| match &self.forecast.output {
                 Some(path) => format!(
-                    "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces them)",
+                    "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces \
+                     them)",
                     path.display()
                 ),
                 None => "cannot write to standard output".to_owned(),
@@ -426,7 +428,8 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
 fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
     if let Some(rate) = rate {
         let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
-            format!("standard input: the scenes give {rate} frames a second, and the first two frames are {apart} apart")
+            format!("standard input: the scenes give {rate} frames a second, and the first two frames are {apart} \
+                apart")
         })?;
         return Ok((step, format!("by the fps of the scenes, {rate}")));
     }
@@ -435,7 +438,8 @@ fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, St
     }
     if apart > LONGEST_STEP {
         bail!(
-            "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are in 0.4 s"
+            "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are \
+             in 0.4 s"
         );
     }
     Ok((apart, "as the first two are".to_owned()))

@@ -229,7 +229,7 @@ fn the_protocol_published_is_refused_with_the_reason() {
 }
 
 #[test]
-fn pedestrians_that_are_missing_and_forecasts_of_nobody_are_counted_and_named() {
+fn missing_forecasts_and_forecasts_without_a_pedestrian_are_counted_and_named() {
     let mine = complaint(&line(70, 5, &hypothesis(2.0)), ExternalFormat::JsonLines);
     assert_eq!(
         mine,
