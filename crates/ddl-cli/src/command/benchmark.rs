@@ -88,8 +88,7 @@ pub(crate) struct Benchmark {
     /// `runs/CONVENTION-PROFILE-published` with the protocol published]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the main numbers, with what made them, into the section of the convention in docs/results.md of the
-    /// checkout in this folder, and those of the whole benchmark in star into README.md
+    /// Also write the main results into the section of the convention in docs/results.md of the checkout in this folder
     #[arg(long, value_name = "DIR")]
     publish: Option<PathBuf>,
     #[command(flatten)]
@@ -164,9 +163,8 @@ impl Benchmark {
             return Ok(());
         };
         let making = Making::of(plan, report, out);
-        for file in publish::publish(checkout, plan, report, &making)? {
-            tell(format_args!("published: {file}"));
-        }
+        publish::publish(checkout, plan, report, &making)?;
+        tell(format_args!("published: {}", publish::PAGE));
         Ok(())
     }
 

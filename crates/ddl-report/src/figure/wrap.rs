@@ -65,7 +65,7 @@ mod tests {
                 300.0,
             ),
             (
-                "pedestrians of the test scene whose goal is the|median one",
+                "pedestrians of the test scene whose goal is|the median one",
                 300.0,
             ),
             ("1,000 pedestrians|and one more", 112.0),

@@ -29,19 +29,15 @@ const METRICS: [&str; 7] = [
     "AMV m²",
 ];
 
-const BASELINE: &str = "constant velocity (last step)";
-
 /// The main numbers of one convention under its headline window rule, without the protocol `published`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Summary {
     /// minADE/minFDE (m) of each fold, mean over the seeds, then the mean of the folds with the standard deviation over
-    /// the seeds. A row that a second protocol repeats, such as that of a baseline, is given once.
+    /// the seeds. A row that a second protocol repeats, such as that of a baseline, is given once. The last row is the
+    /// best published system of the convention.
     pub errors: Table,
     /// Of the same rows, over the folds measured: the mean errors with their 95 % intervals, and further metrics.
     pub metrics: Table,
-    /// Of the rows of `errors` those of the first trained forecaster under each protocol and of constant velocity, and
-    /// the best published system of the convention.
-    pub comparison: Table,
 }
 
 pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> {
@@ -56,8 +52,7 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
         .collect();
     let folds = shown.first()?.folds();
     let columns = [&["forecaster", "protocol"], &folds[..], &["mean"]].concat();
-    let mut errors = Table::new(columns.clone()).text_column("protocol");
-    let mut comparison = Table::new(columns).text_column("protocol");
+    let mut errors = Table::new(columns).text_column("protocol");
     let columns = [
         &["forecaster", "protocol", "minADE m", "minFDE m"][..],
         &METRICS,
@@ -68,9 +63,8 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
     let pedestrians = folds.iter().map(|fold| counts(shown[0].pedestrians(fold)));
     let start = ["pedestrians scored".to_owned(), String::new()];
     errors.row(start.into_iter().chain(pedestrians));
-    let (mut seen, mut baseline) = (Vec::new(), None);
+    let mut seen = Vec::new();
     for group in &shown {
-        let mut first_trained = true;
         for (line, label) in group.labelled() {
             let cells = error_cells(line, &folds);
             let row = (label, cells);
@@ -84,15 +78,7 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
             let present = line.present(&folds);
             let means = METRICS.map(|name| metrics::mean(line, &present, name));
             others.row(start.iter().cloned().chain(intervals).chain(means));
-            let whole: Vec<String> = start.into_iter().chain(cells).collect();
-            if line.conditions().epochs.is_some() && first_trained {
-                first_trained = false;
-                comparison.row(whole.clone());
-            }
-            if whole[0] == BASELINE {
-                baseline = baseline.or_else(|| Some(whole.clone()));
-            }
-            errors.row(whole);
+            errors.row(start.into_iter().chain(cells));
         }
     }
     if let Some(best) = literature::best(convention) {
@@ -100,17 +86,17 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
             format!("{}, the best published", best.method),
             "best of 20".to_owned(),
         ];
-        let cells = best.folds.iter().chain([&best.mean]);
+        let published = |fold: &&str| {
+            let at = convention.fold_names().position(|name| name == *fold);
+            at.and_then(|at| best.folds.get(at))
+        };
+        let cells = folds.iter().filter_map(published).chain([&best.mean]);
         let cells = cells.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"));
-        comparison.row(start.into_iter().chain(cells));
-    }
-    if let Some(baseline) = baseline {
-        comparison.row(baseline);
+        errors.row(start.into_iter().chain(cells));
     }
     Some(Summary {
         errors,
         metrics: others,
-        comparison,
     })
 }
 

@@ -1,10 +1,8 @@
-//! The main numbers of a benchmark, with what made them, in the results page of the documentation and in the README.
+//! The main results of a benchmark, and how they were made, in the results page of the documentation.
 
 use super::super::recipe::Recipe;
 use super::choice::usual_folder;
-use super::method::Method;
 use super::plan::Plan;
-use super::profile::Profile;
 use super::record::Record;
 use super::section;
 use crate::telling::human;
@@ -17,8 +15,7 @@ use std::path::Path;
 use std::time::Duration;
 use time::OffsetDateTime;
 
-const PAGE: &str = "docs/results.md";
-const README: &str = "README.md";
+pub(super) const PAGE: &str = "docs/results.md";
 
 /// What made the results, as the finished tasks and their results say.
 pub(super) struct Making {
@@ -63,31 +60,20 @@ pub(super) fn check(checkout: &Path, plan: &Plan) -> anyhow::Result<()> {
     with_section(checkout, plan.settings.convention, "").map(drop)
 }
 
-/// Writes the section of the plan's convention into the results page of the `checkout`, and into its README a short
-/// table where it has a place for one and the plan is of all folds and windows of `star`. Returns what was written.
+/// Writes the section of the plan's convention into the results page of the `checkout`.
 pub(super) fn publish(
     checkout: &Path,
     plan: &Plan,
     report: &Report,
     making: &Making,
-) -> anyhow::Result<Vec<&'static str>> {
+) -> anyhow::Result<()> {
     let convention = plan.settings.convention;
     let summary = report
         .summary(convention)
         .context("the report has no results that the page shows")?;
     let page = with_section(checkout, convention, &text(plan, &summary, making))?;
-    let mut files = vec![(PAGE, page)];
-    if is_whole(plan) {
-        let readme = read(checkout, README)?;
-        if let Ok(readme) = section::replaced(&readme, "", &short_text(plan, &summary, making)) {
-            files.push((README, readme));
-        }
-    }
-    for (file, text) in &files {
-        write_whole(&checkout.join(file), text.as_bytes())
-            .with_context(|| format!("cannot write {file}"))?;
-    }
-    Ok(files.into_iter().map(|(file, _)| file).collect())
+    write_whole(&checkout.join(PAGE), page.as_bytes())
+        .with_context(|| format!("cannot write {PAGE}"))
 }
 
 fn with_section(checkout: &Path, convention: Convention, text: &str) -> anyhow::Result<String> {
@@ -99,19 +85,6 @@ fn with_section(checkout: &Path, convention: Convention, text: &str) -> anyhow::
 fn read(checkout: &Path, file: &str) -> anyhow::Result<String> {
     let path = checkout.join(file);
     fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
-}
-
-/// Whether the README may show it: the whole method on all folds and windows of `star`.
-fn is_whole(plan: &Plan) -> bool {
-    let settings = &plan.settings;
-    let full = |fold: &str| {
-        let mut tasks = plan.tasks.iter();
-        tasks.any(|task| task.fold == fold && task.variant == Method::FULL)
-    };
-    (settings.convention, settings.profile) == (Convention::Star, Profile::Paper)
-        && settings.train_pedestrians.is_none()
-        && settings.test_pedestrians.is_none()
-        && settings.convention.fold_names().all(full)
 }
 
 fn text(plan: &Plan, summary: &Summary, making: &Making) -> String {
@@ -145,16 +118,6 @@ fn text(plan: &Plan, summary: &Summary, making: &Making) -> String {
         usual_folder(plan).display(),
         summary.errors,
         summary.metrics,
-    )
-}
-
-fn short_text(plan: &Plan, summary: &Summary, making: &Making) -> String {
-    format!(
-        "minADE/minFDE in metres; convention `star`, window rule `published`, all test windows; seeds {}; commit {}.\n\
-         Command, machine and further results: [{PAGE}]({PAGE}).\n\n{:#}",
-        seeds(plan).join(", "),
-        making.commits.join(", "),
-        summary.comparison
     )
 }
 

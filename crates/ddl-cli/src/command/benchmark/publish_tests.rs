@@ -1,5 +1,7 @@
 use super::super::fixture::{plan, settings};
+use super::super::method::Method;
 use super::super::plan::Settings;
+use super::super::profile::Profile;
 use super::*;
 use ddl::Protocol;
 use ddl::eval::{Conditions, ResultRow, Scores};
@@ -59,18 +61,11 @@ fn checkout() -> tempfile::TempDir {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let copy = tempfile::tempdir().unwrap();
     fs::create_dir(copy.path().join("docs")).unwrap();
-    for file in [PAGE, README] {
-        fs::copy(root.join(file), copy.path().join(file)).unwrap();
-    }
+    fs::copy(root.join(PAGE), copy.path().join(PAGE)).unwrap();
     copy
 }
 
-fn published(
-    checkout: &Path,
-    settings: Settings,
-    folds: &[&str],
-    min_ade: f64,
-) -> Vec<&'static str> {
+fn published(checkout: &Path, settings: Settings, folds: &[&str], min_ade: f64) {
     let report = report(settings.convention, min_ade);
     let plan = plan(settings, folds, &[Method::FULL], &[2, 1]).unwrap();
     check(checkout, &plan).unwrap();
@@ -132,10 +127,7 @@ fn a_section_says_what_made_it_and_names_no_folder_of_this_machine() {
             ..settings(Recipe::Recommended)
         };
         let checkout = checkout();
-        assert_eq!(
-            published(checkout.path(), settings, &["hotel", "eth"], 0.5),
-            [PAGE]
-        );
+        published(checkout.path(), settings, &["hotel", "eth"], 0.5);
         let page = read(checkout.path(), PAGE).unwrap();
         assert!(!page.contains("/recordings"));
         for piece in pieces.into_iter().chain([
@@ -149,21 +141,6 @@ fn a_section_says_what_made_it_and_names_no_folder_of_this_machine() {
             assert!(page.contains(piece), "{piece} is not in {page}");
         }
     }
-}
-
-#[test]
-fn the_readme_shows_the_whole_benchmark_where_it_has_a_place_for_it() {
-    let checkout = checkout();
-    let (star, other) = (Convention::Star, Convention::SocialGan);
-    let publish =
-        |convention, folds: &[&str]| published(checkout.path(), whole(convention), folds, 0.125);
-    assert_eq!(publish(other, &WHOLE_FOLDS), [PAGE]);
-    assert_eq!(publish(star, &WHOLE_FOLDS[..4]), [PAGE]);
-    assert_eq!(publish(star, &WHOLE_FOLDS), [PAGE, README]);
-    let readme = read(checkout.path(), README).unwrap();
-    assert!(readme.contains("the best published") && readme.contains("0.125/0.250"));
-    fs::write(checkout.path().join(README), "no marks").unwrap();
-    assert_eq!(publish(star, &WHOLE_FOLDS), [PAGE]);
 }
 
 #[test]

@@ -225,7 +225,11 @@ fn the_protocol_published_is_refused_with_the_reason() {
     let matched = read(&whole(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
     let error = external::measure(&conditions(Protocol::Published), &matched, 1).unwrap_err();
     assert!(matches!(error, ExternalError::Published));
-    assert!(error.to_string().contains("inside the forecaster"));
+    assert!(
+        error
+            .to_string()
+            .contains("the forecaster chooses the goal")
+    );
 }
 
 #[test]

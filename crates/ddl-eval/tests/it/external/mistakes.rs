@@ -84,7 +84,7 @@ after the last observed one are 80, 90 to 190
 "goal":[null,null], => "goal":[1,2], => 1, hypotheses[0].goal[0]: must be a finite number
 "goal":[1,2], => "goal":null, => 1, hypotheses[1].goal: is missing
 "goal":[1,2], => => 1, hypotheses[1].goal: is missing
-"weight":0.5, => "weight":0.5,"weight":0.5, => 1, hypotheses[1].weight: is there twice
+"weight":0.5, => "weight":0.5,"weight":0.5, => 1, hypotheses[1].weight: appears twice
 "weight":0.5, => "weight":0.6, => 1, weight: the weights sum to 1.1
 "weight":1.5, => "weight":-0.5, => 1, weight: a weight must not be below 0, found -0.5
 "#;
@@ -121,7 +121,7 @@ fn every_mistake_of_a_table_is_named_with_its_place() {
 ,2,0,ok => ,2,inf,ok => 14, y: must be a finite number, found "inf"
 ,1,80, => ,,80, => 14, weight: must be a finite number, found ""
 ,1,90, => ,0.5,90, => 15, weight: weight 0.5, but 1 in the row before
-,80, => ,81, => 14, frames: the forecast is of the frames 81, 90 to 190
+,80, => ,81, => 14, frames: the forecast has the frames 81, 90 to 190
 yard,70,5,0,1,80,2,0,ok => => 15: 11 positions; a forecast has 12
 yard,70,5,0,1,80,2,0,ok => yard,70,5,0,1,80,2,0,ok\nyard,70,5,0,1,80,2,0,ok => 26: 13 positions
 yard => \n\n"yard",70,5,0,"1,80,2,0,ok\nyard => 16: a quote is not closed on this line
@@ -170,7 +170,7 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
 "scene_id": 0 => "x2": 0 => 2, track.scene_id: is missing
 "x": 1.0 => "x": NaN => 2, track.x: must be a finite number, found null, NaN
 "f": 80 => "f": 80.5 => 2, track.f: must be a whole number
-"f": 80 => "f": 81 => 2, prediction_number 0: the forecast is of the frames 81, 90 to 190
+"f": 80 => "f": 81 => 2, prediction_number 0: the forecast has the frames 81, 90 to 190
 "e": 190 => "e": 210 => 2, scene 0: the scene has the frames 0 to 210; the window that starts there has the observed \
 frames 0, 10 to 70 and the forecast frames 80, 90 to 190: a scene has 8 or 9 observed and 12 forecast frames
 "p": 3, => => 1, scene.p: is missing
