@@ -391,7 +391,7 @@ fn each_scene_has_a_memory_file_of_its_own() {
     assert_eq!(
         finished
             .stderr
-            .matches("hall.memory is not a scene memory")
+            .matches("hall.memory is not a readable scene memory")
             .count(),
         1
     );

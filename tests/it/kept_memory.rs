@@ -142,13 +142,13 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     for (options, words) in [
         (
             "--memory slow.memory",
-            "slow.memory: the memory was made with 1 frames",
+            "slow.memory: the memory was made at 2.5 frames per second",
         ),
         (
             "--memory damaged.memory",
-            "damaged.memory is not a scene memory",
+            "damaged.memory is not a readable scene memory",
         ),
-        ("--memory tracks.csv", "tracks.csv is not a scene memory"),
+        ("--memory tracks.csv", "tracks.csv is not a readable scene memory"),
         ("--memory folder", "folder: cannot write this file"),
         (
             "--memory nowhere/hall.memory",
@@ -166,7 +166,7 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     assert!(before == after);
     place.all_fail(&[
         "forecast tracks.csv --model run --memory hall.memory => ddl forecast - --memory FILE",
-        "data damaged.memory --svg hall.svg => damaged.memory is not a scene memory",
+        "data damaged.memory --svg hall.svg => damaged.memory is not a readable scene memory",
     ]);
     // The other files are summarised nevertheless.
     let finished = place.run("data damaged.memory tracks.csv");
@@ -289,7 +289,7 @@ fn data_summarises_and_draws_a_memory() {
         assert!(drawn.contains(part), "{part}");
     }
     place.all_fail(&[
-        "data tracks.csv --svg hall.svg => none was given",
+        "data tracks.csv --svg hall.svg => but 0 were given",
         "data hall.memory hall.memory --svg both.svg => 2 were given",
         "data hall.memory --svg hall.memory => would be lost",
     ]);

@@ -139,7 +139,7 @@ fn invalid_evaluations_are_refused_with_the_reason() {
     for (arguments, needle) in [
         (
             "forecasts.jsonl --protocol published",
-            "inside the forecaster",
+            "the forecaster chooses the goal",
         ),
         ("nowhere.jsonl", "cannot read nowhere.jsonl"),
         ("forecasts.csv", "cannot read forecasts.csv"),

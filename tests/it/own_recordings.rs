@@ -73,7 +73,7 @@ fn unreadable_files_are_reported_together() {
             "{told:?}"
         );
         assert!(lines[0].contains("mine/empty0.txt"), "{told:?}");
-        let last = "error: 12 of 14 files cannot be read; the first 10 are named above";
+        let last = "error: 12 of 14 files cannot be read; the first 10 are listed above";
         assert_eq!((lines.len(), lines[10]), (11, last));
     }
     assert!(!place.at("run").exists());

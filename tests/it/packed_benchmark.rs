@@ -101,5 +101,5 @@ fn an_unfinished_benchmark_is_refused_and_nothing_replaced() {
     place.remove("univ-full-1/run/report.json");
     place.fails(PACK, &["finish the benchmark first"]);
     place.remove("plan.json");
-    place.fails(PACK, &["`ddl benchmark` makes"]);
+    place.fails(PACK, &["`ddl benchmark` made"]);
 }

@@ -161,7 +161,7 @@ fn the_rate_of_scenes_is_used() {
         ),
         (
             "two.ndjson --fps 25",
-            "note: read as --fps 25, although the file's scenes give 2 frames per second, but its frame numbers \
+            "note: read as --fps 25, although the file's scenes give 2 frames per second, and its frame numbers \
              increase by 10 (--fps 20)\n",
             "plain.ndjson --fps 25",
         ),

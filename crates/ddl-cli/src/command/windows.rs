@@ -5,7 +5,7 @@ use clap::Args;
 use ddl::eval::external;
 use std::path::PathBuf;
 
-/// Write the observed part of test windows, for another program to forecast
+/// Write the observed test windows, for another program to forecast
 ///
 /// Writes JSON lines, one object for each pedestrian of each window of a fold: recording, `observed_until` (the last
 /// observed raw frame), pedestrian, and the 8 observed positions in metres, 0.4 s apart. They hold no future positions.

@@ -258,8 +258,8 @@ impl Stream<'_> {
             };
             let (step, reason) = step(units, frame.number - first.number, rate)?;
             tell(format_args!(
-                "note: frames are taken to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step to read \
-                 them differently"
+                "note: frame numbers are assumed to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step if \
+                 this is wrong"
             ));
             begin(self.forecast, self.model, self.watching, step)?;
         }
@@ -424,23 +424,24 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
     Ok(frame)
 }
 
-/// Frame numbers in a step where no option gives them, and why so many; `apart`: those between the first two frames.
+/// Frame numbers in a step that no option gives, with the reason; `apart`: difference of the first two frame numbers.
 fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
     if let Some(rate) = rate {
         let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
-            format!("standard input: the scenes give {rate} frames a second, and the first two frames are {apart} \
-                apart")
+            format!(
+                "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} apart"
+            )
         })?;
-        return Ok((step, format!("by the fps of the scenes, {rate}")));
+        return Ok((step, format!("from the fps of the scenes, {rate}")));
     }
     if let Some(remembered) = units.remembered_live_frame_step()? {
         return Ok(remembered);
     }
     if apart > LONGEST_STEP {
         bail!(
-            "standard input: the first two frames are {apart} apart; say with --fps or --frame-step how many that are \
-             in 0.4 s"
+            "standard input: the first two frames are {apart} apart; give the number of frames in 0.4 s with --fps or \
+             --frame-step"
         );
     }
-    Ok((apart, "as the first two are".to_owned()))
+    Ok((apart, "the difference of the first two frames".to_owned()))
 }
