@@ -148,7 +148,10 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
             "--memory damaged.memory",
             "damaged.memory is not a readable scene memory",
         ),
-        ("--memory tracks.csv", "tracks.csv is not a readable scene memory"),
+        (
+            "--memory tracks.csv",
+            "tracks.csv is not a readable scene memory",
+        ),
         ("--memory folder", "folder: cannot write this file"),
         (
             "--memory nowhere/hall.memory",

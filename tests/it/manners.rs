@@ -129,7 +129,8 @@ fn info_describes_models() {
     let for_people = place.ok("info run");
     let pedestrians = &config["data"]["pedestrians"];
     let sentence = format!(
-        "run: variant no-goal-shift, trained on {pedestrians} pedestrian-windows of 20 steps (convention simulated, without \
+        "run: variant no-goal-shift, trained on {pedestrians} pedestrian-windows of 20 steps (convention simulated, \
+         without \
          corridor); goals "
     );
     assert!(for_people.starts_with(&sentence), "{for_people}");

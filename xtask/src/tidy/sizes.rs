@@ -39,11 +39,16 @@ impl Sizes {
     }
 }
 
-/// Bytes of a page without what a command generates, which stands between two comments:
-/// `<!-- ... generated ... -->` and `<!-- ... end ... -->`.
+/// Bytes of a page without what a command generates: the text between two comments, `<!-- ... generated ... -->` and
+/// `<!-- ... end ... -->`, and the answers of shown commands, which a test compares with the real ones.
 fn written(text: &str) -> usize {
-    let mut is_generated = false;
+    let (mut is_generated, mut is_console) = (false, false);
     let counted = text.lines().filter(|line| {
+        if let Some(kind) = line.strip_prefix("```") {
+            is_console = kind == "console";
+        } else if is_console && !line.starts_with('$') {
+            return false;
+        }
         let comment = line
             .trim_start()
             .starts_with("<!--")
