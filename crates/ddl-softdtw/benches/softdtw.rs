@@ -36,7 +36,7 @@ fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]
 
 fn pairs(criterion: &mut Criterion) {
     let mut numbers = Numbers(1);
-    pair::<2>(criterion, &numbers.walker(8), &numbers.walker(8));
+    pair::<2>(criterion, &numbers.pedestrian(8), &numbers.pedestrian(8));
     pair::<2>(criterion, &wave(64, 0.0), &wave(64, 0.3));
     pair::<8>(criterion, &wave(256, 0.0), &wave(256, 0.3));
 }

@@ -1,9 +1,10 @@
-//! Which of many recorded walkers moved like this one? The nearest in soft-DTW, with weights.
+//! Which of many recorded pedestrians moved like this one? The nearest in soft-DTW, with weights.
 //!
 //! ```text
 //! cargo run --release -p ddl-softdtw --example nearest_neighbours
 //! ```
-//! Two thousand walkers are made up; the query turns left a little later than any of them. The 5 nearest are printed
+//! Two thousand pedestrians are made up; the query turns left a little later than any of them. The 5 nearest are
+//! printed
 //! with their distances d (m²/s²) and the weights exp(-(d - smallest d) / temperature), divided by their sum.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
@@ -17,22 +18,22 @@ const STEPS: u32 = 7;
 const TEMPERATURE: f64 = 0.005;
 
 /// How somebody moves, and how fast (m/s).
-struct Walker {
+struct Pedestrian {
     manner: &'static str,
     speed: f64,
     /// Seconds until the manner begins to show.
     onset: f64,
 }
 
-impl Walker {
+impl Pedestrian {
     fn library() -> Vec<Self> {
         let manners = ["straight on", "turns left", "turns right", "slows down"];
-        let walker = |i: u32| Self {
+        let pedestrian = |i: u32| Self {
             manner: manners[i as usize % 4],
             speed: 0.5 + 0.01 * f64::from(i / 4 % 125),
             onset: 0.4 * f64::from(i / 500),
         };
-        (0..2000).map(walker).collect()
+        (0..2000).map(pedestrian).collect()
     }
 
     /// The velocity of each step (m/s), heading along x at first.
@@ -52,9 +53,9 @@ impl Walker {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let library = Walker::library();
-    let candidates: Vec<_> = library.iter().map(Walker::velocities).collect();
-    let query = Walker {
+    let library = Pedestrian::library();
+    let candidates: Vec<_> = library.iter().map(Pedestrian::velocities).collect();
+    let query = Pedestrian {
         manner: "turns left",
         speed: 1.204,
         onset: 0.5,
@@ -69,24 +70,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     let likeness = |distance: f64| (-(distance - smallest) / TEMPERATURE).exp();
     let sum: f64 = nearest.iter().map(|found| likeness(found.distance)).sum();
     println!(
-        "query: {} after {:.1} s, at {:.2} m/s; the nearest of {} walkers ({}):",
+        "query: {} after {:.1} s, at {:.2} m/s; the nearest of {} pedestrians ({}):",
         query.manner,
         query.onset,
         query.speed,
         index.len(),
         index.instruction_set()
     );
-    println!("walker  distance  weight");
+    println!("pedestrian  distance  weight");
     for found in &nearest {
-        let walker = &library[found.index];
+        let pedestrian = &library[found.index];
         println!(
             "{:>6}  {:>8.5}  {:>6.3}  {} after {:.1} s, at {:.2} m/s",
             found.index,
             found.distance,
             likeness(found.distance) / sum,
-            walker.manner,
-            walker.onset,
-            walker.speed,
+            pedestrian.manner,
+            pedestrian.onset,
+            pedestrian.speed,
         );
     }
 

@@ -1,4 +1,5 @@
-//! Time of a pair (query × candidate) of the search for the 100 nearest, one query at a time on one thread, and in a batch.
+//! Time of a pair (query × candidate) of the search for the 100 nearest, one query at a time on one thread, and in a
+//! batch.
 //!
 //! ```text
 //! cargo run --release --example throughput -- [steps] [queries] [portable|avx2|avx512]

@@ -19,7 +19,7 @@ const WIDEST_ERROR: f64 = 2e-4;
 ///
 /// # Numerics
 /// Sixteen pairs at once in `f32`, for γ > 0 and the squared cost. The proven error of a value is at most 1.4e-4 γ; for
-/// velocities of walkers (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`].
+/// velocities of pedestrians (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`].
 /// Values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
 /// bound are evaluated in `f64`; by [`SoftDtw`] itself those beyond about 570 γ or 180 steps, a band, the Euclidean
 /// cost, γ = 0.
@@ -107,7 +107,8 @@ impl<const D: usize> SoftDtwBatch<D> {
     /// `D_γ(x, y)` and its gradient with respect to `x` for every sequence y.
     ///
     /// # Errors
-    /// [`SearchError::Query`] when `x` is empty or not finite, [`SearchError::Candidate`] for a pair whose value or gradient
+    /// [`SearchError::Query`] when `x` is empty or not finite, [`SearchError::Candidate`] for a pair whose value or
+    /// gradient
     /// leaves the range of `f64`.
     pub fn values_and_gradients(&self, x: &[[f64; D]]) -> Result<BatchGradients<D>, SearchError> {
         let mut results = BatchGradients::default();

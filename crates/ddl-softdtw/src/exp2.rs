@@ -23,10 +23,12 @@ pub(crate) fn above<T: Copy>(lanes: &[T; STRIP], bottom: T) -> [T; STRIP] {
     [b, c, d, e, f, g, h, bottom]
 }
 
-/// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the sum.
+/// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the
+/// sum.
 pub(crate) const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-/// (2^−f − 1) / f on [−1/2, 1/2]: the polynomial of degree 10 for which 2^−f has the least largest relative error, 4.3e-17.
+/// (2^−f − 1) / f on [−1/2, 1/2]: the polynomial of degree 10 for which 2^−f has the least largest relative error,
+/// 4.3e-17.
 const POLYNOMIAL: [f64; 11] = [
     -0.693_147_180_559_945_7,
     0.240_226_506_959_100_97,

@@ -8,7 +8,8 @@ use crate::value::{SoftDtw, check, finite, normalise, rounded};
 impl SoftDtw {
     /// `D_γ(x, y)` and its gradient with respect to `x`.
     ///
-    /// The gradient is `Σ_j E(i, j) ∂δ(x_i, y_j)/∂x_i`, where E(i, j), the expected alignment, is the probability that a
+    /// The gradient is `Σ_j E(i, j) ∂δ(x_i, y_j)/∂x_i`, where E(i, j), the expected alignment, is the probability that
+    /// a
     /// warping path drawn with weight exp(−cost/γ) passes cell (i, j).
     ///
     /// # Shapes
@@ -104,7 +105,8 @@ impl SoftDtw {
         }
     }
 
-    /// [`SoftDtw::value_and_gradient`] by the recursion as it is written down: slow, and what tests hold the fast one to.
+    /// [`SoftDtw::value_and_gradient`] by the recursion as it is written down: slow, and what tests hold the fast one
+    /// to.
     #[doc(hidden)]
     pub fn log_domain_gradient<T: Scalar, const D: usize>(
         &self,

@@ -1,4 +1,5 @@
-//! How far the recursion in the exponential domain can be trusted: its range and its rounding error, in `f32` and `f64`.
+//! How far the recursion in the exponential domain can be trusted: its range and its rounding error, in `f32` and
+//! `f64`.
 //!
 //! Everything here is in log2 units: a score Z stands for the soft-DTW value −γ ln 2 · log2(Z / start).
 
@@ -61,7 +62,8 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range in `f32` for lengths `n` and `m` with a [`floor`] of at most `floor`, or `None` when the sequences are too
+    /// The range in `f32` for lengths `n` and `m` with a [`floor`] of at most `floor`, or `None` when the sequences are
+    /// too
     /// long for it.
     pub(crate) fn narrow(floor: f32, n: usize, m: usize) -> Option<Self> {
         let floor = f64::from(floor);
@@ -133,7 +135,8 @@ impl Range {
         costs + cells + tails
     }
 
-    /// Width of the band below the n-th score that may hold members of the true n best, or `None` when it would be so wide
+    /// Width of the band below the n-th score that may hold members of the true n best, or `None` when it would be so
+    /// wide
     /// that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error; that of the
     /// `f64` values is added, so that what is ruled out is further than the n-th neighbour in computed values too.
     pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
@@ -200,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn walkers_have_room_for_values_of_47_gamma_and_57_if_fused() {
+    fn pedestrians_have_room_for_values_of_47_gamma_and_57_if_fused() {
         let range = Range::narrow(FLOOR, 8, 8).expect("short");
         let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
         assert!(reach * std::f64::consts::LN_2 > 47.0, "{reach}");

@@ -1,6 +1,7 @@
 //! The recursion on sixteen candidates at once, in `f32` and the exponential domain.
 //!
-//! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over all
+//! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over
+//! all
 //! warping paths: no exponential and no logarithm in the recursion.
 //!
 //! Costs are clamped and a floor is added to every sum of three predecessors ([`Register::exp2`], [`cell`]), so that
@@ -103,7 +104,8 @@ fn similarities<S: Register, const D: usize, const G: usize>(
 }
 
 /// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`](ddl_simd::COST_LIMIT). The
-/// floor is added to the sum, so that no product is denormal: denormal numbers would make the recursion ten times slower.
+/// floor is added to the sum, so that no product is denormal: denormal numbers would make the recursion ten times
+/// slower.
 #[inline(always)]
 pub(crate) fn cell<S: Register>(
     simd: S,

@@ -32,7 +32,8 @@ impl<const D: usize> SearchIndex<D> {
     /// Candidates of at least one step each; their lengths may differ.
     ///
     /// # Errors
-    /// [`SearchError::NoCandidates`] for an empty list, [`SearchError::Candidate`] for an empty candidate, one that is not
+    /// [`SearchError::NoCandidates`] for an empty list, [`SearchError::Candidate`] for an empty candidate, one that is
+    /// not
     /// finite or whose D(y, y) cannot be represented.
     pub fn build<S>(dtw: &SoftDtw, candidates: &[S]) -> Result<Self, SearchError>
     where

@@ -56,8 +56,8 @@ fn compare(dtw: SoftDtw, candidates: &[Walk], queries: &[Walk], n: usize) {
 #[test]
 fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
     let mut numbers = Numbers(4);
-    let candidates: Vec<Walk> = (0..300).map(|_| numbers.walker(8)).collect();
-    let queries: Vec<Walk> = (0..4).map(|_| numbers.walker(8)).collect();
+    let candidates: Vec<Walk> = (0..300).map(|_| numbers.pedestrian(8)).collect();
+    let queries: Vec<Walk> = (0..4).map(|_| numbers.pedestrian(8)).collect();
     for gamma in [0.0, 1e-300, 1e-3, 0.01, 0.1, 10.0, 1e6, 1e300] {
         compare(squared(gamma), &candidates, &queries, 20);
     }
@@ -74,8 +74,8 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         compare(squared(1.0), &candidates, &queries, 20);
     }
     // Longer than f32 has paths for.
-    let long: Vec<Walk> = (0..60).map(|i| numbers.walker(30 + i % 5)).collect();
-    compare(squared(1.0), &long, &[numbers.walker(31)], 10);
+    let long: Vec<Walk> = (0..60).map(|i| numbers.pedestrian(30 + i % 5)).collect();
+    compare(squared(1.0), &long, &[numbers.pedestrian(31)], 10);
 }
 
 fn bits(found: &[Neighbour]) -> Vec<(usize, u64)> {
@@ -88,9 +88,9 @@ fn bits(found: &[Neighbour]) -> Vec<(usize, u64)> {
 #[test]
 fn instruction_sets_threads_and_company_change_nothing() {
     let mut numbers = Numbers(8);
-    let mut candidates: Vec<Walk> = (0..900).map(|i| numbers.walker(1 + i % 12)).collect();
+    let mut candidates: Vec<Walk> = (0..900).map(|i| numbers.pedestrian(1 + i % 12)).collect();
     candidates.extend((0..900).map(|i| numbers.standing(7 + i % 2)));
-    let mut queries: Vec<Walk> = (0..8).map(|i| numbers.walker(3 + i)).collect();
+    let mut queries: Vec<Walk> = (0..8).map(|i| numbers.pedestrian(3 + i)).collect();
     queries.extend((0..8).map(|_| numbers.standing(8)));
     // One too far for the sieve, one too far for the exponential domain.
     queries.push(vec![[12.0, 0.0]; 8]);

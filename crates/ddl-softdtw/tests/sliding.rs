@@ -70,9 +70,15 @@ fn compare<const D: usize>(
 fn long_tracks_and_long_queries_are_cut_without_a_trace() {
     let mut numbers = Numbers(8);
     let mut tracks = [700, 0, 65 + 7, 64 + 7]
-        .map(|steps| numbers.walker::<2>(steps))
+        .map(|steps| numbers.pedestrian::<2>(steps))
         .to_vec();
-    compare(squared(1.0), &tracks, &[numbers.walker(150)], (8, 0), 10);
+    compare(
+        squared(1.0),
+        &tracks,
+        &[numbers.pedestrian(150)],
+        (8, 0),
+        10,
+    );
     // Everyone stands: all distances are 0.
     tracks
         .iter_mut()
@@ -84,8 +90,8 @@ fn long_tracks_and_long_queries_are_cut_without_a_trace() {
 #[test]
 fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
     let mut numbers = Numbers(9);
-    let tracks = numbers.walkers::<2>(14, 40);
-    let queries = [numbers.walker::<2>(12)];
+    let tracks = numbers.pedestrians::<2>(14, 40);
+    let queries = [numbers.pedestrian::<2>(12)];
     for gamma in [0.0, 1e-300, 1e-3, 0.01, 0.1, 10.0, 1e6, 1e300] {
         compare(squared(gamma), &tracks, &queries, (8, 0), 20);
     }
@@ -108,7 +114,10 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         compare(squared(1.0), &tracks, &queries, (8, 0), 20);
     }
     // Longer than f32 has paths for, and longer than f64 has.
-    let (tracks, query) = (numbers.walkers::<2>(4, 300), numbers.walker::<2>(201));
+    let (tracks, query) = (
+        numbers.pedestrians::<2>(4, 300),
+        numbers.pedestrian::<2>(201),
+    );
     compare(squared(1.0), &tracks, &[query[..40].to_vec()], (36, 0), 5);
     compare(squared(1.0), &tracks, &[query], (200, 0), 5);
 }
@@ -116,8 +125,8 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
 #[test]
 fn the_number_of_threads_changes_nothing() {
     let mut numbers = Numbers(11);
-    let tracks = numbers.walkers::<2>(120, 50);
-    let queries = [300, 0, 8, 30].map(|steps| numbers.walker::<2>(steps));
+    let tracks = numbers.pedestrians::<2>(120, 50);
+    let queries = [300, 0, 8, 30].map(|steps| numbers.pedestrian::<2>(steps));
     let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         pool.expect("threads").install(|| {
@@ -185,11 +194,11 @@ fn bad_input_is_refused_by_name() {
 }
 
 #[test]
-fn recorded_walkers_have_the_neighbours_of_a_plain_index() {
+fn recorded_pedestrians_have_the_neighbours_of_a_plain_index() {
     let Some(dataset) = recorded::dataset() else {
         let reason = "the recordings are not there (DDL_DATASETS names their folder)";
         assert!(std::env::var_os("CI").is_none(), "{reason}");
-        println!("not compared on real walkers: {reason}");
+        println!("not compared on real pedestrians: {reason}");
         return;
     };
     let scenes: [(&[&str], usize, usize); 4] = [
@@ -216,10 +225,10 @@ fn any_dimension<const D: usize>(
     gamma: f64,
     n: usize,
 ) {
-    let mut tracks = numbers.walkers::<D>(30, 70);
+    let mut tracks = numbers.pedestrians::<D>(30, 70);
     // At least one window.
-    tracks.push(numbers.walker(window.0 + window.1));
-    let queries = [window.0 - 1, window.0, window.0 + 1, 40].map(|steps| numbers.walker(steps));
+    tracks.push(numbers.pedestrian(window.0 + window.1));
+    let queries = [window.0 - 1, window.0, window.0 + 1, 40].map(|steps| numbers.pedestrian(steps));
     compare(squared(gamma), &tracks, &queries, window, n);
 }
 

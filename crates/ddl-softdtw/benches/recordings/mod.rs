@@ -1,4 +1,4 @@
-//! Windows to measure with: of the real recordings where they are, of synthetic walkers otherwise.
+//! Windows to measure with: of the real recordings where they are, of synthetic pedestrians otherwise.
 
 #[path = "../../tests/recorded/mod.rs"]
 mod recorded;
@@ -19,11 +19,12 @@ pub(crate) struct Windows {
 }
 
 impl Windows {
-    /// The first `steps` velocities (m/s) of all complete windows: those of one recording against those of seven others.
+    /// The first `steps` velocities (m/s) of all complete windows: those of one recording against those of seven
+    /// others.
     pub(crate) fn load(steps: usize) -> Self {
         let Some(dataset) = recorded::dataset() else {
             let mut numbers = walks::Numbers(2);
-            let mut synthetic = |count| (0..count).map(|_| numbers.walker(steps)).collect();
+            let mut synthetic = |count| (0..count).map(|_| numbers.pedestrian(steps)).collect();
             return Self {
                 source: "synthetic",
                 candidates: synthetic(37_000),

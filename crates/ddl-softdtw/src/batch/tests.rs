@@ -39,7 +39,7 @@ fn worst_errors(dtw: &SoftDtw, xs: &[Vec<[f64; 2]>], ys: &[Vec<[f64; 2]>]) -> (f
 }
 
 #[test]
-fn walkers_are_within_the_stated_bounds() {
+fn pedestrians_are_within_the_stated_bounds() {
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
     // One step against thirty has thirty differences in one component.
     for (lengths, bound) in [(&[8][..], 1e-5), (&[7], 1e-5), (&[1, 2, 5, 12, 30], 5e-5)] {
@@ -61,7 +61,7 @@ fn what_leaves_the_range_is_evaluated_in_f64() {
         .collect();
     assert!(values.iter().any(|&v| v < 40.0) && values.iter().any(|&v| v > 60.0));
     let (value, gradient) = worst_errors(&dtw, &far[30..40], &far);
-    // The sequences are four times as long as a walker's, and so are their errors.
+    // The sequences are four times as long as a pedestrian's, and so are their errors.
     assert!(value < 4e-5 && gradient < 4e-5, "{value:e} {gradient:e}");
     // Only the nearest pairs of the first fit f32; the last three do not even fit the exponential domain.
     for (gamma, cost, scale, length, bound) in [

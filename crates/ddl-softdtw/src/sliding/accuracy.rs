@@ -130,7 +130,7 @@ mod tests {
     use super::{Accuracy, COST_CEILING, FLOOR};
 
     #[test]
-    fn walkers_have_room_for_values_of_28_gamma() {
+    fn pedestrians_have_room_for_values_of_28_gamma() {
         for length in [7, 8] {
             let accuracy = Accuracy::of(length).expect("short");
             let reach = accuracy.start_log2() - accuracy.smallest_accurate_log2();

@@ -1,8 +1,11 @@
 //! Scores of all windows of a query track against all windows of a group of pieces.
 //!
-//! K(i, j) = 2^−|x(i) − y(j)|² is computed once for each step i of the query and each step j of a piece, and serves every
-//! pair of windows that holds both. Neighbouring pairs share more than that. Let `length` rows of the query be a block and
-//! c its last row. Every window that starts in the block crosses row c, so that its sum over all warping paths splits at
+//! K(i, j) = 2^−|x(i) − y(j)|² is computed once for each step i of the query and each step j of a piece, and serves
+//! every
+//! pair of windows that holds both. Neighbouring pairs share more than that. Let `length` rows of the query be a block
+//! and
+//! c its last row. Every window that starts in the block crosses row c, so that its sum over all warping paths splits
+//! at
 //! the last cell m = (c, j) a path has in that row:
 //!
 //! ```text
@@ -10,7 +13,8 @@
 //! F(j, s) = Σ over paths s → m,   B(j, t) = Σ over paths m → t that leave row c at once
 //! ```
 //!
-//! (F counts the cells s to m, B those behind m). One recursion from m backwards gives F(j, s) for every first cell s at once,
+//! (F counts the cells s to m, B those behind m). One recursion from m backwards gives F(j, s) for every first cell s
+//! at once,
 //! one forwards gives B(j, t) for every last cell t: a pair of windows costs two columns of cells and a sum of `length`
 //! products. All terms are positive, so that nothing cancels.
 
@@ -142,7 +146,8 @@ fn pairs<S: Register, const M: usize>(
     }
 }
 
-/// Adds F(j) B(j) for the pairs whose window of the pieces begins in column j − l to their sums, and compares what is complete.
+/// Adds F(j) B(j) for the pairs whose window of the pieces begins in column j − l to their sums, and compares what is
+/// complete.
 #[inline(always)]
 fn add_products<S: Register, const M: usize>(
     setting: Setting<S>,

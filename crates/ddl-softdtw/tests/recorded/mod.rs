@@ -1,4 +1,4 @@
-//! Velocities of the walkers of the real recordings, for tests and benchmarks.
+//! Velocities of the pedestrians of the real recordings, for tests and benchmarks.
 
 #![allow(dead_code, reason = "each program needs a part")]
 
@@ -16,7 +16,8 @@ pub(crate) fn differences(positions: &[[f64; 2]]) -> Track {
     positions.windows(2).map(velocity).collect()
 }
 
-/// Velocities (m/s) of every walker of a recording over every stretch without a gap, in order of pedestrian and time.
+/// Velocities (m/s) of every pedestrian of a recording over every stretch without a gap, in order of pedestrian and
+/// time.
 fn velocities(recording: &Recording) -> Vec<Track> {
     let mut tracks = Vec::new();
     for pedestrian in recording.pedestrians() {

@@ -1,4 +1,4 @@
-//! Made-up walkers.
+//! Made-up pedestrians.
 
 #![allow(dead_code, reason = "each program needs a part")]
 
@@ -27,8 +27,8 @@ impl Numbers {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Velocities (m/s) of a walker who keeps a heading with some sway, and stands still for some of the steps.
-    pub(crate) fn walker<const D: usize>(&mut self, steps: usize) -> Track<D> {
+    /// Velocities (m/s) of a pedestrian who keeps a heading with some sway, and stands still for some of the steps.
+    pub(crate) fn pedestrian<const D: usize>(&mut self, steps: usize) -> Track<D> {
         let mean: [f64; D] = std::array::from_fn(|_| 2.0 * self.next() - 1.0);
         let stop = (self.next() * 2.0 * steps as f64) as usize;
         let mut swaying = |mean: f64| mean + 0.3 * (self.next() - 0.5);
@@ -39,16 +39,16 @@ impl Numbers {
         (0..steps).map(velocity).collect()
     }
 
-    pub(crate) fn walkers<const D: usize>(
+    pub(crate) fn pedestrians<const D: usize>(
         &mut self,
         count: usize,
         longest: usize,
     ) -> Vec<Track<D>> {
-        let mut walker = || {
+        let mut pedestrian = || {
             let steps = (self.next() * (longest + 1) as f64) as usize;
-            self.walker(steps)
+            self.pedestrian(steps)
         };
-        (0..count).map(|_| walker()).collect()
+        (0..count).map(|_| pedestrian()).collect()
     }
 
     /// Velocities of someone who stands: half of them exactly 0, the rest a multiple of a millimetre a second.
