@@ -201,14 +201,22 @@ impl Register for Avx512 {
     #[inline(always)]
     fn wide_below(self, lanes: &[f64; WIDE_LANES], first: f64) -> [f64; WIDE_LANES] {
         let mut moved = [0.0; WIDE_LANES];
-        self.wide_store(self.shifted::<7>(self.wide_splat(first), self.wide_load(lanes, 0)), &mut moved, 0);
+        self.wide_store(
+            self.shifted::<7>(self.wide_splat(first), self.wide_load(lanes, 0)),
+            &mut moved,
+            0,
+        );
         moved
     }
 
     #[inline(always)]
     fn wide_above(self, lanes: &[f64; WIDE_LANES], last: f64) -> [f64; WIDE_LANES] {
         let mut moved = [0.0; WIDE_LANES];
-        self.wide_store(self.shifted::<1>(self.wide_load(lanes, 0), self.wide_splat(last)), &mut moved, 0);
+        self.wide_store(
+            self.shifted::<1>(self.wide_load(lanes, 0), self.wide_splat(last)),
+            &mut moved,
+            0,
+        );
         moved
     }
 

@@ -45,8 +45,12 @@ pub(crate) trait Metric: Copy {
     const SLOPE: f64;
 
     /// The costs of several pairs of steps, component by component: each has the bits of [`between`](Self::between).
-    fn of_lanes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D])
-    -> Lanes;
+    fn of_lanes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> Lanes;
 
     /// [`slope`](Self::slope) of each cost, divided by [`SLOPE`](Self::SLOPE).
     fn slopes<S: Register, const D: usize>(
@@ -90,9 +94,14 @@ impl Metric for Squared {
         for part in 0..S::PARTS {
             let mut sum = simd.wide_splat(0.0);
             for k in 0..D {
-                let difference = simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
+                let difference =
+                    simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
                 let square = simd.wide_mul(difference, difference);
-                sum = if k == 0 { square } else { simd.wide_add(sum, square) };
+                sum = if k == 0 {
+                    square
+                } else {
+                    simd.wide_add(sum, square)
+                };
             }
             simd.wide_store(sum, &mut sums, part);
         }
@@ -109,7 +118,8 @@ impl Metric for Squared {
         let mut slopes = [[0.0; STRIP]; D];
         for k in 0..D {
             for part in 0..S::PARTS {
-                let difference = simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
+                let difference =
+                    simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
                 simd.wide_store(difference, &mut slopes[k], part);
             }
         }
@@ -133,7 +143,13 @@ impl Metric for Length {
     /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
     fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
         let length = self.between(a, b);
-        std::array::from_fn(|k| if length > 0.0 { (a[k] - b[k]) / length } else { 0.0 })
+        std::array::from_fn(|k| {
+            if length > 0.0 {
+                (a[k] - b[k]) / length
+            } else {
+                0.0
+            }
+        })
     }
 
     #[inline(always)]

@@ -144,8 +144,7 @@ impl SoftDtw {
         y: &[[T; D]],
     ) -> f64 {
         let grid = self.grid(x, y);
-        grid.value()
-            .unwrap_or_else(|| grid.log_domain_value())
+        grid.value().unwrap_or_else(|| grid.log_domain_value())
     }
 
     /// The grid of two checked sequences, the shorter one along the rows of memory.

@@ -67,7 +67,9 @@ impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
         let columns = Slanted::of(self.0.columns);
         let total = match self.0.plain_start() {
             Some(start) => self.0.run::<S, Plain>(simd, start, &columns, &mut Forget),
-            None => self.0.run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget),
+            None => self
+                .0
+                .run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget),
         };
         total.map(|total| self.0.value_of(total))
     }
@@ -110,16 +112,48 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             let (t_max, start) = (&mut largest, W::power(start));
             match (self.cost, self.band) {
                 (Cost::SquaredEuclidean, None) => {
-                    advance::<S, W, _, D, false>(simd, Squared, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, D, false>(
+                        simd,
+                        Squared,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
                 (Cost::SquaredEuclidean, Some(_)) => {
-                    advance::<S, W, _, D, true>(simd, Squared, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, D, true>(
+                        simd,
+                        Squared,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
                 (Cost::Euclidean, None) => {
-                    advance::<S, W, _, D, false>(simd, Length, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, D, false>(
+                        simd,
+                        Length,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
                 (Cost::Euclidean, Some(_)) => {
-                    advance::<S, W, _, D, true>(simd, Length, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, D, true>(
+                        simd,
+                        Length,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
             }
             if largest.iter().any(|&t| t > EXACT / path) {
@@ -211,9 +245,11 @@ fn row_of<'a, One: Copy>(
 
 #[cfg(test)]
 mod tests {
+    use std::marker::PhantomData;
+
     use proptest::prelude::*;
 
-    use ddl_simd::{Dispatch, InstructionSet};
+    use ddl_simd::{Dispatch, InstructionSet, Register, RegisterKernel};
 
     use super::{Forget, Forwards};
     use crate::alignment::Backwards;
@@ -221,7 +257,19 @@ mod tests {
     use crate::cost::Cost;
     use crate::exp2::Lanes;
     use crate::grid::{Grid, Slanted};
-    use crate::weight::{Plain, Scaled};
+    use crate::weight::{Plain, Scaled, Weight};
+
+    /// The recursion with one kind of weight, from 2^start.
+    struct Run<'a, W>((&'a Grid<'a, f64, 2>, &'a Slanted), f64, PhantomData<W>);
+
+    impl<W: Weight> RegisterKernel for Run<'_, W> {
+        type Output = Option<(f64, f64)>;
+
+        fn run<S: Register>(self, simd: S) -> Self::Output {
+            let Self((grid, columns), start, _) = self;
+            grid.run::<S, W>(simd, start, columns, &mut Forget)
+        }
+    }
 
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
@@ -237,14 +285,17 @@ mod tests {
             let (rows, columns) = if x.len() < y.len() { (&y, &x) } else { (&x, &y) };
             let grid = Grid { rows, columns, gamma, cost: Cost::SquaredEuclidean, band };
             let columns = Slanted::of(grid.columns);
-            let scaled = grid.run::<Scaled<Lanes>>(0.0, &columns, &mut Forget);
+            let dispatch = Dispatch::detect();
+            let of_grid = (&grid, &columns);
+            let scaled = dispatch.run_on_registers(Run::<Scaled<Lanes>>(of_grid, 0.0, PhantomData));
             let (significand, _) = scaled.expect("costs far below the limit");
             prop_assert!((1.0..2.0).contains(&significand));
             // The largest squared distance is 8.
             let start = grid.plain_start();
             prop_assert!(start.is_some() || 8.0 * grid.scale() * rows.len() as f64 > 1000.0);
             if let Some(start) = start {
-                prop_assert_eq!(grid.run::<Plain>(start, &columns, &mut Forget), scaled);
+                let plain = dispatch.run_on_registers(Run::<Plain>(of_grid, start, PhantomData));
+                prop_assert_eq!(plain, scaled);
             }
         }
 

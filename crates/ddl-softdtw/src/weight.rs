@@ -294,7 +294,11 @@ impl Weight for Plain {
     }
 
     #[inline(always)]
-    fn cells<S: Register>(simd: S, [diagonal, up, left]: [&Self; 3], factor: &Lanes) -> (Self, Self) {
+    fn cells<S: Register>(
+        simd: S,
+        [diagonal, up, left]: [&Self; 3],
+        factor: &Lanes,
+    ) -> (Self, Self) {
         let (mut sum, mut cells) = (Self::NONE, Self::NONE);
         for part in 0..S::PARTS {
             let factor = simd.wide_load(factor, part);
