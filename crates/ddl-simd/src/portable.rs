@@ -162,6 +162,8 @@ impl Register for Portable {
         fn wide_mul(a: Wide, b: Wide;) -> Wide = |l| a[l] * b[l];
         fn wide_max(a: Wide, b: Wide;) -> Wide = |l| if a[l] > b[l] { a[l] } else { b[l] };
         fn wide_sqrt(a: Wide;) -> Wide = |l| a[l].sqrt();
+        fn wide_opposite(a: Wide; bits: u64) -> Wide = |l| f64::from_bits(bits.wrapping_sub(a[l].to_bits()));
+        fn wide_zero_unless_above(a: Wide, limit: Wide;) -> Wide = |l| if a[l] > limit[l] { a[l] } else { 0.0 };
         fn wide_scale(power: Wide, exponent: Wide;) -> Wide =
             |l| f64::from_bits(power[l].to_bits().wrapping_add(exponent[l].to_bits() << 52));
     }

@@ -98,6 +98,26 @@ pub trait Register: Copy + Send + Sync {
     fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
     fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
+    /// The number whose representation is `bits` minus that of `a`: for the sum of the representations of b and 1 it is
+    /// b / a, or up to an eighth more.
+    fn wide_opposite(self, a: Self::Wide, bits: u64) -> Self::Wide;
+    /// `a` where it is above `limit`, 0 elsewhere.
+    fn wide_zero_unless_above(self, a: Self::Wide, limit: Self::Wide) -> Self::Wide;
+
+    /// A group moved up by one lane, `first` before it.
+    #[inline(always)]
+    fn wide_below(self, lanes: &[f64; WIDE_LANES], first: f64) -> [f64; WIDE_LANES] {
+        // Taken apart and put together, so that they are moved within registers.
+        let [a, b, c, d, e, f, g, _] = *lanes;
+        [first, a, b, c, d, e, f, g]
+    }
+
+    /// A group moved down by one lane, `last` after it.
+    #[inline(always)]
+    fn wide_above(self, lanes: &[f64; WIDE_LANES], last: f64) -> [f64; WIDE_LANES] {
+        let [_, b, c, d, e, f, g, h] = *lanes;
+        [b, c, d, e, f, g, h, last]
+    }
 }
 
 /// A [`Kernel`](crate::Kernel) written for one register at a time, with a result. The rules of `Kernel` apply.

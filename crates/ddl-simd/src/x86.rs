@@ -187,10 +187,38 @@ impl Register for Avx512 {
         fn wide_mul(a: __m512d, b: __m512d) -> __m512d = _mm512_mul_pd(a, b);
         fn wide_max(a: __m512d, b: __m512d) -> __m512d = _mm512_max_pd(a, b);
         fn wide_sqrt(a: __m512d) -> __m512d = _mm512_sqrt_pd(a);
+        fn wide_opposite(a: __m512d, bits: u64) -> __m512d = _mm512_castsi512_pd(_mm512_sub_epi64(
+            _mm512_set1_epi64(bits.cast_signed()),
+            _mm512_castpd_si512(a),
+        ));
+        fn wide_zero_unless_above(a: __m512d, limit: __m512d) -> __m512d =
+            _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(a, limit), a);
         fn wide_scale(power: __m512d, exponent: __m512d) -> __m512d = _mm512_castsi512_pd(_mm512_add_epi64(
             _mm512_castpd_si512(power),
             _mm512_slli_epi64::<52>(_mm512_castpd_si512(exponent)),
         ));
+    }
+
+    #[inline(always)]
+    fn wide_below(self, lanes: &[f64; WIDE_LANES], first: f64) -> [f64; WIDE_LANES] {
+        let mut moved = [0.0; WIDE_LANES];
+        self.wide_store(
+            self.shifted::<7>(self.wide_splat(first), self.wide_load(lanes, 0)),
+            &mut moved,
+            0,
+        );
+        moved
+    }
+
+    #[inline(always)]
+    fn wide_above(self, lanes: &[f64; WIDE_LANES], last: f64) -> [f64; WIDE_LANES] {
+        let mut moved = [0.0; WIDE_LANES];
+        self.wide_store(
+            self.shifted::<1>(self.wide_load(lanes, 0), self.wide_splat(last)),
+            &mut moved,
+            0,
+        );
+        moved
     }
 
     /// Uses f = exponent − floor(exponent), and scales the power, with one instruction each.
@@ -217,6 +245,10 @@ impl Register for Avx512 {
 
 impl Avx512 {
     instructions! {
+        // Lanes `N` .. of both, one behind the other.
+        fn shifted<const N: i32>(low: __m512d, high: __m512d) -> __m512d = _mm512_castsi512_pd(
+            _mm512_alignr_epi64::<N>(_mm512_castpd_si512(high), _mm512_castpd_si512(low)),
+        );
         fn above_floor(a: __m512) -> __m512 = _mm512_reduce_ps::<{ _MM_FROUND_FLOOR }>(a);
         fn scale_by_floor(power: __m512, exponent: __m512) -> __m512 = _mm512_scalef_ps(power, exponent);
     }
@@ -356,6 +388,12 @@ impl Register for Avx2 {
         fn wide_mul(a: __m256d, b: __m256d) -> __m256d = _mm256_mul_pd(a, b);
         fn wide_max(a: __m256d, b: __m256d) -> __m256d = _mm256_max_pd(a, b);
         fn wide_sqrt(a: __m256d) -> __m256d = _mm256_sqrt_pd(a);
+        fn wide_opposite(a: __m256d, bits: u64) -> __m256d = _mm256_castsi256_pd(_mm256_sub_epi64(
+            _mm256_set1_epi64x(bits.cast_signed()),
+            _mm256_castpd_si256(a),
+        ));
+        fn wide_zero_unless_above(a: __m256d, limit: __m256d) -> __m256d =
+            _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(a, limit), a);
         fn wide_scale(power: __m256d, exponent: __m256d) -> __m256d = _mm256_castsi256_pd(_mm256_add_epi64(
             _mm256_castpd_si256(power),
             _mm256_slli_epi64::<52>(_mm256_castpd_si256(exponent)),

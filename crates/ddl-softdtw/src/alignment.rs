@@ -7,98 +7,117 @@
 use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 use crate::cost::{Cost, Length, Metric, Squared};
-use crate::exp2::{Lanes, STRIP, above};
+use crate::exp2::{Lanes, STRIP};
 use crate::grid::{Grid, Slanted, Strip};
 use crate::log_domain::Gradients;
 use crate::scalar::Scalar;
-use crate::wavefront::StepRecord;
+use crate::wavefront::{STRETCH, StepRecord};
+use crate::weight::{Plain, Scaled, TOTAL, Weight};
 
-/// For each step of each strip, in order, the shares that the three ways into its cells have in them.
-struct Shares {
-    steps: Vec<[Lanes; 3]>,
-}
+/// For each step of each strip, in order, 2^−t and R of its cells.
+struct Steps<W: Weight>(Vec<(W::Factor, W)>);
 
-impl StepRecord for Shares {
+impl<W: Weight> StepRecord<W> for Steps<W> {
     #[inline(always)]
-    fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes) {
-        let mut shares = *addends;
-        for l in 0..STRIP {
-            // A plain number is 0 where no path comes.
-            let scale = if sums[l] > 0.0 { 1.0 / sums[l] } else { 0.0 };
-            for share in &mut shares {
-                share[l] *= scale;
-            }
-        }
-        self.steps.push(shares);
+    fn step(&mut self, factor: &W::Factor, cells: &W) {
+        self.0.push((*factor, *cells));
     }
 }
 
-/// What a strip sends up to the strip above, and what the sequences have gathered so far.
-struct Gathered<const D: usize> {
-    /// Entry c + 7 is what arrives at column c of the strip above.
-    arriving: Vec<f64>,
-    of_rows: Vec<[f64; D]>,
-    of_columns: Slanted,
+/// What a strip leaves to the strip above. Entry c + 7 is column c.
+struct Below<W: Weight, const D: usize> {
+    /// 2^−t S of the row below.
+    row: Vec<W::One>,
+    /// The gradients of the columns, as far as the rows below have a part in them.
+    of_columns: Vec<[f64; D]>,
 }
 
 /// Compiled for each instruction set, as the value is.
-struct Backwards<'a, 'b, T, const D: usize>(&'a Grid<'b, T, D>);
+pub(crate) struct Backwards<'a, 'b, T, const D: usize>(pub(crate) &'a Grid<'b, T, D>);
 
 impl<T: Scalar, const D: usize> RegisterKernel for Backwards<'_, '_, T, D> {
     type Output = Option<Gradients<D>>;
 
     #[inline(always)]
     fn run<S: Register>(self, simd: S) -> Option<Gradients<D>> {
-        self.0.gradients_here(simd)
+        match self.0.plain_start() {
+            Some(start) => self.0.gradients_here::<S, Plain>(simd, start),
+            None => self.0.gradients_here::<S, Scaled<Lanes>>(simd, 0.0),
+        }
     }
 }
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// The value and its gradients, or `None` where the log domain must be used (as [`Grid::value`]).
     ///
+    /// With S(i, j), the sum of exp(−cost/γ) over the paths from cell (i, j) to the last one, without its own cost,
+    ///
     /// ```text
-    /// E(i, j) = E(i+1, j+1) d(i+1, j+1) + E(i+1, j) u(i+1, j) + E(i, j+1) l(i, j+1)
+    /// S(i, j) = 2^−t(i+1, j+1) S(i+1, j+1) + 2^−t(i+1, j) S(i+1, j) + 2^−t(i, j+1) S(i, j+1)
     /// ```
     ///
-    /// with the shares d, u, l of the diagonal, the upper and the left way into a cell, strip by strip backwards.
+    /// the expected alignment is E(i, j) = R(i, j) S(i, j) / R(n, m). S is computed strip by strip backwards.
     pub(crate) fn gradients(&self) -> Option<Gradients<D>> {
         Dispatch::detect().run_on_registers(Backwards(self))
     }
 
     #[inline(always)]
-    fn gradients_here<S: Register>(&self, simd: S) -> Option<Gradients<D>> {
-        let mut shares = Shares {
-            steps: Vec::with_capacity(self.steps()),
-        };
+    fn gradients_here<S: Register, W: Weight>(&self, simd: S, start: f64) -> Option<Gradients<D>> {
+        let mut steps = Steps(Vec::with_capacity(self.steps()));
         let columns = Slanted::of(self.columns);
-        let value = self.value_here(&columns, &mut shares)?;
-        let mut gathered = Gathered {
-            arriving: vec![0.0; self.columns.len() + 2 * (STRIP - 1)],
-            of_rows: vec![[0.0; D]; self.rows.len()],
-            of_columns: Slanted::zeros::<D>(self.columns.len()),
+        let total = self.run::<S, W>(simd, start, &columns, &mut steps)?;
+        // S starts from the power of two that gives R(n, m) times it the exponent that shares are computed with.
+        let (significand, exponent) = total;
+        let seed = TOTAL - (start + exponent);
+        let length = self.columns.len() + 2 * (STRIP - 1);
+        let mut below = Below::<W, D> {
+            row: vec![W::NONE_ONE; length],
+            of_columns: vec![[0.0; D]; length],
         };
-        // Every path ends in the last cell: as if it came from the last column below.
-        gathered.arriving[self.columns.len() + STRIP - 2] = 1.0;
-        let mut steps = shares.steps.as_slice();
+        // Every path ends in the last cell, as if it went on along the diagonal.
+        below.row[self.columns.len() + STRIP - 1] = W::power(seed);
+        let mut of_rows = vec![[0.0; D]; self.rows.len()];
+        let mut steps = steps.0.as_slice();
+        let spare = self.strips() * STRIP - self.rows.len();
         for index in (0..self.strips()).rev() {
             let strip = self.strip(index);
             let (rest, own) = steps.split_at(steps.len() - (strip.end + 1 - strip.start));
             steps = rest;
             let of_lanes = match self.cost {
-                Cost::SquaredEuclidean => {
-                    retreat(simd, Squared, &strip, own, &columns, &mut gathered)
-                }
-                Cost::Euclidean => retreat(simd, Length, &strip, own, &columns, &mut gathered),
+                Cost::SquaredEuclidean => retreat(
+                    simd,
+                    Squared,
+                    &strip,
+                    own,
+                    &columns,
+                    (significand, TOTAL),
+                    &mut below,
+                ),
+                Cost::Euclidean => retreat(
+                    simd,
+                    Length,
+                    &strip,
+                    own,
+                    &columns,
+                    (significand, TOTAL),
+                    &mut below,
+                ),
             };
-            let spare = self.strips() * STRIP - self.rows.len();
             for lane in 0..STRIP {
                 // Lanes above the first row belong to no row.
                 if let Some(row) = (index * STRIP + lane).checked_sub(spare) {
-                    gathered.of_rows[row] = of_lanes.map(|component| component[lane]);
+                    of_rows[row] = of_lanes.map(|component| component[lane]);
+                }
+            }
+            if index % (STRETCH / STRIP) == 0 {
+                for cell in &mut below.row {
+                    *cell = W::normalised_one(*cell);
                 }
             }
         }
-        Some((value, gathered.of_rows, gathered.of_columns.columns()))
+        below.of_columns.truncate(length - (STRIP - 1));
+        let of_columns = below.of_columns.split_off(STRIP - 1);
+        Some((self.value_of(total), of_rows, of_columns))
     }
 
     fn steps(&self) -> usize {
@@ -112,50 +131,58 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
 
 /// One strip backwards: the gradient of each of its rows, component by component.
 #[inline(always)]
-fn retreat<S: Register, M: Metric, const D: usize>(
+fn retreat<S: Register, W: Weight, M: Metric, const D: usize>(
     simd: S,
     metric: M,
     strip: &Strip<D>,
-    shares: &[[Lanes; 3]],
+    steps: &[(W::Factor, W)],
     columns: &Slanted,
-    gathered: &mut Gathered<D>,
+    total: (f64, f64),
+    below: &mut Below<W, D>,
 ) -> [Lanes; D] {
     let (start, end) = (strip.start, strip.end);
-    let arriving = &mut gathered.arriving[..end + STRIP];
+    let row = &mut below.row[..end + STRIP];
+    let of_columns = &mut below.of_columns[..end + STRIP];
     let mut of_rows = [[0.0; STRIP]; D];
-    // What the step before (the next column) sent left, and up and along the diagonal to the lane above.
-    let mut left = [0.0; STRIP];
-    let mut upwards = [0.0; STRIP];
-    let mut diagonal = [0.0; STRIP];
-    for (offset, [to_diagonal, to_up, to_left]) in shares.iter().enumerate().rev() {
-        let d = start + offset;
-        let from_below = above(&upwards, arriving[d]);
-        arriving[d] = 0.0;
-        let mut expected = [0.0; STRIP];
-        for l in 0..STRIP {
-            expected[l] = left[l] + from_below[l];
-            left[l] = expected[l] * to_left[l];
-            let up = expected[l] * to_up[l];
-            upwards[l] = up + diagonal[l];
-            diagonal[l] = expected[l] * to_diagonal[l];
+    // Of the columns that the lanes are at: a column passes through the lanes from the last to the first.
+    let mut of_lanes = [[0.0; STRIP]; D];
+    for lane in 1..STRIP {
+        for (of_lanes, of_column) in of_lanes.iter_mut().zip(of_columns[end + STRIP - lane]) {
+            of_lanes[lane] = of_column;
         }
-        let slopes = metric.slopes(&strip.x, &columns.window(d));
-        // Beyond the first and the last column nothing is expected.
-        let of_columns = gathered.of_columns.window_mut::<D>(d);
-        for ((slope, of_row), of_column) in slopes.iter().zip(&mut of_rows).zip(of_columns) {
-            for part in 0..S::PARTS {
-                let expected = simd.wide_load(&expected, part);
-                let gradient = simd.wide_mul(expected, simd.wide_load(slope, part));
-                let total = simd.wide_add(simd.wide_load(of_row, part), gradient);
-                simd.wide_store(total, of_row, part);
-                let total = simd.wide_sub(simd.wide_load(of_column, part), gradient);
-                simd.wide_store(total, of_column, part);
-            }
-        }
-        // Lane 0 sends to the strip above: up to its own column, where the diagonal of the next column arrives too.
-        arriving[d + STRIP - 1] += upwards[0];
     }
-    // What lane 0 of the first step sends along its diagonal.
-    arriving[start + STRIP - 2] += diagonal[0];
+    let slope = simd.wide_splat(M::SLOPE);
+    let mut cells = W::NONE;
+    let mut diagonal = W::NONE.above(simd, row[end + 1]);
+    for (offset, (factor, forward)) in steps.iter().enumerate().rev() {
+        let d = start + offset;
+        let down = cells.above(simd, row[d]);
+        let (sum, reached) = W::cells(simd, [&diagonal, &down, &cells], factor);
+        (cells, diagonal) = (reached, down);
+        row[d + STRIP - 1] = cells.first();
+        let expected = W::shares(simd, forward, &sum, total);
+        // Beyond the first and the last column nothing is expected.
+        let slopes = metric.slopes(simd, &strip.x, columns.window(d));
+        let arriving = of_columns[d];
+        let leaving = &mut of_columns[d + STRIP - 1];
+        for k in 0..D {
+            of_lanes[k] = simd.wide_above(&of_lanes[k], arriving[k]);
+            for part in 0..S::PARTS {
+                let expected = simd.wide_mul(simd.wide_load(&expected, part), slope);
+                let gradient = simd.wide_mul(expected, simd.wide_load(&slopes[k], part));
+                let of_row = simd.wide_add(simd.wide_load(&of_rows[k], part), gradient);
+                simd.wide_store(of_row, &mut of_rows[k], part);
+                let of_lane = simd.wide_sub(simd.wide_load(&of_lanes[k], part), gradient);
+                simd.wide_store(of_lane, &mut of_lanes[k], part);
+            }
+            leaving[k] = of_lanes[k][0];
+        }
+        if d % STRETCH == 0 {
+            cells = cells.normalised();
+        }
+    }
+    for lane in 1..STRIP {
+        of_columns[start + STRIP - 1 - lane] = of_lanes.map(|component| component[lane]);
+    }
     of_rows
 }

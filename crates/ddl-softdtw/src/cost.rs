@@ -4,6 +4,8 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
+use ddl_simd::Register;
+
 use crate::exp2::{Lanes, STRIP};
 use crate::scalar::{Scalar, widened};
 
@@ -36,17 +38,27 @@ impl Cost {
 pub(crate) trait Metric: Copy {
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64;
 
+    /// Derivative of the cost with respect to `a`; that with respect to `b` is its negative.
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D];
+
+    /// Slopes are so many times what [`slopes`](Self::slopes) says.
+    const SLOPE: f64;
+
     /// The costs of several pairs of steps, component by component: each has the bits of [`between`](Self::between).
-    fn of_lanes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> Lanes;
+    fn of_lanes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> Lanes;
 
-    /// Derivative of each cost with respect to `a`; that with respect to `b` is its negative.
-    fn slopes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> [Lanes; D];
-
-    /// The same for one pair.
-    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
-        let [a, b] = [a, b].map(|step| step.map(|component| [component; STRIP]));
-        self.slopes(&a, &b).map(|slopes| slopes[0])
-    }
+    /// [`slope`](Self::slope) of each cost, divided by [`SLOPE`](Self::SLOPE).
+    fn slopes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> [Lanes; D];
 }
 
 #[derive(Clone, Copy)]
@@ -56,6 +68,8 @@ pub(crate) struct Squared;
 pub(crate) struct Length;
 
 impl Metric for Squared {
+    const SLOPE: f64 = 2.0;
+
     #[inline(always)]
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
         let mut sum = 0.0;
@@ -65,24 +79,48 @@ impl Metric for Squared {
         sum
     }
 
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+        std::array::from_fn(|k| 2.0 * (a[k] - b[k]))
+    }
+
     #[inline(always)]
-    fn of_lanes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> Lanes {
+    fn of_lanes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> Lanes {
         let mut sums = [0.0; STRIP];
-        for k in 0..D {
-            for l in 0..STRIP {
-                let difference = a[k][l] - b[k][l];
-                sums[l] += difference * difference;
+        for part in 0..S::PARTS {
+            let mut sum = simd.wide_splat(0.0);
+            for k in 0..D {
+                let difference =
+                    simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
+                let square = simd.wide_mul(difference, difference);
+                sum = if k == 0 {
+                    square
+                } else {
+                    simd.wide_add(sum, square)
+                };
             }
+            simd.wide_store(sum, &mut sums, part);
         }
         sums
     }
 
     #[inline(always)]
-    fn slopes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> [Lanes; D] {
+    fn slopes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> [Lanes; D] {
         let mut slopes = [[0.0; STRIP]; D];
         for k in 0..D {
-            for l in 0..STRIP {
-                slopes[k][l] = 2.0 * (a[k][l] - b[k][l]);
+            for part in 0..S::PARTS {
+                let difference =
+                    simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
+                simd.wide_store(difference, &mut slopes[k], part);
             }
         }
         slopes
@@ -90,6 +128,8 @@ impl Metric for Squared {
 }
 
 impl Metric for Length {
+    const SLOPE: f64 = 1.0;
+
     #[inline(always)]
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
         let squared = Squared.between(a, b);
@@ -100,9 +140,26 @@ impl Metric for Length {
         }
     }
 
+    /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
+    fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+        let length = self.between(a, b);
+        std::array::from_fn(|k| {
+            if length > 0.0 {
+                (a[k] - b[k]) / length
+            } else {
+                0.0
+            }
+        })
+    }
+
     #[inline(always)]
-    fn of_lanes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> Lanes {
-        let squared = Squared.of_lanes(a, b);
+    fn of_lanes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> Lanes {
+        let squared = Squared.of_lanes(simd, a, b);
         let mut lengths = [0.0; STRIP];
         for l in 0..STRIP {
             lengths[l] = squared[l].sqrt();
@@ -113,10 +170,14 @@ impl Metric for Length {
         lengths
     }
 
-    /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
     #[inline(always)]
-    fn slopes<const D: usize>(self, a: &[Lanes; D], b: &[Lanes; D]) -> [Lanes; D] {
-        let lengths = self.of_lanes(a, b);
+    fn slopes<S: Register, const D: usize>(
+        self,
+        simd: S,
+        a: &[Lanes; D],
+        b: [&Lanes; D],
+    ) -> [Lanes; D] {
+        let lengths = self.of_lanes(simd, a, b);
         let mut slopes = [[0.0; STRIP]; D];
         for k in 0..D {
             for l in 0..STRIP {
@@ -136,7 +197,7 @@ fn is_plain(squared: f64) -> bool {
 }
 
 #[cold]
-fn scaled_lengths<const D: usize>(a: &[Lanes; D], b: &[Lanes; D], squared: Lanes) -> Lanes {
+fn scaled_lengths<const D: usize>(a: &[Lanes; D], b: [&Lanes; D], squared: Lanes) -> Lanes {
     std::array::from_fn(|l| {
         if is_plain(squared[l]) {
             squared[l].sqrt()
@@ -165,7 +226,6 @@ mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
     use super::{Cost, Length, Metric};
-    use crate::exp2::STRIP;
 
     #[test]
     fn the_euclidean_cost_neither_overflows_nor_underflows() {
@@ -175,10 +235,8 @@ mod tests {
         }
         let smallest = f64::from_bits(1);
         assert_eq!(Cost::Euclidean.between(&[smallest], &[0.0]), smallest);
-        let slopes = Length.slopes(&[[smallest; STRIP]], &[[0.0; STRIP]]);
-        assert_eq!(slopes, [[1.0; STRIP]]);
-        let step = [[2.0; STRIP], [3.0; STRIP]];
-        assert_eq!(Length.slopes(&step, &step), [[0.0; STRIP]; 2]);
+        assert_eq!(Length.slope(&[smallest], &[0.0]), [1.0]);
+        assert_eq!(Length.slope(&[2.0, 3.0], &[2.0, 3.0]), [0.0; 2]);
         assert_eq!(Cost::Euclidean.between(&[1.0; 3], &[1.0; 3]), 0.0);
         assert_eq!(
             Cost::Euclidean.between(&[3.0e30_f32, 0.0], &[0.0, 4.0e30]),

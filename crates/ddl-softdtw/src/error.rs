@@ -41,7 +41,8 @@ pub enum SoftDtwError {
         value: f64,
     },
     #[error(
-        "the soft-DTW value or gradient leaves the range of the number type: scale the sequences (or gamma) down, or use f64"
+        "the soft-DTW value or gradient leaves the range of the number type: scale the sequences (or gamma) down, or \
+         use f64"
     )]
     Overflow,
 }

@@ -4,24 +4,11 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
+use ddl_simd::Register;
+
 /// Cells computed together: neighbours on an antidiagonal, one a row.
 pub(crate) const STRIP: usize = 8;
 pub(crate) type Lanes = [f64; STRIP];
-
-/// The lanes moved down by one row, `top` above them.
-#[inline(always)]
-pub(crate) fn below<T: Copy>(lanes: &[T; STRIP], top: T) -> [T; STRIP] {
-    // Taken apart and put together, so that they are moved within registers.
-    let [a, b, c, d, e, f, g, _] = *lanes;
-    [top, a, b, c, d, e, f, g]
-}
-
-/// The lanes moved up by one row, `bottom` below them.
-#[inline(always)]
-pub(crate) fn above<T: Copy>(lanes: &[T; STRIP], bottom: T) -> [T; STRIP] {
-    let [_, b, c, d, e, f, g, h] = *lanes;
-    [b, c, d, e, f, g, h, bottom]
-}
 
 /// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the
 /// sum.
@@ -43,37 +30,58 @@ const POLYNOMIAL: [f64; 11] = [
     -4.078_071_929_588_337e-10,
 ];
 
-/// (k, 2^−f) with k + f = t, k an integer and |f| ≤ 1/2, for 0 ≤ t < 2^51; exactly (0, 1) for t = 0. Relative error of
-/// 2^−f: at most 2.3e-16.
+/// ([`ROUNDING`] − k, 2^−f) with k + f = t, k an integer and |f| ≤ 1/2, for 0 ≤ t < 2^51; exactly 1 for t = 0. Relative
+/// error of 2^−f: at most 2.3e-16.
 #[inline(always)]
-pub(crate) fn exp2_minus(t: &Lanes) -> (Lanes, Lanes) {
-    let mut whole = [0.0; STRIP];
-    let mut power = [0.0; STRIP];
-    for l in 0..STRIP {
-        whole[l] = (t[l] + ROUNDING) - ROUNDING;
-        let f = t[l] - whole[l];
-        let ff = f * f;
-        let p = &POLYNOMIAL;
-        // Even and odd powers apart: half the latency of one chain.
-        let even = ((((p[10] * ff + p[8]) * ff + p[6]) * ff + p[4]) * ff + p[2]) * ff + p[0];
-        let odd = (((p[9] * ff + p[7]) * ff + p[5]) * ff + p[3]) * ff + p[1];
-        power[l] = (even + odd * f) * f + 1.0;
+pub(crate) fn exp2_minus<S: Register>(simd: S, t: S::Wide) -> (S::Wide, S::Wide) {
+    let rounding = simd.wide_splat(ROUNDING);
+    let minus = simd.wide_sub(rounding, t);
+    let f = simd.wide_sub(t, simd.wide_sub(rounding, minus));
+    let ff = simd.wide_mul(f, f);
+    // Even and odd powers apart: half the latency of one chain.
+    let mut sums = [
+        simd.wide_splat(POLYNOMIAL[10]),
+        simd.wide_splat(POLYNOMIAL[9]),
+    ];
+    for (i, coefficient) in POLYNOMIAL.into_iter().enumerate().take(9).rev() {
+        let product = simd.wide_mul(sums[i % 2], ff);
+        sums[i % 2] = simd.wide_add(product, simd.wide_splat(coefficient));
     }
-    (whole, power)
+    let [even, odd] = sums;
+    let quotient = simd.wide_add(even, simd.wide_mul(odd, f));
+    let power = simd.wide_add(simd.wide_mul(quotient, f), simd.wide_splat(1.0));
+    (minus, power)
 }
 
 #[cfg(test)]
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::{STRIP, exp2_minus};
+    use ddl_simd::{Dispatch, Register, RegisterKernel};
+
+    use super::{ROUNDING, STRIP, exp2_minus};
+
+    struct Minus(f64);
+
+    impl RegisterKernel for Minus {
+        type Output = (f64, f64);
+
+        #[inline(always)]
+        fn run<S: Register>(self, simd: S) -> (f64, f64) {
+            let (minus, power) = exp2_minus(simd, simd.wide_splat(self.0));
+            let mut results = [[0.0; STRIP]; 2];
+            simd.wide_store(minus, &mut results[0], 0);
+            simd.wide_store(power, &mut results[1], 0);
+            (ROUNDING - results[0][0], results[1][0])
+        }
+    }
 
     #[test]
     fn it_is_exp2_to_two_units_of_roundoff() {
         let mut worst = 0.0_f64;
         for i in 0..400_000_u32 {
             let t = f64::from(i) * 1.234_567e-3;
-            let ([whole, ..], [power, ..]) = exp2_minus(&[t; STRIP]);
+            let (whole, power) = Dispatch::detect().run_on_registers(Minus(t));
             assert!(whole == whole.round() && (t - whole).abs() <= 0.5);
             // The library's own exp2 errs by up to half a unit in the last place more.
             worst = worst.max((power / (whole - t).exp2() - 1.0).abs());
@@ -84,7 +92,8 @@ mod tests {
     #[test]
     fn whole_numbers_are_exact_up_to_the_largest() {
         for t in [0.0, 1.0, 37.0, 2.0_f64.powi(51) - 1.0] {
-            assert_eq!(exp2_minus(&[t; STRIP]), ([t; STRIP], [1.0; STRIP]));
+            let result = Dispatch::detect().run_on_registers(Minus(t));
+            assert_eq!(result, (t, 1.0));
         }
     }
 }

@@ -11,6 +11,13 @@ use crate::cost::{Cost, Length, Metric as _, Squared};
 use crate::exp2::{Lanes, STRIP};
 use crate::scalar::{Scalar, widened};
 
+/// Plain numbers: no R exceeds 2^`LARGEST`, and no t.
+const LARGEST: f64 = 1018.0;
+/// log2(1 + √2), rounded up.
+const PATHS: f64 = 1.271_553_303_2;
+/// 1018 − 17 − 128: see [`crate::wavefront`].
+const ROOM: f64 = 873.0;
+
 /// Two checked sequences and what is asked of them: row i is step i of one, column j step j of the other.
 pub(crate) struct Grid<'a, T, const D: usize> {
     pub(crate) rows: &'a [[T; D]],
@@ -80,8 +87,42 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         strip
     }
 
+    /// What makes t of a cost.
+    pub(crate) fn scale(&self) -> f64 {
+        std::f64::consts::LOG2_E / self.gamma
+    }
+
+    /// The exponent of R(0, 0) with which plain numbers hold all of R, if there is one ([`crate::wavefront`]).
+    pub(crate) fn plain_start(&self) -> Option<f64> {
+        let (n, m) = (self.rows.len(), self.columns.len());
+        let paths = PATHS * (n + m + 2 * STRIP) as f64;
+        let start = (LARGEST - paths).floor();
+        let room = start - paths + ROOM;
+        let bound = self.cost_bound() * self.scale();
+        // A bound of all t is cheaper than their sum along a path of n cells, and often enough.
+        let fits = bound <= LARGEST
+            && (bound * n as f64 <= room || self.diagonal_cost() * self.scale() <= room);
+        fits.then_some(start)
+    }
+
+    /// The cost of the path next to the diagonal, which is in every band. There are at least as many rows as columns.
+    fn diagonal_cost(&self) -> f64 {
+        let (steps, rise) = (self.rows.len() - 1, self.columns.len() - 1);
+        let (mut column, mut remainder) = (0, steps / 2);
+        let mut sum = 0.0;
+        for row in self.rows {
+            sum += self.cost_between(&widened(row), &widened(&self.columns[column]));
+            remainder += rise;
+            if remainder >= steps {
+                remainder -= steps;
+                column += 1;
+            }
+        }
+        sum
+    }
+
     /// The largest cost that two steps can have: that of the corners of the box around all of them.
-    pub(crate) fn cost_bound(&self) -> f64 {
+    fn cost_bound(&self) -> f64 {
         let mut low = widened(&self.rows[0]);
         let mut high = low;
         for step in self.rows.iter().chain(self.columns) {
@@ -91,9 +132,14 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 high[k] = if step[k] > high[k] { step[k] } else { high[k] };
             }
         }
+        self.cost_between(&low, &high)
+    }
+
+    #[inline(always)]
+    fn cost_between(&self, a: &[f64; D], b: &[f64; D]) -> f64 {
         match self.cost {
-            Cost::SquaredEuclidean => Squared.between(&low, &high),
-            Cost::Euclidean => Length.between(&low, &high),
+            Cost::SquaredEuclidean => Squared.between(a, b),
+            Cost::Euclidean => Length.between(a, b),
         }
     }
 }
@@ -114,7 +160,9 @@ impl Slanted {
     /// overflows unless it does within the grid.
     #[inline(always)]
     pub(crate) fn of<T: Scalar, const D: usize>(columns: &[[T; D]]) -> Self {
-        let mut slanted = Self::zeros::<D>(columns.len());
+        let stride = columns.len() + 2 * (STRIP - 1);
+        let numbers = vec![0.0; D * stride];
+        let mut slanted = Self { numbers, stride };
         for k in 0..D {
             let numbers = &mut slanted.numbers[k * slanted.stride..][..slanted.stride];
             let (after, rest) = numbers.split_at_mut(STRIP - 1);
@@ -128,39 +176,16 @@ impl Slanted {
         slanted
     }
 
-    pub(crate) fn zeros<const D: usize>(columns: usize) -> Self {
-        let stride = columns + 2 * (STRIP - 1);
-        let numbers = vec![0.0; D * stride];
-        Self { numbers, stride }
-    }
-
-    /// What the lanes are at in step `d` of a strip: lane l at column d - l.
+    /// What the lanes are at in step `d` of a strip, component by component: lane l at column d − l.
     #[inline(always)]
-    pub(crate) fn window<const D: usize>(&self, d: usize) -> [Lanes; D] {
-        let mut window = [[0.0; STRIP]; D];
+    pub(crate) fn window<const D: usize>(&self, d: usize) -> [&Lanes; D] {
+        let mut window = [&[0.0; STRIP]; D];
         for (k, lanes) in window.iter_mut().enumerate() {
             let from = (k + 1) * self.stride - STRIP - d;
-            lanes.copy_from_slice(&self.numbers[from..from + STRIP]);
+            *lanes = self.numbers[from..from + STRIP]
+                .first_chunk()
+                .expect("of this length");
         }
         window
-    }
-
-    /// The same, to be changed.
-    #[inline(always)]
-    pub(crate) fn window_mut<const D: usize>(
-        &mut self,
-        d: usize,
-    ) -> impl Iterator<Item = &mut Lanes> {
-        let from = self.stride - STRIP - d;
-        let components = self.numbers.chunks_exact_mut(self.stride).take(D);
-        components.filter_map(move |numbers| numbers[from..].first_chunk_mut())
-    }
-
-    /// The numbers, a step a column.
-    pub(crate) fn columns<const D: usize>(&self) -> Vec<[f64; D]> {
-        let first = self.stride - STRIP;
-        let last = STRIP - 1;
-        let column = |at: usize| std::array::from_fn(|k| self.numbers[k * self.stride + at]);
-        (last..=first).rev().map(column).collect()
     }
 }

@@ -5,7 +5,6 @@ use crate::cost::Cost;
 use crate::error::{SequenceRole, SoftDtwError};
 use crate::grid::Grid;
 use crate::scalar::Scalar;
-use crate::wavefront::Forget;
 
 /// Soft-DTW with a fixed smoothing γ and cost, and a band if one is wanted.
 ///
@@ -145,8 +144,7 @@ impl SoftDtw {
         y: &[[T; D]],
     ) -> f64 {
         let grid = self.grid(x, y);
-        grid.value(&mut Forget)
-            .unwrap_or_else(|| grid.log_domain_value())
+        grid.value().unwrap_or_else(|| grid.log_domain_value())
     }
 
     /// The grid of two checked sequences, the shorter one along the rows of memory.

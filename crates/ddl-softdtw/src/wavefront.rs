@@ -37,125 +37,133 @@ use crate::weight::{Plain, Scaled, Weight};
 
 /// Exponents are exact integers while the whole parts of all t along a path sum to no more than this.
 const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
-/// Plain numbers suffice while all t along a path sum to no more than this, and the path has at most so many cells: R
-/// is then from
-/// 2^−700 to 3^600 = 2^951.
-const PLAIN: f64 = 700.0;
-const LONGEST_PLAIN: f64 = 600.0;
 /// Entries of the working memory that fit on the stack.
 const SHORT: usize = 48;
 /// Significands are brought back to [1, 2) every so many columns and rows. Between two of these a path has at most 2 ·
 /// 128
 /// cells, an antidiagonal each, and each multiplies the significand by 2^−1/2 to (1 + √2) √2 < 2^1.78: in all by
 /// 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
-const STRETCH: usize = 128;
+pub(crate) const STRETCH: usize = 128;
 
 /// Receives what the backward recursion needs of each step of each strip.
-pub(crate) trait StepRecord {
-    /// The addends of each cell, from (i−1, j−1), (i−1, j) and (i, j−1), and their sums.
-    fn step(&mut self, addends: &[Lanes; 3], sums: &Lanes);
+pub(crate) trait StepRecord<W: Weight> {
+    /// 2^−t and R of each cell.
+    fn step(&mut self, factor: &W::Factor, cells: &W);
 }
 
-pub(crate) struct Forget;
+struct Forget;
 
-impl StepRecord for Forget {
+impl<W: Weight> StepRecord<W> for Forget {
     #[inline(always)]
-    fn step(&mut self, _: &[Lanes; 3], _: &Lanes) {}
+    fn step(&mut self, _: &W::Factor, _: &W) {}
 }
 
 /// Compiled for each instruction set: the loops over lanes become vectors of its width. Every operation is rounded by
 /// itself, so that all
 /// give the same bits.
-struct Forwards<'a, 'b, T, const D: usize, R> {
-    grid: &'a Grid<'b, T, D>,
-    record: &'a mut R,
-}
+struct Forwards<'a, 'b, T, const D: usize>(&'a Grid<'b, T, D>);
 
-impl<T: Scalar, const D: usize, R: StepRecord> RegisterKernel for Forwards<'_, '_, T, D, R> {
+impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
     type Output = Option<f64>;
 
     #[inline(always)]
-    fn run<S: Register>(self, _: S) -> Option<f64> {
-        let columns = Slanted::of(self.grid.columns);
-        self.grid.value_here(&columns, self.record)
+    fn run<S: Register>(self, simd: S) -> Option<f64> {
+        let columns = Slanted::of(self.0.columns);
+        let total = match self.0.plain_start() {
+            Some(start) => self.0.run::<S, Plain>(simd, start, &columns, &mut Forget),
+            None => self
+                .0
+                .run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget),
+        };
+        total.map(|total| self.0.value_of(total))
     }
 }
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// The soft-DTW value, or `None` where costs are so large against γ that the log domain must be used.
-    pub(crate) fn value(&self, record: &mut impl StepRecord) -> Option<f64> {
-        let forwards = Forwards { grid: self, record };
-        Dispatch::detect().run_on_registers(forwards)
+    pub(crate) fn value(&self) -> Option<f64> {
+        Dispatch::detect().run_on_registers(Forwards(self))
     }
 
+    /// −γ ln R.
+    pub(crate) fn value_of(&self, (significand, exponent): (f64, f64)) -> f64 {
+        -self.gamma * (exponent * std::f64::consts::LN_2 + significand.ln())
+    }
+
+    /// R of the last cell as significand and exponent, computed from R(0, 0) = 2^`start`. `None` when some t is too
+    /// large.
     #[inline(always)]
-    pub(crate) fn value_here(
+    pub(crate) fn run<S: Register, W: Weight>(
         &self,
+        simd: S,
+        start: f64,
         columns: &Slanted,
-        record: &mut impl StepRecord,
-    ) -> Option<f64> {
-        let scale = std::f64::consts::LOG2_E / self.gamma;
+        record: &mut impl StepRecord<W>,
+    ) -> Option<(f64, f64)> {
+        let scale = self.scale();
         if !scale.is_finite() {
             return None;
         }
+        let path = (self.rows.len() + self.columns.len()) as f64;
         // Entry c + 7 is column c. A step reads entry d + 7 (column d) for its first lane and writes entry d (column d
         // − 7)
         // from its last; seven entries before and after the columns take what the slanted ends of a strip read and
         // write.
+        let mut short = [W::NONE_ONE; SHORT];
+        let mut long = Vec::new();
         let length = self.columns.len() + 2 * (STRIP - 1);
-        let path = (self.rows.len() + self.columns.len()) as f64;
-        let bound = self.cost_bound() * scale;
-        let end = if path <= LONGEST_PLAIN && bound * path <= PLAIN {
-            let mut short = [Plain::NONE_ONE; SHORT];
-            let mut long = Vec::new();
-            let row = row_of(&mut short, &mut long, length, Plain::NONE_ONE);
-            self.run::<Plain>(scale, f64::INFINITY, columns, row, record)
-        } else {
-            let mut short = [Scaled::NONE_ONE; SHORT];
-            let mut long = Vec::new();
-            let row = row_of(&mut short, &mut long, length, Scaled::NONE_ONE);
-            self.run::<Scaled<Lanes>>(scale, EXACT / path, columns, row, record)
-        };
-        let (significand, exponent) = end?;
-        Some(-self.gamma * (exponent * std::f64::consts::LN_2 + significand.ln()))
-    }
-
-    /// R of the last cell as significand and exponent, or `None` when some t exceeds `limit`.
-    #[inline(always)]
-    fn run<W: Weight>(
-        &self,
-        scale: f64,
-        limit: f64,
-        columns: &Slanted,
-        row: &mut [W::One],
-        record: &mut impl StepRecord,
-    ) -> Option<(f64, f64)> {
+        let row = row_of(&mut short, &mut long, length, W::NONE_ONE);
         let mut largest = [0.0; STRIP];
         for index in 0..self.strips() {
             let strip = self.strip(index);
-            let t_max = &mut largest;
+            let (t_max, start) = (&mut largest, W::power(start));
             match (self.cost, self.band) {
                 (Cost::SquaredEuclidean, None) => {
-                    advance::<W, _, D, false>(
+                    advance::<S, W, _, D, false>(
+                        simd,
                         Squared,
                         &strip,
-                        (scale, columns),
+                        (scale, columns, start),
                         row,
                         t_max,
                         record,
                     );
                 }
                 (Cost::SquaredEuclidean, Some(_)) => {
-                    advance::<W, _, D, true>(Squared, &strip, (scale, columns), row, t_max, record);
+                    advance::<S, W, _, D, true>(
+                        simd,
+                        Squared,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
                 (Cost::Euclidean, None) => {
-                    advance::<W, _, D, false>(Length, &strip, (scale, columns), row, t_max, record);
+                    advance::<S, W, _, D, false>(
+                        simd,
+                        Length,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
                 (Cost::Euclidean, Some(_)) => {
-                    advance::<W, _, D, true>(Length, &strip, (scale, columns), row, t_max, record);
+                    advance::<S, W, _, D, true>(
+                        simd,
+                        Length,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        t_max,
+                        record,
+                    );
                 }
             }
-            if largest.iter().any(|&t| t > limit) {
+            if largest.iter().any(|&t| t > EXACT / path) {
                 return None;
             }
             if (index + 1) % (STRETCH / STRIP) == 0 {
@@ -164,52 +172,58 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 }
             }
         }
-        Some(W::parts(row[self.columns.len() + STRIP - 2]))
+        let (significand, exponent) = W::parts(row[self.columns.len() + STRIP - 2]);
+        Some((significand, exponent - start))
     }
 }
 
 /// One strip: `row` holds the row above it before, its last row after. `largest` takes the largest t of each lane.
 #[inline(always)]
-fn advance<W: Weight, M: Metric, const D: usize, const BANDED: bool>(
+fn advance<S: Register, W: Weight, M: Metric, const D: usize, const BANDED: bool>(
+    simd: S,
     metric: M,
     strip: &Strip<D>,
-    (scale, columns): (f64, &Slanted),
+    (scale, columns, one): (f64, &Slanted, W::One),
     row: &mut [W::One],
     largest: &mut Lanes,
-    record: &mut impl StepRecord,
+    record: &mut impl StepRecord<W>,
 ) {
     let (start, end) = (strip.start, strip.end);
     let row = &mut row[..end + STRIP];
     let mut cells = W::NONE;
     let mut diagonal = match strip.corner {
-        Some(lane) => W::origin(lane),
-        None => W::NONE.below(row[start + STRIP - 2]),
+        Some(lane) => W::alone(lane, one),
+        None => W::NONE.below(simd, row[start + STRIP - 2]),
     };
     let mut t_max = *largest;
     let mut next = start;
     while next <= end {
         let stop = end.min(next | (STRETCH - 1));
         for d in next..=stop {
-            let mut t = metric.of_lanes(&strip.x, &columns.window(d));
-            for t in &mut t {
-                *t *= scale;
+            let mut t = metric.of_lanes(simd, &strip.x, columns.window(d));
+            for part in 0..S::PARTS {
+                let scaled = simd.wide_mul(simd.wide_load(&t, part), simd.wide_splat(scale));
+                simd.wide_store(scaled, &mut t, part);
             }
-            let up = cells.below(row[d + STRIP - 1]);
-            let (reached, (addends, sums)) = W::cells(&diagonal, &up, &cells, &t);
-            cells = reached;
+            let mut inside = None;
             if BANDED {
                 let step = d as f64;
-                let mut inside = [false; STRIP];
+                let inside = inside.insert([true; STRIP]);
                 for l in 0..STRIP {
                     inside[l] = strip.first[l] <= step && step <= strip.last[l];
                     t[l] = if inside[l] { t[l] } else { 0.0 };
                 }
-                cells = cells.within(inside);
             }
-            for (t_max, t) in t_max.iter_mut().zip(t) {
-                *t_max = if t > *t_max { t } else { *t_max };
+            if W::UNBOUNDED {
+                for part in 0..S::PARTS {
+                    let (t, largest) = (simd.wide_load(&t, part), simd.wide_load(&t_max, part));
+                    simd.wide_store(simd.wide_max(t, largest), &mut t_max, part);
+                }
             }
-            record.step(&addends, &sums);
+            let factor = W::factor(simd, &t, inside.as_ref());
+            let up = cells.below(simd, row[d + STRIP - 1]);
+            (_, cells) = W::cells(simd, [&diagonal, &up, &cells], &factor);
+            record.step(&factor, &cells);
             diagonal = up;
             row[d] = cells.last();
         }
@@ -238,41 +252,57 @@ fn row_of<'a, One: Copy>(
 
 #[cfg(test)]
 mod tests {
+    use std::marker::PhantomData;
+
     use proptest::prelude::*;
 
-    use ddl_simd::{Dispatch, InstructionSet};
+    use ddl_simd::{Dispatch, InstructionSet, Register, RegisterKernel};
 
-    use super::{EXACT, Forget, Forwards, PLAIN, SHORT};
+    use super::{Forget, Forwards};
+    use crate::alignment::Backwards;
     use crate::band::Band;
     use crate::cost::Cost;
     use crate::exp2::Lanes;
     use crate::grid::{Grid, Slanted};
     use crate::weight::{Plain, Scaled, Weight};
 
+    /// The recursion with one kind of weight, from 2^start.
+    struct Run<'a, W>((&'a Grid<'a, f64, 2>, &'a Slanted), f64, PhantomData<W>);
+
+    impl<W: Weight> RegisterKernel for Run<'_, W> {
+        type Output = Option<(f64, f64)>;
+
+        fn run<S: Register>(self, simd: S) -> Self::Output {
+            let Self((grid, columns), start, _) = self;
+            grid.run::<S, W>(simd, start, columns, &mut Forget)
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
         #[test]
         fn both_kinds_of_weight_give_the_same_bits(
-            x in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..26),
-            y in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..26),
-            scale in -3.0..2.0_f64, radius in prop::option::of(0..9_usize),
+            x in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..70),
+            y in prop::collection::vec(prop::array::uniform2(-1.0..1.0_f64), 1..70),
+            gamma in -2.7..3.0_f64, radius in prop::option::of(0..9_usize),
         ) {
+            let gamma = 10.0_f64.powf(gamma);
             let band = radius.map(Band::new);
-            let grid = Grid { rows: &x, columns: &y, gamma: 1.0, cost: Cost::SquaredEuclidean, band };
-            let path = (x.len() + y.len()) as f64;
-            let scale = 10.0_f64.powf(scale);
+            let (rows, columns) = if x.len() < y.len() { (&y, &x) } else { (&x, &y) };
+            let grid = Grid { rows, columns, gamma, cost: Cost::SquaredEuclidean, band };
             let columns = Slanted::of(grid.columns);
-            let mut row = [Plain::NONE_ONE; SHORT];
-            let plain = grid.run::<Plain>(scale, PLAIN / path, &columns, &mut row, &mut Forget);
-            let mut row = [Scaled::NONE_ONE; SHORT];
-            let scaled = grid.run::<Scaled<Lanes>>(scale, EXACT / path, &columns, &mut row, &mut Forget);
-            let (significand, exponent) = scaled.expect("costs far below the limit");
+            let dispatch = Dispatch::detect();
+            let of_grid = (&grid, &columns);
+            let scaled = dispatch.run_on_registers(Run::<Scaled<Lanes>>(of_grid, 0.0, PhantomData));
+            let (significand, _) = scaled.expect("costs far below the limit");
             prop_assert!((1.0..2.0).contains(&significand));
-            // The largest squared distance is 8: only where the plain kind cannot hold R it may refuse.
-            prop_assert!(plain.is_some() || 8.0 * scale * path > PLAIN);
-            if let Some(plain) = plain {
-                prop_assert_eq!(plain, (significand, exponent));
+            // The largest squared distance is 8.
+            let start = grid.plain_start();
+            prop_assert!(start.is_some() || 8.0 * grid.scale() * rows.len() as f64 > 1000.0);
+            if let Some(start) = start {
+                let plain = dispatch.run_on_registers(Run::<Plain>(of_grid, start, PhantomData));
+                prop_assert_eq!(plain, scaled);
             }
         }
 
@@ -283,15 +313,15 @@ mod tests {
             gamma in 0.01..10.0_f64, squared in any::<bool>(),
         ) {
             let cost = if squared { Cost::SquaredEuclidean } else { Cost::Euclidean };
-            let grid = Grid { rows: &x, columns: &y, gamma, cost, band: None };
-            let value = |set| {
-                let record = &mut Forget;
-                let forwards = Forwards { grid: &grid, record };
-                Dispatch::new(set).map(|dispatch| dispatch.run_on_registers(forwards))
+            let (rows, columns) = if x.len() < y.len() { (&y, &x) } else { (&x, &y) };
+            let grid = Grid { rows, columns, gamma, cost, band: None };
+            let results = |set| {
+                let dispatch = Dispatch::new(set).expect("available");
+                (dispatch.run_on_registers(Forwards(&grid)), dispatch.run_on_registers(Backwards(&grid)))
             };
-            let portable = value(InstructionSet::Portable);
+            let portable = results(InstructionSet::Portable);
             for set in InstructionSet::available() {
-                prop_assert_eq!(value(set), portable);
+                prop_assert_eq!(&results(set), &portable);
             }
         }
     }

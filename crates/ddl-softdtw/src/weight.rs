@@ -4,46 +4,72 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
-use crate::exp2::{Lanes, ROUNDING, STRIP, below, exp2_minus};
+use ddl_simd::Register;
+
+use crate::exp2::{Lanes, ROUNDING, STRIP, exp2_minus};
 
 /// Exponent of a cell that no path reaches: far below every other, far from overflow.
 const NOTHING: f64 = -1_152_921_504_606_846_976.0; // −2^60
 /// An addend 2^700 below the largest counts as that far below: it does not change the sum, and stays a normal number.
 const FARTHEST: f64 = -700.0;
+/// No plain number is below half of this, 2^−1018: products of denormal numbers would take a hundred times as long.
+const FLOOR: u64 = (1023 - 1018) << 52;
+/// A share of about this, 2^−142, or less counts as 0.
+const NEGLIGIBLE: f64 = f64::from_bits((1023 - 142) << 52);
 
-/// The three ways into each cell, from (i−1, j−1), (i−1, j) and (i, j−1), by one scale a cell, and their sums.
-pub(crate) type Addends = ([Lanes; 3], Lanes);
+/// The exponent of the total that [`Plain`] computes shares of.
+pub(crate) const TOTAL: f64 = 145.0;
+
+const ONE: u64 = 1.0_f64.to_bits();
+const FRACTION: u64 = u64::MAX >> 12;
 
 /// R of the cells of one antidiagonal of a strip. Both kinds round in the same places, so they give the same bits
 /// wherever the plain one suffices.
 pub(crate) trait Weight: Copy {
     /// R of one cell.
     type One: Copy;
+    /// 2^−t of each cell.
+    type Factor: Copy;
+    /// Whether t may be of any size.
+    const UNBOUNDED: bool;
     /// No path.
     const NONE: Self;
     /// No path, for one cell.
     const NONE_ONE: Self::One;
 
-    /// One in lane `lane`, none in the others: the point every path starts from.
-    fn origin(lane: usize) -> Self;
+    /// A power of two.
+    fn power(exponent: f64) -> Self::One;
+
+    /// `one` in lane `lane`, no path in the others.
+    fn alone(lane: usize, one: Self::One) -> Self;
 
     /// The lanes moved down by one row, `top` above them.
-    fn below(&self, top: Self::One) -> Self;
+    fn below<S: Register>(&self, simd: S, top: Self::One) -> Self;
+
+    /// The lanes moved up by one row, `bottom` below them.
+    fn above<S: Register>(&self, simd: S, bottom: Self::One) -> Self;
+
+    fn first(&self) -> Self::One;
 
     fn last(&self) -> Self::One;
 
-    /// 2^−t times the sum of the three ways into each cell.
-    fn cells(diagonal: &Self, up: &Self, left: &Self, t: &Lanes) -> (Self, Addends);
+    /// 0 in the lanes that are not `inside`, where t is 0.
+    fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self::Factor;
 
-    /// None in the lanes that are not `inside`.
-    fn within(self, inside: [bool; STRIP]) -> Self;
+    /// The sum of the three ways into each cell (or out of it), and `factor` times that. The first way is the diagonal
+    /// one. The others are added first: so (y, x) gives the same bits as (x, y).
+    fn cells<S: Register>(simd: S, ways: [&Self; 3], factor: &Self::Factor) -> (Self, Self);
 
     /// The same numbers with every significand in [1, 2).
     fn normalised(self) -> Self;
 
     fn normalised_one(one: Self::One) -> Self::One;
 
+    /// Significand and exponent.
     fn parts(one: Self::One) -> (f64, f64);
+
+    /// a b / total, 0 where that is negligible. The plain kind asks for a total from 2^[`TOTAL`] to twice that.
+    fn shares<S: Register>(simd: S, a: &Self, b: &Self, total: (f64, f64)) -> Lanes;
 }
 
 /// significand · 2^exponent, with an integer exponent that never leaves its range.
@@ -55,6 +81,9 @@ pub(crate) struct Scaled<V> {
 
 impl Weight for Scaled<Lanes> {
     type One = Scaled<f64>;
+    /// 2^−t as significand · 2^exponent.
+    type Factor = Self;
+    const UNBOUNDED: bool = true;
     const NONE: Self = Self {
         significand: [1.0; STRIP],
         exponent: [NOTHING; STRIP],
@@ -64,20 +93,42 @@ impl Weight for Scaled<Lanes> {
         exponent: NOTHING,
     };
 
-    #[inline(always)]
-    fn origin(lane: usize) -> Self {
-        let mut origin = Self::NONE;
-        for (l, exponent) in origin.exponent.iter_mut().enumerate() {
-            *exponent = if l == lane { 0.0 } else { NOTHING };
+    fn power(exponent: f64) -> Scaled<f64> {
+        Scaled {
+            significand: 1.0,
+            exponent,
         }
-        origin
     }
 
     #[inline(always)]
-    fn below(&self, top: Scaled<f64>) -> Self {
+    fn alone(lane: usize, one: Scaled<f64>) -> Self {
         Self {
-            significand: below(&self.significand, top.significand),
-            exponent: below(&self.exponent, top.exponent),
+            significand: alone(lane, one.significand, 1.0),
+            exponent: alone(lane, one.exponent, NOTHING),
+        }
+    }
+
+    #[inline(always)]
+    fn below<S: Register>(&self, simd: S, top: Scaled<f64>) -> Self {
+        Self {
+            significand: simd.wide_below(&self.significand, top.significand),
+            exponent: simd.wide_below(&self.exponent, top.exponent),
+        }
+    }
+
+    #[inline(always)]
+    fn above<S: Register>(&self, simd: S, bottom: Scaled<f64>) -> Self {
+        Self {
+            significand: simd.wide_above(&self.significand, bottom.significand),
+            exponent: simd.wide_above(&self.exponent, bottom.exponent),
+        }
+    }
+
+    #[inline(always)]
+    fn first(&self) -> Scaled<f64> {
+        Scaled {
+            significand: self.significand[0],
+            exponent: self.exponent[0],
         }
     }
 
@@ -90,40 +141,49 @@ impl Weight for Scaled<Lanes> {
     }
 
     #[inline(always)]
-    fn cells(diagonal: &Self, up: &Self, left: &Self, t: &Lanes) -> (Self, Addends) {
-        let mut top = [0.0; STRIP];
-        for (l, top) in top.iter_mut().enumerate() {
-            let (a, b, c) = (diagonal.exponent[l], up.exponent[l], left.exponent[l]);
-            let bc = if b > c { b } else { c };
-            *top = if a > bc { a } else { bc };
+    fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self {
+        let mut factor = Self::NONE;
+        for part in 0..S::PARTS {
+            let (minus, power) = exp2_minus(simd, simd.wide_load(t, part));
+            let exponent = simd.wide_sub(minus, simd.wide_splat(ROUNDING));
+            simd.wide_store(power, &mut factor.significand, part);
+            simd.wide_store(exponent, &mut factor.exponent, part);
         }
-        let mut addends = [[0.0; STRIP]; 3];
-        for (addend, way) in addends.iter_mut().zip([diagonal, up, left]) {
-            for l in 0..STRIP {
-                let shift = way.exponent[l] - top[l];
-                let shift = if shift > FARTHEST { shift } else { FARTHEST };
-                // The low bits of the sum are the shift; moved to the place of the exponent they multiply by 2^shift.
-                let shift = (shift + ROUNDING).to_bits() << 52;
-                addend[l] = f64::from_bits(way.significand[l].to_bits().wrapping_add(shift));
+        if let Some(inside) = inside {
+            for (exponent, inside) in factor.exponent.iter_mut().zip(inside) {
+                *exponent = if *inside { *exponent } else { NOTHING };
             }
         }
-        let (whole, power) = exp2_minus(t);
-        let mut sums = [0.0; STRIP];
-        let mut cells = *left;
-        for l in 0..STRIP {
-            sums[l] = sum(&addends, l);
-            cells.significand[l] = power[l] * sums[l];
-            cells.exponent[l] = top[l] - whole[l];
-        }
-        (cells, (addends, sums))
+        factor
     }
 
     #[inline(always)]
-    fn within(mut self, inside: [bool; STRIP]) -> Self {
-        for (exponent, inside) in self.exponent.iter_mut().zip(inside) {
-            *exponent = if inside { *exponent } else { NOTHING };
+    fn cells<S: Register>(simd: S, ways: [&Self; 3], factor: &Self) -> (Self, Self) {
+        let (mut sum, mut cells) = (Self::NONE, Self::NONE);
+        let farthest = simd.wide_splat(FARTHEST);
+        let rounding = simd.wide_splat(ROUNDING);
+        for part in 0..S::PARTS {
+            let mut top = simd.wide_load(&ways[0].exponent, part);
+            for way in &ways[1..] {
+                top = simd.wide_max(top, simd.wide_load(&way.exponent, part));
+            }
+            let mut addends = [top; 3];
+            for (addend, way) in addends.iter_mut().zip(ways) {
+                let shift = simd.wide_sub(simd.wide_load(&way.exponent, part), top);
+                let shift = simd.wide_add(simd.wide_max(shift, farthest), rounding);
+                *addend = simd.wide_scale(simd.wide_load(&way.significand, part), shift);
+            }
+            let [diagonal, up, left] = addends;
+            let added = simd.wide_add(simd.wide_add(up, left), diagonal);
+            simd.wide_store(added, &mut sum.significand, part);
+            simd.wide_store(top, &mut sum.exponent, part);
+            let significand = simd.wide_load(&factor.significand, part);
+            let product = simd.wide_mul(significand, added);
+            simd.wide_store(product, &mut cells.significand, part);
+            let exponent = simd.wide_load(&factor.exponent, part);
+            simd.wide_store(simd.wide_add(top, exponent), &mut cells.exponent, part);
         }
-        self
+        (sum, cells)
     }
 
     // Not inlined, and by value: it is rare, and behind a reference the lanes would not stay in registers.
@@ -152,29 +212,65 @@ impl Weight for Scaled<Lanes> {
         let one = Self::normalised_one(one);
         (one.significand, one.exponent)
     }
+
+    #[inline(always)]
+    fn shares<S: Register>(
+        simd: S,
+        a: &Self,
+        b: &Self,
+        (significand, exponent): (f64, f64),
+    ) -> Lanes {
+        let inverse = simd.wide_splat(1.0 / significand);
+        let mut shares = [0.0; STRIP];
+        for part in 0..S::PARTS {
+            // The significands are from 2^−256 to 2^912: with 2^−2000 the bits are those of a negative number.
+            let share = simd.wide_mul(simd.wide_load(&a.significand, part), inverse);
+            let share = simd.wide_mul(share, simd.wide_load(&b.significand, part));
+            let shift = simd.wide_load(&a.exponent, part);
+            let shift = simd.wide_add(shift, simd.wide_load(&b.exponent, part));
+            let shift = simd.wide_sub(shift, simd.wide_splat(exponent));
+            let shift = simd.wide_max(shift, simd.wide_splat(-2000.0));
+            let share = simd.wide_scale(share, simd.wide_add(shift, simd.wide_splat(ROUNDING)));
+            let share = simd.wide_zero_unless_above(share, simd.wide_splat(NEGLIGIBLE));
+            simd.wide_store(share, &mut shares, part);
+        }
+        shares
+    }
 }
 
-/// R itself, for sequences so short and costs so small that all of it lies in the range of `f64`.
+/// R itself, times a power of two that lets all of it lie in the range of `f64`.
 #[derive(Clone, Copy)]
 pub(crate) struct Plain(Lanes);
 
 impl Weight for Plain {
     type One = f64;
+    type Factor = Lanes;
+    const UNBOUNDED: bool = false;
     const NONE: Self = Self([0.0; STRIP]);
     const NONE_ONE: f64 = 0.0;
 
-    #[inline(always)]
-    fn origin(lane: usize) -> Self {
-        let mut origin = Self::NONE;
-        for (l, one) in origin.0.iter_mut().enumerate() {
-            *one = if l == lane { 1.0 } else { 0.0 };
-        }
-        origin
+    fn power(exponent: f64) -> f64 {
+        shifted(1.0, exponent)
     }
 
     #[inline(always)]
-    fn below(&self, top: f64) -> Self {
-        Self(below(&self.0, top))
+    fn alone(lane: usize, one: f64) -> Self {
+        Self(alone(lane, one, 0.0))
+    }
+
+    #[inline(always)]
+    fn below<S: Register>(&self, simd: S, top: f64) -> Self {
+        Self(simd.wide_below(&self.0, top))
+    }
+
+    #[inline(always)]
+    fn above<S: Register>(&self, simd: S, bottom: f64) -> Self {
+        Self(simd.wide_above(&self.0, bottom))
+    }
+
+    #[inline(always)]
+    fn first(&self) -> f64 {
+        self.0[0]
     }
 
     #[inline(always)]
@@ -183,25 +279,38 @@ impl Weight for Plain {
     }
 
     #[inline(always)]
-    fn cells(diagonal: &Self, up: &Self, left: &Self, t: &Lanes) -> (Self, Addends) {
-        let addends = [diagonal.0, up.0, left.0];
-        let (whole, power) = exp2_minus(t);
-        let mut sums = [0.0; STRIP];
-        let mut cells = [0.0; STRIP];
-        for l in 0..STRIP {
-            sums[l] = sum(&addends, l);
-            let shift = (ROUNDING - whole[l]).to_bits() << 52;
-            cells[l] = f64::from_bits(power[l].to_bits().wrapping_add(shift)) * sums[l];
+    fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Lanes {
+        let mut factor = [0.0; STRIP];
+        for part in 0..S::PARTS {
+            let (minus, power) = exp2_minus(simd, simd.wide_load(t, part));
+            simd.wide_store(simd.wide_scale(power, minus), &mut factor, part);
         }
-        (Self(cells), (addends, sums))
+        if let Some(inside) = inside {
+            for (factor, inside) in factor.iter_mut().zip(inside) {
+                *factor = if *inside { *factor } else { 0.0 };
+            }
+        }
+        factor
     }
 
     #[inline(always)]
-    fn within(mut self, inside: [bool; STRIP]) -> Self {
-        for (one, inside) in self.0.iter_mut().zip(inside) {
-            *one = if inside { *one } else { 0.0 };
+    fn cells<S: Register>(
+        simd: S,
+        [diagonal, up, left]: [&Self; 3],
+        factor: &Lanes,
+    ) -> (Self, Self) {
+        let (mut sum, mut cells) = (Self::NONE, Self::NONE);
+        for part in 0..S::PARTS {
+            let factor = simd.wide_load(factor, part);
+            // FLOOR / factor within a factor of 2. The diagonal is not what is waited for.
+            let floor = simd.wide_opposite(factor, FLOOR + ONE);
+            let others = simd.wide_add(simd.wide_load(&diagonal.0, part), floor);
+            let (up, left) = (simd.wide_load(&up.0, part), simd.wide_load(&left.0, part));
+            let added = simd.wide_add(simd.wide_add(up, left), others);
+            simd.wide_store(added, &mut sum.0, part);
+            simd.wide_store(simd.wide_mul(factor, added), &mut cells.0, part);
         }
-        self
+        (sum, cells)
     }
 
     #[inline(always)]
@@ -216,17 +325,44 @@ impl Weight for Plain {
     fn parts(one: f64) -> (f64, f64) {
         split(one)
     }
+
+    #[inline(always)]
+    fn shares<S: Register>(simd: S, a: &Self, b: &Self, (significand, _): (f64, f64)) -> Lanes {
+        let inverse = simd.wide_splat(Self::power(-TOTAL) / significand);
+        let negligible = Self::power(TOTAL).to_bits() - ONE + NEGLIGIBLE.to_bits();
+        let mut shares = [0.0; STRIP];
+        for part in 0..S::PARTS {
+            let (a, b) = (simd.wide_load(&a.0, part), simd.wide_load(&b.0, part));
+            // The product would be denormal below 2^−1022 / b: it is not computed below about NEGLIGIBLE 2^TOTAL / b.
+            let a = simd.wide_zero_unless_above(a, simd.wide_opposite(b, negligible + ONE));
+            let share = simd.wide_mul(simd.wide_mul(a, b), inverse);
+            simd.wide_store(share, &mut shares, part);
+        }
+        shares
+    }
 }
 
-/// The sum of the three ways into lane `l`. The upper and the left one first: so (y, x) gives the same bits as (x, y).
 #[inline(always)]
-fn sum(addends: &[Lanes; 3], l: usize) -> f64 {
-    (addends[1][l] + addends[2][l]) + addends[0][l]
+fn alone(lane: usize, one: f64, none: f64) -> Lanes {
+    let mut lanes = [none; STRIP];
+    for (l, number) in lanes.iter_mut().enumerate() {
+        *number = if l == lane { one } else { none };
+    }
+    lanes
+}
+
+/// number · 2^shift for an integer shift. The low bits of the sum are the shift; moved to the place of the exponent
+/// they
+/// multiply by 2^shift.
+#[inline(always)]
+fn shifted(number: f64, shift: f64) -> f64 {
+    let shift = (shift + ROUNDING).to_bits() << 52;
+    f64::from_bits(number.to_bits().wrapping_add(shift))
 }
 
 /// A positive normal number as significand in [1, 2) and exponent.
 fn split(number: f64) -> (f64, f64) {
     let bits = number.to_bits();
-    let significand = f64::from_bits((bits & (u64::MAX >> 12)) | 1.0_f64.to_bits());
+    let significand = f64::from_bits(bits & FRACTION | ONE);
     (significand, (bits >> 52) as f64 - 1023.0)
 }

@@ -5,14 +5,25 @@ use proptest::prelude::*;
 
 use crate::{Sequence, banded, cost, dtw};
 
+/// Steps of every size, zero and subnormal numbers among them.
+fn any_sequence() -> impl Strategy<Value = Sequence> {
+    use prop::num::f64::{NORMAL, SUBNORMAL, ZERO};
+    prop::collection::vec(prop::array::uniform2(NORMAL | ZERO | SUBNORMAL), 1..6)
+}
+
+fn any_gamma() -> impl Strategy<Value = f64> {
+    let gammas = [0.0, f64::MIN_POSITIVE / 4.0, 1e-3, 1.0, 1e300, f64::MAX];
+    prop::sample::select(gammas.to_vec())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn no_finite_input_gives_nan(
-        x in prop::collection::vec(prop::array::uniform2(prop::num::f64::NORMAL | prop::num::f64::ZERO | prop::num::f64::SUBNORMAL), 1..6),
+        x in any_sequence(),
         y in prop::collection::vec(prop::array::uniform2(prop::num::f64::NORMAL | prop::num::f64::ZERO), 1..6),
-        gamma in prop_oneof![Just(0.0), Just(f64::MIN_POSITIVE / 4.0), Just(1e-3), Just(1.0), Just(1e300), Just(f64::MAX)],
+        gamma in any_gamma(),
         cost in cost(), radius in prop::option::of(0..4_usize), tiny in any::<bool>(),
     ) {
         let dtw = banded(gamma, cost, radius);
@@ -25,7 +36,8 @@ proptest! {
                 Err(error) => prop_assert!(!tiny && error == SoftDtwError::Overflow || gamma > 1e299, "{}", error),
             }
         }
-        let narrow = |s: &Sequence| s.iter().map(|p| p.map(|v| (v as f32).clamp(f32::MIN, f32::MAX))).collect::<Vec<_>>();
+        let clamped = |v: f64| (v as f32).clamp(f32::MIN, f32::MAX);
+        let narrow = |s: &Sequence| s.iter().map(|p| p.map(clamped)).collect::<Vec<_>>();
         match dtw.value_and_gradient(&narrow(&x), &narrow(&y)) {
             Ok((value, gradient)) => {
                 prop_assert!(value.is_finite() && gradient.as_flattened().iter().all(|g| g.is_finite()));
