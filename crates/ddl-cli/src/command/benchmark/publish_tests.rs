@@ -69,7 +69,7 @@ fn published(checkout: &Path, settings: Settings, folds: &[&str], min_ade: f64) 
     let report = report(settings.convention, min_ade);
     let plan = plan(settings, folds, &[Method::FULL], &[2, 1]).unwrap();
     check(checkout, &plan).unwrap();
-    publish(checkout, &plan, &report, &making()).unwrap()
+    publish(checkout, &plan, &report, &making()).unwrap();
 }
 
 #[test]
