@@ -112,12 +112,12 @@ mod tests {
             (
                 "docs/x.md",
                 "[a](../gone.md)",
-                "../gone.md: there is no such file",
+                "../gone.md: the file does not exist",
             ),
             (
                 "README.md",
                 "[a](docs/gone.md)",
-                "docs/gone.md: there is no such file",
+                "docs/gone.md: the file does not exist",
             ),
             ("crates/b/README.md", "[a](../../docs/goals.md)", "in words"),
             ("crates/b/README.md", "[a](NOTES.md)", "in words"),

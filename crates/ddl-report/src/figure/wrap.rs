@@ -68,8 +68,8 @@ mod tests {
                 "pedestrians of the test scene whose goal is|the median one",
                 300.0,
             ),
-            ("1,000 pedestrians|and one more", 112.0),
-            ("many pedestrians,|so few goals", 112.0),
+            ("1,000 goals, and|one more", 112.0),
+            ("many hypotheses,|so few goals", 112.0),
             ("all, of them as|it happens", 112.0),
         ] {
             let title = lines.replace('|', " ");

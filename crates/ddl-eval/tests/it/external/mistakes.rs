@@ -171,8 +171,7 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
 "x": 1.0 => "x": NaN => 2, track.x: must be a finite number, found null, NaN
 "f": 80 => "f": 80.5 => 2, track.f: must be a whole number
 "f": 80 => "f": 81 => 2, prediction_number 0: the forecast has the frames 81, 90 to 190
-"e": 190 => "e": 210 => 2, scene 0: the scene has the frames 0 to 210; the window that starts there has the observed \
-frames 0, 10 to 70 and the forecast frames 80, 90 to 190: a scene has 8 or 9 observed and 12 forecast frames
+"e": 190 => "e": 210 => 2, scene 0: the scene has the frames 0 to 210; the window that starts there
 "p": 3, => => 1, scene.p: is missing
 {"scene": { => {"scene": [{ => 1: not a JSON object
 {"scene": { => {"scene": 7, "other": { => 1, scene: must be an object, found 7
@@ -182,7 +181,7 @@ frames 0, 10 to 70 and the forecast frames 80, 90 to 190: a scene has 8 or 9 obs
     // Scenes (id, primary pedestrian, start) and their tracks (scene, pedestrian, number, last observed frame, x).
     let sequences = r"
 T0/3/0/70/1 => 1, track.scene_id: scene 0 has no scene line before its tracks
-S0/3/0 T0/3/0/70/1 S0/5/0 => 14, scene.id: scene 0 was finished on an earlier line
+S0/3/0 T0/3/0/70/1 S0/5/0 => 14, scene.id: scene 0 ended on an earlier line
 S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/0/70/1 T0/3/0/70/1 => 27, track.scene_id: scene 0 was finished
 S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/1/70/1 => 15, prediction_number: the hypotheses of observed until 70 pedestrian 5 have \
 the numbers 1, expected 0 as before

@@ -44,7 +44,7 @@ fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {
     assert_eq!(errors[2], "0.375/0.750");
     assert_eq!(errors[7], "0.375±0.177/0.750±0.354");
     let metrics = &summary.metrics.rows()[0];
-    assert_eq!(metrics[2], "0.375 [0.342, 0.408]");
+    assert_eq!(metrics[2], "0.375 [0.345, 0.405]");
     assert_eq!(metrics[4..8], ["0.333", "25.0", "10.0", "87.5"]);
     assert_eq!(report.summary(Convention::SocialGan), None);
 }
