@@ -152,7 +152,10 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
             "--memory tracks.csv",
             "tracks.csv is not a readable scene memory",
         ),
-        ("--memory folder", "folder: cannot write this file"),
+        (
+            "--memory folder",
+            "folder is a folder, and the lines name no scenes",
+        ),
         (
             "--memory nowhere/hall.memory",
             "nowhere/hall.memory: cannot write this file",

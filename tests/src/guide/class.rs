@@ -13,8 +13,6 @@ pub const LONG: &[(&str, &str)] = &[
     (README, "ddl train --convention simulated"),
     (README, "ddl evaluate --model runs/plaza"),
     (TRAINING, "ddl train --data recordings --out runs/own"),
-    (TRAINING, "ddl train --fold zara1"),
-    (TRAINING, "ddl evaluate --model runs/zara1"),
     (PROGRAM, "ddl evaluate --fold zara1"),
     (PROGRAM, "ddl train --fold zara1"),
     (PROGRAM, "ddl train --fold eth --only-goals"),

@@ -68,7 +68,7 @@ mod tests {
                 "pedestrians of the test scene whose goal is|the median one",
                 300.0,
             ),
-            ("1,000 goals, and|one more", 112.0),
+            ("1,000 goals,|and one more", 112.0),
             ("many hypotheses,|so few goals", 112.0),
             ("all, of them as|it happens", 112.0),
         ] {

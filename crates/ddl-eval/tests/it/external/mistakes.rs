@@ -182,7 +182,7 @@ fn every_mistake_of_trajnet_is_named_with_its_place() {
     let sequences = r"
 T0/3/0/70/1 => 1, track.scene_id: scene 0 has no scene line before its tracks
 S0/3/0 T0/3/0/70/1 S0/5/0 => 14, scene.id: scene 0 ended on an earlier line
-S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/0/70/1 T0/3/0/70/1 => 27, track.scene_id: scene 0 was finished
+S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/0/70/1 T0/3/0/70/1 => 27, track.scene_id: scene 0 ended
 S0/3/0 T0/3/0/70/1 S1/5/0 T1/5/1/70/1 => 15, prediction_number: the hypotheses of observed until 70 pedestrian 5 have \
 the numbers 1, expected 0 as before
 S0/3/0 T0/3/0/70/1 T0/5/0/70/1 S1/3/10 T1/5/0/80/2 S2/4/0 T2/5/0/70/2 => 40: pedestrian 5 is a neighbour in two \
