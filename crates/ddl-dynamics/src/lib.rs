@@ -65,15 +65,11 @@
 //!
 //! | | guaranteed | condition |
 //! |---|---|---|
-//! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min`
-//! seconds | `P` positive definite: every [`CholeskyMetric`] |
-//! | [`DiffeomorphicFlow`] | `V = Phi o psi` falls; turns of more than 90 degrees are possible | `psi` invertible, with
-//! its Jacobian |
-//! | [`AvoidingFlow`] | `Phi` falls off the balls; none is entered; the goal is the only attractor | balls stand still
-//! and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
+//! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min` seconds | `P` positive definite: every [`CholeskyMetric`] |
+//! | [`DiffeomorphicFlow`] | `V = Phi o psi` falls; turns of more than 90 degrees are possible | `psi` invertible, with its Jacobian |
+//! | [`AvoidingFlow`] | `Phi` falls off the balls; none is entered; the goal is the only attractor | balls stand still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
 //! | [`Euler`] | `Phi` falls in a step | only if `dt < 2 Phi u^T P u / \|P u\|^2`: never near the goal |
-//! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32`
-//! or `f64` |
+//! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32` or `f64` |
 //! | [`StableEuler`] | `Phi <= tolerance` in a bounded number of steps | eigenvalues within `[m, M]`, `m > 0` |
 //! | [`DormandPrince`] | decrease as above, estimated error below a tolerance | flows that are not too stiff |
 //! | [`LyapunovCertificate`] | names the first step of a path that broke it | none: any path |

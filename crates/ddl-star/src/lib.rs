@@ -49,8 +49,7 @@
 //! | goals, in training / in a rollout | `[P, 2]` / `[G, P, 2]`, G = H or 1 |
 //! | noise, [`NoiseInput::Draws`] | `[1 or H, 16]`, shared by all pedestrians |
 //! | [`TorchNetwork::teacher_forced`] | `[T - 1, P, 2]`: time steps 2 to T, each from the true ones before it |
-//! | [`TorchNetwork::roll_out`] | positions `[12, H, P, 2]`: each time step from the forecast before it; factors `[12,
-//! H, P, 3]` |
+//! | [`TorchNetwork::roll_out`] | positions `[12, H, P, 2]`: each time step from the forecast before it; factors `[12, H, P, 3]` |
 //!
 //! ## State of a training
 //!

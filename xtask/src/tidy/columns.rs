@@ -11,7 +11,10 @@ const PRINTED: [&str; 3] = ["console", "text", "json"];
 pub(super) fn faults(file: &Path, text: &str) -> Vec<String> {
     let extension = file.extension().and_then(|extension| extension.to_str());
     let long: Vec<usize> = match extension {
-        Some("rs") => numbered(text.lines(), |line| line.chars().count() > COLUMNS),
+        Some("rs") => numbered(text.lines(), |line| {
+            let is_table = |mark| line.trim_start().starts_with(mark);
+            line.chars().count() > COLUMNS && !is_table("//! |") && !is_table("/// |")
+        }),
         Some("md") => in_markdown(text),
         _ => Vec::new(),
     };
