@@ -27,14 +27,7 @@ fn commit() -> String {
     println!("cargo::rerun-if-changed={}", moves.display());
     // An edit makes the program differ from the commit.
     println!("cargo::rerun-if-changed=../../crates");
-    git(&[
-        "describe",
-        "--always",
-        "--dirty",
-        "--exclude=*",
-        "--abbrev=12",
-    ])
-    .unwrap_or_else(unknown)
+    git(&["describe", "--always", "--dirty", "--exclude=*", "--abbrev=12"]).unwrap_or_else(unknown)
 }
 
 fn git(arguments: &[&str]) -> Option<String> {

@@ -45,9 +45,7 @@ fn a_forecast_from_a_changed_file_is_refused_or_the_same() {
     let same = tried - refused;
     figures::tell(
         "one byte changed, then a forecast",
-        format!(
-            "{tried} changes of 5 files (configuration, weights, proposals, experts, packed model)"
-        ),
+        format!("{tried} changes of 5 files (configuration, weights, proposals, experts, packed model)"),
         format!("{refused} refused, the other {same} forecast the same bits"),
     );
 }

@@ -15,11 +15,8 @@ const GIB: u64 = 1 << 30;
 fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
     let mut chance = Chance(count as u64);
     let side = (count as f64 / DENSITY).sqrt();
-    let mut number = |least: f64, most: f64| {
-        least + (most - least) * chance.below(1 << 20) as f64 / f64::from(1 << 20)
-    };
-    let pedestrian =
-        |_| [(0.0, side), (0.0, side), (-1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| number(a, b));
+    let mut number = |least: f64, most: f64| least + (most - least) * chance.below(1 << 20) as f64 / f64::from(1 << 20);
+    let pedestrian = |_| [(0.0, side), (0.0, side), (-1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| number(a, b));
     let pedestrians: Vec<[f64; 4]> = (0..count).map(pedestrian).collect();
     let at = |frame: i64| {
         let t = 0.4 * frame as f64;
@@ -30,12 +27,7 @@ fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
 }
 
 /// Processor time and peak memory of a command with a crowd as its input, and the number of lines it printed.
-fn measured(
-    place: &Place,
-    line: &str,
-    count: usize,
-    frames: i64,
-) -> (Option<(Duration, u64)>, usize) {
+fn measured(place: &Place, line: &str, count: usize, frames: i64) -> (Option<(Duration, u64)>, usize) {
     place.write_tracks("crowd.csv", &crowd(count, frames));
     let mut child = program::command(place.path(), line)
         .stdin(File::open(place.at("crowd.csv")).unwrap())
@@ -50,13 +42,7 @@ fn measured(
 
 /// Runs a command with a crowd, and with a crowd a quarter as large. Four times the pedestrians may take slightly more
 /// than four times the time, not sixteen times.
-fn scales(
-    what: &str,
-    line: &str,
-    (count, frames): (usize, i64),
-    lines: fn(usize) -> usize,
-    most: u64,
-) {
+fn scales(what: &str, line: &str, (count, frames): (usize, i64), lines: fn(usize) -> usize, most: u64) {
     let place = Place::with_model();
     let line = format!("forecast {line} --model run --threads 1");
     let few = count / 4;
@@ -101,13 +87,7 @@ fn twenty_hypotheses_per_pedestrian_for_thousands() {
     let size = (figures::rounds(600, 10_000), 8);
     let line = "crowd.csv --last --format jsonl";
     let most = figures::rounds(2, 12) * GIB;
-    scales(
-        "a crowd, 20 hypotheses per pedestrian",
-        line,
-        size,
-        |count| count,
-        most,
-    );
+    scales("a crowd, 20 hypotheses per pedestrian", line, size, |count| count, most);
 }
 
 #[test]

@@ -43,10 +43,7 @@ fn an_earlier_output_stays() {
     ];
     for (command, named) in commands {
         let message = place.run(command).fails();
-        assert!(
-            message.contains(named) && message.contains("make room"),
-            "{message}"
-        );
+        assert!(message.contains(named) && message.contains("make room"), "{message}");
     }
     assert_eq!(half_written(&out), Vec::<String>::new());
     assert!(files.map(|name| place.read(&name)) == before);
@@ -76,15 +73,8 @@ fn a_full_standard_output_is_an_error() {
         let output = command.stdout(full.unwrap()).output().unwrap();
         let message = program::Finished::new(line.to_owned(), &output).fails();
         let to_file = line.contains("/dev/full");
-        let named = if to_file {
-            "/dev/full"
-        } else {
-            "standard output"
-        };
-        assert!(
-            message.contains(named) && message.contains("make room"),
-            "{message}"
-        );
+        let named = if to_file { "/dev/full" } else { "standard output" };
+        assert!(message.contains(named) && message.contains("make room"), "{message}");
     }
     figures::tell(
         "`/dev/full` as the output",

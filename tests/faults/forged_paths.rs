@@ -82,13 +82,7 @@ fn no_text_of_a_configuration_is_opened() {
 /// Writes a run with this path as the names of fold, recordings, commit and device; it still loads.
 fn forge(place: &Place, original: &Value, path: &str) {
     let mut config = original.clone();
-    for pointer in [
-        "/data/fold",
-        "/data/sha256",
-        "/commit",
-        "/libtorch",
-        "/device",
-    ] {
+    for pointer in ["/data/fold", "/data/sha256", "/commit", "/libtorch", "/device"] {
         *config.pointer_mut(pointer).unwrap() = path.into();
     }
     config["data"]["validation_recordings"] = vec![path].into();
@@ -101,8 +95,7 @@ fn forge(place: &Place, original: &Value, path: &str) {
         for fact in ["data.fold", "data.sha256"] {
             origin[fact] = path.into();
         }
-        origin["data.validation_recordings"] =
-            config["data"]["validation_recordings"].to_string().into();
+        origin["data.validation_recordings"] = config["data"]["validation_recordings"].to_string().into();
         header["__metadata__"]["origin"] = origin.to_string().into();
         place.write(&file, safetensors_file::join(&header, numbers));
     }
@@ -123,10 +116,7 @@ fn a_model_with_paths_as_names_forecasts_as_before() {
     for path in &paths {
         forge(&place, &original, path);
         for line in [forecast, pack] {
-            assert!(
-                ends(&place, line, Duration::from_secs(30)),
-                "{path} was opened"
-            );
+            assert!(ends(&place, line, Duration::from_secs(30)), "{path} was opened");
         }
         assert_eq!(place.ok(forecast), expected);
         let _ = place.ok(pack);

@@ -55,16 +55,7 @@ fn stream(model: impl Forecaster, (frames, part): (usize, usize)) -> Option<Vec<
     let [median, p99] = quantiles(&mut seconds[..part].to_vec());
     let [last_median, last_p99] = quantiles(&mut seconds[frames - part..].to_vec());
     let [early, late, peak] = [early, late, peak].map(|bytes| bytes as f64);
-    Some(vec![
-        early,
-        late,
-        peak,
-        most as f64,
-        median,
-        p99,
-        last_median,
-        last_p99,
-    ])
+    Some(vec![early, late, peak, most as f64, median, p99, last_median, last_p99])
 }
 
 #[test]
@@ -93,12 +84,7 @@ fn a_day_of_tracks_needs_constant_memory() {
     );
 }
 
-fn watched(
-    what: &str,
-    test: &str,
-    (frames, part): (usize, usize),
-    stream: impl FnOnce() -> Option<Vec<f64>>,
-) {
+fn watched(what: &str, test: &str, (frames, part): (usize, usize), stream: impl FnOnce() -> Option<Vec<f64>>) {
     let Some(numbers) = processes::alone(&format!("long_stream::{test}"), stream) else {
         return;
     };
@@ -110,10 +96,7 @@ fn watched(
     let growth = late - early;
     assert!(growth <= 8.0 * MIB as f64, "{growth} bytes more");
     // The machine may be busy in one of the measurements, so a factor of two is not a trend.
-    assert!(
-        last_median < 3.0 * median,
-        "{median} ms, then {last_median} ms"
-    );
+    assert!(last_median < 3.0 * median, "{median} ms, then {last_median} ms");
     let mib = |bytes: f64| bytes / MIB as f64;
     figures::tell(
         what,

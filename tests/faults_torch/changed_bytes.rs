@@ -55,9 +55,7 @@ fn training_resumes_from_a_changed_file_with_the_same_weights_or_fails() {
     let same = tried - refused;
     figures::tell(
         "one byte changed, then training resumes",
-        format!(
-            "{tried} changes of 5 files (states of both stages, configuration, proposals, experts)"
-        ),
+        format!("{tried} changes of 5 files (states of both stages, configuration, proposals, experts)"),
         format!("{refused} refused, the other {same} end in the same bytes"),
     );
 }

@@ -50,9 +50,7 @@ fn forget_seconds(value: &mut Value) {
 fn finish(place: &Place) -> Contents {
     let status = benchmark(place).status().unwrap();
     let mut contents = folder_contents::read(&place.at("out"));
-    let logs = contents
-        .iter()
-        .filter(|(name, _)| name.ends_with("log.txt"));
+    let logs = contents.iter().filter(|(name, _)| name.ends_with("log.txt"));
     let logs = logs.map(|(_, log)| String::from_utf8_lossy(log.as_deref().unwrap_or_default()));
     assert!(status.success(), "{status}: {}", logs.collect::<String>());
     let kept = [

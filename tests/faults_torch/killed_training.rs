@@ -17,10 +17,7 @@ fn start(place: &Place) -> Child {
 
 fn is_writing(place: &Place) -> bool {
     ["run", "run/epochs"].iter().any(|folder| {
-        let entries = std::fs::read_dir(place.at(folder))
-            .into_iter()
-            .flatten()
-            .flatten();
+        let entries = std::fs::read_dir(place.at(folder)).into_iter().flatten().flatten();
         let mut names = entries.map(|entry| entry.file_name());
         names.any(|name| name.to_string_lossy().starts_with(".writing-"))
     })

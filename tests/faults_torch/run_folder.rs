@@ -30,15 +30,8 @@ fn training_resumes_when_there_is_room() {
             break;
         }
         let message = finished.fails();
-        assert!(
-            message.contains("run/") && message.contains("make room"),
-            "{message}"
-        );
-        assert_eq!(
-            half_written(place.path()),
-            Vec::<String>::new(),
-            "{size} KiB"
-        );
+        assert!(message.contains("run/") && message.contains("make room"), "{message}");
+        assert_eq!(half_written(place.path()), Vec::<String>::new(), "{size} KiB");
         failed.push(message.split(": ").next().unwrap_or_default().to_owned());
     }
     assert!(failed.len() > 2, "{failed:?}");
@@ -66,10 +59,7 @@ fn a_read_only_folder_is_reported() {
     let Some(_mounted) = Mount::read_only(&place.at("fixed")) else {
         return;
     };
-    place.fails(
-        &format!("{train} fixed/new"),
-        &["fixed", "choose a writable place"],
-    );
+    place.fails(&format!("{train} fixed/new"), &["fixed", "choose a writable place"]);
 }
 
 #[test]

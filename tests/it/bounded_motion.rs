@@ -4,9 +4,7 @@
 
 use ddl::data::{Completion, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
-use ddl::{
-    BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Precision, Variant,
-};
+use ddl::{BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Precision, Variant};
 use ddl_tests::place::Place;
 use ddl_tests::{bits, crowd, drawn_model};
 use proptest::prelude::*;
@@ -35,8 +33,7 @@ fn limit(observed: &[Position]) -> f64 {
 }
 
 fn steps(path: &[Position]) -> impl Iterator<Item = f64> + '_ {
-    path.windows(2)
-        .map(|pair| distance(pair[0], pair[1]) / TIME_STEP)
+    path.windows(2).map(|pair| distance(pair[0], pair[1]) / TIME_STEP)
 }
 
 fn distance(a: Position, b: Position) -> f64 {
@@ -51,37 +48,24 @@ fn observation() -> impl Strategy<Value = Vec<Position>> {
     let noise = prop::collection::vec([-1.0..1.0_f64, -1.0..1.0_f64], OBSERVED);
     let held = prop::collection::vec(prop::bool::weighted(0.15), OBSERVED);
     let place = [-50.0..50.0_f64, -50.0..50.0_f64];
-    (
-        speed,
-        0.6..1.4_f64,
-        turn,
-        tremble,
-        noise,
-        held,
-        (place, 0.0..6.3_f64),
+    (speed, 0.6..1.4_f64, turn, tremble, noise, held, (place, 0.0..6.3_f64)).prop_map(
+        |(speed, faster, turn, tremble, noise, held, (place, mut heading))| {
+            let (mut here, mut speed) = (place, speed);
+            let mut track: Vec<Position> = Vec::new();
+            for (off, held) in noise.into_iter().zip(held) {
+                let seen = [0, 1].map(|axis| here[axis] + tremble * off[axis]);
+                // A tracker that lost the pedestrian repeats the last position.
+                track.push(if held { *track.last().unwrap_or(&seen) } else { seen });
+                here = [
+                    here[0] + TIME_STEP * speed * heading.cos(),
+                    here[1] + TIME_STEP * speed * heading.sin(),
+                ];
+                heading += turn;
+                speed = (speed * faster).min(12.0);
+            }
+            track
+        },
     )
-        .prop_map(
-            |(speed, faster, turn, tremble, noise, held, (place, mut heading))| {
-                let (mut here, mut speed) = (place, speed);
-                let mut track: Vec<Position> = Vec::new();
-                for (off, held) in noise.into_iter().zip(held) {
-                    let seen = [0, 1].map(|axis| here[axis] + tremble * off[axis]);
-                    // A tracker that lost the pedestrian repeats the last position.
-                    track.push(if held {
-                        *track.last().unwrap_or(&seen)
-                    } else {
-                        seen
-                    });
-                    here = [
-                        here[0] + TIME_STEP * speed * heading.cos(),
-                        here[1] + TIME_STEP * speed * heading.sin(),
-                    ];
-                    heading += turn;
-                    speed = (speed * faster).min(12.0);
-                }
-                track
-            },
-        )
 }
 
 fn window(tracks: Vec<Vec<Position>>) -> Window {
@@ -89,17 +73,10 @@ fn window(tracks: Vec<Vec<Position>>) -> Window {
     Window::new("yard", 0, 1, ids, tracks).unwrap()
 }
 
-fn within_bounds(
-    observed: &[Position],
-    certified: &CertifiedForecast,
-    i: usize,
-) -> Result<(), TestCaseError> {
+fn within_bounds(observed: &[Position], certified: &CertifiedForecast, i: usize) -> Result<(), TestCaseError> {
     let forecast = &certified.forecast;
     let familiarity = forecast.familiarity(i);
-    prop_assert!(
-        familiarity.is_some_and(|f| f > 0.0 && f <= 1.0),
-        "{familiarity:?}"
-    );
+    prop_assert!(familiarity.is_some_and(|f| f > 0.0 && f <= 1.0), "{familiarity:?}");
     for k in 0..forecast.hypotheses() {
         let path: Vec<Position> = observed[OBSERVED - 1..]
             .iter()
@@ -107,10 +84,7 @@ fn within_bounds(
             .copied()
             .collect();
         let fastest = steps(&path).fold(0.0, f64::max);
-        prop_assert!(
-            fastest <= limit(observed),
-            "{fastest} m/s after {observed:?}"
-        );
+        prop_assert!(fastest <= limit(observed), "{fastest} m/s after {observed:?}");
         let certificate = certified.certificate(i, k);
         prop_assert_eq!(certificate.holds(), Ok(()));
         let motion = certificate.motion().unwrap();
@@ -118,15 +92,9 @@ fn within_bounds(
         prop_assert!(motion.speed.bound <= limit(observed));
         prop_assert!(motion.distance_left.is_some_and(|left| left.largest < 1e-6));
         let goal = forecast.goal(i, k).unwrap();
-        let left: Vec<f64> = path
-            .iter()
-            .map(|&position| distance(position, goal))
-            .collect();
+        let left: Vec<f64> = path.iter().map(|&position| distance(position, goal)).collect();
         let mut steps = left.windows(2);
-        prop_assert!(
-            steps.all(|pair| pair[1] < pair[0] || pair[0] == 0.0),
-            "{left:?}"
-        );
+        prop_assert!(steps.all(|pair| pair[1] < pair[0] || pair[0] == 0.0), "{left:?}");
         prop_assert!(left[HORIZON] < 1e-6);
         prop_assert!(RolloutStability::of(path[0], &path[1..], goal).decreasing);
     }
@@ -148,10 +116,7 @@ proptest! {
 fn check(model: &Ddl, tracks: &[Vec<Position>]) -> Result<(), TestCaseError> {
     let windows = [window(tracks.to_vec())];
     let many = model.forecast_certified(&windows).unwrap().remove(0);
-    let one = model
-        .forecast_central_certified(&windows)
-        .unwrap()
-        .remove(0);
+    let one = model.forecast_central_certified(&windows).unwrap().remove(0);
     for (i, observed) in tracks.iter().enumerate() {
         within_bounds(observed, &many, i)?;
         within_bounds(observed, &one, i)?;
@@ -167,11 +132,7 @@ fn unusual_observations_are_forecast_stably() {
     let to_and_fro = |t: usize| [if t.is_multiple_of(2) { -2.0 } else { 2.0 }, 0.1 * t as f64];
     let to_and_fro = (0..OBSERVED).map(to_and_fro).collect();
     for model in &*MODELS {
-        check(
-            model,
-            &[standing.clone(), standing.clone(), leaping.clone()],
-        )
-        .unwrap();
+        check(model, &[standing.clone(), standing.clone(), leaping.clone()]).unwrap();
         check(model, &[standing.clone(), Vec::clone(&to_and_fro)]).unwrap();
     }
 }
@@ -209,41 +170,26 @@ fn reports_state_the_precision() {
     let place = Place::with_model();
     let evaluate = "evaluate --model run --precision bf16 --protocol single --test-pedestrians 20";
     let report = place.json(&format!("{evaluate} --threads 1 --json"));
-    for conditions in report["rows"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|row| &row["conditions"])
-    {
+    for conditions in report["rows"].as_array().unwrap().iter().map(|row| &row["conditions"]) {
         let of_model = conditions["variant"].is_string();
-        assert_eq!(
-            conditions["device"],
-            if of_model { "cpu, bf16" } else { "cpu" }
-        );
+        assert_eq!(conditions["device"], if of_model { "cpu, bf16" } else { "cpu" });
     }
 }
 
 /// minADE (m) of the model and of straight lines to its goals, for a pedestrian that walks straight at this speed.
 fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
     let at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
-    let forecast = model
-        .forecast(&window(vec![(0..OBSERVED).map(at).collect()]))
-        .unwrap();
+    let forecast = model.forecast(&window(vec![(0..OBSERVED).map(at).collect()])).unwrap();
     let start = at(OBSERVED - 1);
     let error = |place: &dyn Fn(usize, usize) -> Position| {
         let ade = |k: usize| {
             let off = |t: usize| distance(place(k, t), at(OBSERVED + t));
             (0..HORIZON).map(off).sum::<f64>() / HORIZON as f64
         };
-        (0..forecast.hypotheses())
-            .map(ade)
-            .fold(f64::INFINITY, f64::min)
+        (0..forecast.hypotheses()).map(ade).fold(f64::INFINITY, f64::min)
     };
     let line = |k: usize, t: usize| {
-        let (goal, share) = (
-            forecast.goal(0, k).unwrap(),
-            (t + 1) as f64 / HORIZON as f64,
-        );
+        let (goal, share) = (forecast.goal(0, k).unwrap(), (t + 1) as f64 / HORIZON as f64);
         [0, 1].map(|axis| start[axis] + share * (goal[axis] - start[axis]))
     };
     [error(&|k, t| forecast.hypothesis(0, k)[t]), error(&line)]

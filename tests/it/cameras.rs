@@ -38,10 +38,7 @@ fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
 fn streams() -> impl Strategy<Value = (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize)> {
     let walk = |(scene, frame): (usize, i64), id: i64| {
         let t = frame as f64;
-        let place = [
-            0.4 * t + id as f64,
-            0.3 * (id as f64 + scene as f64) * t.sin(),
-        ];
+        let place = [0.4 * t + id as f64, 0.3 * (id as f64 + scene as f64) * t.sin()];
         (PedestrianId(id), place)
     };
     let frames = move |scene: usize| {
@@ -102,11 +99,7 @@ fn check_interleaved(
         dropped += expected.len() - of_latest.len();
         // What is answered is what would be answered without the drops, and the last frame is answered.
         let all: BTreeMap<_, _> = expected.iter().cloned().collect();
-        prop_assert!(
-            of_latest
-                .iter()
-                .all(|(frame, bits)| all.get(frame) == Some(bits))
-        );
+        prop_assert!(of_latest.iter().all(|(frame, bits)| all.get(frame) == Some(bits)));
         if let (Some(last), Some((frame, _))) = (expected.last(), frames.last())
             && last.0 == *frame
         {
@@ -175,14 +168,9 @@ fn a_failure_of_one_scene_is_its_own() {
 fn what_is_kept_is_bounded() {
     let mut scenes = LiveScenes::new();
     for scene in 0..LiveScenes::MOST_SCENES {
-        scenes
-            .observe(Some(&name(&scene.to_string())), 0, [])
-            .unwrap();
+        scenes.observe(Some(&name(&scene.to_string())), 0, []).unwrap();
     }
-    let error = scenes
-        .observe(Some(&name("more")), 0, [])
-        .unwrap_err()
-        .to_string();
+    let error = scenes.observe(Some(&name("more")), 0, []).unwrap_err().to_string();
     assert!(
         error.contains("more than 2000") && error.contains("10 minutes"),
         "{error}"
@@ -197,10 +185,7 @@ fn what_is_kept_is_bounded() {
     for frame in 0..waiting + 7 {
         scenes.observe(None, frame, seen).unwrap();
     }
-    let error = scenes
-        .observe(None, waiting + 7, seen)
-        .unwrap_err()
-        .to_string();
+    let error = scenes.observe(None, waiting + 7, seen).unwrap_err().to_string();
     assert!(error.contains("10000 frames wait"), "{error}");
     scenes.next_batch(1);
     scenes.observe(None, waiting + 7, seen).unwrap();
@@ -219,9 +204,7 @@ fn each_scene_remembers_its_place() {
         let mut live = live.remembering(memory()).unwrap();
         let mut seen = BTreeMap::<i64, Vec<_>>::new();
         for (frame, id, x, y) in own_tracks::of_scene(crowd, 0..400) {
-            seen.entry(frame)
-                .or_default()
-                .push((PedestrianId(id), [x, y]));
+            seen.entry(frame).or_default().push((PedestrianId(id), [x, y]));
         }
         let mut windows = Vec::new();
         for (frame, people) in seen {
@@ -268,9 +251,7 @@ fn as_csv(scene: &str, (frame, id, x, y): &Row) -> String {
 }
 
 fn as_json(scene: &str, (frame, id, x, y): &Row) -> String {
-    format!(
-        "{{\"track\":{{\"scene\":\"{scene}\",\"f\":{frame},\"p\":{id},\"x\":{x},\"y\":{y}}}}}\n"
-    )
+    format!("{{\"track\":{{\"scene\":\"{scene}\",\"f\":{frame},\"p\":{id},\"x\":{x},\"y\":{y}}}}}\n")
 }
 
 const HEADER: &str = "frame,scene,pedestrian,x,y\n";
@@ -285,10 +266,7 @@ fn interleaved_recordings_are_answered_as_each_alone() {
         expected.insert(scene.to_owned(), json_lines::<Value>(&finished.succeeds()));
     }
     assert!(expected.values().all(|lines| lines.len() > 20));
-    for text in [
-        HEADER.to_owned() + &interleaved(as_csv),
-        interleaved(as_json),
-    ] {
+    for text in [HEADER.to_owned() + &interleaved(as_csv), interleaved(as_json)] {
         let finished = place.run_on(&text, &format!("{LINE} {options}"));
         assert!(!finished.stderr.contains("error"), "{finished:?}");
         let mut answers = BTreeMap::<String, Vec<Value>>::new();
@@ -366,11 +344,7 @@ fn what_does_not_fit_scenes_is_refused() {
             "--memory memories",
             "memories is a folder, and the lines name no scenes",
         ),
-        (
-            &scenes,
-            "--memory new.memory",
-            "new.memory is a file of one place",
-        ),
+        (&scenes, "--memory new.memory", "new.memory is a file of one place"),
     ] {
         let finished = place.run_on(input, &format!("{LINE} {options}"));
         assert!(finished.fails().contains(words));
@@ -406,10 +380,7 @@ fn each_scene_has_a_memory_file_of_its_own() {
         let mut alone = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
         let mut frames = BTreeMap::<i64, Vec<_>>::new();
         for &(frame, id, x, y) in &recordings()[scene].1 {
-            frames
-                .entry(frame)
-                .or_default()
-                .push((PedestrianId(id), [x, y]));
+            frames.entry(frame).or_default().push((PedestrianId(id), [x, y]));
         }
         // The second scene was watched twice.
         if scene == 0 {
@@ -429,12 +400,7 @@ fn only_the_latest_frames_are_forecast_and_the_others_counted() {
     let answered = |text: &str| -> BTreeSet<(String, i64)> {
         let lines = json_lines::<Value>(text).into_iter();
         lines
-            .map(|line| {
-                (
-                    line["scene"].to_string(),
-                    line["observed_until"].as_i64().unwrap(),
-                )
-            })
+            .map(|line| (line["scene"].to_string(), line["observed_until"].as_i64().unwrap()))
             .collect()
     };
     let line = format!("{LINE} --one --format jsonl");
@@ -445,10 +411,7 @@ fn only_the_latest_frames_are_forecast_and_the_others_counted() {
     assert!(latest.is_subset(&all));
     for (scene, rows) in recordings() {
         let last = rows[rows.len() - 1].0;
-        assert!(
-            latest.contains(&(format!("{scene:?}"), last)),
-            "{scene}: {latest:?}"
-        );
+        assert!(latest.contains(&(format!("{scene:?}"), last)), "{scene}: {latest:?}");
     }
     let dropped = all.len() - latest.len();
     let words = format!("and {dropped} dropped, because a later one came first");

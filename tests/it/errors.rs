@@ -10,12 +10,7 @@ const FORECAST: &str = "forecast --model run tracks.csv --output out.csv";
 #[test]
 fn a_missing_model_is_reported() {
     let place = Place::with_model();
-    for command in [
-        "forecast tracks.csv",
-        "goals tracks.csv",
-        "evaluate",
-        "info",
-    ] {
+    for command in ["forecast tracks.csv", "goals tracks.csv", "evaluate", "info"] {
         let line = format!("{command} --model nowhere");
         place.fails(&line, &["nowhere", "ddl train", "built-in", "zara1, zara2"]);
     }
@@ -73,10 +68,7 @@ fn missing_parts_of_a_run_are_reported() {
     )
     .unwrap();
     let published = "evaluate --model last --protocol published --test-pedestrians 20";
-    place.fails(
-        published,
-        &["`published`", "train it again without --last-epoch-only"],
-    );
+    place.fails(published, &["`published`", "train it again without --last-epoch-only"]);
     // Protocols without this choice can be evaluated.
     let _ = place.ok("evaluate --model last --protocol fair --test-pedestrians 20 --threads 1");
 }
@@ -86,10 +78,7 @@ fn missing_parts_of_a_run_are_reported() {
 fn commands_that_need_libtorch_explain_how_to_get_it() {
     let place = Place::with_model();
     for (line, what) in [
-        (
-            "train --convention simulated --fold plaza --out new",
-            "training",
-        ),
+        ("train --convention simulated --fold plaza --out new", "training"),
         (
             "train --convention simulated --fold plaza --out new --device cuda",
             "CUDA",
@@ -116,10 +105,7 @@ fn recordings_that_cannot_be_trained_on_are_refused() {
     place.fails(train, &["star", "eth.csv", "--convention simulated"]);
     // Files with the right names and the wrong content.
     for name in Convention::Star.file_names() {
-        place.write(
-            &format!("data/{name}"),
-            "10\t1\t1.0\t2.0\n10\t2\t3.0\t4.0\n",
-        );
+        place.write(&format!("data/{name}"), "10\t1\t1.0\t2.0\n10\t2\t3.0\t4.0\n");
     }
     place.fails(train, &["eth.csv", "line"]);
 }
@@ -133,15 +119,9 @@ fn tracks_that_cannot_be_forecast_are_refused() {
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(7));
     let whole = format!("{FORECAST} --whole");
-    place.fails(
-        &whole,
-        &["tracks.csv", "8 consecutive time steps", "10 frames"],
-    );
+    place.fails(&whole, &["tracks.csv", "8 consecutive time steps", "10 frames"]);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(1));
-    place.fails(
-        FORECAST,
-        &["tracks.csv", "2 consecutive time steps", "--fps"],
-    );
+    place.fails(FORECAST, &["tracks.csv", "2 consecutive time steps", "--fps"]);
     place.all_fail(&[
         "forecast --model run . => . is a folder",
         "forecast --model run . => ddl data .",
@@ -161,15 +141,9 @@ fn an_invalid_homography_or_rate_is_reported() {
     place.write("H.txt", "1 0 0\n1 0 0\n0 0 1\n");
     place.fails(&options, &["H.txt", "singular"]);
     place.write("H.txt", "0 0 1\n0 1 0\n1 0 0\n"); // x = 0 is the horizon
-    place.fails(
-        &options,
-        &["tracks.csv", "pedestrian 1, frame 0", "horizon"],
-    );
+    place.fails(&options, &["tracks.csv", "pedestrian 1, frame 0", "horizon"]);
     // The rows are 10 frames apart.
-    place.fails(
-        &format!("{FORECAST} --fps 5"),
-        &["tracks.csv", "2.00 s apart"],
-    );
+    place.fails(&format!("{FORECAST} --fps 5"), &["tracks.csv", "2.00 s apart"]);
     place.all_refused(&[
         "forecast tracks.csv --fps 0 => above 0",
         "forecast tracks.csv --fps many => must be a number",

@@ -47,22 +47,11 @@ fn check_conditions(row: &ResultRow) {
 }
 
 fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
-    let named = |start: &str| {
-        rows.iter()
-            .find(|row| row.conditions.forecaster.starts_with(start))
-    };
+    let named = |start: &str| rows.iter().find(|row| row.conditions.forecaster.starts_with(start));
     let stability = |row: &&ResultRow| row.scores.stability.unwrap();
-    let model = stability(
-        rows.iter()
-            .find(|row| row.conditions.forecaster == "DDL")
-            .unwrap(),
-    );
+    let model = stability(rows.iter().find(|row| row.conditions.forecaster == "DDL").unwrap());
     let (stable, all) = ((model.certified, model.decreasing), (Some(1.0), 1.0));
-    assert_eq!(
-        stable == all,
-        !protocol.gives_future(),
-        "{protocol}: {model:?}"
-    );
+    assert_eq!(stable == all, !protocol.gives_future(), "{protocol}: {model:?}");
     let plain = named("DDL with plain Euler steps").map(stability);
     assert_eq!(plain.is_some(), protocol == Protocol::Fair);
     if let Some(plain) = plain {
@@ -93,10 +82,7 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
     };
     assert_eq!(model.scores.hypotheses, protocol.hypotheses());
     let mut names = rows.iter().map(|row| &row.conditions.forecaster);
-    assert!(
-        names.any(|name| name.starts_with("constant velocity")),
-        "{protocol}"
-    );
+    assert!(names.any(|name| name.starts_with("constant velocity")), "{protocol}");
     for row in rows {
         let (scores, of_model) = (&row.scores, &model.scores);
         assert_eq!(
@@ -111,9 +97,7 @@ fn check_table(protocol: Protocol, rows: &[&ResultRow], pedestrians: usize) {
 }
 
 fn of_protocol(rows: &[ResultRow], protocol: Protocol) -> Vec<&ResultRow> {
-    rows.iter()
-        .filter(|row| row.conditions.protocol == protocol)
-        .collect()
+    rows.iter().filter(|row| row.conditions.protocol == protocol).collect()
 }
 
 #[test]
@@ -139,10 +123,7 @@ fn a_number_goes_from_the_model_to_the_page() {
     let moments: Vec<Moment> = json(&place.text("run/moments.json"));
     assert!(moments.iter().any(|moment| !moment.picks.is_empty()));
     for moment in &moments {
-        assert_eq!(
-            (moment.fold.as_str(), moment.forecaster.as_str()),
-            (crowd::FOLD, "DDL")
-        );
+        assert_eq!((moment.fold.as_str(), moment.forecaster.as_str()), (crowd::FOLD, "DDL"));
         let mut hypotheses = moment.pedestrians.iter().flat_map(|one| &one.hypotheses);
         assert!(hypotheses.all(|h| (h.certified, h.decreasing) == (Some(true), Some(true))));
     }
@@ -152,12 +133,7 @@ fn a_number_goes_from_the_model_to_the_page() {
     let printed = place.ok(baselines);
     assert!(printed.contains("doorway") && printed.contains("constant velocity (last step)"));
     let elsewhere = Report::load(&place.at("baselines/report.json")).unwrap();
-    assert!(
-        elsewhere
-            .rows()
-            .iter()
-            .all(|row| row.conditions.fold == "doorway")
-    );
+    assert!(elsewhere.rows().iter().all(|row| row.conditions.fold == "doorway"));
 
     let told = place.ok("report run baselines --title Corridor --out pages");
     assert!(told.ends_with("report.html\n") && told.lines().count() == 1);
@@ -209,10 +185,7 @@ fn a_model_of_the_hotel_fold_is_measured() {
             check_table(protocol, &rows, 60);
             rows[0].scores.pedestrians
         });
-        assert!(
-            published <= complete && complete >= 60,
-            "{published} of {complete}"
-        );
+        assert!(published <= complete && complete >= 60, "{published} of {complete}");
     }
 }
 
@@ -222,10 +195,7 @@ fn goals_are_measured_and_drawn() {
     let measure = "goals --model run --measure test --threads 1";
     let test: GoalEvaluation = json(&place.ok(&format!("{measure} --json --svg goals.svg")));
     assert_eq!(test.recordings.keys().collect::<Vec<_>>(), [crowd::FOLD]);
-    assert_eq!(
-        (test.clusters, test.recordings[crowd::FOLD]),
-        (20, test.all)
-    );
+    assert_eq!((test.clusters, test.recordings[crowd::FOLD]), (20, test.all));
     assert!(test.all.pedestrians > 100);
     assert!(test.all.oracle_fde > 0.01 && test.all.oracle_fde < test.all.likeliest_fde);
     let calibration = test.calibration.unwrap();
@@ -236,10 +206,7 @@ fn goals_are_measured_and_drawn() {
     }
     let words = place.ok(measure);
     let all = format!("{:.3}", test.all.oracle_fde);
-    assert!(
-        words.contains("nearest goal off") && words.contains(&all),
-        "{words}"
-    );
+    assert!(words.contains("nearest goal off") && words.contains(&all), "{words}");
 }
 
 #[test]
@@ -259,8 +226,5 @@ fn invalid_evaluations_are_refused() {
     place.remove("run/proposal.safetensors");
     place.fails(test, &["has no goals yet"]);
     place.write("run/config.json", r#"{"format": 1, "star": {}}"#);
-    place.fails(
-        test,
-        &[&format!("has layout 1, this program reads {}", ddl::FORMAT)],
-    );
+    place.fails(test, &[&format!("has layout 1, this program reads {}", ddl::FORMAT)]);
 }

@@ -43,10 +43,7 @@ const EXAMPLES: [(&str, &[&str]); 11] = [
     ),
     (
         "ddl-softdtw nearest_neighbours",
-        &[
-            "turns left after 0.4 s, at 1.20 m/s",
-            "an exhaustive search agrees",
-        ],
+        &["turns left after 0.4 s, at 1.20 m/s", "an exhaustive search agrees"],
     ),
     ("ddl-softdtw throughput 8 2 portable", &["ns a pair"]),
     (
@@ -92,32 +89,21 @@ fn every_example_runs_and_prints_the_expected_texts() {
         let (package, name, arguments) = parts(line);
         let output = example::run(package, name, place.path(), arguments).succeeds();
         for promise in promises {
-            assert!(
-                output.contains(promise),
-                "{line}: no {promise:?} in\n{output}"
-            );
+            assert!(output.contains(promise), "{line}: no {promise:?} in\n{output}");
         }
-        if let Some(picture) = arguments.split(' ').find(|word| {
-            Path::new(word)
-                .extension()
-                .is_some_and(|extension| extension == "svg")
-        }) {
+        if let Some(picture) = arguments
+            .split(' ')
+            .find(|word| Path::new(word).extension().is_some_and(|extension| extension == "svg"))
+        {
             let svg = place.text(picture);
-            assert!(
-                svg.contains("<svg") && svg.trim_end().ends_with("</svg>"),
-                "{line}"
-            );
+            assert!(svg.contains("<svg") && svg.trim_end().ends_with("</svg>"), "{line}");
         }
     }
 }
 
 #[test]
 fn no_example_is_forgotten() {
-    let known = EXAMPLES
-        .map(|(line, _)| line)
-        .into_iter()
-        .chain(ELSEWHERE)
-        .map(parts);
+    let known = EXAMPLES.map(|(line, _)| line).into_iter().chain(ELSEWHERE).map(parts);
     let known: BTreeSet<String> = known.map(|(of, name, _)| format!("{of} {name}")).collect();
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     let folders = std::fs::read_dir(crates).unwrap();

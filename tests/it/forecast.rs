@@ -120,16 +120,10 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
     let expected = [70, 80, 90].map(|moment| [1, 2, 3].map(|id| (moment, id)));
     assert_eq!(pedestrians, expected.concat());
     for line in &lines {
-        let frames: Vec<i64> = (1..=12)
-            .map(|t| line.observed_until + t * FRAME_STEP)
-            .collect();
+        let frames: Vec<i64> = (1..=12).map(|t| line.observed_until + t * FRAME_STEP).collect();
         assert_eq!(line.frames, frames);
         assert_eq!(line.hypotheses.len(), HYPOTHESES);
-        let weights: f64 = line
-            .hypotheses
-            .iter()
-            .map(|hypothesis| hypothesis.weight)
-            .sum();
+        let weights: f64 = line.hypotheses.iter().map(|hypothesis| hypothesis.weight).sum();
         assert!((weights - 1.0).abs() < 1e-9);
         assert!(line.familiarity > 0.0 && line.familiarity <= 1.0);
         assert!(line.spread.is_sorted() && line.spread.len() == FRAMES);
@@ -137,12 +131,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
             let left = check_certificate(at(line.observed_until, line.pedestrian), hypothesis);
             for (t, &position) in hypothesis.positions.iter().enumerate() {
                 let row = rows.next().unwrap();
-                let place = (
-                    row.observed_until,
-                    row.pedestrian,
-                    row.hypothesis,
-                    row.frame,
-                );
+                let place = (row.observed_until, row.pedestrian, row.hypothesis, row.frame);
                 assert_eq!(place, (line.observed_until, line.pedestrian, k, frames[t]));
                 assert!(own_tracks::alike_in_a_table([row.x, row.y], position));
                 let goal = [row.goal_x, row.goal_y];
@@ -151,10 +140,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
                 // Rounded to three digits.
                 assert!((row.familiarity / line.familiarity - 1.0).abs() < 6e-3);
                 assert_eq!([row.padded, row.filled, line.padded, line.filled], [0; 4]);
-                assert_eq!(
-                    (row.distance_to_goal, row.certified),
-                    (Some(left[t]), Some(true))
-                );
+                assert_eq!((row.distance_to_goal, row.certified), (Some(left[t]), Some(true)));
             }
         }
     }
@@ -197,11 +183,7 @@ fn a_forecast_does_not_depend_on_other_windows() {
             }
             all
         });
-        assert_eq!(
-            table == unnamed,
-            model == BuiltinModel::default(),
-            "{model}"
-        );
+        assert_eq!(table == unnamed, model == BuiltinModel::default(), "{model}");
         let last: Vec<&str> = lines.lines().skip(4 * 3).collect();
         for alone in ["rows.csv --last --threads 1", "end.csv --threads 2"] {
             let alone = forecast(&format!("{alone} --format jsonl"));
@@ -220,8 +202,7 @@ fn forecasts_move_with_the_origin_of_the_map() {
     let moved: Vec<Row> = rows.iter().map(moved).collect();
     for variant in [Variant::Full, Variant::NoGoalShift] {
         let place = Place::with_variant(variant);
-        let forecast =
-            |rows| -> Vec<CsvRow> { table(&place.forecast(rows, "--certificate").succeeds()) };
+        let forecast = |rows| -> Vec<CsvRow> { table(&place.forecast(rows, "--certificate").succeeds()) };
         let there = forecast(&moved);
         assert_eq!(there.len(), 3 * HYPOTHESES * FRAMES);
         for (here, there) in forecast(&rows).iter().zip(&there) {
@@ -230,13 +211,9 @@ fn forecasts_move_with_the_origin_of_the_map() {
         }
         for hypothesis in there.chunks_exact(FRAMES) {
             assert!(hypothesis.iter().all(|row| row.certified == Some(true)));
-            let left: Vec<f64> = hypothesis
-                .iter()
-                .filter_map(|row| row.distance_to_goal)
-                .collect();
+            let left: Vec<f64> = hypothesis.iter().filter_map(|row| row.distance_to_goal).collect();
             assert!(
-                left.windows(2)
-                    .all(|pair| pair[1] < pair[0] || pair[0] == 0.0),
+                left.windows(2).all(|pair| pair[1] < pair[0] || pair[0] == 0.0),
                 "{left:?}"
             );
         }
@@ -249,10 +226,7 @@ fn regions_are_written_as_radii_and_as_discs() {
     let line = "forecast --model run tracks.csv --whole --last --region 0.5,0.9";
     let table = place.ok(line);
     let (header, rows) = table.split_once('\n').unwrap();
-    assert!(
-        header.ends_with("familiarity,radius_0.5,radius_0.9"),
-        "{header}"
-    );
+    assert!(header.ends_with("familiarity,radius_0.5,radius_0.9"), "{header}");
     let mut of_table = 0;
     for row in rows.lines() {
         let fields: Vec<&str> = row.split(',').collect();
@@ -263,13 +237,9 @@ fn regions_are_written_as_radii_and_as_discs() {
     let mut of_lines = 0;
     for line in json_lines::<Value>(&place.ok(&format!("{line} --format jsonl"))) {
         let regions = line["regions"].as_array().unwrap();
-        let levels: Vec<_> = regions
-            .iter()
-            .map(|region| &region["probability"])
-            .collect();
+        let levels: Vec<_> = regions.iter().map(|region| &region["probability"]).collect();
         assert_eq!(levels, [0.5, 0.9]);
-        let discs: Vec<Vec<[f64; 3]>> =
-            serde_json::from_value(regions[1]["discs"].clone()).unwrap();
+        let discs: Vec<Vec<[f64; 3]>> = serde_json::from_value(regions[1]["discs"].clone()).unwrap();
         let largest = |step: usize| discs[step].iter().map(|disc| disc[2]).fold(0.0, f64::max);
         assert!(largest(0) > 0.0 && largest(11) > largest(0));
         of_lines += discs.iter().map(Vec::len).sum::<usize>();
@@ -277,9 +247,7 @@ fn regions_are_written_as_radii_and_as_discs() {
     assert_eq!(of_table, of_lines);
     let refused = place.run("forecast --model run tracks.csv --region 1.5");
     assert!(
-        refused
-            .stderr
-            .contains("the probability of a region must be"),
+        refused.stderr.contains("the probability of a region must be"),
         "{refused:?}"
     );
 }
@@ -304,10 +272,7 @@ fn goals_of_own_tracks_agree_with_the_forecasts() {
             let goal = goals.next().unwrap();
             let of = (goal.observed_until, goal.pedestrian);
             assert_eq!(of, (line.observed_until, line.pedestrian));
-            assert!(own_tracks::alike_in_a_table(
-                [goal.x, goal.y],
-                hypothesis.goal
-            ));
+            assert!(own_tracks::alike_in_a_table([goal.x, goal.y], hypothesis.goal));
             assert_eq!(goal.weight.to_bits(), hypothesis.weight.to_bits());
         }
     }

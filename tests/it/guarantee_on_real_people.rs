@@ -75,36 +75,24 @@ const EXPECTED: [(&str, usize, [f64; 3]); 5] = [
 
 /// Share of `pedestrians` with a property (%).
 fn percent(pedestrians: &[&Pedestrian], has: impl Fn(&Pedestrian) -> bool) -> f64 {
-    let count = pedestrians
-        .iter()
-        .filter(|pedestrian| has(pedestrian))
-        .count();
+    let count = pedestrians.iter().filter(|pedestrian| has(pedestrian)).count();
     100.0 * count as f64 / pedestrians.len() as f64
 }
 
 fn displacement<'a>(pedestrians: impl ExactSizeIterator<Item = &'a Pedestrian>) -> f64 {
     let count = pedestrians.len() as f64;
-    1e3 * pedestrians
-        .map(|pedestrian| pedestrian.displacement)
-        .sum::<f64>()
-        / count
+    1e3 * pedestrians.map(|pedestrian| pedestrian.displacement).sum::<f64>() / count
 }
 
 /// The `percent`-th percentile of the largest turns (degrees).
 fn turn_of(pedestrians: &[&Pedestrian], percent: usize) -> f64 {
-    let mut turns: Vec<_> = pedestrians
-        .iter()
-        .map(|pedestrian| pedestrian.largest_turn)
-        .collect();
+    let mut turns: Vec<_> = pedestrians.iter().map(|pedestrian| pedestrian.largest_turn).collect();
     turns.sort_by(f64::total_cmp);
     turns[(turns.len() - 1) * percent / 100]
 }
 
 #[test]
-#[expect(
-    clippy::float_cmp,
-    reason = "both sides are rounded to the compared digits"
-)]
+#[expect(clippy::float_cmp, reason = "both sides are rounded to the compared digits")]
 fn the_guarantee_moves_real_pedestrians_by_millimetres() {
     let Some(folder) = recordings::star_folder() else {
         return;

@@ -49,12 +49,7 @@ fn pages_of_measurements() -> Vec<String> {
     let at_the_root = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md"];
     pages.extend(at_the_root.map(|page| root.join(page)));
     pages.retain(|page| page.extension().is_some_and(|extension| extension == "md"));
-    let shown = |page: PathBuf| {
-        page.strip_prefix(&root)
-            .unwrap()
-            .to_string_lossy()
-            .into_owned()
-    };
+    let shown = |page: PathBuf| page.strip_prefix(&root).unwrap().to_string_lossy().into_owned();
     let mut names: Vec<String> = pages.into_iter().map(shown).collect();
     names.retain(|name| !PAGES.contains(&name.as_str()));
     names.sort();
@@ -73,20 +68,12 @@ fn exceptions_name_commands_that_exist() {
     let of_measurements = pages_of_measurements();
     let mut all: Vec<&str> = of_measurements.iter().map(String::as_str).collect();
     all.extend(PAGES);
-    let of_page = |page| {
-        guide::commands(page)
-            .into_iter()
-            .map(move |command| (page, command))
-    };
+    let of_page = |page| guide::commands(page).into_iter().map(move |command| (page, command));
     let shown: Vec<(&str, Command)> = all.into_iter().flat_map(of_page).collect();
     for &entry in ELSEWHERE.iter().chain(LONG) {
         let mut shown = shown.iter();
         let found = shown.any(|(page, command)| begins(page, command, entry));
         assert!(found, "no page shows {entry:?}");
     }
-    assert!(
-        shown.len() > 100,
-        "only {} commands were found",
-        shown.len()
-    );
+    assert!(shown.len() > 100, "only {} commands were found", shown.len());
 }

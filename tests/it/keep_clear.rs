@@ -4,16 +4,13 @@ use ddl::data::{PedestrianId, Window};
 use ddl::eval::ForecastError;
 use ddl::eval::metric::collision::closest_approach;
 use ddl::report::Report;
-use ddl::{
-    CertificateError, Clearance, Ddl, DdlError, Forecast, Forecaster as _, LiveForecaster, Variant,
-};
+use ddl::{CertificateError, Clearance, Ddl, DdlError, Forecast, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model};
 
 /// Pairs of pedestrians in one window whose most likely forecasts come closer than `distance`.
 fn near_pairs(windows: &[Window], forecasts: &[Forecast], distance: f64) -> usize {
-    let likeliest =
-        |forecast: &Forecast, i| forecast.hypothesis(i, forecast.most_likely(i)).to_vec();
+    let likeliest = |forecast: &Forecast, i| forecast.hypothesis(i, forecast.most_likely(i)).to_vec();
     windows
         .iter()
         .zip(forecasts)
@@ -105,14 +102,8 @@ fn models_without_a_flow_are_refused() {
         let place = Place::with_variant(variant);
         let name = format!("`{variant}`");
         let forecast = "forecast --model run tracks.csv";
-        place.fails(
-            &format!("{forecast} --certificate"),
-            &[&name, "no flow to certify"],
-        );
-        place.fails(
-            &format!("{forecast} --keep-clear 0.4"),
-            &[&name, "has no flow"],
-        );
+        place.fails(&format!("{forecast} --certificate"), &[&name, "no flow to certify"]);
+        place.fails(&format!("{forecast} --keep-clear 0.4"), &[&name, "has no flow"]);
         let model = drawn_model::of(variant);
         let no_flow = |error: ForecastError| {
             let ForecastError::Model { source, .. } = error else {
@@ -128,9 +119,7 @@ fn models_without_a_flow_are_refused() {
             other => panic!("{other:?}"),
         }
         assert_eq!(live.tracks().last_frame(), None);
-        let error = model
-            .with_clearance(Clearance::new(0.4).unwrap())
-            .unwrap_err();
+        let error = model.with_clearance(Clearance::new(0.4).unwrap()).unwrap_err();
         assert!(matches!(error, DdlError::NoFlow { variant: of } if of == variant));
     }
 }

@@ -61,9 +61,7 @@ fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
 fn hypotheses_in(lines: &str) -> Vec<Value> {
     let of = |line: Value| -> Value {
         let hypotheses = line["hypotheses"].as_array().unwrap().iter();
-        hypotheses
-            .map(|one| json!([one["weight"], one["positions"]]))
-            .collect()
+        hypotheses.map(|one| json!([one["weight"], one["positions"]])).collect()
     };
     json_lines::<Value>(lines).into_iter().map(of).collect()
 }
@@ -81,10 +79,7 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
     let before = place.run_on(&input, &format!("{LINE} {KEPT}"));
     assert_eq!(before.code, Some(1), "{before:?}");
     assert!(before.stderr.contains("line "), "{before:?}");
-    assert_eq!(
-        hypotheses_in(&before.stdout),
-        hypotheses_of(&mut live, &first)
-    );
+    assert_eq!(hypotheses_in(&before.stdout), hypotheses_of(&mut live, &first));
     assert_eq!(
         &SceneMemory::read(&place.at("hall.memory")).unwrap(),
         live.memory().unwrap()
@@ -101,8 +96,7 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
         live.memory().unwrap()
     );
     // A frame rate inferred from the first two frames is as good as a given one.
-    let learned =
-        "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";
+    let learned = "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";
     place.run_on(&own_tracks::csv(&first), learned).succeeds();
     let learned = SceneMemory::read(&place.at("learned.memory")).unwrap();
     assert_eq!(learned.summary().frames, 50);
@@ -148,14 +142,8 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
             "--memory damaged.memory",
             "damaged.memory is not a readable scene memory",
         ),
-        (
-            "--memory tracks.csv",
-            "tracks.csv is not a readable scene memory",
-        ),
-        (
-            "--memory folder",
-            "folder is a folder, and the lines name no scenes",
-        ),
+        ("--memory tracks.csv", "tracks.csv is not a readable scene memory"),
+        ("--memory folder", "folder is a folder, and the lines name no scenes"),
         (
             "--memory nowhere/hall.memory",
             "nowhere/hall.memory: cannot write this file",
@@ -178,10 +166,7 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     let finished = place.run("data damaged.memory tracks.csv");
     assert_eq!(finished.code, Some(1));
     assert!(finished.stdout.starts_with("tracks.csv\n"), "{finished:?}");
-    assert!(
-        finished.stderr.starts_with("error: damaged.memory"),
-        "{finished:?}"
-    );
+    assert!(finished.stderr.starts_with("error: damaged.memory"), "{finished:?}");
 }
 
 /// A link is followed, even if its target does not exist yet, and the lock is that of the target.
@@ -192,16 +177,9 @@ fn a_link_is_followed() {
     std::os::unix::fs::symlink("hall.memory", place.at("link.memory")).unwrap();
     let input = own_tracks::csv(&rows(0..60));
     let finished = place.run_on(&input, &format!("{LINE} --memory link.memory"));
-    assert!(
-        finished.stderr.contains("link.memory remembers"),
-        "{finished:?}"
-    );
+    assert!(finished.stderr.contains("link.memory remembers"), "{finished:?}");
     finished.succeeds();
-    assert!(
-        std::fs::symlink_metadata(place.at("link.memory"))
-            .unwrap()
-            .is_symlink()
-    );
+    assert!(std::fs::symlink_metadata(place.at("link.memory")).unwrap().is_symlink());
     assert!(!place.read("hall.memory").is_empty() && place.at("hall.memory.lock").is_file());
 }
 
@@ -259,9 +237,7 @@ fn data_summarises_and_draws_a_memory() {
     let place = Place::with_model();
     let walked = rows(0..200);
     remember(&place, "hall.memory", &walked, FRAME_STEP);
-    let summary = SceneMemory::read(&place.at("hall.memory"))
-        .unwrap()
-        .summary();
+    let summary = SceneMemory::read(&place.at("hall.memory")).unwrap().summary();
     let facts = place.json("data hall.memory tracks.csv --json");
     let memory = &facts["memories"][0];
     assert_eq!(memory["stretches"], summary.stretches);

@@ -2,9 +2,7 @@
 //! forecasters that need the future are refused.
 
 use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
-use ddl::eval::baseline::{
-    ConstantVelocity, GoalSource, StraightLine, TrueEndpoint, WeightedGoals,
-};
+use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
 use ddl::eval::{Forecast, ForecastError, leak};
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
 use ddl::{Ddl, Forecaster, Protocol, Remembering, Variant};
@@ -13,10 +11,7 @@ use ddl_tests::{bits, crowd, drawn_model};
 
 /// The window with each position after the observation replaced by `f(pedestrian, frame, position)`, with frames
 /// counted from 0.
-pub(crate) fn with_future(
-    window: &Window,
-    f: impl Fn(usize, usize, Position) -> Position,
-) -> Window {
+pub(crate) fn with_future(window: &Window, f: impl Fn(usize, usize, Position) -> Position) -> Window {
     window.map_positions(|i, t, p| if t < OBSERVED { p } else { f(i, t, p) })
 }
 
@@ -90,10 +85,7 @@ impl GoalSource for EstimatedGoals {
         let goals = |i| {
             let set = self.0.estimate(window.track(i));
             let set = set.map_err(|error| ForecastError::model("goal estimator", error))?;
-            Ok(WeightedGoals::new(
-                set.goals().to_vec(),
-                set.weights().to_vec(),
-            )?)
+            Ok(WeightedGoals::new(set.goals().to_vec(), set.weights().to_vec())?)
         };
         (0..window.len()).map(goals).collect()
     }
@@ -138,10 +130,7 @@ impl Forecaster for PublishedWhenItCan {
 
 #[test]
 fn forecasters_that_read_the_future_are_detected() {
-    let params = [
-        GoalEstimatorParams::published(),
-        GoalEstimatorParams::default(),
-    ];
+    let params = [GoalEstimatorParams::published(), GoalEstimatorParams::default()];
     let forecaster = PublishedWhenItCan(params.map(EstimatedGoals::with));
     let window = &crowd::windows(1, 4)[0];
     assert!(leak::find(&forecaster, window).unwrap().is_some());
@@ -171,10 +160,7 @@ fn scrambled_after(recording: &Recording, last: i64) -> Recording {
         if seen.frame > last {
             // Different in each frame, so that no motion persists.
             let angle = seen.frame as f64;
-            position = [
-                position[0] + 5.0 * angle.sin(),
-                3.0 * angle.cos() - position[1],
-            ];
+            position = [position[0] + 5.0 * angle.sin(), 3.0 * angle.cos() - position[1]];
         }
         Observation { position, ..*seen }
     });
@@ -187,9 +173,7 @@ fn online(model: &Ddl, window: &Window, last: i64) -> Vec<Vec<u64>> {
     let recording = scrambled_after(dataset.recording(window.recording()).unwrap(), last);
     let dataset = Dataset::own(vec![recording]).unwrap();
     let windows = [window.without_future()];
-    let windows = model
-        .goal_model()
-        .remembering(&windows, &dataset, Remembering::Online);
+    let windows = model.goal_model().remembering(&windows, &dataset, Remembering::Online);
     let windows = windows.unwrap();
     assert!(!windows[0].remembered(0).is_empty());
     bits::of_all(&Protocol::Online.forecast(model, &windows).unwrap())

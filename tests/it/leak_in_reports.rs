@@ -68,10 +68,7 @@ fn reported_numbers_of_a_forecast_do_not_depend_on_the_future() {
         let conditions = &before["conditions"];
         assert_eq!(conditions, &after["conditions"]);
         let changed = |score: &str| before["scores"][score] != after["scores"][score];
-        assert!(
-            changed("min_ade"),
-            "the futures were not changed: {conditions}"
-        );
+        assert!(changed("min_ade"), "the futures were not changed: {conditions}");
         // Scores of a forecast that do not use the truth.
         let depends = changed("collision_rate") || changed("stability");
         if conditions["protocol"] == "published" {

@@ -14,8 +14,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 #[test]
 fn live_forecasts_agree_with_forecasts_of_windows() {
     let model = drawn_model::of(Variant::Full);
-    let there =
-        |&(frame, id, ..): &Row| frame != 180 && !(id == 2 && (frame == 60 || frame >= 160));
+    let there = |&(frame, id, ..): &Row| frame != 180 && !(id == 2 && (frame == 60 || frame >= 160));
     let rows = own_tracks::three_pedestrians(24).into_iter().filter(there);
     let seen = rows.map(|(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
     let recording = Recording::new("live", own_tracks::FRAME_STEP, seen.collect()).unwrap();
@@ -50,8 +49,7 @@ fn an_error_changes_nothing() {
     let rows = own_tracks::three_pedestrians(9);
     let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
         let here = rows.iter().filter(|row| row.0 == frame);
-        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
-            .collect()
+        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y])).collect()
     };
     let model = drawn_model::of(Variant::Full);
     let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
@@ -148,15 +146,9 @@ fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     let place = Place::with_model();
     let rows = own_tracks::three_pedestrians(10);
     let mut live = Live::start(&place, "--one --certificate");
-    live.write(&format!(
-        "frame,pedestrian,x,y\n{}\n",
-        rows_of(&rows, 0..11)
-    ));
+    live.write(&format!("frame,pedestrian,x,y\n{}\n", rows_of(&rows, 0..11)));
     let first = live.line();
-    assert_eq!(
-        (&first["observed_until"], &first["padded"]),
-        (&10.into(), &6.into())
-    );
+    assert_eq!((&first["observed_until"], &first["padded"]), (&10.into(), &6.into()));
     assert_eq!(first["hypotheses"].as_array().unwrap().len(), 1);
     assert_eq!(first["hypotheses"][0]["certificate"]["holds"], true);
     let Live {
@@ -172,10 +164,7 @@ fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     drop(input);
     let finished = Finished::new("forecast -".to_owned(), &child.wait_with_output().unwrap());
     assert_eq!(finished.code, Some(0), "{finished:?}");
-    assert!(
-        finished.stderr.contains("10 apart in 0.4 s"),
-        "{finished:?}"
-    );
+    assert!(finished.stderr.contains("10 apart in 0.4 s"), "{finished:?}");
     assert_eq!(finished.stderr.lines().count(), 1, "{finished:?}");
 }
 
@@ -191,10 +180,7 @@ fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
         let line = "forecast - --model run --whole --frame-step 10 --format jsonl";
         let finished = place.run_on(&format!("{good}{bad}"), line);
         // Frame 80, which the invalid line ends, is answered too.
-        assert_eq!(
-            (finished.stdout.lines().count(), finished.code),
-            (6, Some(1))
-        );
+        assert_eq!((finished.stdout.lines().count(), finished.code), (6, Some(1)));
         let told = &finished.stderr;
         assert!(
             told.starts_with("error: standard input, ") && told.contains(message),

@@ -44,19 +44,13 @@ fn live_forecasts_agree_with_a_replay_of_the_recording() {
         };
         let window = replayed.next().unwrap();
         assert!(now.window == window, "frame {frame}");
-        assert_eq!(
-            bits::of(&now.forecast),
-            bits::of(&model.forecast(&window).unwrap())
-        );
+        assert_eq!(bits::of(&now.forecast), bits::of(&model.forecast(&window).unwrap()));
         remembering += usize::from(remembers(&window));
         let forgetful = model.forecast(&window.with_remembered(|_| Vec::new()));
         changed += usize::from(bits::of(&forgetful.unwrap()) != bits::of(&now.forecast));
     }
     assert!(replayed.next().is_none());
-    assert!(
-        remembering > 20 && changed == remembering,
-        "{changed} of {remembering}"
-    );
+    assert!(remembering > 20 && changed == remembering, "{changed} of {remembering}");
     assert!(live.memory().unwrap().stretches() > 100);
 }
 
@@ -102,9 +96,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
         for &frame in &watched.frames()[..steps as usize] {
             let seen = pedestrians(&watched, frame);
             tracks = tracks.after(frame, seen.iter().copied()).unwrap();
-            place
-                .observe(frame, seen, tracks.window().as_ref())
-                .unwrap();
+            place.observe(frame, seen, tracks.window().as_ref()).unwrap();
         }
         place
     };
@@ -124,17 +116,9 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
 fn a_memory_of_another_rate_is_refused_at_once() {
     let model = drawn_model::of(Variant::Full);
     let recording = scene("corridor", 9, 0.0);
-    let error = LiveForecaster::new(&model)
-        .remembering(empty(&recording))
-        .unwrap_err();
+    let error = LiveForecaster::new(&model).remembering(empty(&recording)).unwrap_err();
     assert!(
-        matches!(
-            error,
-            DdlError::MemoryFrameStep {
-                camera: 1,
-                memory: 10
-            }
-        ),
+        matches!(error, DdlError::MemoryFrameStep { camera: 1, memory: 10 }),
         "{error}"
     );
 }

@@ -26,16 +26,8 @@ fn help_fits_a_screen_and_lists_the_exit_codes() {
     let place = Place::empty();
     let help = place.ok("--help");
     assert!(help.lines().count() <= LINES, "{help}");
-    assert!(
-        help.lines().all(|line| line.chars().count() <= COLUMNS),
-        "{help}"
-    );
-    for words in [
-        "Exit codes: 0 success",
-        "130 interrupted",
-        "forecast",
-        "view",
-    ] {
+    assert!(help.lines().all(|line| line.chars().count() <= COLUMNS), "{help}");
+    for words in ["Exit codes: 0 success", "130 interrupted", "forecast", "view"] {
         assert!(help.contains(words), "{words}: {help}");
     }
     // Without a command the help is printed as an error.
@@ -49,19 +41,14 @@ fn every_command_has_help_completions_and_a_manual_page() {
     let place = Place::empty();
     let help = place.ok("--help");
     let lines = help.lines().filter_map(|line| line.strip_prefix("  "));
-    let commands: Vec<&str> = lines
-        .filter_map(|line| line.split_whitespace().next())
-        .collect();
+    let commands: Vec<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
     assert!(commands.len() >= 13, "{commands:?}");
     let completions = place.ok("completions bash");
     let _ = place.ok("man pages");
     for command in commands {
         let help = place.ok(&format!("{command} --help"));
         assert!(help.contains("Usage: ddl"), "{command}: {help}");
-        assert!(
-            completions.contains(&format!("ddl,{command})")),
-            "{command}"
-        );
+        assert!(completions.contains(&format!("ddl,{command})")), "{command}");
         let page = place.text(&format!("pages/ddl-{command}.1"));
         assert!(page.contains(".TH"), "{command}: {page}");
     }
@@ -102,10 +89,7 @@ fn info_describes_the_program() {
     assert_eq!(info["models"].as_array().unwrap().len(), 5);
     // Results name the commit that the program was built from, even if the checkout has changed since.
     let commit = info["commit"].as_str().unwrap();
-    if Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../.git")
-        .exists()
-    {
+    if Path::new(env!("CARGO_MANIFEST_DIR")).join("../.git").exists() {
         let hash = commit.strip_suffix("-dirty").unwrap_or(commit);
         let is_hash = hash.chars().all(|c| c.is_ascii_hexdigit());
         assert!(hash.len() >= 12 && is_hash, "{commit}");
@@ -134,10 +118,7 @@ fn info_describes_models() {
          corridor); goals "
     );
     assert!(for_people.starts_with(&sentence), "{for_people}");
-    assert!(
-        for_people.contains("variant: no-goal-shift"),
-        "{for_people}"
-    );
+    assert!(for_people.contains("variant: no-goal-shift"), "{for_people}");
     place.remove("run/model.safetensors");
     let unfinished = place.ok("info run");
     let sentence = sentence.replace("trained on", "to be trained on");
@@ -171,9 +152,7 @@ fn the_first_output_comes_quickly() {
     let config = drawn_model::config(Variant::Full);
     drawn_model::write(config, &crowd::training_windows(), &place.at("run"));
     let line = "forecast --model run tracks.csv --threads 1";
-    let runs: Vec<_> = (0..RUNS)
-        .map(|_| until_first_output(&place, line))
-        .collect();
+    let runs: Vec<_> = (0..RUNS).map(|_| until_first_output(&place, line)).collect();
     let Some(best) = runs.iter().min().copied().flatten() else {
         eprintln!("skipped: this system does not report the processor time of a process");
         return;
@@ -208,9 +187,7 @@ fn only_system_libraries_are_loaded() {
         };
         let mut loaded: BTreeSet<String> = paths.filter_map(name).collect();
         assert!(loaded.contains("libc"), "{line}: {told}");
-        loaded.retain(|name| {
-            !["libc", "libm", "libgcc_s"].contains(&&**name) && !name.starts_with("ld-linux")
-        });
+        loaded.retain(|name| !["libc", "libm", "libgcc_s"].contains(&&**name) && !name.starts_with("ld-linux"));
         assert!(loaded.is_empty(), "{line}: {loaded:?}");
     }
 }

@@ -32,9 +32,7 @@ fn python_forecasts(place: &Place) -> bool {
 }
 
 fn row<'a>(report: &'a Report, protocol: &str, forecaster: &str) -> &'a ResultRow {
-    let of = |row: &&ResultRow| {
-        row.conditions.protocol.name() == protocol && row.conditions.forecaster == forecaster
-    };
+    let of = |row: &&ResultRow| row.conditions.protocol.name() == protocol && row.conditions.forecaster == forecaster;
     report.rows().iter().find(of).unwrap()
 }
 
@@ -63,16 +61,10 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
     let Some(data) = recordings::star_folder() else {
         return;
     };
-    for (fold, printed, pedestrians) in [
-        ("zara1", "0.428/0.953", 2324),
-        ("hotel", "0.325/0.615", 1026),
-    ] {
+    for (fold, printed, pedestrians) in [("zara1", "0.428/0.953", 2324), ("hotel", "0.325/0.615", 1026)] {
         let place = Place::empty();
         let of = format!("--convention star --fold {fold} --data {}", data.display());
-        assert_eq!(
-            place.ok(&format!("windows {of} --output windows.jsonl")),
-            ""
-        );
+        assert_eq!(place.ok(&format!("windows {of} --output windows.jsonl")), "");
         if !python_forecasts(&place) {
             return;
         }
@@ -87,10 +79,7 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
         let report = report(&place, "results", "mine");
         let mine = row(&report, "fair", "mine");
         let selection = mine.conditions.selection.as_deref().unwrap();
-        assert_eq!(
-            selection,
-            "made by another program, read from forecasts.jsonl"
-        );
+        assert_eq!(selection, "made by another program, read from forecasts.jsonl");
         assert_eq!(mine.scores.pedestrians, pedestrians);
         assert_eq!(mine.conditions.window_rule, WindowRule::Published);
         let page = place.text("results/report.md");
@@ -143,10 +132,7 @@ fn invalid_evaluations_are_refused_with_the_reason() {
         ),
         ("nowhere.jsonl", "cannot read nowhere.jsonl"),
         ("forecasts.csv", "cannot read forecasts.csv"),
-        (
-            "windows.jsonl",
-            "windows.jsonl, line 1, hypotheses: is missing",
-        ),
+        ("windows.jsonl", "windows.jsonl, line 1, hypotheses: is missing"),
         (
             "forecasts.jsonl --window-rule published",
             "match no pedestrian of the windows",

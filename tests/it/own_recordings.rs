@@ -41,10 +41,7 @@ fn models_are_measured_on_own_recordings() {
         "--model hotel --convention own --data mine/yard.csv",
     ]
     .map(|of| place.ok(&format!("evaluate {of} {measure}")));
-    assert!(
-        of_fold.contains("convention own, protocol single"),
-        "{of_fold}"
-    );
+    assert!(of_fold.contains("convention own, protocol single"), "{of_fold}");
     assert!(of_fold.contains("\nyard "), "{of_fold}");
     assert_eq!(of_fold, of_file);
     assert_eq!(of_fold, of_model);
@@ -68,10 +65,7 @@ fn unreadable_files_are_reported_together() {
         let told = place.run(line);
         assert_eq!(told.code, Some(1));
         let lines: Vec<&str> = told.stderr.lines().collect();
-        assert!(
-            lines.iter().all(|line| line.starts_with("error: ")),
-            "{told:?}"
-        );
+        assert!(lines.iter().all(|line| line.starts_with("error: ")), "{told:?}");
         assert!(lines[0].contains("mine/empty0.txt"), "{told:?}");
         let last = "error: 12 of 14 files cannot be read; the first 10 are listed above";
         assert_eq!((lines.len(), lines[10]), (11, last));
@@ -125,18 +119,11 @@ fn each_recording_of_a_folder_has_a_row() {
         assert_eq!(lines.count(), 1, "{words}");
     }
     let page = place.text("report/report.md");
-    assert!(
-        page.contains("By recording") && page.contains("| clip2 "),
-        "{page}"
-    );
+    assert!(page.contains("By recording") && page.contains("| clip2 "), "{page}");
 
-    let measured =
-        place.json("goals --measure test --data clips --json --progress none --threads 1");
+    let measured = place.json("goals --measure test --data clips --json --progress none --threads 1");
     assert_eq!(measured["fold"], "3 recordings, clip0 to clip2");
     assert_eq!(measured["recordings"].as_object().unwrap().len(), 3);
     let of_part = place.ok("goals --measure validation --data clips --threads 1");
-    assert!(
-        of_part.contains("clip1") && !of_part.contains("clip2"),
-        "{of_part}"
-    );
+    assert!(of_part.contains("clip1") && !of_part.contains("clip2"), "{of_part}");
 }

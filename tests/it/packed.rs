@@ -14,9 +14,10 @@ const PACKED: &str = "DDL without an expert library";
 const ROUNDING: f64 = 0.002;
 
 fn row<'a>(report: &'a Report, forecaster: &str) -> &'a ResultRow {
-    let mut rows = report.rows().iter().filter(|row| {
-        row.conditions.forecaster == forecaster && row.conditions.protocol == Protocol::Fair
-    });
+    let mut rows = report
+        .rows()
+        .iter()
+        .filter(|row| row.conditions.forecaster == forecaster && row.conditions.protocol == Protocol::Fair);
     let (Some(row), None) = (rows.next(), rows.next()) else {
         panic!("not one row {forecaster}");
     };
@@ -163,20 +164,11 @@ fn the_reported_number_is_reproduced() {
         data.display()
     ));
     let report = Report::load(&place.at("results/report.json")).unwrap();
-    let mut rows = report
-        .rows()
-        .iter()
-        .filter(|row| row.conditions.forecaster == PACKED);
+    let mut rows = report.rows().iter().filter(|row| row.conditions.forecaster == PACKED);
     let row = rows.find(|row| row.conditions.window_rule.to_string() == expected.window_rule);
     let scores = &row.unwrap().scores;
     assert_eq!(scores.pedestrians, expected.pedestrians);
-    for (found, expected) in [
-        (scores.min_ade, expected.min_ade),
-        (scores.min_fde, expected.min_fde),
-    ] {
-        assert!(
-            (found - expected).abs() < ROUNDING,
-            "{found}, reported {expected}"
-        );
+    for (found, expected) in [(scores.min_ade, expected.min_ade), (scores.min_fde, expected.min_fde)] {
+        assert!((found - expected).abs() < ROUNDING, "{found}, reported {expected}");
     }
 }

@@ -49,11 +49,7 @@ fn held(lines: &[Line], recording: &Recording, from: i64) -> f64 {
             };
             let [x, y] = seen_there.position;
             seen += 1;
-            inside += usize::from(
-                discs
-                    .iter()
-                    .any(|disc| (disc[0] - x).hypot(disc[1] - y) <= disc[2]),
-            );
+            inside += usize::from(discs.iter().any(|disc| (disc[0] - x).hypot(disc[1] - y) <= disc[2]));
         }
     }
     assert!(seen > 1000, "{seen} positions");
@@ -98,8 +94,7 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let step = own_tracks::FRAME_STEP;
     let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
         let here = rows.iter().filter(|row| row.0 == frame);
-        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y]))
-            .collect()
+        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y])).collect()
     };
     let live = LiveForecaster::with_frame_step(&model, step).unwrap();
     let mut plain = live.clone();

@@ -40,9 +40,7 @@ fn forecast(rows: &[Row], options: &str) -> (Vec<Value>, String) {
 fn late_arrivals_and_holes_are_forecast_and_flagged() {
     let mut rows = own_tracks::three_pedestrians(10);
     // The second pedestrian arrives at frame 60; the third is not seen at 40 and 50.
-    rows.retain(|&(frame, id, ..)| {
-        !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame))
-    });
+    rows.retain(|&(frame, id, ..)| !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame)));
     let (lines, told) = forecast(&rows, "--certificate --last");
     let note = "of 3 forecasts 1 are of pedestrians observed at fewer than 8 time steps, and 1 over filled holes";
     assert!(told.contains(note), "{told}");
@@ -59,17 +57,14 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
     );
     // Pedestrians that have just appeared are counted.
     rows.push((90, 4, 3.0, 1.0));
-    let missing =
-        "1 of the 4 pedestrians at frame 90 were observed at too few of the last 8 time steps";
+    let missing = "1 of the 4 pedestrians at frame 90 were observed at too few of the last 8 time steps";
     let told = forecast(&rows, "--last").1;
     assert!(told.contains(missing), "{told}");
 }
 
 #[test]
 fn a_rate_without_whole_steps_is_resampled_and_reported() {
-    let rows: Vec<Row> = (0..=72)
-        .map(|frame| (frame, 1, 0.05 * frame as f64, 1.0))
-        .collect();
+    let rows: Vec<Row> = (0..=72).map(|frame| (frame, 1, 0.05 * frame as f64, 1.0)).collect();
     let (lines, told) = forecast(&rows, "--fps 24 --last");
     assert!(told.contains("0.4 s is 9.6 frames"), "{told}");
     assert_eq!(made_up(&lines[0]), [72, 1, 0, 0]);
@@ -113,18 +108,10 @@ fn words_are_returned_as_written() {
     let line = format!("forecast - --threads 1 --frame-step 10 {options}");
     let live = place.run_on(&place.text("words.csv"), &line).succeeds();
     assert_eq!(json_lines::<Value>(&live), expected);
-    for table in [
-        ask("forecast words.csv --whole"),
-        ask("goals words.csv --whole"),
-    ] {
+    for table in [ask("forecast words.csv --whole"), ask("goals words.csv --whole")] {
         let mut reader = csv::Reader::from_reader(table.as_bytes());
-        let column = reader
-            .headers()
-            .unwrap()
-            .iter()
-            .position(|name| name == "pedestrian");
-        let word =
-            |record: csv::Result<csv::StringRecord>| record.unwrap()[column.unwrap()].to_owned();
+        let column = reader.headers().unwrap().iter().position(|name| name == "pedestrian");
+        let word = |record: csv::Result<csv::StringRecord>| record.unwrap()[column.unwrap()].to_owned();
         let found: BTreeSet<String> = reader.records().map(word).collect();
         assert_eq!(found, WORDS.map(str::to_owned).into());
     }
@@ -135,10 +122,7 @@ fn words_are_returned_as_written() {
             .contains("\"pedestrian\":\"b, \\\"the guard\\\"\"")
     );
     place.write("twice.csv", place.text("words.csv") + "90,7f3e-aa41,0,0\n");
-    place.fails(
-        "forecast twice.csv",
-        &["pedestrian 7f3e-aa41 is in frame 90 already"],
-    );
+    place.fails("forecast twice.csv", &["pedestrian 7f3e-aa41 is in frame 90 already"]);
 }
 
 #[test]
@@ -147,10 +131,7 @@ fn the_rate_of_scenes_is_used() {
     let plain = ndjson(&own_tracks::three_pedestrians(40));
     place.write("plain.ndjson", &plain);
     place.write("two.ndjson", format!("{SCENE}{plain}"));
-    place.write(
-        "usual.ndjson",
-        format!("{}{plain}", SCENE.replace("2}}", "2.5}}")),
-    );
+    place.write("usual.ndjson", format!("{}{plain}", SCENE.replace("2}}", "2.5}}")));
     let ask = |line: &str| place.run(&format!("forecast --threads 1 --last {line}"));
     for (line, told, same_as) in [
         (
@@ -208,11 +189,7 @@ fn files_and_options_override_the_rate_of_a_run() {
             "",
             "20 apart in 0.4 s, as in the run's training (--fps 50)",
         ),
-        (
-            "two.ndjson",
-            "",
-            "8 apart in 0.4 s, from the fps of the scenes, 2",
-        ),
+        ("two.ndjson", "", "8 apart in 0.4 s, from the fps of the scenes, 2"),
         ("plain.csv", "--fps 25", ""),
     ] {
         let line = format!("forecast - --model run --threads 1 --one {options}");
@@ -235,10 +212,7 @@ fn rate_and_homography_of_a_run_are_used() {
     let text = told.succeeds();
     let total = text.lines().last().unwrap();
     assert!(total.starts_with("total: 3 recordings, "), "{text}");
-    assert!(
-        total.contains(" pedestrians, ") && total.ends_with(" hours"),
-        "{text}"
-    );
+    assert!(total.contains(" pedestrians, ") && total.ends_with(" hours"), "{text}");
 
     let matrix = place.text("film/H.txt");
     let mut config = drawn_model::config(ddl::Variant::Full);
@@ -265,15 +239,9 @@ fn rate_and_homography_of_a_run_are_used() {
 #[test]
 fn implausible_speeds_are_reported() {
     let place = Place::empty();
-    for (factor, words) in [
-        (60.0, "half of the steps are faster"),
-        (0.1, "nine in ten steps"),
-    ] {
+    for (factor, words) in [(60.0, "half of the steps are faster"), (0.1, "nine in ten steps")] {
         let scaled = |(f, p, x, y)| (f, p, factor * x, factor * y);
-        let rows: Vec<Row> = own_tracks::three_pedestrians(60)
-            .into_iter()
-            .map(scaled)
-            .collect();
+        let rows: Vec<Row> = own_tracks::three_pedestrians(60).into_iter().map(scaled).collect();
         place.write_tracks("hall.csv", &rows);
         for line in [
             "evaluate --model hotel --convention own --data hall.csv --test-pedestrians 1 --protocol single --threads \
@@ -298,23 +266,12 @@ fn frames_are_numbered_as_in_the_tracks() {
     let place = Place::empty();
     // 24 frames per second: a step of 0.4 s is 9.6 frames.
     let far = |t| if t < 96 { 0.0 } else { 90.0 };
-    let walk = |id: i64, off: fn(i64) -> f64| {
-        (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64))
-    };
-    place.write_tracks(
-        "tracks.csv",
-        &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>(),
-    );
+    let walk = |id: i64, off: fn(i64) -> f64| (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64));
+    place.write_tracks("tracks.csv", &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>());
     let told = place.ok("data tracks.csv --fps 24");
     assert!(told.contains("(7 to 199, 9.6 a step of 0.4 s"), "{told}");
     for (before, after) in [("(pedestrian 2 at frame ", ')'), ("jumps at frame ", ',')] {
-        let at = told
-            .split(before)
-            .nth(1)
-            .unwrap()
-            .split(after)
-            .next()
-            .unwrap();
+        let at = told.split(before).nth(1).unwrap().split(after).next().unwrap();
         assert!((95..=106).contains(&at.parse::<i64>().unwrap()), "{told}");
     }
 }
@@ -334,12 +291,7 @@ fn a_page_shows_the_moments_of_own_tracks() {
     assert!(addresses.all(|address| address.starts_with("://www.w3.org/2000/svg")));
     let data = page.split("id=\"moments-json\">").nth(1).unwrap();
     let moments: Vec<Value> = ddl_tests::place::json(data.split("</script>").next().unwrap());
-    let count = |moment: usize, name: &str| {
-        moments[moment]["pedestrians"][0][name]
-            .as_array()
-            .unwrap()
-            .len()
-    };
+    let count = |moment: usize, name: &str| moments[moment]["pedestrians"][0][name].as_array().unwrap().len();
     assert_eq!(moments.len(), 5);
     assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
     assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));

@@ -34,10 +34,7 @@ impl Difference {
             let pairs: Vec<_> = (0..kernels.hypotheses())
                 .map(|h| {
                     let [a, b] = [kernels, libtorch].map(|forecast| forecast.goal(i, h).unwrap());
-                    let paths = kernels
-                        .hypothesis(i, h)
-                        .iter()
-                        .zip(libtorch.hypothesis(i, h));
+                    let paths = kernels.hypothesis(i, h).iter().zip(libtorch.hypothesis(i, h));
                     let off = paths.fold(0.0_f64, |most, (&a, &b)| most.max(apart(a, b)));
                     let weight = kernels.weight(i, h) - libtorch.weight(i, h);
                     (apart(a, b), off, weight.abs())
@@ -68,10 +65,7 @@ fn built_in_models_agree_with_libtorch_on_their_test_scenes() {
         let source = ModelSource::Builtin(name.parse::<BuiltinModel>().unwrap());
         let kernels = Ddl::open(&source, DeviceChoice::Cpu).unwrap();
         let libtorch = Ddl::reference(&source).unwrap();
-        let windows = dataset
-            .fold(name)
-            .unwrap()
-            .test_windows(WindowRule::Published);
+        let windows = dataset.fold(name).unwrap().test_windows(WindowRule::Published);
         let some: Vec<Window> = windows.into_iter().step_by(stride).collect();
         // Without and with remembered tracks.
         let goals = kernels.goal_model();

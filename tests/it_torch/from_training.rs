@@ -36,23 +36,13 @@ fn a_training_reports_its_steps_and_writes_a_run() {
     }
     let config = run.config().unwrap();
     assert_eq!(config.data.convention, Convention::Simulated);
-    assert_eq!(
-        (config.data.fold.as_str(), config.training.seed),
-        ("plaza", 5)
-    );
+    assert_eq!((config.data.fold.as_str(), config.training.seed), ("plaza", 5));
     assert_eq!(config.commit, "0123abc");
     let epochs: Vec<EpochReport> = json_lines(&place.text("run/metrics.jsonl"));
     assert_eq!(epochs, run.metrics().unwrap());
-    let numbers: Vec<_> = epochs
-        .iter()
-        .map(|epoch| (epoch.epoch, epoch.batches))
-        .collect();
+    let numbers: Vec<_> = epochs.iter().map(|epoch| (epoch.epoch, epoch.batches)).collect();
     assert_eq!(numbers, [(1, 4), (2, 4)]);
-    assert!(
-        epochs
-            .iter()
-            .all(|epoch| epoch.loss.is_finite() && epoch.loss > 0.0)
-    );
+    assert!(epochs.iter().all(|epoch| epoch.loss.is_finite() && epoch.loss > 0.0));
     let measure = "evaluate --model run --protocol fair --test-pedestrians 20 --threads 1";
     assert!(place.ok(measure).contains("minADE"));
 }
@@ -75,17 +65,10 @@ fn goals_are_measured_before_the_network_is_trained() {
     let names: Vec<&str> = validation.recordings.keys().map(String::as_str).collect();
     assert_eq!(names, ["bottleneck", "corridor", "crossing", "doorway"]);
     let crowds = crowd::dataset();
-    let whole = crowds
-        .recording("crossing")
-        .unwrap()
-        .windows(WindowRule::Complete);
+    let whole = crowds.recording("crossing").unwrap().windows(WindowRule::Complete);
     let pedestrians: usize = whole.iter().map(Window::len).sum();
     assert_eq!(validation.recordings["crossing"].pedestrians, pedestrians);
-    assert!(
-        validation.windows.contains("crossing whole"),
-        "{}",
-        validation.windows
-    );
+    assert!(validation.windows.contains("crossing whole"), "{}", validation.windows);
     // The same command without --only-goals continues, and the goals stay.
     let before = place.read("run/proposal.safetensors");
     let _ = place.ok(train);
@@ -130,10 +113,7 @@ fn the_published_recipe_is_the_papers() {
     let star = (config.star.frame, config.star.feed_forward_width);
     assert_eq!(star, (NetworkFrame::World, 2048));
     let training = (config.training.epochs, config.training.batch_pedestrians);
-    assert_eq!(
-        (config.training.objective, training),
-        (Objective::NextStep, (200, 256))
-    );
+    assert_eq!((config.training.objective, training), (Objective::NextStep, (200, 256)));
 }
 
 #[test]
@@ -155,10 +135,7 @@ fn a_folder_with_another_run_is_not_overwritten() {
             "star.variant is full, not no-dynamics",
         ),
         // Plain STAR has no goal frame, which is reported first.
-        (
-            "--fold corridor --variant star",
-            "star.frame is goal, not world",
-        ),
+        ("--fold corridor --variant star", "star.frame is goal, not world"),
         (
             "--fold corridor --recipe published --learning-rate 3e-3",
             "star.feed_forward_width is 32, not 2048",
@@ -207,9 +184,7 @@ fn numbers_out_of_range_are_refused_before_anything_is_written() {
         ("--validation", "NaN", "validation"),
         ("--validation", "1", "validation"),
     ] {
-        let mut line = format!(
-            "train --convention simulated --fold corridor --out new --threads 1 {option} {value}"
-        );
+        let mut line = format!("train --convention simulated --fold corridor --out new --threads 1 {option} {value}");
         for (other, value) in short.iter().filter(|(other, _)| *other != option) {
             line = format!("{line} {other} {value}");
         }

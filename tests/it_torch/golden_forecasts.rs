@@ -6,14 +6,11 @@ use ddl_tests::golden::{self, Golden};
 
 #[test]
 fn golden_forecasts_agree_with_libtorch() {
-    let of =
-        |model: BuiltinModel| Golden::of(&Ddl::reference(&ModelSource::Builtin(model)).unwrap());
+    let of = |model: BuiltinModel| Golden::of(&Ddl::reference(&ModelSource::Builtin(model)).unwrap());
     if std::env::var_os("DDL_WRITE_GOLDEN").is_some() {
         let models = BuiltinModel::ALL.map(|model| {
             let rows = of(model).into_iter();
-            let rows: Vec<String> = rows
-                .map(|row| serde_json::to_string(&row).unwrap())
-                .collect();
+            let rows: Vec<String> = rows.map(|row| serde_json::to_string(&row).unwrap()).collect();
             format!("\"{model}\": [\n{}\n]", rows.join(",\n"))
         });
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/golden/forecasts.json");

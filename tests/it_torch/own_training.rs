@@ -55,21 +55,14 @@ fn own_recordings_are_used_for_training_and_evaluation() {
     assert_eq!(place.read("run/model.safetensors"), place.read(&epoch));
 
     // The evaluation reports the number by which the epoch was chosen.
-    let report = place
-        .json("evaluate --model run --data mine --validation --protocol fair --threads 1 --json");
+    let report = place.json("evaluate --model run --data mine --validation --protocol fair --threads 1 --json");
     let conditions = &report["rows"][0]["conditions"];
     assert_eq!(conditions["convention"], "own");
-    assert_eq!(
-        conditions["selection"],
-        "epoch of the least validation error"
-    );
+    assert_eq!(conditions["selection"], "epoch of the least validation error");
     // Few enough that all of them were evaluated after each epoch.
     let (min_ade, pedestrians) = first_row(&report);
     assert!((50..=1000).contains(&pedestrians), "{pedestrians}");
-    assert!(
-        (min_ade - errors[best - 1]).abs() < 1e-9,
-        "{min_ade} {errors:?}"
-    );
+    assert!((min_ade - errors[best - 1]).abs() < 1e-9, "{min_ade} {errors:?}");
 
     training_recordings_are_refused_as_test_data(&place);
     // Its results are stored with it, and can be reported.
@@ -102,18 +95,13 @@ fn training_recordings_are_refused_as_test_data(place: &Place) {
     let text = place.text("mine/yard.csv");
     let (cut, _) = text.trim_end().rsplit_once('\n').unwrap();
     place.write("other/yard.csv", cut);
-    place.fails(
-        &evaluate("other"),
-        &["the same name \"yard\"", "rename the file"],
-    );
+    place.fails(&evaluate("other"), &["the same name \"yard\"", "rename the file"]);
 }
 
 #[test]
 fn a_recording_can_be_left_out_and_the_run_resumes() {
     let place = with_recordings();
-    let train = format!(
-        "train --data mine --convention own --fold yard --patience 1 {ALONE} {SMALL} --out"
-    );
+    let train = format!("train --data mine --convention own --fold yard --patience 1 {ALONE} {SMALL} --out");
     let told = place.ok(&format!("{train} run"));
     let next = "next: ddl evaluate --model run --data mine\n";
     assert!(told.contains(next), "{told}");
@@ -161,17 +149,12 @@ fn training_and_evaluation_report_the_same_errors() {
 fn a_training_starts_with_the_weights_of_another_model() {
     let place = with_clips(1500, 2);
     // Training steps that increase the error.
-    let train = format!(
-        "train --data clips --from hotel --epochs 2 --learning-rate 0.05 {SMALL} --json --out"
-    );
+    let train = format!("train --data clips --from hotel --epochs 2 --learning-rate 0.05 {SMALL} --json --out");
     let trained = place.json(&format!("{train} run"));
     assert_eq!(trained["kept_epoch"], 0);
     let run = RunDirectory::new(place.at("run"));
     let from = run.config().unwrap().from.unwrap();
-    assert_eq!(
-        (from.model.as_str(), from.sha256.len()),
-        ("hotel (built in)", 64)
-    );
+    assert_eq!((from.model.as_str(), from.sha256.len()), ("hotel (built in)", 64));
     let (errors, best) = errors(&run);
     assert_eq!((errors.len(), best), (3, 0), "{errors:?}");
     assert_eq!(run.kept_epochs().unwrap(), [0]);
@@ -186,20 +169,14 @@ fn a_training_starts_with_the_weights_of_another_model() {
     for model in ["run", "packed.safetensors"] {
         let train = train.replace("hotel", model);
         let _ = place.ok(&format!("{train} of-{model}"));
-        place.fails(
-            &format!("{train} run"),
-            &["holds another run: its from.model"],
-        );
+        place.fails(&format!("{train} run"), &["holds another run: its from.model"]);
     }
     for (options, words) in [
         (
             "--feed-forward-width 16",
             "star.feed_forward_width is 32, not 16 as requested",
         ),
-        (
-            "--variant no-goal-shift",
-            "star.frame is goal, not world as requested",
-        ),
+        ("--variant no-goal-shift", "star.frame is goal, not world as requested"),
         (
             "--recipe published",
             "star.feed_forward_width is 32, not 2048 as requested",
@@ -231,14 +208,9 @@ fn short_clips_are_validated_whole_and_start_with_the_built_in_model() {
         let evaluate = format!("evaluate {data} --validation --protocol fair --threads 1");
         let words = place.ok(&evaluate);
         let recordings = words.lines().filter(|line| line.starts_with("clip"));
-        let names: Vec<&str> = recordings
-            .filter_map(|line| line.split(' ').next())
-            .collect();
+        let names: Vec<&str> = recordings.filter_map(|line| line.split(' ').next()).collect();
         assert_eq!(names, ["clip1", "clip4"], "{words}");
-        assert!(
-            words.contains("\nvalidation: clip1, clip4 whole\n"),
-            "{words}"
-        );
+        assert!(words.contains("\nvalidation: clip1, clip4 whole\n"), "{words}");
     }
 }
 
@@ -265,15 +237,8 @@ fn a_run_remembers_rate_and_homography() {
     let units = "--fps 23.98 --homography film/H.txt";
     let train = format!("train --data film --validation 0.3 {units} --epochs 1 --out run {SMALL}");
     let _ = place.ok(&train);
-    let kept = RunDirectory::new(place.at("run"))
-        .config()
-        .unwrap()
-        .units
-        .unwrap();
-    assert_eq!(
-        (kept.fps, kept.dt, kept.frame_step),
-        (Some(23.98), None, None)
-    );
+    let kept = RunDirectory::new(place.at("run")).config().unwrap().units.unwrap();
+    assert_eq!((kept.fps, kept.dt, kept.frame_step), (Some(23.98), None, None));
     assert!(kept.homography.is_some());
     place.remove("film/H.txt");
     let measure = "evaluate --model run --data film --validation --threads 1";
@@ -285,8 +250,5 @@ fn a_run_remembers_rate_and_homography() {
     // At another rate these are not the recordings of the training.
     let refused = place.run(&format!("{measure} --protocol fair --fps 25"));
     assert_eq!(refused.code, Some(1), "{refused:?}");
-    assert!(
-        refused.stderr.contains("trained on other recordings"),
-        "{refused:?}"
-    );
+    assert!(refused.stderr.contains("trained on other recordings"), "{refused:?}");
 }

@@ -43,10 +43,7 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
             assert!(finished.stderr.contains(told), "{finished:#?}");
         }
         assert!(place.at(&format!("run/{state}.safetensors")).is_file());
-        assert!(
-            !place.at("run/model.safetensors").exists(),
-            "it had ended before"
-        );
+        assert!(!place.at("run/model.safetensors").exists(), "it had ended before");
     }
     // No unfinished file remains.
     assert_same(&finish(&Place::empty()), &finish(&place));

@@ -40,9 +40,7 @@ fn growth([first, last, lost]: [usize; 3]) -> Option<Vec<f64>> {
     }
     let after = processes::resident_bytes()?;
     drop(std::hint::black_box(leak));
-    Some(vec![
-        after.saturating_sub(before) as f64 / f64::from(1 << 20),
-    ])
+    Some(vec![after.saturating_sub(before) as f64 / f64::from(1 << 20)])
 }
 
 /// A loss of 20 MiB is detected, so the test can fail.

@@ -26,12 +26,7 @@ pub fn difference(shown: &[String], answer: &str) -> Option<String> {
     }
     let left = &lines[at..];
     let is_open = parts[last].is_empty() && last > 0;
-    (!left.is_empty() && !is_open).then(|| {
-        format!(
-            "the page does not show {:?}, or `...` in its place",
-            left[0]
-        )
-    })
+    (!left.is_empty() && !is_open).then(|| format!("the page does not show {:?}, or `...` in its place", left[0]))
 }
 
 fn agree(part: &[&str], lines: &[&str]) -> bool {
@@ -45,10 +40,7 @@ fn explain(part: &[&str], lines: &[&str], anywhere: bool) -> String {
     let lines = &lines[lines.iter().position(begins).unwrap_or(0)..];
     match part.iter().zip(lines).find(differs) {
         Some((shown, line)) => format!("the page shows {shown:?}, the answer has {line:?}"),
-        None => format!(
-            "the page shows {:?}, the answer is shorter",
-            part[part.len() - 1]
-        ),
+        None => format!("the page shows {:?}, the answer is shorter", part[part.len() - 1]),
     }
 }
 
@@ -141,11 +133,7 @@ mod tests {
 
     #[test]
     fn the_last_place_of_a_decimal_number_may_differ_and_no_word_or_count() {
-        for (shown, line) in [
-            ("x 0.123 m", "x 0.124 m"),
-            ("-1.50,2", "-1.49,2"),
-            ("0.9999999", "1.0"),
-        ] {
+        for (shown, line) in [("x 0.123 m", "x 0.124 m"), ("-1.50,2", "-1.49,2"), ("0.9999999", "1.0")] {
             assert!(line_agrees(shown, line), "{shown}, {line}");
         }
         for (shown, line) in [

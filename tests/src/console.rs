@@ -1,9 +1,6 @@
 //! Commands on the pages of the documentation. `xtask`, which does not depend on this crate, includes this file.
 
-#![allow(
-    unreachable_pub,
-    reason = "public in one of the two crates that it belongs to"
-)]
+#![allow(unreachable_pub, reason = "public in one of the two crates that it belongs to")]
 
 /// A command as shown on a page.
 #[derive(Debug, Clone, PartialEq, Eq)]

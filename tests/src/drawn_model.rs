@@ -5,8 +5,7 @@ use crate::folder_contents::{self, Contents};
 use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::weights::{save_weights, tensors_digest};
 use ddl::network::{
-    EpochReport, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig,
-    TrainingConfig,
+    EpochReport, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, TrainingConfig,
 };
 use ddl::{Ddl, DeviceChoice, FORMAT, GoalRecipe, RunConfig, RunDirectory, TrainingData, Variant};
 use safetensors::tensor::{Dtype, TensorView};
@@ -104,8 +103,7 @@ pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     if let Some(recipe) = config.goals.proposal.clone() {
         let proposal = ProposalNetwork::new(recipe.network, recipe.training.seed);
         let proposal = proposal.expect("the configuration is valid");
-        save_weights(proposal.weights(), &config.goals_origin(), &run.proposal())
-            .expect("weights can be written");
+        save_weights(proposal.weights(), &config.goals_origin(), &run.proposal()).expect("weights can be written");
     }
     let tracks = windows
         .iter()

@@ -22,12 +22,7 @@ pub fn all_of(folder: &Path) -> BTreeSet<String> {
     let entries = std::fs::read_dir(&folder).expect("a folder can be listed");
     let name = |path: &Path| -> Option<String> {
         let is_one = path.extension().is_some_and(|e| e == "rs") || path.join("main.rs").is_file();
-        is_one.then(|| {
-            path.file_stem()
-                .unwrap_or_default()
-                .to_string_lossy()
-                .into_owned()
-        })
+        is_one.then(|| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
     };
     entries
         .filter_map(|entry| name(&entry.expect("a folder can be listed").path()))

@@ -71,9 +71,7 @@ pub fn assert_same(before: &Contents, after: &Contents) {
 /// Files with temporary names anywhere below a folder: unfinished files.
 pub fn half_written(folder: &Path) -> Vec<String> {
     let marks = [".writing-", ".report-", ".tmp"];
-    let names = read(folder)
-        .into_keys()
-        .map(|name| name.display().to_string());
+    let names = read(folder).into_keys().map(|name| name.display().to_string());
     names
         .filter(|name| marks.iter().any(|mark| name.contains(mark)))
         .collect()

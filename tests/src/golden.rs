@@ -55,10 +55,7 @@ impl Golden {
             let mut order: Vec<usize> = (0..forecast.hypotheses()).collect();
             order.sort_by(|&a, &b| forecast.weight(i, b).total_cmp(&forecast.weight(i, a)));
             let each = |of: &dyn Fn(usize) -> Position| -> Vec<Position> {
-                order
-                    .iter()
-                    .map(|&h| of(h).map(|x| rounded(x, 7)))
-                    .collect()
+                order.iter().map(|&h| of(h).map(|x| rounded(x, 7))).collect()
             };
             let weight = |&h: &usize| rounded(forecast.weight(i, h), 9);
             Self {
@@ -78,10 +75,7 @@ impl Golden {
     pub fn assert_near(&self, known: &Self, model: &str) {
         let name = format!("{model}, pedestrian {}", known.pedestrian);
         assert_eq!(self.pedestrian, known.pedestrian, "{name}");
-        assert!(
-            (self.familiarity - known.familiarity).abs() < 1e-9,
-            "{name}"
-        );
+        assert!((self.familiarity - known.familiarity).abs() < 1e-9, "{name}");
         assert!(apart(self.one, known.one) <= OFF, "{name}: one");
         assert_eq!(self.weights.len(), known.weights.len(), "{name}");
         for k in 0..known.weights.len() {

@@ -60,11 +60,7 @@ pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
 
 /// The folder `film`: three recordings in pixels at 23.98 frames per second, and their homography.
 pub fn write_film(place: &Place) {
-    for (name, scene) in [
-        ("hall", "corridor"),
-        ("lobby", "plaza"),
-        ("yard", "crossing"),
-    ] {
+    for (name, scene) in [("hall", "corridor"), ("lobby", "plaza"), ("yard", "crossing")] {
         // A frame of the crowd is 0.04 s, one of the film 1 / 23.98 s: nearly the same.
         let mut rows = of_scene(scene, 0..900);
         for (.., x, y) in &mut rows {
@@ -94,8 +90,6 @@ pub fn write_clips(place: &Place, frames: i64, count: i64) {
 
 /// The rows in the TrajNet++ format.
 pub fn ndjson(rows: &[Row]) -> String {
-    let line = |(f, p, x, y): &Row| {
-        format!("{{\"track\": {{\"f\": {f}, \"p\": {p}, \"x\": {x}, \"y\": {y}}}}}\n")
-    };
+    let line = |(f, p, x, y): &Row| format!("{{\"track\": {{\"f\": {f}, \"p\": {p}, \"x\": {x}, \"y\": {y}}}}}\n");
     rows.iter().map(line).collect()
 }

@@ -36,11 +36,7 @@ pub fn write(folder: &Path) {
          3,1,1.55,2.02\n3,2,6.25,2.52\n",
     );
     std::fs::create_dir(folder.join("recordings")).expect("a folder of a page can be made");
-    for (name, scene) in [
-        ("hall", "plaza"),
-        ("lobby", "crossing"),
-        ("street", "corridor"),
-    ] {
+    for (name, scene) in [("hall", "plaza"), ("lobby", "crossing"), ("street", "corridor")] {
         let text = csv(&rows(scene, 200));
         file(&format!("recordings/{name}.csv"), &text);
     }
@@ -99,12 +95,7 @@ fn filmed(tracks: &[Row], frames: i64) -> Vec<Row> {
         let shares = if next.is_some() { 0..frames } else { 0..1 };
         all.extend(shares.map(|i| {
             let share = i as f64 / frames as f64;
-            (
-                frames * frame + i,
-                id,
-                x + share * (to_x - x),
-                y + share * (to_y - y),
-            )
+            (frames * frame + i, id, x + share * (to_x - x), y + share * (to_y - y))
         }));
     }
     all.sort_by_key(|row| (row.0, row.1));

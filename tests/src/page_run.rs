@@ -57,11 +57,7 @@ impl PageFolder {
         link(&checkout.join(sample), here.join(sample));
         write_program(&bin.path().join("tracker"), &page_inputs::tracker());
         write_program(&bin.path().join("cameras"), &page_inputs::cameras());
-        Self {
-            folder,
-            bin,
-            datasets,
-        }
+        Self { folder, bin, datasets }
     }
 
     /// Where the commands run.
@@ -107,20 +103,17 @@ impl PageFolder {
         }
         let output = shell.output().expect("the commands of a page need bash");
         let said = String::from_utf8_lossy(&output.stderr);
-        let judged = commands
-            .iter()
-            .enumerate()
-            .filter_map(|(i, (command, depth))| {
-                let (line, typed) = (command.line, &command.typed);
-                let Some(answered) = read(command, &notes.path().join(i.to_string())) else {
-                    let text = format!("line {line}: `{typed}` was not run: {said}");
-                    let answer = None;
-                    return Some((i, Problem { text, answer }));
-                };
-                let (problem, answer) = problem(&answered, command, *depth)?;
-                let text = format!("line {line}: `{typed}`: {problem}\n{answered:#?}");
-                Some((i, Problem { text, answer }))
-            });
+        let judged = commands.iter().enumerate().filter_map(|(i, (command, depth))| {
+            let (line, typed) = (command.line, &command.typed);
+            let Some(answered) = read(command, &notes.path().join(i.to_string())) else {
+                let text = format!("line {line}: `{typed}` was not run: {said}");
+                let answer = None;
+                return Some((i, Problem { text, answer }));
+            };
+            let (problem, answer) = problem(&answered, command, *depth)?;
+            let text = format!("line {line}: `{typed}`: {problem}\n{answered:#?}");
+            Some((i, Problem { text, answer }))
+        });
         judged.collect()
     }
 }
@@ -147,11 +140,7 @@ fn read(command: &Command, at: &Path) -> Option<Finished> {
 }
 
 /// What is wrong, and the answer where the page shows another.
-fn problem(
-    finished: &Finished,
-    command: &Command,
-    depth: Depth,
-) -> Option<(String, Option<String>)> {
+fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<(String, Option<String>)> {
     let code = finished.code?;
     if depth == Depth::Begun {
         // No recordings, no such run: 1. Interrupted: 130. Invalid arguments: 2.

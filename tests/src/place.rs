@@ -93,10 +93,7 @@ impl Place {
         let message = self.run(line).fails();
         self.assert_unchanged_since(&before);
         for needle in needles {
-            assert!(
-                message.contains(needle),
-                "{line}: `{needle}` is not in: {message}"
-            );
+            assert!(message.contains(needle), "{line}: `{needle}` is not in: {message}");
         }
     }
 
@@ -129,10 +126,7 @@ impl Place {
         let input = std::fs::File::open(self.at("standard input")).expect("it was just written");
         let mut command = program::command(self.path(), line);
         let output = command.stdin(Stdio::from(input)).output();
-        Finished::new(
-            line.to_owned(),
-            &output.expect("the program can be started"),
-        )
+        Finished::new(line.to_owned(), &output.expect("the program can be started"))
     }
 
     /// Starts the program with pipes for its outputs.

@@ -19,9 +19,7 @@ pub fn processor_time(id: u32) -> Option<Duration> {
         .take(2)
         .map(|field| field.parse().ok())
         .collect::<Option<_>>()?;
-    Some(Duration::from_secs_f64(
-        ticks.iter().sum::<f64>() / TICKS_A_SECOND,
-    ))
+    Some(Duration::from_secs_f64(ticks.iter().sum::<f64>() / TICKS_A_SECOND))
 }
 
 /// Bytes of this process that are resident or swapped out.
@@ -37,9 +35,7 @@ pub fn resident_bytes() -> Option<u64> {
 /// Peak resident bytes of a process.
 pub fn peak_bytes(id: u32) -> Option<u64> {
     let status = std::fs::read_to_string(format!("/proc/{id}/status")).ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(1024 * kibibytes)
 }
@@ -75,12 +71,7 @@ pub fn with_descendants(id: u32) -> Vec<u32> {
     let mut next = 0;
     while let Some(&of) = found.get(next) {
         next += 1;
-        found.extend(
-            pairs
-                .iter()
-                .filter(|(parent, _)| *parent == of)
-                .map(|(_, id)| id),
-        );
+        found.extend(pairs.iter().filter(|(parent, _)| *parent == of).map(|(_, id)| id));
     }
     found
 }

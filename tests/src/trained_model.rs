@@ -5,8 +5,7 @@ use crate::place::Place;
 use crate::{crowd, drawn_model};
 use ddl::network::TrainingConfig;
 use ddl::{
-    DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStage,
-    TrainingStep, Variant,
+    DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, Variant,
 };
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -63,8 +63,7 @@ impl CargoTool {
         output.is_ok_and(|output| {
             let said = String::from_utf8_lossy(&output.stdout);
             let version = said.trim().strip_prefix(self.name).map(str::trim_start);
-            output.status.success()
-                && version.map(|version| version.trim_start_matches('v')) == Some(self.version)
+            output.status.success() && version.map(|version| version.trim_start_matches('v')) == Some(self.version)
         })
     }
 

@@ -29,8 +29,7 @@ pub(crate) fn install(packages: &[&str]) -> Result<()> {
             .env("DEBIAN_FRONTEND", "noninteractive")
             .stdin(Stdio::null())
             .stdout(Stdio::from(std::io::stderr()));
-        run_within(&mut command, LIMIT)
-            .with_context(|| format!("`apt-get {}` failed", arguments.join(" ")))
+        run_within(&mut command, LIMIT).with_context(|| format!("`apt-get {}` failed", arguments.join(" ")))
     };
     apt(&["update"])?;
     let install = ["install", "-y", "--no-install-recommends"];

@@ -28,18 +28,14 @@ impl Pin<'_> {
                 bail!("longer than the pinned {} bytes", self.bytes);
             }
             hasher.update(block);
-            to.write_all(block)
-                .context("writing stopped: is the disk full?")
+            to.write_all(block).context("writing stopped: is the disk full?")
         })?;
         if bytes < self.bytes {
             bail!("ended after {bytes} of {} bytes", self.bytes);
         }
         let sha256 = hexadecimal(hasher);
         if sha256 != self.sha256 {
-            bail!(
-                "wrong contents: SHA-256 {sha256}, pinned is {}",
-                self.sha256
-            );
+            bail!("wrong contents: SHA-256 {sha256}, pinned is {}", self.sha256);
         }
         Ok(())
     }
@@ -54,11 +50,8 @@ impl Pin<'_> {
     /// Writes `from` to `path`, complete and right, or not at all: a temporary file is renamed once length and hash
     /// agree.
     pub(crate) fn place(&self, from: &mut impl Read, path: &Path) -> Result<()> {
-        let folder = path
-            .parent()
-            .context("the path of the file has no folder")?;
-        fs::create_dir_all(folder)
-            .with_context(|| format!("{} cannot be created", folder.display()))?;
+        let folder = path.parent().context("the path of the file has no folder")?;
+        fs::create_dir_all(folder).with_context(|| format!("{} cannot be created", folder.display()))?;
         let mut builder = tempfile::Builder::new();
         let builder = builder.prefix(".incoming-");
         // Temporary files are private by default.
@@ -80,8 +73,7 @@ impl Pin<'_> {
 }
 
 pub(crate) fn measure(path: &Path) -> Result<(String, u64)> {
-    let mut file =
-        File::open(path).with_context(|| format!("{} cannot be opened", path.display()))?;
+    let mut file = File::open(path).with_context(|| format!("{} cannot be opened", path.display()))?;
     let mut hasher = Sha256::new();
     let mut bytes = 0;
     each_block(&mut file, |block| {

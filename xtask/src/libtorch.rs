@@ -114,9 +114,7 @@ fn require_compiler() -> Result<()> {
     let program = compiler
         .as_deref()
         .and_then(OsStr::to_str)
-        .map_or("c++", |text| {
-            text.split_whitespace().next().unwrap_or("c++")
-        });
+        .map_or("c++", |text| text.split_whitespace().next().unwrap_or("c++"));
     if !program_on_path(OsStr::new(program)) {
         bail!(
             "a C++ compiler is missing ({program} is not on the search path): install one, on \

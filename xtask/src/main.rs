@@ -3,10 +3,7 @@
 //!
 //! Of the `ddl` crates the program depends only on `ddl-data`, and it does not depend on libtorch. So it builds on a
 //! bare machine and installs the rest.
-#![allow(
-    clippy::print_stdout,
-    reason = "a command-line program prints to standard output"
-)]
+#![allow(clippy::print_stdout, reason = "a command-line program prints to standard output")]
 
 mod browser;
 mod cache;
@@ -33,12 +30,7 @@ use crate::workspace::Workspace;
 
 /// Set-up, recordings, benchmark, tests and tidy checks of the DDL workspace.
 #[derive(Debug, Parser)]
-#[command(
-    name = "cargo xtask",
-    bin_name = "cargo xtask",
-    version,
-    max_term_width = 100
-)]
+#[command(name = "cargo xtask", bin_name = "cargo xtask", version, max_term_width = 100)]
 struct Arguments {
     #[command(subcommand)]
     command: Command,

@@ -58,11 +58,7 @@ impl Python {
         I::Item: AsRef<std::ffi::OsStr>,
     {
         let mut command = Command::new(&self.program);
-        command
-            .arg("-c")
-            .arg(script)
-            .args(arguments)
-            .stdin(Stdio::null());
+        command.arg("-c").arg(script).args(arguments).stdin(Stdio::null());
         command
     }
 
@@ -119,9 +115,6 @@ mod tests {
         let mut script = python.script("import sys; print(sys.argv[1] + '!')", ["hello"]);
         assert_eq!(read(&mut script).unwrap().trim(), "hello!");
         let mut script = python.script("import sys; sys.exit('the index is on fire')", ["x"]);
-        assert_eq!(
-            read(&mut script).unwrap_err().to_string(),
-            "the index is on fire"
-        );
+        assert_eq!(read(&mut script).unwrap_err().to_string(), "the index is on fire");
     }
 }

@@ -47,12 +47,7 @@ pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
     remove(&book)?;
     outward::copy_book(&workspace.path(BOOK), &book, &libraries, &site)?;
     render(&mdbook, &book, &site.join("guide"))?;
-    api::build(
-        workspace,
-        &libraries,
-        &target.join("doc"),
-        &site.join("api"),
-    )?;
+    api::build(workspace, &libraries, &target.join("doc"), &site.join("api"))?;
     whole_file::write(&site.join("index.html"), landing(&libraries).as_bytes())?;
     whole_file::write(&site.join("api/index.html"), ONWARD.as_bytes())?;
     let mut checked = check::check(&site)?;
@@ -61,11 +56,7 @@ pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
         .extend(unlisted(&workspace.path(BOOK), &site.join("guide"))?);
     if !checked.faults.is_empty() {
         let shown: Vec<&str> = checked.faults.iter().take(40).map(String::as_str).collect();
-        bail!(
-            "{} faults on the site:\n{}",
-            checked.faults.len(),
-            shown.join("\n")
-        );
+        bail!("{} faults on the site:\n{}", checked.faults.len(), shown.join("\n"));
     }
     println!(
         "{} pages, {} links inside the site, all valid",
@@ -76,8 +67,7 @@ pub(crate) fn build(workspace: &Workspace) -> Result<PathBuf> {
 
 fn remove(folder: &Path) -> Result<()> {
     if folder.exists() {
-        fs::remove_dir_all(folder)
-            .with_context(|| format!("{} cannot be removed", folder.display()))?;
+        fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
     }
     Ok(())
 }
@@ -95,10 +85,7 @@ fn render(mdbook: &Path, book: &Path, out: &Path) -> Result<()> {
     let said = String::from_utf8_lossy(&output.stderr);
     // mdBook continues after most faults and only logs them.
     if !output.status.success() || said.contains("WARN") || said.contains("ERROR") {
-        bail!(
-            "mdbook does not accept the pages of {BOOK}:\n{}",
-            said.trim()
-        );
+        bail!("mdbook does not accept the pages of {BOOK}:\n{}", said.trim());
     }
     Ok(())
 }
@@ -112,10 +99,7 @@ fn unlisted(book: &Path, rendered: &Path) -> Result<Vec<String>> {
             && page != Path::new("SUMMARY.md")
             && !rendered.join(page).with_extension("html").is_file()
         {
-            found.push(format!(
-                "{BOOK}/SUMMARY.md does not list {}",
-                page.display()
-            ));
+            found.push(format!("{BOOK}/SUMMARY.md does not list {}", page.display()));
         }
     }
     Ok(found)

@@ -47,10 +47,7 @@ impl Slurm {
         }
         // munge refuses folders that others can write to, and a socket that others cannot reach.
         let open = fs::Permissions::from_mode(0o755);
-        let folder = tempfile::Builder::new()
-            .prefix("slurm-")
-            .permissions(open)
-            .tempdir()?;
+        let folder = tempfile::Builder::new().prefix("slurm-").permissions(open).tempdir()?;
         let mut slurm = Self {
             folder,
             daemons: Vec::new(),
@@ -145,9 +142,7 @@ impl Slurm {
             let lines: Vec<&str> = text.lines().collect();
             lines[lines.len().saturating_sub(5)..].join("\n")
         };
-        ["munged.log", "slurmctld.log", "slurmd-n1.log"]
-            .map(end)
-            .join("\n")
+        ["munged.log", "slurmctld.log", "slurmd-n1.log"].map(end).join("\n")
     }
 
     /// A command for a program that uses this Slurm.
@@ -167,11 +162,7 @@ impl Slurm {
         let output = output.with_context(|| format!("{program} cannot be started"))?;
         if !output.status.success() {
             let told = String::from_utf8_lossy(&output.stderr);
-            bail!(
-                "`{program} {}` failed: {}",
-                arguments.join(" "),
-                told.trim()
-            );
+            bail!("`{program} {}` failed: {}", arguments.join(" "), told.trim());
         }
         Ok(String::from_utf8_lossy(&output.stdout).into_owned())
     }
@@ -187,15 +178,12 @@ impl Slurm {
         let is_mine = |process: &Path| {
             let variables = fs::read(process.join("environ")).unwrap_or_default();
             let variables: Vec<&[u8]> = variables.split(|byte| *byte == 0).collect();
-            mine.iter()
-                .all(|variable| variables.contains(&variable.as_bytes()))
+            mine.iter().all(|variable| variables.contains(&variable.as_bytes()))
         };
         let mut found = Vec::new();
         for entry in fs::read_dir("/proc")? {
             let process = entry?.path();
-            let id = process
-                .file_name()
-                .and_then(|name| name.to_str()?.parse::<i32>().ok());
+            let id = process.file_name().and_then(|name| name.to_str()?.parse::<i32>().ok());
             if let Some(id) = id.filter(|_| is_mine(&process)) {
                 // The daemon of a job does not have the job's variables.
                 found.extend(parent(id).filter(|parent| is_of_job(*parent)));
@@ -223,9 +211,7 @@ impl Drop for Slurm {
         let _ = self.ask("scancel", &["--me"]);
         let begun = Instant::now();
         while begun.elapsed() < Duration::from_secs(20)
-            && self
-                .ask("squeue", &["--noheader"])
-                .is_ok_and(|jobs| !jobs.is_empty())
+            && self.ask("squeue", &["--noheader"]).is_ok_and(|jobs| !jobs.is_empty())
         {
             sleep(Duration::from_millis(200));
         }

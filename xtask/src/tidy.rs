@@ -25,11 +25,7 @@ const EMPTY_NAMES: [&str; 9] = [
 /// What `datasets` holds: descriptions, and a simulated recording that its test makes again.
 const DESCRIPTIONS: [&str; 4] = ["README.md", "manifest.toml", "folds.json", "sample.csv"];
 // Spelled in pieces, so that this file does not find itself.
-const HOME_FOLDERS: [&str; 3] = [
-    concat!("/ho", "me/"),
-    concat!("/ro", "ot/"),
-    concat!("/Use", "rs/"),
-];
+const HOME_FOLDERS: [&str; 3] = [concat!("/ho", "me/"), concat!("/ro", "ot/"), concat!("/Use", "rs/")];
 
 #[derive(Debug, Default)]
 struct Findings {
@@ -70,11 +66,8 @@ fn check(workspace: &Workspace) -> Result<Findings> {
         }
         let (sha256, _) = measure(&path)?;
         let named = name_fault(file).or_else(|| recording_fault(file, &sha256, &recordings));
-        let bytes =
-            std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
-        let said = named
-            .into_iter()
-            .map(|what| format!("{}: {what}", file.display()));
+        let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
+        let said = named.into_iter().map(|what| format!("{}: {what}", file.display()));
         findings.faults.extend(said);
         // Binary files have no lines to check.
         if let Ok(text) = std::str::from_utf8(&bytes) {
@@ -91,20 +84,15 @@ fn check(workspace: &Workspace) -> Result<Findings> {
 
 fn name_fault(file: &Path) -> Option<String> {
     let folders = file.parent().into_iter().flat_map(Path::iter);
-    let mut names = folders
-        .chain(file.file_stem())
-        .filter_map(|name| name.to_str());
+    let mut names = folders.chain(file.file_stem()).filter_map(|name| name.to_str());
     let name = names.find(|name| EMPTY_NAMES.contains(name))?;
-    Some(format!(
-        "{name:?} is not descriptive: name the file after its concept"
-    ))
+    Some(format!("{name:?} is not descriptive: name the file after its concept"))
 }
 
 /// The terms of the recordings do not clearly allow redistribution, so none may be tracked under any name.
 fn recording_fault(file: &Path, sha256: &str, recordings: &[(&str, &str)]) -> Option<String> {
     let name = file.file_name()?.to_str()?;
-    let is_recording =
-        |&&(recording, pinned): &&(&str, &str)| recording == name || pinned == sha256;
+    let is_recording = |&&(recording, pinned): &&(&str, &str)| recording == name || pinned == sha256;
     if let Some((recording, _)) = recordings.iter().find(is_recording) {
         return Some(format!(
             "this is the recording {recording}; remove it, no recording may be committed"
@@ -119,9 +107,9 @@ fn check_text(file: &Path, text: &str, findings: &mut Findings) {
     let lines = text.lines().count();
     if file.extension().is_some_and(|extension| extension == "rs") && lines > SOFT_LIMIT {
         if lines > HARD_LIMIT {
-            findings.faults.push(format!(
-                "{name}: {lines} lines, more than {HARD_LIMIT}: split it"
-            ));
+            findings
+                .faults
+                .push(format!("{name}: {lines} lines, more than {HARD_LIMIT}: split it"));
         } else {
             findings.notes.push(format!(
                 "{name}: {lines} lines, more than {SOFT_LIMIT}: consider splitting it"
@@ -132,15 +120,13 @@ fn check_text(file: &Path, text: &str, findings: &mut Findings) {
         && text.contains(".workspace = true")
         && !text.contains("[lints]\nworkspace = true")
     {
-        findings
-            .faults
-            .push(format!("{name}: add `[lints] workspace = true`"));
+        findings.faults.push(format!("{name}: add `[lints] workspace = true`"));
     }
     for (number, line) in (1..).zip(text.lines()) {
         if HOME_FOLDERS.iter().any(|folder| names_home(line, folder)) {
-            findings.faults.push(format!(
-                "{name}:{number}: a path in a home folder; remove it"
-            ));
+            findings
+                .faults
+                .push(format!("{name}:{number}: a path in a home folder; remove it"));
         }
     }
 }
@@ -171,27 +157,18 @@ mod tests {
         for file in ["crates/a/src/utils.rs", "helpers.py", "docs/misc/page.md"] {
             assert!(name_fault(Path::new(file)).is_some(), "{file}");
         }
-        for file in [
-            "crates/a/src/window.rs",
-            "src/utilisation.rs",
-            "common_law.rs",
-        ] {
+        for file in ["crates/a/src/window.rs", "src/utilisation.rs", "common_law.rs"] {
             assert!(name_fault(Path::new(file)).is_none(), "{file}");
         }
     }
 
     #[test]
     fn a_recording_is_found_by_place_by_name_and_by_contents() {
-        let fault =
-            |file: &str, sha256| recording_fault(Path::new(file), sha256, &[("eth.csv", "abc")]);
+        let fault = |file: &str, sha256| recording_fault(Path::new(file), sha256, &[("eth.csv", "abc")]);
         assert_eq!(fault("datasets/folds.json", "x"), None);
         assert!(fault("datasets/new.csv", "x").unwrap().contains("no data"));
         for (file, sha256) in [("eth.csv", "x"), ("renamed.txt", "abc")] {
-            assert!(
-                fault(file, sha256)
-                    .unwrap()
-                    .contains("the recording eth.csv")
-            );
+            assert!(fault(file, sha256).unwrap().contains("the recording eth.csv"));
         }
     }
 
@@ -219,17 +196,12 @@ mod tests {
     fn home_folders_are_found_and_addresses_are_not() {
         for folder in HOME_FOLDERS {
             assert_eq!(
-                found("a.md", &format!("\nsee {folder}someone/x"))
-                    .faults
-                    .len(),
+                found("a.md", &format!("\nsee {folder}someone/x")).faults.len(),
                 1,
                 "{folder}"
             );
             for text in ["https://host{}page", "a{}b", "{} alone"] {
-                assert!(
-                    found("a.md", &text.replace("{}", folder)).faults.is_empty(),
-                    "{text}"
-                );
+                assert!(found("a.md", &text.replace("{}", folder)).faults.is_empty(), "{text}");
             }
         }
     }

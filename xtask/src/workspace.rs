@@ -22,12 +22,7 @@ const HARMFUL: [&str; 5] = [
 ];
 
 /// Prefixes of variables that `cargo run` sets. A second cargo would see a changed environment and rebuild.
-const LEAKING_PREFIXES: [&str; 4] = [
-    "CARGO_PKG_",
-    "CARGO_MANIFEST_",
-    "CARGO_BIN_",
-    "CARGO_CRATE_",
-];
+const LEAKING_PREFIXES: [&str; 4] = ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_BIN_", "CARGO_CRATE_"];
 
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
@@ -37,8 +32,8 @@ pub(crate) struct Workspace {
 
 impl Workspace {
     pub(crate) fn find() -> Result<Self> {
-        let manifest_dir = env::var_os("CARGO_MANIFEST_DIR")
-            .map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
+        let manifest_dir =
+            env::var_os("CARGO_MANIFEST_DIR").map_or_else(|| PathBuf::from(env!("CARGO_MANIFEST_DIR")), PathBuf::from);
         let root = manifest_dir
             .ancestors()
             .find(|folder| folder.join("xtask/Cargo.toml").is_file())
@@ -115,13 +110,7 @@ impl Workspace {
         let list = self
             .shell
             .cmd("git")
-            .args([
-                "ls-files",
-                "-z",
-                "--cached",
-                "--others",
-                "--exclude-standard",
-            ])
+            .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])
             .quiet()
             .read()
             .context("`git ls-files` failed: the tidy checks need git and a git checkout")?;
@@ -140,14 +129,7 @@ impl Workspace {
     pub(crate) fn commit(&self) -> String {
         self.shell
             .cmd("git")
-            .args([
-                "describe",
-                "--always",
-                "--dirty",
-                "--abbrev=12",
-                "--exclude",
-                "*",
-            ])
+            .args(["describe", "--always", "--dirty", "--abbrev=12", "--exclude", "*"])
             .quiet()
             .ignore_stderr()
             .read()
@@ -183,11 +165,8 @@ fn variables_to_remove() -> Vec<OsString> {
         }
     });
     let leaking = env::vars_os().map(|(name, _)| name).filter(|name| {
-        name.to_str().is_some_and(|text| {
-            LEAKING_PREFIXES
-                .iter()
-                .any(|prefix| text.starts_with(prefix))
-        })
+        name.to_str()
+            .is_some_and(|text| LEAKING_PREFIXES.iter().any(|prefix| text.starts_with(prefix)))
     });
     HARMFUL
         .iter()
@@ -226,8 +205,7 @@ pub(crate) fn step(name: &str, command: &Cmd<'_>) -> Result<()> {
 
 /// An absolute path is returned unchanged; a relative one is resolved in the folder where the command was started.
 pub(crate) fn absolute(path: &Path) -> Result<PathBuf> {
-    std::path::absolute(path)
-        .with_context(|| format!("{} cannot be made an absolute path", path.display()))
+    std::path::absolute(path).with_context(|| format!("{} cannot be made an absolute path", path.display()))
 }
 
 #[cfg(test)]

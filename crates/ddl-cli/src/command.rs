@@ -24,10 +24,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
 use ddl::report::Report;
-use ddl::{
-    BuiltinModel, Clearance, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, Precision,
-    RunConfig,
-};
+use ddl::{BuiltinModel, Clearance, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, Precision, RunConfig};
 use std::path::{Path, PathBuf};
 
 /// Seed of the simulated crowds, the same for all users.
@@ -131,9 +128,7 @@ impl KeepClear {
 }
 
 fn clearance(text: &str) -> Result<Clearance, String> {
-    let metres: f64 = text
-        .parse()
-        .map_err(|error| format!("must be a number: {error}"))?;
+    let metres: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
     Clearance::new(metres).map_err(|error| error.to_string())
 }
 
@@ -193,9 +188,7 @@ impl RecordingsAt {
 
     fn as_options(&self) -> String {
         let data = self.data.as_ref();
-        let data = data.map_or_else(String::new, |data| {
-            format!(" --data {}", output::shell_word(data))
-        });
+        let data = data.map_or_else(String::new, |data| format!(" --data {}", output::shell_word(data)));
         data + &self.units.as_options()
     }
 
@@ -214,11 +207,7 @@ impl RecordingsAt {
         if convention != Convention::Own {
             return self.dataset(convention);
         }
-        dataset(
-            convention,
-            self.data.as_deref(),
-            &self.units.or_those_of(run),
-        )
+        dataset(convention, self.data.as_deref(), &self.units.or_those_of(run))
     }
 }
 
@@ -227,10 +216,7 @@ impl RecordingsAt {
 fn convention_of(data: Option<&Path>, of_model: Convention) -> Convention {
     let Some(data) = data else { return of_model };
     let holds_some = |folder: &Path| of_model.file_names().any(|f| folder.join(f).is_file());
-    if holds_some(data)
-        || holds_some(&data.join(of_model.name()))
-        || locate(of_model, Some(data)).is_ok()
-    {
+    if holds_some(data) || holds_some(&data.join(of_model.name())) || locate(of_model, Some(data)).is_ok() {
         of_model
     } else {
         Convention::Own
@@ -244,9 +230,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         let read = recordings::read(&files, units)?;
         recordings::tell_notes(&read);
         recordings::warn_of_doubts(&read);
-        return Ok(Dataset::own(
-            read.into_iter().map(|of| of.recording).collect(),
-        )?);
+        return Ok(Dataset::own(read.into_iter().map(|of| of.recording).collect())?);
     }
     if units.are_given() {
         bail!(
@@ -261,8 +245,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
 }
 
 fn folder(convention: Convention, data: Option<&Path>) -> anyhow::Result<PathBuf> {
-    locate(convention, data)
-        .context("no recordings; `cargo xtask data fetch` gets them, or use --convention simulated")
+    locate(convention, data).context("no recordings; `cargo xtask data fetch` gets them, or use --convention simulated")
 }
 
 pub(crate) fn at_least_one(text: &str) -> Result<usize, String> {

@@ -20,10 +20,7 @@ impl Interrupt {
 
     /// Catches Ctrl-C (SIGINT) and SIGTERM, and calls back with the number of each request; request `last` ends the
     /// program at once.
-    pub(crate) fn catch_until(
-        last: usize,
-        hear: impl Fn(usize) + Send + 'static,
-    ) -> anyhow::Result<Self> {
+    pub(crate) fn catch_until(last: usize, hear: impl Fn(usize) + Send + 'static) -> anyhow::Result<Self> {
         let interrupt = Self::default();
         let seen = interrupt.clone();
         let mut before: Option<Instant> = None;

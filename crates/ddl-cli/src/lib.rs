@@ -79,10 +79,7 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         // for example `ddl info | head -1`
         Err(error) if telling::reader_has_gone(&error) => 0,
         Err(error) => {
-            let interrupted = matches!(
-                error.downcast_ref::<ddl::DdlError>(),
-                Some(ddl::DdlError::Interrupted)
-            );
+            let interrupted = matches!(error.downcast_ref::<ddl::DdlError>(), Some(ddl::DdlError::Interrupted));
             let source = if interrupted { "ddl" } else { "error" };
             telling::tell(format_args!("{source}: {}", telling::words(&error)));
             if interrupted { 130 } else { 1 }

@@ -20,8 +20,9 @@ pub(crate) fn ensure_not_input(output: Option<&Path>, input: &Path) -> anyhow::R
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {
         // A device or a pipe cannot be replaced.
-        Some(path) if path.exists() && !path.is_file() => std::fs::write(path, text)
-            .with_context(|| format!("cannot write to {}", path.display())),
+        Some(path) if path.exists() && !path.is_file() => {
+            std::fs::write(path, text).with_context(|| format!("cannot write to {}", path.display()))
+        }
         Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
         None => print(text),
     }

@@ -57,9 +57,7 @@ impl Progress {
         } else {
             ProgressBar::hidden()
         };
-        let style = ProgressStyle::with_template(
-            "{prefix:>9} [{bar:32}] {pos}/{len} {elapsed} (left {eta}) {msg}",
-        );
+        let style = ProgressStyle::with_template("{prefix:>9} [{bar:32}] {pos}/{len} {elapsed} (left {eta}) {msg}");
         // the template is a valid constant, so the default is never used
         bar.set_style(
             style
@@ -79,9 +77,8 @@ impl Progress {
         self.bar.set_length(total);
         self.bar.set_position(done);
         self.bar.set_message(message.to_owned());
-        let line_is_due = self.mode == ProgressMode::Auto
-            && self.bar.is_hidden()
-            && self.told.get().elapsed() >= LINE_EVERY;
+        let line_is_due =
+            self.mode == ProgressMode::Auto && self.bar.is_hidden() && self.told.get().elapsed() >= LINE_EVERY;
         if line_is_due {
             self.told.set(Instant::now());
             tell(format_args!("{}: {done} of {total} {message}", self.stage));

@@ -33,12 +33,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
             Protocol::Single | Protocol::OnlineSingle => ("ADE/FDE", "of one hypothesis"),
             _ => ("minADE/minFDE", "best of K"),
         };
-        let of_table = || {
-            report
-                .rows()
-                .iter()
-                .filter(|row| common(row) == common(first))
-        };
+        let of_table = || report.rows().iter().filter(|row| common(row) == common(first));
         let folds = of_table().map(|row| row.conditions.fold.chars().count());
         let width = folds.max().unwrap_or(0).max(10);
         let counted = match convention {
@@ -54,11 +49,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         if let Some(subset) = &first.conditions.test_subset {
             writeln!(out, "{subset}")?;
         }
-        writeln!(
-            out,
-            "{:width$} {counted} {:>3}  {errors:15}  forecaster",
-            "fold", "K"
-        )?;
+        writeln!(out, "{:width$} {counted} {:>3}  {errors:15}  forecaster", "fold", "K")?;
         for row in of_table() {
             let (conditions, scores) = (&row.conditions, &row.scores);
             writeln!(
@@ -100,9 +91,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
         "recording", PEDESTRIAN_WINDOWS
     )?;
     for of in &recordings {
-        let same = of_other
-            .iter()
-            .find(|other| other.recording == of.recording);
+        let same = of_other.iter().find(|other| other.recording == of.recording);
         writeln!(
             out,
             "{:width$} {:>counts$}  {:column$}  {}",

@@ -68,9 +68,7 @@ mod tests {
         };
         assert!(reader_has_gone(&error(ErrorKind::BrokenPipe)));
         assert!(!reader_has_gone(&error(ErrorKind::StorageFull)));
-        assert!(
-            advice(&error(ErrorKind::StorageFull)).is_some_and(|told| told.contains("make room"))
-        );
+        assert!(advice(&error(ErrorKind::StorageFull)).is_some_and(|told| told.contains("make room")));
         assert_eq!(advice(&error(ErrorKind::InvalidData)), None);
     }
 

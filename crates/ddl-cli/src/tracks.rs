@@ -5,9 +5,7 @@ use crate::units::{ResampledRecording, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
-use ddl::data::{
-    Completion, CompletionCounts, OBSERVED, Observation, PlausibilityWarning, Recording, Window,
-};
+use ddl::data::{Completion, CompletionCounts, OBSERVED, Observation, PlausibilityWarning, Recording, Window};
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
@@ -75,9 +73,7 @@ impl Tracks {
 
     pub(crate) fn live_units(&self, run: &RunConfig) -> anyhow::Result<Units> {
         if self.last {
-            bail!(
-                "--last does not apply to live tracks: every frame of standard input is forecast as it arrives"
-            );
+            bail!("--last does not apply to live tracks: every frame of standard input is forecast as it arrives");
         }
         Ok(self.units.or_those_of(run))
     }

@@ -89,8 +89,7 @@ impl Units {
             let text = std::fs::read_to_string(file);
             text.is_ok_and(|text| text.parse() == Ok(told))
         };
-        (homography.is_some() && homography == place(file))
-            || self.remembered.homography.is_some_and(says)
+        (homography.is_some() && homography == place(file)) || self.remembered.homography.is_some_and(says)
     }
 
     /// Reads the recording in the file, in metres and steps of 0.4 s. The format is recognised. The file is read once,
@@ -146,16 +145,11 @@ impl Units {
         let apart = recording.frame_step();
         let of_step = |step: i64| TIME_STEP / step as f64;
         let given = self.rate();
-        let otherwise = if given.have_rate() {
-            given
-        } else {
-            self.remembered
-        };
+        let otherwise = if given.have_rate() { given } else { self.remembered };
         let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
         let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
-        let scenes = format!(
-            "the file's scenes give {rate} frames per second, and its frame numbers increase by {apart}"
-        );
+        let scenes =
+            format!("the file's scenes give {rate} frames per second, and its frame numbers increase by {apart}");
         let of_file = format!("--fps {}", rounded(1.0 / told));
         match rate_option(&given) {
             _ if same => None,
@@ -172,9 +166,7 @@ impl Units {
             None
         };
         let positions = self.homography.is_none() && self.remembered.homography.is_some();
-        let taken = rate
-            .into_iter()
-            .chain(positions.then(|| "its homography".to_owned()));
+        let taken = rate.into_iter().chain(positions.then(|| "its homography".to_owned()));
         let taken: Vec<String> = taken.collect();
         (!taken.is_empty()).then(|| {
             format!(
@@ -195,8 +187,7 @@ impl Units {
                 file.display()
             );
         }
-        let bytes =
-            std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
+        let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
         let format = Format::guess(file, &bytes);
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = parse_recording(&bytes, &file.display().to_string(), format)?;
@@ -215,8 +206,7 @@ impl Units {
             Some(none) if none.as_os_str() == "none" => return Ok(None),
             Some(path) => path,
         };
-        let text = std::fs::read_to_string(path)
-            .with_context(|| format!("cannot read {}", path.display()))?;
+        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
         let homography = text.parse().with_context(|| path.display().to_string())?;
         Ok(Some(homography))
     }
@@ -268,9 +258,7 @@ fn rounded(number: f64) -> f64 {
 }
 
 fn positive(text: &str) -> Result<f64, String> {
-    let number: f64 = text
-        .parse()
-        .map_err(|error| format!("must be a number: {error}"))?;
+    let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
     if number.is_finite() && number > 0.0 {
         Ok(number)
     } else {

@@ -39,8 +39,7 @@ fn without_libtorch_a_benchmark_tells_how_to_get_it() {
         .unwrap();
     let complaint = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{complaint}");
-    let said = complaint
-        .starts_with("error: training needs libtorch, and this program is built without it");
+    let said = complaint.starts_with("error: training needs libtorch, and this program is built without it");
     assert!(said && complaint.lines().count() == 1, "{complaint}");
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
 }

@@ -67,9 +67,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn show(file: &Path, bytes: &[u8], frames_a_second: f64) -> Result<(), Box<dyn Error>> {
     let format = Format::guess(file, bytes);
     let recording = parse_recording(bytes, &file.display().to_string(), format)?;
-    let recording = recording
-        .resampled_to_steps(1.0 / frames_a_second)?
-        .recording;
+    let recording = recording.resampled_to_steps(1.0 / frames_a_second)?.recording;
     println!(
         "{}: format {format}, {} positions of {} pedestrians, {} frames per step of 0.4 s",
         recording.name(),

@@ -32,9 +32,6 @@ impl Rotation {
     /// The rotated position (m).
     #[must_use]
     pub fn apply(&self, [x, y]: Position) -> Position {
-        [
-            self.cosine * x - self.sine * y,
-            self.sine * x + self.cosine * y,
-        ]
+        [self.cosine * x - self.sine * y, self.sine * x + self.cosine * y]
     }
 }

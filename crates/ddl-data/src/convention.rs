@@ -61,10 +61,7 @@ impl Convention {
 
     /// The files in a folder of this convention; empty where the convention has no files of fixed names.
     pub fn file_names(self) -> impl Iterator<Item = &'static str> {
-        self.plan()
-            .recordings
-            .iter()
-            .filter_map(|r| r.file.as_deref())
+        self.plan().recordings.iter().filter_map(|r| r.file.as_deref())
     }
 
     /// Names of the recordings, in order.
@@ -154,8 +151,7 @@ static NOTHING_PLANNED: ConventionPlan = ConventionPlan {
 
 static PLANS: LazyLock<Plans> = LazyLock::new(|| {
     // The file is compiled in; the tests below read it.
-    serde_json::from_str(include_str!("../folds.json"))
-        .expect("the compiled-in folds.json is valid")
+    serde_json::from_str(include_str!("../folds.json")).expect("the compiled-in folds.json is valid")
 });
 
 #[cfg(test)]
@@ -169,10 +165,7 @@ mod tests {
             let folds = if convention == Convention::Own { 0 } else { 5 };
             assert_eq!(plan.folds.len(), folds, "{convention}");
             for name in plan.folds.iter().flat_map(|f| &f.test) {
-                assert!(
-                    plan.recordings.iter().any(|r| r.name == *name),
-                    "{convention}: {name}"
-                );
+                assert!(plan.recordings.iter().any(|r| r.name == *name), "{convention}: {name}");
             }
             for recording in &plan.recordings {
                 assert_eq!(recording.file.is_some(), convention.format().is_some());
@@ -190,11 +183,7 @@ mod tests {
                 let recording = recordings.find(|recording| recording.name == *name);
                 recording.and_then(|recording| recording.place.as_deref())
             };
-            for fold in plan
-                .folds
-                .iter()
-                .filter(|fold| !fold.place_memory.is_empty())
-            {
+            for fold in plan.folds.iter().filter(|fold| !fold.place_memory.is_empty()) {
                 let [first, second] = &fold.place_memory[..] else {
                     panic!("{convention}, {}: not a pair", fold.name)
                 };

@@ -26,10 +26,7 @@ impl Dataset {
         let format = convention.format().ok_or(DataError::NoFiles(convention))?;
         let mut recordings = Vec::new();
         for planned in &convention.plan().recordings {
-            let file = planned
-                .file
-                .as_deref()
-                .ok_or(DataError::NoFiles(convention))?;
+            let file = planned.file.as_deref().ok_or(DataError::NoFiles(convention))?;
             let recording = read_recording(&folder.join(file), format)?
                 .with_name(planned.name.as_str())
                 .with_frame_step(planned.frame_step)
@@ -39,10 +36,7 @@ impl Dataset {
                 })?;
             recordings.push(recording);
         }
-        Ok(Self {
-            convention,
-            recordings,
-        })
+        Ok(Self { convention, recordings })
     }
 
     /// Simulates the five scenes of [`simulate`]. The same seed gives the same bytes.
@@ -124,11 +118,7 @@ impl Dataset {
             .ok_or_else(|| DataError::UnknownRecording {
                 convention: self.convention,
                 name: name.to_owned(),
-                known: self
-                    .recordings
-                    .iter()
-                    .map(|r| r.name().to_owned())
-                    .collect(),
+                known: self.recordings.iter().map(|r| r.name().to_owned()).collect(),
             })
     }
 

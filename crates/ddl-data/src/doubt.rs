@@ -61,9 +61,7 @@ pub enum PlausibilityWarning {
         .0.speed
     )]
     Jump(Fastest),
-    #[error(
-        "no pedestrian was seen at 20 steps in a row: these tracks cannot be used for training or evaluation"
-    )]
+    #[error("no pedestrian was seen at 20 steps in a row: these tracks cannot be used for training or evaluation")]
     NothingToLearnFrom,
 }
 

@@ -29,15 +29,10 @@ pub(crate) enum FormatProblem {
     #[error("the file is compressed; unpack it, or export the spreadsheet as csv")]
     Compressed,
     #[error("line missing: the format has exactly {expected} lines ({names}), the file ends here")]
-    MissingLine {
-        expected: usize,
-        names: &'static str,
-    },
+    MissingLine { expected: usize, names: &'static str },
     #[error("unexpected line: the format has exactly {expected} lines")]
     ExtraLine { expected: usize },
-    #[error(
-        "{found} fields, but line 1 has {expected}; all lines must have the same number of fields"
-    )]
+    #[error("{found} fields, but line 1 has {expected}; all lines must have the same number of fields")]
     UnequalLines { expected: usize, found: usize },
     #[error("{found} fields where {expected} are expected ({names})")]
     FieldCount {
@@ -66,9 +61,7 @@ pub(crate) enum FormatProblem {
     MissingField { name: &'static str },
     #[error("scene.fps must be a number above 0, the frames in a second, found {found}")]
     Rate { found: String },
-    #[error(
-        "scene.fps is {found}, but {first} on line {first_line}; a file holds one recording with one frame rate"
-    )]
+    #[error("scene.fps is {found}, but {first} on line {first_line}; a file holds one recording with one frame rate")]
     RateChanges {
         first_line: usize,
         first: String,
@@ -85,9 +78,7 @@ pub(crate) enum FormatProblem {
         first: String,
         found: String,
     },
-    #[error(
-        "pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one row"
-    )]
+    #[error("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one row")]
     Duplicate {
         pedestrian: Box<PedestrianName>,
         frame: i64,
@@ -167,9 +158,7 @@ fn wanted(name: &str) -> &'static str {
 fn advice_on_integer(name: &str, found: &str) -> &'static str {
     let is_number = found.parse::<f64>().is_ok_and(f64::is_finite);
     match name {
-        "frame" if is_number && found.contains('.') => {
-            "; is it a time? Count frames instead: 0, 1, 2, and so on"
-        }
+        "frame" if is_number && found.contains('.') => "; is it a time? Count frames instead: 0, 1, 2, and so on",
         _ => advice_on_number(found),
     }
 }
@@ -194,10 +183,7 @@ pub enum RecordingError {
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
     FrameStep { found: i64 },
     #[error("pedestrian {pedestrian}: frame {frame} is not below 2^53 in size")]
-    FrameOutOfRange {
-        pedestrian: PedestrianId,
-        frame: i64,
-    },
+    FrameOutOfRange { pedestrian: PedestrianId, frame: i64 },
     #[error("pedestrian {pedestrian}, frame {frame}: position {position:?} is not finite")]
     NotFinite {
         pedestrian: PedestrianId,
@@ -205,10 +191,7 @@ pub enum RecordingError {
         position: crate::Position,
     },
     #[error("pedestrian {pedestrian} is in frame {frame} twice")]
-    Duplicate {
-        pedestrian: PedestrianId,
-        frame: i64,
-    },
+    Duplicate { pedestrian: PedestrianId, frame: i64 },
 }
 
 /// Tracks that cannot form a [`Window`](crate::Window).
@@ -226,10 +209,7 @@ pub enum WindowError {
         observed = crate::OBSERVED,
         whole = crate::WINDOW
     )]
-    Length {
-        pedestrian: PedestrianId,
-        found: usize,
-    },
+    Length { pedestrian: PedestrianId, found: usize },
     #[error("pedestrian {pedestrian}, position {index} of the track: {position:?} is not finite")]
     NotFinite {
         pedestrian: PedestrianId,
@@ -250,17 +230,11 @@ pub enum WindowError {
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum DataError {
     #[error("cannot read {}: {source}", .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error(transparent)]
     Format(#[from] FormatError),
     #[error("recording {name}: {source}")]
-    Recording {
-        name: String,
-        source: RecordingError,
-    },
+    Recording { name: String, source: RecordingError },
     #[error(
         "the {convention} recordings were not found in {}. Put the files there, or name \
          their folder in the environment variable {variable}",
@@ -271,9 +245,7 @@ pub enum DataError {
         convention: Convention,
         searched: Vec<String>,
     },
-    #[error(
-        "the {0} convention has no files of fixed names; use `Dataset::simulated` or `Dataset::own`"
-    )]
+    #[error("the {0} convention has no files of fixed names; use `Dataset::simulated` or `Dataset::own`")]
     NoFiles(Convention),
     #[error("{problem}")]
     Own { problem: String },

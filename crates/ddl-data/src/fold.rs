@@ -110,9 +110,7 @@ impl<'a> Fold<'a> {
         };
         let place = place_of(recording);
         // Where the recording's end is kept for validation, the recording itself would reveal its own future.
-        let same = |r: &&&Recording| {
-            r.name() != recording && place.is_some() && place_of(r.name()) == place
-        };
+        let same = |r: &&&Recording| r.name() != recording && place.is_some() && place_of(r.name()) == place;
         self.training.iter().filter(same).copied().collect()
     }
 
@@ -131,8 +129,7 @@ impl<'a> Fold<'a> {
     pub fn test_windows(&self, rule: WindowRule) -> Vec<Window> {
         let mut windows: Vec<_> = self.test.iter().flat_map(|r| r.windows(rule)).collect();
         if let (WindowRule::Published, Some(first)) = (rule, self.test.first()) {
-            windows
-                .retain(|w| w.recording() != first.name() || w.start_frame() != first.frames()[0]);
+            windows.retain(|w| w.recording() != first.name() || w.start_frame() != first.frames()[0]);
         }
         windows
     }
@@ -179,10 +176,7 @@ impl<'a> Fold<'a> {
     #[must_use]
     pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
         let rule = WindowRule::SocialGan { min_pedestrians };
-        let TrainingSplit {
-            training,
-            validation,
-        } = self.training_split(rule, SOCIAL_GAN_VALIDATION);
+        let TrainingSplit { training, validation } = self.training_split(rule, SOCIAL_GAN_VALIDATION);
         SocialGanSplit {
             training,
             validation,

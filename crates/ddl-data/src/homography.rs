@@ -3,10 +3,7 @@
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{
-    COORDINATE_LIMIT, Observation, PedestrianName, PedestrianNames, Position, Recording,
-    RecordingError,
-};
+use crate::{COORDINATE_LIMIT, Observation, PedestrianName, PedestrianNames, Position, Recording, RecordingError};
 
 const SIZE: usize = 3;
 
@@ -65,11 +62,7 @@ impl Homography {
     ///
     /// # Errors
     /// [`HomographyError::Horizon`] where the pixel has no place on the ground.
-    pub fn place(
-        &self,
-        seen: &Observation,
-        names: &PedestrianNames,
-    ) -> Result<Position, HomographyError> {
+    pub fn place(&self, seen: &Observation, names: &PedestrianNames) -> Result<Position, HomographyError> {
         let horizon = || HomographyError::Horizon {
             pedestrian: names.of(seen.pedestrian),
             frame: seen.frame,
@@ -139,9 +132,7 @@ pub enum HomographyError {
     NotFinite { row: usize, column: usize },
     #[error("the homography is singular: it maps the plane to a line; is a row repeated?")]
     Singular,
-    #[error(
-        "line {line} of the homography must hold three numbers and be one of three lines, found {found:?}"
-    )]
+    #[error("line {line} of the homography must hold three numbers and be one of three lines, found {found:?}")]
     Line { line: usize, found: String },
     #[error("a homography has three rows of three numbers, found {found}")]
     Rows { found: usize },

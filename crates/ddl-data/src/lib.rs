@@ -107,9 +107,7 @@ pub use remembered::Remembered;
 pub use rule::WindowRule;
 pub use scene_name::{SceneName, SceneNameError};
 pub use summary::{Hole, Summary};
-pub use track::{
-    COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW,
-};
+pub use track::{COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW};
 pub use unknown_name::UnknownName;
 pub use whole_file::{remove_half_written, write_whole};
 pub use window::Window;

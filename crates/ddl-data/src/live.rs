@@ -201,11 +201,7 @@ impl LiveTracks {
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;
         let (mut ids, mut positions, mut made_up) = (Vec::new(), Vec::new(), Vec::new());
-        for pedestrian in self
-            .pedestrians
-            .iter()
-            .filter(|pedestrian| pedestrian.is_at(last))
-        {
+        for pedestrian in self.pedestrians.iter().filter(|pedestrian| pedestrian.is_at(last)) {
             let seen = pedestrian.seen.iter().copied();
             if let Some((observed, missed)) = self.completion.observation(seen, self.frame_step) {
                 ids.push(pedestrian.id);
@@ -328,8 +324,5 @@ pub enum LiveError {
         position: Position,
     },
     #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one position")]
-    Duplicate {
-        pedestrian: PedestrianId,
-        frame: i64,
-    },
+    Duplicate { pedestrian: PedestrianId, frame: i64 },
 }

@@ -59,19 +59,13 @@ fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, 
         }
         candidates.insert(0, root);
         for folder in candidates {
-            match convention
-                .file_names()
-                .find(|file| !folder.join(file).is_file())
-            {
+            match convention.file_names().find(|file| !folder.join(file).is_file()) {
                 None => return Ok(folder),
                 Some(missing) => searched.push(format!("{} (no {missing})", folder.display())),
             }
         }
     }
-    Err(DataError::NotFound {
-        convention,
-        searched,
-    })
+    Err(DataError::NotFound { convention, searched })
 }
 
 #[cfg(test)]
@@ -95,10 +89,7 @@ mod tests {
         });
         for start in [root.path(), &star, &social_gan] {
             assert_eq!(locate(Convention::Star, Some(start)).unwrap(), star);
-            assert_eq!(
-                locate(Convention::SocialGan, Some(start)).unwrap(),
-                social_gan
-            );
+            assert_eq!(locate(Convention::SocialGan, Some(start)).unwrap(), social_gan);
         }
     }
 
@@ -107,9 +98,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         fill(root.path(), Convention::Star);
         std::fs::remove_file(root.path().join("zara02.csv")).unwrap();
-        let error = locate(Convention::Star, Some(root.path()))
-            .unwrap_err()
-            .to_string();
+        let error = locate(Convention::Star, Some(root.path())).unwrap_err().to_string();
         assert!(
             error.contains("(no zara02.csv)") && error.contains(DATASETS_VARIABLE),
             "{error}"
@@ -128,11 +117,7 @@ mod tests {
         std::fs::create_dir_all(&member).unwrap();
         std::fs::write(workspace.join("Cargo.lock"), "").unwrap();
         let found = roots(None, None, &member);
-        assert_eq!(
-            found.len(),
-            3,
-            "the folders above the workspace are not searched"
-        );
+        assert_eq!(found.len(), 3, "the folders above the workspace are not searched");
         assert_eq!(found[2], workspace.join(DEFAULT_FOLDER));
         let relative = roots(None, Some(Path::new("../data")), &member);
         assert_eq!(relative[2], workspace.join("../data"));

@@ -80,9 +80,7 @@ impl PedestrianNames {
             (Some(word), PedestrianName::Word(name)) => word == name,
             (Some(word), PedestrianName::Number(number)) => word == number.to_string(),
             #[expect(clippy::float_cmp, reason = "whole numbers below 2^53 are exact")]
-            (None, PedestrianName::Word(name)) => name
-                .parse::<f64>()
-                .is_ok_and(|number| number == id.0 as f64),
+            (None, PedestrianName::Word(name)) => name.parse::<f64>().is_ok_and(|number| number == id.0 as f64),
         }
     }
 }

@@ -54,9 +54,7 @@ impl Places {
         let nearest = self.tree.nearest_neighbor_iter(centre).take(count + 1);
         // The tree compares squared distances, whose rounding may change the order, so its result only bounds the
         // search.
-        let reach = nearest
-            .map(|place| distance(place.geom()))
-            .fold(0.0, f64::max);
+        let reach = nearest.map(|place| distance(place.geom())).fold(0.0, f64::max);
         let others = self.around(centre, reach);
         let others = others.map(|place| (distance(place.geom()), place.data as usize));
         let mut others: Vec<(f64, usize)> = others.filter(|&(_, other)| other != own).collect();

@@ -148,9 +148,7 @@ fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum RateError {
-    #[error(
-        "a frame must take more than 0 s, and 0.4 s must be at most 2^31 frames; found {found} s per frame"
-    )]
+    #[error("a frame must take more than 0 s, and 0.4 s must be at most 2^31 frames; found {found} s per frame")]
     FrameTime { found: f64 },
     #[error(
         "observations are {apart:.2} s apart, more than 1.2 s: too few to follow a track; is the rate right, and do \

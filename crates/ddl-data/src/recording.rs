@@ -65,9 +65,7 @@ impl Recording {
             .windows(2)
             .find(|w| (w[0].frame, w[0].pedestrian) == (w[1].frame, w[1].pedestrian))
         {
-            let Observation {
-                frame, pedestrian, ..
-            } = pair[0];
+            let Observation { frame, pedestrian, .. } = pair[0];
             return Err(RecordingError::Duplicate { pedestrian, frame });
         }
         let mut frames = Vec::new();
@@ -95,10 +93,7 @@ impl Recording {
     ///
     /// # Errors
     /// As [`Recording::new`].
-    pub fn in_usual_step(
-        name: impl Into<Arc<str>>,
-        observations: Vec<Observation>,
-    ) -> Result<Self, RecordingError> {
+    pub fn in_usual_step(name: impl Into<Arc<str>>, observations: Vec<Observation>) -> Result<Self, RecordingError> {
         let recording = Self::new(name, 1, observations)?;
         let mut counts = BTreeMap::<i64, usize>::new();
         for pair in recording.frames.windows(2) {

@@ -68,9 +68,7 @@ impl FromStr for WindowRule {
             "published" => return Ok(Self::Published),
             "complete" => return Ok(Self::Complete),
             "social-gan" => Some(SOCIAL_GAN_FEWEST),
-            _ => word
-                .strip_prefix("social-gan-")
-                .and_then(|number| number.parse().ok()),
+            _ => word.strip_prefix("social-gan-").and_then(|number| number.parse().ok()),
         };
         fewest
             .filter(|&fewest| fewest > 0)
@@ -140,8 +138,7 @@ impl<'a> Links<'a> {
     }
 
     fn counts(&self, observation: usize) -> bool {
-        self.rule != WindowRule::Published
-            || self.recording.observations()[observation].position != [0.0, 0.0]
+        self.rule != WindowRule::Published || self.recording.observations()[observation].position != [0.0, 0.0]
     }
 
     /// The pairs of observations of two frames that show the same pedestrian; both frames are sorted by pedestrian.
@@ -167,10 +164,7 @@ impl<'a> Links<'a> {
         }
         let frames = self.recording.frames();
         let beyond = frames[index] + STEPS_AHEAD * self.recording.frame_step();
-        let (here, beyond) = (
-            self.recording.range_of(index),
-            self.recording.range_at(beyond),
-        );
+        let (here, beyond) = (self.recording.range_of(index), self.recording.range_at(beyond));
         !self.pairs(here, beyond).is_empty()
     }
 
@@ -194,21 +188,10 @@ impl<'a> Links<'a> {
                 .map(|i| &observations[i])
         };
         let frames = follow(first[0]).map(|o| o.frame).collect();
-        let pedestrians: Vec<PedestrianId> =
-            first.iter().map(|&i| observations[i].pedestrian).collect();
-        let positions: Vec<Position> = first
-            .iter()
-            .flat_map(|&i| follow(i))
-            .map(|o| o.position)
-            .collect();
+        let pedestrians: Vec<PedestrianId> = first.iter().map(|&i| observations[i].pedestrian).collect();
+        let positions: Vec<Position> = first.iter().flat_map(|&i| follow(i)).map(|o| o.position).collect();
         let name = self.recording.shared_name();
-        let window = Window::cut(
-            name,
-            self.recording.frame_step(),
-            frames,
-            pedestrians,
-            positions,
-        );
+        let window = Window::cut(name, self.recording.frame_step(), frames, pedestrians, positions);
         Some(window.with_names(self.recording.names().clone()))
     }
 }

@@ -75,22 +75,12 @@ mod tests {
 
     #[test]
     fn names_are_short_and_printable() {
-        for text in [
-            "",
-            " \t",
-            &"é".repeat(33),
-            "a\u{1b}[0m",
-            "a\nb",
-            "\u{85}a\u{0}",
-        ] {
+        for text in ["", " \t", &"é".repeat(33), "a\u{1b}[0m", "a\nb", "\u{85}a\u{0}"] {
             assert!(SceneName::new(text).is_err(), "{text:?}");
         }
         assert!(SceneName::new(&"é".repeat(32)).is_ok());
         let told = SceneName::new("a\u{1b}b").unwrap_err().to_string();
-        assert!(
-            !told.contains('\u{1b}') && told.contains("a\\u{1b}b"),
-            "{told}"
-        );
+        assert!(!told.contains('\u{1b}') && told.contains("a\\u{1b}b"), "{told}");
     }
 
     proptest! {

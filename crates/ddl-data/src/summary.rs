@@ -5,10 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use crate::doubt::{self, Fastest, PlausibilityWarning, Speeds};
-use crate::{
-    Completion, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP,
-    WindowRule,
-};
+use crate::{Completion, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP, WindowRule};
 
 /// Summary of a recording, in steps of 0.4 s.
 ///
@@ -109,11 +106,7 @@ impl Summary {
 impl Recording {
     fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
         // Every frame of a track is a frame of the recording.
-        let index = |frame| {
-            self.frames()
-                .binary_search(&frame)
-                .unwrap_or_else(|place| place)
-        };
+        let index = |frame| self.frames().binary_search(&frame).unwrap_or_else(|place| place);
         let spans = tracks
             .values()
             .map(|track| index(track[track.len() - 1].frame) - index(track[0].frame) + 1);
@@ -162,9 +155,7 @@ impl Recording {
             farthest: speeds.farthest,
             unseen: self.unseen(&tracks),
             holes: holes.len(),
-            longest_hole: holes
-                .into_iter()
-                .max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
+            longest_hole: holes.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
             to_forecast: pedestrians(&self.completed_windows(Completion::USUAL)),
             seen_whole: pedestrians(&self.observed_windows()),
             windows: windows.len(),

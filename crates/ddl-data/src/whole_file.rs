@@ -16,10 +16,7 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
         _ => Path::new("."),
     };
     if !folder.is_dir() {
-        let problem = format!(
-            "the folder {} does not exist; create it first",
-            folder.display()
-        );
+        let problem = format!("the folder {} does not exist; create it first", folder.display());
         return Err(Error::new(ErrorKind::NotFound, problem));
     }
     let mut builder = tempfile::Builder::new();

@@ -5,10 +5,7 @@ use std::sync::Arc;
 use crate::error::WindowError;
 use crate::neighbours::Neighbours;
 use crate::track::{is_finite, is_frame, is_frame_step};
-use crate::{
-    CompletionCounts, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position,
-    Remembered, WINDOW,
-};
+use crate::{CompletionCounts, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, Remembered, WINDOW};
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
 ///
@@ -59,10 +56,7 @@ impl Window {
     ) -> Result<Self, WindowError> {
         if pedestrians.len() != tracks.len() {
             let (pedestrians, tracks) = (pedestrians.len(), tracks.len());
-            return Err(WindowError::Count {
-                pedestrians,
-                tracks,
-            });
+            return Err(WindowError::Count { pedestrians, tracks });
         }
         if !(is_frame_step(frame_step) && is_frame(start_frame)) {
             return Err(WindowError::Frames {
@@ -74,9 +68,7 @@ impl Window {
         let mut sorted = pedestrians.clone();
         sorted.sort_unstable();
         if let Some(pair) = sorted.windows(2).find(|w| w[0] == w[1]) {
-            return Err(WindowError::Duplicate {
-                pedestrian: pair[0],
-            });
+            return Err(WindowError::Duplicate { pedestrian: pair[0] });
         }
         for (&pedestrian, track) in pedestrians.iter().zip(&tracks) {
             let found = track.len();
@@ -92,19 +84,10 @@ impl Window {
                 });
             }
         }
-        let frames = (0..)
-            .map(|t| start_frame + t * frame_step)
-            .take(steps)
-            .collect();
+        let frames = (0..).map(|t| start_frame + t * frame_step).take(steps).collect();
         let positions = tracks.into_iter().flatten().collect();
         let recording = recording.into();
-        Ok(Self::cut(
-            recording,
-            frame_step,
-            frames,
-            pedestrians,
-            positions,
-        ))
+        Ok(Self::cut(recording, frame_step, frames, pedestrians, positions))
     }
 
     /// A window cut from a recording, whose invariants make the checks of [`new`](Self::new) unnecessary.
@@ -268,11 +251,7 @@ impl Window {
     pub fn without_future(&self) -> Window {
         let observed = (0..self.len()).flat_map(|i| self.observed(i));
         let frames = self.frames[..OBSERVED].to_vec();
-        let window = self.of_same(
-            frames,
-            self.pedestrians.clone(),
-            observed.copied().collect(),
-        );
+        let window = self.of_same(frames, self.pedestrians.clone(), observed.copied().collect());
         let remembered = self.remembered.clone();
         Self {
             remembered,
@@ -280,12 +259,7 @@ impl Window {
         }
     }
 
-    fn of_same(
-        &self,
-        frames: Vec<i64>,
-        pedestrians: Vec<PedestrianId>,
-        positions: Vec<Position>,
-    ) -> Self {
+    fn of_same(&self, frames: Vec<i64>, pedestrians: Vec<PedestrianId>, positions: Vec<Position>) -> Self {
         let recording = Arc::clone(&self.recording);
         let window = Self::cut(recording, self.frame_step, frames, pedestrians, positions);
         window.with_names(self.names.clone())

@@ -5,12 +5,8 @@ mod hypotheses;
 
 use std::hint::black_box;
 
-use criterion::{
-    BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime,
-};
-use ddl_dynamics::{
-    Euler, Flow, Integrator, LyapunovCertificate, Real, StableEuler, rollout, rollout_into,
-};
+use criterion::{BenchmarkGroup, Criterion, Throughput, criterion_group, criterion_main, measurement::WallTime};
+use ddl_dynamics::{Euler, Flow, Integrator, LyapunovCertificate, Real, StableEuler, rollout, rollout_into};
 use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 

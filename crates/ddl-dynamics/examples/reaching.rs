@@ -9,8 +9,8 @@
 #![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use ddl_dynamics::{
-    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate,
-    NaturalGradientFlow, StableEuler, rollout,
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, NaturalGradientFlow,
+    StableEuler, rollout,
 };
 use nalgebra::{Matrix3, Vector3};
 

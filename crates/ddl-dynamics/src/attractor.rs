@@ -137,10 +137,7 @@ mod tests {
     fn the_quadratic_potential_is_half_the_square() {
         let bowl = Attractor::quadratic(Vector2::new(1.0_f64, 1.0)).unwrap();
         let position = Vector2::new(4.0, 5.0);
-        assert_eq!(
-            bowl.potential_and_gradient(&position),
-            (12.5, Vector2::new(3.0, 4.0))
-        );
+        assert_eq!(bowl.potential_and_gradient(&position), (12.5, Vector2::new(3.0, 4.0)));
         assert_eq!(bowl.distance(&position), 5.0);
         assert_eq!(bowl.gradient(bowl.goal()), Vector2::zeros());
         // The square underflows, but the distance does not.

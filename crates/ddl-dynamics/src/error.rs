@@ -17,23 +17,13 @@ pub enum DynamicsError {
         unit: &'static str,
         value: f64,
     },
-    #[error(
-        "entry ({row}, {column}) of the Cholesky factor is {value}: entries above the diagonal must be 0"
-    )]
-    NotLowerTriangular {
-        row: usize,
-        column: usize,
-        value: f64,
-    },
+    #[error("entry ({row}, {column}) of the Cholesky factor is {value}: entries above the diagonal must be 0")]
+    NotLowerTriangular { row: usize, column: usize, value: f64 },
     #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
     FactorTooLarge,
-    #[error(
-        "the map is not finite or has no inverse: the transformed P would not be positive definite"
-    )]
+    #[error("the map is not finite or has no inverse: the transformed P would not be positive definite")]
     SingularMap,
-    #[error(
-        "the share is {0}: it must be above 0, so that P stays positive definite, and at most 1"
-    )]
+    #[error("the share is {0}: it must be above 0, so that P stays positive definite, and at most 1")]
     InvalidShare(f64),
     #[error("the direction is the zero vector: its length must be positive")]
     NoDirection,
@@ -61,9 +51,7 @@ pub enum DynamicsError {
     PathTurnsBack { along: f64 },
     #[error("the metric schedule is empty: give the metric of at least one step")]
     EmptySchedule,
-    #[error(
-        "{positions} positions and {metrics} metrics: a rollout of n steps has n + 1 positions and n metrics"
-    )]
+    #[error("{positions} positions and {metrics} metrics: a rollout of n steps has n + 1 positions and n metrics")]
     LengthMismatch { positions: usize, metrics: usize },
     #[error(
         "the distance of position {position} from the goal differs from the certificate: \

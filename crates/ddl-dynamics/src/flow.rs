@@ -7,8 +7,8 @@ mod natural_gradient;
 use nalgebra::SVector;
 
 use crate::{
-    attractor::Attractor, diffeomorphism::Diffeomorphism, error::DynamicsError,
-    metric::CholeskyMetric, real::Real, state::State,
+    attractor::Attractor, diffeomorphism::Diffeomorphism, error::DynamicsError, metric::CholeskyMetric, real::Real,
+    state::State,
 };
 
 pub use avoiding::AvoidingFlow;

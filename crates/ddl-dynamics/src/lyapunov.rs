@@ -123,10 +123,7 @@ impl<T: Real> LyapunovCertificate<T> {
             positions: positions.len(),
             metrics: metrics.len(),
         };
-        let Some(last) = positions
-            .last()
-            .filter(|_| positions.len() == metrics.len() + 1)
-        else {
+        let Some(last) = positions.last().filter(|_| positions.len() == metrics.len() + 1) else {
             return Err(mismatch);
         };
         ensure_time_step(dt)?;
@@ -228,26 +225,17 @@ impl<T: Real> LyapunovCertificate<T> {
 
     /// The smallest eigenvalue of all metrics (m/s); `None` if there are no steps.
     pub fn min_eigenvalue(&self) -> Option<T> {
-        self.steps
-            .iter()
-            .map(|step| step.min_eigenvalue)
-            .reduce(T::min)
+        self.steps.iter().map(|step| step.min_eigenvalue).reduce(T::min)
     }
 
     /// The smallest of the step margins (no unit); `None` if no step has one.
     pub fn min_step_margin(&self) -> Option<T> {
-        self.steps
-            .iter()
-            .filter_map(|step| step.step_margin)
-            .reduce(T::min)
+        self.steps.iter().filter_map(|step| step.step_margin).reduce(T::min)
     }
 
     /// The largest angle between a move and the direction to the goal (radians); 0 if there are no steps.
     pub fn largest_angle(&self) -> T {
-        self.steps
-            .iter()
-            .map(|step| step.angle)
-            .fold(T::zero(), T::max)
+        self.steps.iter().map(|step| step.angle).fold(T::zero(), T::max)
     }
 }
 

@@ -60,11 +60,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// - [`DynamicsError::FactorTooLarge`]: `|L|^2 + sigma` exceeds a quarter of the largest number of `T`. Below that,
     ///   `P u` and `u^T P u` of a unit vector `u` are finite.
     pub fn new(factor: SMatrix<T, D, D>, sigma: T) -> Result<Self, DynamicsError> {
-        ensure_positive(
-            "sigma, without which P is not positive definite,",
-            "",
-            sigma,
-        )?;
+        ensure_positive("sigma, without which P is not positive definite,", "", sigma)?;
         for row in 0..D {
             for column in 0..D {
                 let entry = factor[(row, column)];
@@ -191,11 +187,7 @@ mod tests {
     #[test]
     #[expect(clippy::float_cmp, reason = "the result is exact")]
     fn sigma_is_not_lost_in_single_precision() {
-        assert_eq!(
-            0.5_f32 * 0.5 + PUBLISHED_SIGMA as f32,
-            0.25,
-            "forming P loses sigma"
-        );
+        assert_eq!(0.5_f32 * 0.5 + PUBLISHED_SIGMA as f32, 0.25, "forming P loses sigma");
         // The factor alone gives 0 along u: only sigma remains.
         let metric = CholeskyMetric::planar(1e3_f32, 0.0, 0.0, PUBLISHED_SIGMA as f32).unwrap();
         let u = Vector2::new(0.0, 1.0);

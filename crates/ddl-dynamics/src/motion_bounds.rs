@@ -102,10 +102,7 @@ impl<T: Real> MotionBounds<T> {
     /// The same bounds for metrics in m/s, as published, instead of relative to the neutral motion in arriving speeds.
     #[must_use]
     pub fn absolute(self) -> Self {
-        Self {
-            absolute: true,
-            ..self
-        }
+        Self { absolute: true, ..self }
     }
 
     /// The largest speed of any step (m/s).
@@ -128,9 +125,7 @@ impl<T: Real> MotionBounds<T> {
     pub fn arriving_speed(&self, distance: T, left: usize, dt: T) -> T {
         let steps = T::rounded(left.max(1) as f64);
         // Positive, so that it is a valid eigenvalue also at the goal.
-        (distance / (steps * dt))
-            .min(self.top_speed)
-            .max(T::MIN_POSITIVE)
+        (distance / (steps * dt)).min(self.top_speed).max(T::MIN_POSITIVE)
     }
 
     /// The range of the eigenvalues (m/s), `distance` metres from the goal with `left` remaining steps of `dt` seconds,
@@ -147,10 +142,7 @@ impl<T: Real> MotionBounds<T> {
         let later = T::rounded((left - 1) as f64) * self.top_speed;
         EigenvalueRange {
             smallest: (T::rounded(Self::SLOWEST) * s).max(reach - later).min(s),
-            largest: (T::rounded(Self::FASTEST) * s)
-                .min(reach)
-                .min(self.top_speed)
-                .max(s),
+            largest: (T::rounded(Self::FASTEST) * s).min(reach).min(self.top_speed).max(s),
         }
     }
 
@@ -178,13 +170,7 @@ impl<T: Real> MotionBounds<T> {
 
     /// `N`, before its eigenvalues are brought within the bounds: of all matrices with this flow, the one with the
     /// smallest condition number.
-    fn neutral(
-        &self,
-        s: T,
-        direction: &Vector2<T>,
-        range: &EigenvalueRange<T>,
-        time: StepTime<T>,
-    ) -> Vector3<T> {
+    fn neutral(&self, s: T, direction: &Vector2<T>, range: &EigenvalueRange<T>, time: StepTime<T>) -> Vector3<T> {
         let g = T::rounded(Self::momentum(time));
         let [cos, sin] = [direction.x, direction.y];
         let along = (T::one() - g) * s + g * self.velocity.dot(direction);

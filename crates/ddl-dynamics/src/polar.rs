@@ -29,10 +29,7 @@ pub(crate) fn polar<T: Real, const D: usize>(vector: &SVector<T, D>) -> (T, SVec
 
 /// The length of `to - from` and the unit vector along it, also if the difference is too large for `T`.
 #[inline]
-pub(crate) fn polar_way<T: Real, const D: usize>(
-    from: &SVector<T, D>,
-    to: &SVector<T, D>,
-) -> (T, SVector<T, D>) {
+pub(crate) fn polar_way<T: Real, const D: usize>(from: &SVector<T, D>, to: &SVector<T, D>) -> (T, SVector<T, D>) {
     let (length, direction) = polar(&(to - from));
     if length.is_finite() {
         return (length, direction);
@@ -53,14 +50,8 @@ mod tests {
     fn three_four_five_at_every_scale() {
         for scale in [4.9e-324_f64, 1e-310, 1e-160, 1e-12, 1.0, 1e12, 1e160, 3e307] {
             let (length, unit) = polar(&Vector2::new(3.0 * scale, -4.0 * scale));
-            assert!(
-                (length / (5.0 * scale) - 1.0).abs() <= 4.0 * f64::EPSILON,
-                "{scale}"
-            );
-            assert!(
-                (unit - Vector2::new(0.6, -0.8)).norm() <= 4.0 * f64::EPSILON,
-                "{scale}"
-            );
+            assert!((length / (5.0 * scale) - 1.0).abs() <= 4.0 * f64::EPSILON, "{scale}");
+            assert!((unit - Vector2::new(0.6, -0.8)).norm() <= 4.0 * f64::EPSILON, "{scale}");
         }
     }
 

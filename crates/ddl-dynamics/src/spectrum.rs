@@ -39,13 +39,7 @@ fn iterative<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
     // A dynamically sized matrix uses the general algorithm. nalgebra's special case for 3 x 3 decomposes L^T L and so
     // loses half of the digits of a small singular value.
     let general = DMatrix::from_fn(D, D, |row, column| factor[(row, column)]);
-    let decomposition = SVD::try_new_unordered(
-        general,
-        false,
-        false,
-        T::EPSILON,
-        ITERATIONS_PER_DIMENSION * D,
-    );
+    let decomposition = SVD::try_new_unordered(general, false, false, T::EPSILON, ITERATIONS_PER_DIMENSION * D);
     match decomposition {
         Some(svd) => (svd.singular_values.min(), svd.singular_values.max()),
         // Never observed. Both values are still bounds, so every use of them is safe.

@@ -28,12 +28,7 @@ impl<'a, T: crate::Real, const D: usize> State<'a, T, D> {
     }
 
     /// The state after `step` steps, at `time` seconds.
-    pub fn new(
-        position: SVector<T, D>,
-        step: usize,
-        time: T,
-        history: &'a [SVector<T, D>],
-    ) -> Self {
+    pub fn new(position: SVector<T, D>, step: usize, time: T, history: &'a [SVector<T, D>]) -> Self {
         Self {
             position,
             step,

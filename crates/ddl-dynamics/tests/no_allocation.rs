@@ -14,9 +14,7 @@ use std::{
     hint::black_box,
 };
 
-use ddl_dynamics::{
-    AvoidingFlow, Ball, Euler, Flow, Integrator, Real, StableEuler, rollout, rollout_into,
-};
+use ddl_dynamics::{AvoidingFlow, Ball, Euler, Flow, Integrator, Real, StableEuler, rollout, rollout_into};
 use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
 use nalgebra::SVector;
 

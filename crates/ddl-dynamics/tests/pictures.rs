@@ -31,11 +31,7 @@ fn the_committed_pictures_are_current() {
 #[test]
 fn the_caption_agrees_with_the_pictures() {
     let followed = around::behind_a_wall().unwrap();
-    assert!(
-        followed
-            .potentials()
-            .is_sorted_by(|before, after| before > after)
-    );
+    assert!(followed.potentials().is_sorted_by(|before, after| before > after));
     let goal = followed.flow.goal();
     let steps = followed.path.windows(2);
     let angles = steps.map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])));

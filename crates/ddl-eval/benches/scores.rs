@@ -40,21 +40,14 @@ fn windows() -> Vec<Window> {
     let mut track = || -> Vec<Position> {
         let mut here = [SIDE * next(), SIDE * next()];
         let mut heading = std::f64::consts::TAU * next();
-        let step = if next() < 0.2 {
-            0.0
-        } else {
-            0.2 + 0.4 * next()
-        };
+        let step = if next() < 0.2 { 0.0 } else { 0.2 + 0.4 * next() };
         let turn = 0.1 * (next() - 0.5);
         (0..WINDOW)
             .map(|_| {
                 heading += turn;
                 let sway = [0.05 * (next() - 0.5), 0.05 * (next() - 0.5)];
                 let (sin, cos) = heading.sin_cos();
-                here = [
-                    here[0] + step * cos + sway[0],
-                    here[1] + step * sin + sway[1],
-                ];
+                here = [here[0] + step * cos + sway[0], here[1] + step * sin + sway[1]];
                 here
             })
             .collect()
@@ -98,10 +91,7 @@ fn adapt(criterion: &mut Criterion) {
     let forecasts: Vec<Forecast> = noisy
         .expect("a forecast")
         .into_iter()
-        .map(|f| {
-            f.with_spread(spread(), Arc::clone(&table))
-                .expect("a spread")
-        })
+        .map(|f| f.with_spread(spread(), Arc::clone(&table)).expect("a spread"))
         .collect();
     let (mut regions, mut at) = (AdaptiveRegions::default(), 0);
     criterion.bench_function("regions of 25 pedestrians follow a frame", |b| {

@@ -123,20 +123,14 @@ impl ResultRow {
                 *forecast = forecast.keeping(&places);
             }
         }
-        Ok(Self::score_among(
-            conditions, windows, everybody, &forecasts,
-        )?)
+        Ok(Self::score_among(conditions, windows, everybody, &forecasts)?)
     }
 
     /// Scores given forecasts, one for each window.
     ///
     /// # Errors
     /// As [`Scores::evaluate`].
-    pub fn score(
-        conditions: Conditions,
-        windows: &[Window],
-        forecasts: &[Forecast],
-    ) -> Result<Self, EvaluationError> {
+    pub fn score(conditions: Conditions, windows: &[Window], forecasts: &[Forecast]) -> Result<Self, EvaluationError> {
         Self::score_among(conditions, windows, windows, forecasts)
     }
 

@@ -9,13 +9,8 @@ use crate::Protocol;
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ForecastShapeError {
-    #[error(
-        "a forecast needs at least one pedestrian and one hypothesis, found {pedestrians} x {hypotheses}"
-    )]
-    Empty {
-        pedestrians: usize,
-        hypotheses: usize,
-    },
+    #[error("a forecast needs at least one pedestrian and one hypothesis, found {pedestrians} x {hypotheses}")]
+    Empty { pedestrians: usize, hypotheses: usize },
     #[error("`{field}` must hold {expected} entries ({layout}), found {found}")]
     Length {
         field: &'static str,
@@ -44,9 +39,7 @@ pub enum ForecastShapeError {
         pedestrian: usize,
         value: f64,
     },
-    #[error(
-        "the weights of pedestrian {pedestrian} sum to {sum}, not to 1; divide them by their sum"
-    )]
+    #[error("the weights of pedestrian {pedestrian} sum to {sum}, not to 1; divide them by their sum")]
     NotNormalised { pedestrian: usize, sum: f64 },
 }
 
@@ -67,13 +60,8 @@ pub enum ForecastError {
         start_frame: i64,
     },
     #[error("goal source `{goal_source}`: {problem}")]
-    Goals {
-        goal_source: String,
-        problem: String,
-    },
-    #[error(
-        "protocol `{protocol}` allows {allowed} hypotheses for each pedestrian, `{forecaster}` made {found}"
-    )]
+    Goals { goal_source: String, problem: String },
+    #[error("protocol `{protocol}` allows {allowed} hypotheses for each pedestrian, `{forecaster}` made {found}")]
     TooManyHypotheses {
         protocol: Protocol,
         forecaster: String,
@@ -89,10 +77,7 @@ pub enum ForecastError {
 
 impl ForecastError {
     /// Wraps the error of a model.
-    pub fn model(
-        forecaster: impl Into<String>,
-        source: impl Into<Box<dyn std::error::Error + Send + Sync>>,
-    ) -> Self {
+    pub fn model(forecaster: impl Into<String>, source: impl Into<Box<dyn std::error::Error + Send + Sync>>) -> Self {
         Self::Model {
             forecaster: forecaster.into(),
             source: source.into(),
@@ -132,9 +117,7 @@ pub enum WindowProblem {
     Everybody,
     #[error(" has no true future: it can be forecast but not scored")]
     NoFuture,
-    #[error(
-        " was forecast with {found} hypotheses, the windows before it with {expected}; the best of K needs one K"
-    )]
+    #[error(" was forecast with {found} hypotheses, the windows before it with {expected}; the best of K needs one K")]
     Hypotheses { expected: usize, found: usize },
     #[error(": all forecasts of a test set must have certificates, or none")]
     CertificatesOfSome,

@@ -20,9 +20,7 @@ pub(crate) fn of_tracks(tracks: Vec<Vec<Position>>) -> Window {
 
 /// Pedestrians of constant velocity: first position, and metres per frame.
 pub(crate) fn walking(all: &[(Position, Position)], frames: usize) -> Window {
-    let track = |&(start, step): &(Position, Position)| {
-        (0..frames).map(|t| at(start, step, t as f64)).collect()
-    };
+    let track = |&(start, step): &(Position, Position)| (0..frames).map(|t| at(start, step, t as f64)).collect();
     of_tracks(all.iter().map(track).collect())
 }
 

@@ -113,17 +113,8 @@ impl Forecast {
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
-    pub fn with_spread(
-        self,
-        spread: Vec<f64>,
-        regions: Arc<RegionTable>,
-    ) -> Result<Self, ForecastShapeError> {
-        check_length(
-            "spread",
-            "pedestrian, frame",
-            self.pedestrians * HORIZON,
-            spread.len(),
-        )?;
+    pub fn with_spread(self, spread: Vec<f64>, regions: Arc<RegionTable>) -> Result<Self, ForecastShapeError> {
+        check_length("spread", "pedestrian, frame", self.pedestrians * HORIZON, spread.len())?;
         check_range("spread", &spread, HORIZON, f64::MAX)?;
         Ok(Self {
             spread: Some((spread, regions)),
@@ -136,12 +127,7 @@ impl Forecast {
     /// # Errors
     /// The array has the wrong length, or a number is not above 0 and at most 1.
     pub fn with_familiarity(self, familiarity: Vec<f64>) -> Result<Self, ForecastShapeError> {
-        check_length(
-            "familiarity",
-            "pedestrian",
-            self.pedestrians,
-            familiarity.len(),
-        )?;
+        check_length("familiarity", "pedestrian", self.pedestrians, familiarity.len())?;
         check_range("familiarity", &familiarity, 1, 1.0)?;
         Ok(Self {
             familiarity: Some(familiarity),
@@ -235,17 +221,12 @@ impl Forecast {
     /// Only the [representative](Self::representative) hypothesis of each pedestrian, with the weight 1.
     #[must_use]
     pub fn single(&self) -> Self {
-        let chosen: Vec<usize> = (0..self.pedestrians)
-            .map(|i| self.representative(i))
-            .collect();
+        let chosen: Vec<usize> = (0..self.pedestrians).map(|i| self.representative(i)).collect();
         let rows = || chosen.iter().enumerate();
         Self {
             pedestrians: self.pedestrians,
             hypotheses: 1,
-            positions: rows()
-                .flat_map(|(i, &k)| self.hypothesis(i, k))
-                .copied()
-                .collect(),
+            positions: rows().flat_map(|(i, &k)| self.hypothesis(i, k)).copied().collect(),
             weights: vec![1.0; self.pedestrians],
             goals: rows().map(|(i, &k)| self.goal(i, k)).collect(),
             certified: rows().map(|(i, &k)| self.certified(i, k)).collect(),
@@ -273,10 +254,7 @@ impl Forecast {
                 .spread
                 .as_ref()
                 .map(|(all, regions)| (rows(all, HORIZON, pedestrians), Arc::clone(regions))),
-            familiarity: self
-                .familiarity
-                .as_ref()
-                .map(|all| rows(all, 1, pedestrians)),
+            familiarity: self.familiarity.as_ref().map(|all| rows(all, 1, pedestrians)),
         }
     }
 
@@ -332,10 +310,7 @@ fn check_finite(
     per_pair: usize,
     hypotheses: usize,
 ) -> Result<(), ForecastShapeError> {
-    match positions
-        .iter()
-        .position(|p| !p.iter().all(|c| c.is_finite()))
-    {
+    match positions.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
         None => Ok(()),
         Some(at) => {
             let pair = at / per_pair;

@@ -16,14 +16,10 @@ pub struct Leak {
 ///
 /// # Errors
 /// The forecaster failed, for instance because it needs the future, which is also a leak.
-pub fn find(
-    forecaster: &(impl Forecaster + ?Sized),
-    window: &Window,
-) -> Result<Option<Leak>, ForecastError> {
+pub fn find(forecaster: &(impl Forecaster + ?Sized), window: &Window) -> Result<Option<Leak>, ForecastError> {
     let reference = bits(&forecaster.forecast(&window.without_future())?);
-    let leaks = |changed: &Window| -> Result<bool, ForecastError> {
-        Ok(bits(&forecaster.forecast(changed)?) != reference)
-    };
+    let leaks =
+        |changed: &Window| -> Result<bool, ForecastError> { Ok(bits(&forecaster.forecast(changed)?) != reference) };
     let found = |change: String| Ok(Some(Leak { change }));
     if !window.has_future() {
         return Ok(None);
@@ -31,25 +27,15 @@ pub fn find(
     if leaks(window)? {
         return found("the future was shown at all".to_owned());
     }
-    let everything =
-        window.map_positions(|_, frame, p| if frame < OBSERVED { p } else { moved(p) });
+    let everything = window.map_positions(|_, frame, p| if frame < OBSERVED { p } else { moved(p) });
     if leaks(&everything)? {
         return found("every future position was moved".to_owned());
     }
     for pedestrian in 0..window.len() {
         for frame in OBSERVED..WINDOW {
-            let one = window.map_positions(|i, t, p| {
-                if (i, t) == (pedestrian, frame) {
-                    moved(p)
-                } else {
-                    p
-                }
-            });
+            let one = window.map_positions(|i, t, p| if (i, t) == (pedestrian, frame) { moved(p) } else { p });
             if leaks(&one)? {
-                return found(format!(
-                    "pedestrian {pedestrian} was moved at frame {}",
-                    frame + 1
-                ));
+                return found(format!("pedestrian {pedestrian} was moved at frame {}", frame + 1));
             }
         }
     }
@@ -95,10 +81,7 @@ mod tests {
             // The unchanged future equals no future here: only a moved one shows the leak.
             let seen = last.get(self.frame).map_or(0.0, |p| p[1]);
             let step = [0.0, if seen > 0.0 { 1e-9 } else { 0.0 }];
-            Ok(forecast(
-                window.len(),
-                &vec![walk([0.0, 0.0], step); window.len()],
-            ))
+            Ok(forecast(window.len(), &vec![walk([0.0, 0.0], step); window.len()]))
         }
     }
 

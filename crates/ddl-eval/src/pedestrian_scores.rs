@@ -45,8 +45,7 @@ pub(crate) struct PedestrianScores {
 impl PedestrianScores {
     pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
         let forecast = scene.forecast();
-        let collides_forecast =
-            collides(&collision::representative_tracks(scene), PEDESTRIAN_RADIUS);
+        let collides_forecast = collides(&collision::representative_tracks(scene), PEDESTRIAN_RADIUS);
         let true_futures_collide = collision::true_futures_collide(scene, PEDESTRIAN_RADIUS);
         let collides_with_true_futures = collides_with_true_futures(scene, PEDESTRIAN_RADIUS);
         (0..scene.pedestrians())

@@ -138,11 +138,7 @@ impl Protocol {
     ///
     /// # Errors
     /// A forecast has more hypotheses than the protocol allows.
-    pub fn admit(
-        self,
-        forecasts: Vec<Forecast>,
-        forecaster: &str,
-    ) -> Result<Vec<Forecast>, ForecastError> {
+    pub fn admit(self, forecasts: Vec<Forecast>, forecaster: &str) -> Result<Vec<Forecast>, ForecastError> {
         if self.hypotheses() == 1 {
             return Ok(forecasts.iter().map(Forecast::single).collect());
         }

@@ -52,17 +52,11 @@ impl TryFrom<LevelQuantiles> for RegionTable {
             && columns.levels.len() == columns.quantiles.len()
             && columns.levels.iter().all(inside)
             && columns.levels.is_sorted_by(|a, b| a < b)
-            && columns
-                .quantiles
-                .as_flattened()
-                .iter()
-                .all(|q| q.is_finite());
+            && columns.quantiles.as_flattened().iter().all(|q| q.is_finite());
         if is_valid {
             Ok(Self(columns))
         } else {
-            Err(
-                "a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles",
-            )
+            Err("a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles")
         }
     }
 }
@@ -201,23 +195,17 @@ pub fn holds(region: &[Disc], at: Position) -> bool {
 /// The radius (m) of a disc with the area of the region, measured on a grid.
 pub fn equivalent_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
-        let ends = region
-            .iter()
-            .map(|disc| disc.centre[axis] + side * disc.radius);
+        let ends = region.iter().map(|disc| disc.centre[axis] + side * disc.radius);
         ends.reduce(if side < 0.0 { f64::min } else { f64::max })
             .unwrap_or_default()
     };
     let [left, right, low, high] = [bound(0, -1.0), bound(0, 1.0), bound(1, -1.0), bound(1, 1.0)];
-    let middle =
-        |from: f64, to: f64, cell: usize| from + (to - from) * (cell as f64 + 0.5) / CELLS as f64;
+    let middle = |from: f64, to: f64, cell: usize| from + (to - from) * (cell as f64 + 0.5) / CELLS as f64;
     let inside = (0..CELLS * CELLS)
         .filter(|&cell| {
             holds(
                 region,
-                [
-                    middle(left, right, cell % CELLS),
-                    middle(low, high, cell / CELLS),
-                ],
+                [middle(left, right, cell % CELLS), middle(low, high, cell / CELLS)],
             )
         })
         .count();
@@ -245,8 +233,7 @@ mod tests {
         // 99 scores do not say what one in a hundred exceeds
         assert!(RegionTable::of(&scores, &[0.99]).is_some());
         assert_eq!(RegionTable::of(&scores[..98], &[0.99]), None);
-        let empty: Result<RegionTable, _> =
-            serde_json::from_str(r#"{"levels": [], "quantiles": []}"#);
+        let empty: Result<RegionTable, _> = serde_json::from_str(r#"{"levels": [], "quantiles": []}"#);
         assert!(empty.is_err());
         assert_eq!(RegionTable::of(&[], &[0.5]), None);
         assert_eq!(RegionTable::of(&scores, &[0.9, 0.5]), None);
@@ -254,10 +241,7 @@ mod tests {
 
     #[test]
     fn two_discs_side_by_side_are_as_large_as_one() {
-        let discs = [[0.0, 0.0], [9.0, 0.0]].map(|centre| Disc {
-            centre,
-            radius: 1.0,
-        });
+        let discs = [[0.0, 0.0], [9.0, 0.0]].map(|centre| Disc { centre, radius: 1.0 });
         assert!((equivalent_radius(&discs) - 2.0_f64.sqrt()).abs() < 0.1);
         assert!((equivalent_radius(&[discs[0]; 3]) - 1.0).abs() < 0.02);
         assert!(equivalent_radius(&[]).abs() < 1e-12);

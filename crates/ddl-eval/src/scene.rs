@@ -43,8 +43,7 @@ impl<'a> Scene<'a> {
     /// That window has no future, or is not of the same frames of the same recording with all these pedestrians.
     pub fn among(self, everybody: &'a Window) -> Result<Self, EvaluationError> {
         let window = self.window;
-        let same_frames =
-            window.recording() == everybody.recording() && window.frames() == everybody.frames();
+        let same_frames = window.recording() == everybody.recording() && window.frames() == everybody.frames();
         if !same_frames || places(window, everybody).is_none() {
             return Err(EvaluationError::of(window, WindowProblem::Everybody));
         }

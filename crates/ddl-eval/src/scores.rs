@@ -149,10 +149,7 @@ impl Scores {
             let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(of).sum::<f64>();
             several.then(|| scenes.iter().map(sum).sum::<f64>() / total)
         };
-        let rollouts: Vec<RolloutStability> = scenes
-            .iter()
-            .flat_map(|s| s.rollouts.iter().copied())
-            .collect();
+        let rollouts: Vec<RolloutStability> = scenes.iter().flat_map(|s| s.rollouts.iter().copied()).collect();
         Self {
             pedestrians,
             windows: scenes.len(),
@@ -165,9 +162,7 @@ impl Scores {
             miss_rate: share(|w| w.missed[0]),
             collision_rate: share(|w| w.collides),
             true_collision_rate: share(|w| w.truly_collides),
-            goal_fde: first
-                .has_goals()
-                .then(|| mean(|w| w.goal_fde.unwrap_or(0.0))),
+            goal_fde: first.has_goals().then(|| mean(|w| w.goal_fde.unwrap_or(0.0))),
             stability: StabilityScores::mean(&rollouts),
             ade_at_min_fde: Some(mean(|w| w.ade_at_min_fde)),
             expected_ade: Some(mean(|w| w.expected_ade)),
@@ -214,11 +209,7 @@ fn mean_covariance(scenes: &[SceneScores], pedestrians: f64) -> Covariance {
         .scaled(1.0 / pedestrians)
 }
 
-fn check_alike(
-    window: &Window,
-    forecast: &Forecast,
-    first: &Forecast,
-) -> Result<(), EvaluationError> {
+fn check_alike(window: &Window, forecast: &Forecast, first: &Forecast) -> Result<(), EvaluationError> {
     let (expected, found) = (first.hypotheses(), forecast.hypotheses());
     let problem = if found != expected {
         WindowProblem::Hypotheses { expected, found }

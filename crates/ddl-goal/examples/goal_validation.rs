@@ -41,11 +41,7 @@ struct Judged {
 }
 
 impl Judged {
-    fn mean_error(
-        &mut self,
-        estimator: &GoalEstimator,
-        recordings: &[Vec<Positions>],
-    ) -> Result<f64, Box<dyn Error>> {
+    fn mean_error(&mut self, estimator: &GoalEstimator, recordings: &[Vec<Positions>]) -> Result<f64, Box<dyn Error>> {
         let start = Instant::now();
         let mut sum = 0.0;
         for pedestrians in recordings {
@@ -55,8 +51,7 @@ impl Judged {
                 // A goal of weight 0 would have an infinite log loss.
                 let weight = goals.weights()[goals.nearest(track[19])].max(1e-4);
                 self.log_loss -= weight.ln();
-                sum += star_files::goal_error(goals, track)
-                    / (pedestrians.len() * recordings.len()) as f64;
+                sum += star_files::goal_error(goals, track) / (pedestrians.len() * recordings.len()) as f64;
             }
             self.pedestrians += pedestrians.len();
         }
@@ -77,8 +72,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{name}\nfold    unseen  tails   mean");
         let (mut total, mut judged) = ([0.0; 2], Judged::default());
         for fold in dataset.folds() {
-            let fold =
-                fold.with_validation_recordings(&["uni_examples", "zara03"].map(str::to_owned))?;
+            let fold = fold.with_validation_recordings(&["uni_examples", "zara03"].map(str::to_owned))?;
             let unseen = fold.validation_recordings().iter();
             let unseen: Vec<Vec<_>> = unseen.map(|r| every(within(r, |_, _| true))).collect();
             let training = || fold.training_recordings().iter();
@@ -98,14 +92,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             total = [total[0] + unseen / 5.0, total[1] + tails / 5.0];
         }
         let [unseen, tails] = total;
-        println!(
-            "mean    {unseen:.4}  {tails:.4}  {:.4}",
-            f64::midpoint(unseen, tails)
-        );
-        println!(
-            "{} pedestrians in {:.1} s",
-            judged.pedestrians, judged.seconds
-        );
+        println!("mean    {unseen:.4}  {tails:.4}  {:.4}", f64::midpoint(unseen, tails));
+        println!("{} pedestrians in {:.1} s", judged.pedestrians, judged.seconds);
         let log_loss = judged.log_loss / judged.pedestrians as f64;
         println!("log loss {log_loss:.3}, uniform {:.3}\n", 20_f64.ln());
     }

@@ -31,23 +31,13 @@ fn library() -> Result<ExpertLibrary, Box<dyn Error>> {
     let pedestrian = |i: u32| {
         let share = |of: u32| f64::from(i % of) / f64::from(of);
         let turn = 0.35 * (f64::from(i % 3) - 1.0) + 0.1 * (share(7) - 0.5);
-        walk(
-            0.8 + 0.8 * share(41),
-            std::f64::consts::TAU * share(97),
-            turn,
-        )
+        walk(0.8 + 0.8 * share(41), std::f64::consts::TAU * share(97), turn)
     };
-    Ok(ExpertLibrary::new(
-        (0..3000).map(pedestrian).collect(),
-        TIME_STEP,
-    )?)
+    Ok(ExpertLibrary::new((0..3000).map(pedestrian).collect(), TIME_STEP)?)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let params = GoalEstimatorParams::default()
-        .experts(300)
-        .clusters(5)
-        .check()?;
+    let params = GoalEstimatorParams::default().experts(300).clusters(5).check()?;
     let estimator = GoalEstimator::new(params, library()?)?;
 
     let whole = walk(1.2, 0.4, 0.35);
@@ -63,16 +53,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("weight         goal (m)  from the true end");
     let off = |[x, y]: [f64; 2]| (x - end[0]).hypot(y - end[1]);
     for (&goal, weight) in goals.goals().iter().zip(goals.weights()) {
-        println!(
-            "{weight:>6.3} {:>8.2} {:>7.2} {:>16.2} m",
-            goal[0],
-            goal[1],
-            off(goal)
-        );
+        println!("{weight:>6.3} {:>8.2} {:>7.2} {:>16.2} m", goal[0], goal[1], off(goal));
     }
     // The baseline without a library: repeating the last step.
-    let straight =
-        [0, 1].map(|axis| observed[7][axis] + 12.0 * (observed[7][axis] - observed[6][axis]));
+    let straight = [0, 1].map(|axis| observed[7][axis] + 12.0 * (observed[7][axis] - observed[6][axis]));
     println!(
         "nearest goal: {:.2} m from the true end; going straight on: {:.2} m",
         off(goals.goals()[goals.nearest(end)]),

@@ -46,12 +46,7 @@ impl Analogues {
         })
     }
 
-    pub(crate) fn goals(
-        &self,
-        track: &[[f64; 2]],
-        experts: usize,
-        clusters: usize,
-    ) -> Result<GoalSet, GoalError> {
+    pub(crate) fn goals(&self, track: &[[f64; 2]], experts: usize, clusters: usize) -> Result<GoalSet, GoalError> {
         let motion = Motion::new(track, self.time_step)?;
         let found = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&found);

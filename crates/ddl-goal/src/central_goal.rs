@@ -60,9 +60,7 @@ impl GoalSet {
         std::array::from_fn(|axis| {
             let ahead = last[axis] + STEPS_AHEAD * (last[axis] - before[axis]);
             let steady = last[axis] + STEPS_AHEAD * mean[axis];
-            let goal = median[axis]
-                + trust * (ahead - median[axis])
-                + STEADINESS * noise * (steady - median[axis]);
+            let goal = median[axis] + trust * (ahead - median[axis]) + STEADINESS * noise * (steady - median[axis]);
             goal + exact * (ahead - goal)
         })
     }

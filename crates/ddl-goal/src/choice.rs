@@ -47,10 +47,7 @@ fn first_centres(points: &Points, clusters: usize) -> Vec<[f64; 2]> {
             .max_by(|&a, &b| cells[a].cost.total_cmp(&cells[b].cost).then(b.cmp(&a)));
         let Some(costliest) = costliest else { break };
         let Cell {
-            members,
-            mean,
-            axis,
-            ..
+            members, mean, axis, ..
         } = &cells[costliest];
         let is_behind = |index: usize| {
             let [x, y] = points.get(index);
@@ -129,9 +126,7 @@ mod tests {
             let squares = centres.iter().map(|&c| squared_distance(c, points.get(i)));
             squares.fold(f64::INFINITY, f64::min).sqrt()
         };
-        (0..points.len())
-            .map(|i| points.weight[i] * nearest(i))
-            .sum()
+        (0..points.len()).map(|i| points.weight[i] * nearest(i)).sum()
     }
 
     /// By hand: a point on the cut belongs to the front half. Two adjacent floating-point numbers have no mean between

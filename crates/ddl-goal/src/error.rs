@@ -12,15 +12,11 @@ pub enum ParamsError {
     NoExperts,
     #[error("clusters is 0: at least one goal must be estimated (the paper uses 20)")]
     NoClusters,
-    #[error(
-        "restarts is 0: k-means must be run at least once (the published code runs it 10 times)"
-    )]
+    #[error("restarts is 0: k-means must be run at least once (the published code runs it 10 times)")]
     NoRestarts,
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
     InvalidGamma { gamma: f64 },
-    #[error(
-        "query is published-future and frame is heading: the query that reads the future requires frame world"
-    )]
+    #[error("query is published-future and frame is heading: the query that reads the future requires frame world")]
     FutureInHeadingFrame,
 }
 
@@ -44,9 +40,7 @@ pub enum TrackError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LibraryError {
-    #[error(
-        "the library has no tracks: give it complete tracks of pedestrians from the training scenes"
-    )]
+    #[error("the library has no tracks: give it complete tracks of pedestrians from the training scenes")]
     Empty,
     #[error("the time step is {time_step} s: it must be finite and positive")]
     InvalidTimeStep { time_step: f64 },
@@ -70,10 +64,7 @@ pub enum GoalError {
     #[error("the observed track: {0}")]
     Track(#[from] TrackError),
     #[error("track {index} of the batch: {source}")]
-    BatchTrack {
-        index: usize,
-        source: Box<GoalError>,
-    },
+    BatchTrack { index: usize, source: Box<GoalError> },
     #[error(transparent)]
     SoftDtw(#[from] SoftDtwError),
     #[error("the search for similar pedestrians: {0}")]

@@ -65,10 +65,7 @@ impl GoalEstimator {
     /// # Errors
     /// [`GoalError::TooFewTracks`] if the frame is [`RetrievalFrame::World`] and the library is smaller than the number
     /// of experts. Also for a library whose velocities exceed the range of `f64`.
-    pub fn new(
-        params: ValidGoalEstimatorParams,
-        library: ExpertLibrary,
-    ) -> Result<Self, GoalError> {
+    pub fn new(params: ValidGoalEstimatorParams, library: ExpertLibrary) -> Result<Self, GoalError> {
         let method = match params.frame {
             RetrievalFrame::Heading => Preparation::Heading(Analogues::new(&library)?),
             RetrievalFrame::World => {
@@ -112,10 +109,7 @@ impl GoalEstimator {
             Preparation::Heading(analogues) => analogues.goals(track, experts, clusters),
             Preparation::World(retriever, kmeans) => {
                 let experts = retriever.nearest(track, experts)?;
-                let ends: Vec<[f64; 2]> = experts
-                    .iter()
-                    .map(|expert| self.library.end(expert.index))
-                    .collect();
+                let ends: Vec<[f64; 2]> = experts.iter().map(|expert| self.library.end(expert.index)).collect();
                 let clustering = kmeans.fit(&ends, self.params.seed)?;
                 let place = |[x, y]: &[f64; 2]| [track[0][0] + x, track[0][1] + y];
                 let goals = clustering.centres.iter().map(place).collect();
@@ -135,10 +129,7 @@ impl GoalEstimator {
     /// # Errors
     /// [`GoalError::BatchTrack`] for the first track that [`GoalEstimator::estimate`] refuses.
     pub fn estimate_batch(&self, tracks: &[&[[f64; 2]]]) -> Result<Vec<GoalSet>, GoalError> {
-        let estimated: Vec<_> = tracks
-            .par_iter()
-            .map(|track| self.estimate(track))
-            .collect();
+        let estimated: Vec<_> = tracks.par_iter().map(|track| self.estimate(track)).collect();
         estimated
             .into_iter()
             .enumerate()
@@ -165,11 +156,7 @@ impl GoalEstimator {
     ///
     /// # Panics
     /// If `expert` is not of this estimator's library.
-    pub fn carry_over(
-        &self,
-        expert: &Expert,
-        track: &[[f64; 2]],
-    ) -> Result<Vec<[f64; 2]>, GoalError> {
+    pub fn carry_over(&self, expert: &Expert, track: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, GoalError> {
         let (library, observed) = (self.library(), QuerySpan::Observed.positions());
         let other = &library.tracks()[expert.index];
         if track.len() < observed {

@@ -57,9 +57,7 @@ fn mean(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
     let total: f64 = weights.iter().sum();
     std::array::from_fn(|axis| {
         let each = points.iter().zip(weights);
-        each.map(|(point, weight)| weight * point[axis])
-            .sum::<f64>()
-            / total
+        each.map(|(point, weight)| weight * point[axis]).sum::<f64>() / total
     })
 }
 
@@ -125,14 +123,7 @@ mod tests {
         let five = [[0.0, 0.0], [4.0, 1.0], [1.0, 5.0], [-2.0, 3.0], [2.5, 2.0]];
         let median = geometric_median(&five, &[1.0, 2.0, 0.5, 1.5, 0.7]);
         assert!(apart(median, [2.181_201_52, 1.726_761_91]) < 1e-3);
-        let six = [
-            [0.0, 0.0],
-            [10.0, 0.0],
-            [10.0, 8.0],
-            [1.0, 9.0],
-            [4.0, 3.0],
-            [6.0, 5.0],
-        ];
+        let six = [[0.0, 0.0], [10.0, 0.0], [10.0, 8.0], [1.0, 9.0], [4.0, 3.0], [6.0, 5.0]];
         let weights = [0.1, 0.2, 0.15, 0.25, 0.2, 0.1];
         let median = geometric_median(&six, &weights);
         assert!(apart(median, [4.870_987_64, 4.120_806_82]) < 1e-3);

@@ -98,11 +98,7 @@ impl GoalSet {
             }
         }
         let choice = choose(&points, clusters, STEPS);
-        let goals: Vec<_> = choice
-            .goals
-            .iter()
-            .map(|&end| frame.to_world(end))
-            .collect();
+        let goals: Vec<_> = choice.goals.iter().map(|&end| frame.to_world(end)).collect();
         Ok(Self::new(goals, choice.weights, Vec::new()))
     }
 
@@ -139,11 +135,7 @@ impl GoalSet {
     /// [`median`](Self::median) do not change.
     #[must_use]
     pub fn tempered(mut self, power: f64, uniform: f64) -> Self {
-        let powers: Vec<f64> = self
-            .weights
-            .iter()
-            .map(|weight| weight.powf(power))
-            .collect();
+        let powers: Vec<f64> = self.weights.iter().map(|weight| weight.powf(power)).collect();
         let total: f64 = powers.iter().sum();
         let equal = uniform / powers.len().max(1) as f64;
         let tempered = powers.iter().map(|w| (1.0 - uniform) * w / total + equal);
@@ -166,10 +158,7 @@ impl GoalSet {
     /// times. No goal has a smaller mean distance.
     pub fn median(&self) -> [f64; 2] {
         let estimated = self.estimated.as_ref().unwrap_or(&self.weights);
-        let sharpened: Vec<f64> = estimated
-            .iter()
-            .map(|weight| weight.powf(Self::SHARPNESS))
-            .collect();
+        let sharpened: Vec<f64> = estimated.iter().map(|weight| weight.powf(Self::SHARPNESS)).collect();
         geometric_median(&self.goals, &sharpened)
     }
 

@@ -69,10 +69,7 @@ impl HeadingFrame {
         } else {
             toward.map(|component| component / length)
         };
-        Ok(Self {
-            origin: last,
-            heading,
-        })
+        Ok(Self { origin: last, heading })
     }
 
     /// The last observed position (m): the origin.
@@ -103,9 +100,6 @@ impl HeadingFrame {
     /// Rotates a displacement or velocity from world coordinates to the axes of this frame.
     pub fn turn_to_frame(&self, vector: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;
-        [
-            cos * vector[0] + sin * vector[1],
-            cos * vector[1] - sin * vector[0],
-        ]
+        [cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]]
     }
 }

@@ -74,9 +74,7 @@ impl ExpertLibrary {
     ) -> Result<Vec<T>, LibraryError> {
         let tracks = self.tracks.iter().enumerate();
         tracks
-            .map(|(index, track)| {
-                make(track).map_err(|source| LibraryError::Track { index, source })
-            })
+            .map(|(index, track)| make(track).map_err(|source| LibraryError::Track { index, source }))
             .collect()
     }
 
@@ -134,10 +132,7 @@ mod tests {
         let mut broken = track;
         broken[19][1] = f64::INFINITY;
         let error = refused(&[&broken], 0.4).to_string();
-        assert_eq!(
-            error,
-            "track 0 of the library: position 19 is (0, inf): must be finite"
-        );
+        assert_eq!(error, "track 0 of the library: position 19 is (0, inf): must be finite");
     }
 
     #[test]

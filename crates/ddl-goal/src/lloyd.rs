@@ -46,12 +46,7 @@ impl Lloyd {
             labels: &mut self.labels,
             nearest: &mut self.nearest,
         });
-        self.inertia = self
-            .nearest
-            .iter()
-            .zip(&points.weight)
-            .map(|(d, w)| d * w)
-            .sum();
+        self.inertia = self.nearest.iter().zip(&points.weight).map(|(d, w)| d * w).sum();
     }
 
     fn move_centres(&mut self, points: &Points) -> f64 {
@@ -81,8 +76,7 @@ impl Lloyd {
             sizes[label as usize] += 1;
         }
         for empty in (0..sizes.len()).filter(|&k| sizes[k] == 0) {
-            let farthest =
-                (0..points.len()).max_by(|&a, &b| self.nearest[a].total_cmp(&self.nearest[b]));
+            let farthest = (0..points.len()).max_by(|&a, &b| self.nearest[a].total_cmp(&self.nearest[b]));
             if let Some(index) = farthest {
                 self.labels[index] = empty as u64;
                 self.nearest[index] = 0.0;

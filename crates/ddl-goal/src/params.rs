@@ -171,10 +171,7 @@ mod tests {
         let params = GoalEstimatorParams::default;
         assert_eq!(refused(params().experts(0)), ParamsError::NoExperts);
         assert_eq!(refused(params().clusters(0)), ParamsError::NoClusters);
-        let restarts = |restarts| GoalEstimatorParams {
-            restarts,
-            ..params()
-        };
+        let restarts = |restarts| GoalEstimatorParams { restarts, ..params() };
         assert_eq!(refused(restarts(0)), ParamsError::NoRestarts);
         let with = |gamma| GoalEstimatorParams { gamma, ..params() };
         for gamma in [-1.0, f64::INFINITY, f64::NAN] {

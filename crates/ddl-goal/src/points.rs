@@ -28,9 +28,7 @@ impl Points {
         });
         let mut distinct = Self::default();
         let mut place = vec![0; points.len()];
-        for same in
-            order.chunk_by(|&a, &b| clean(a).map(f64::to_bits) == clean(b).map(f64::to_bits))
-        {
+        for same in order.chunk_by(|&a, &b| clean(a).map(f64::to_bits) == clean(b).map(f64::to_bits)) {
             for &index in same {
                 place[index] = distinct.len();
             }
@@ -56,10 +54,7 @@ impl Points {
     pub(crate) fn mean_variance(&self) -> f64 {
         let total: f64 = self.weight.iter().sum();
         let weighted_sum = |values: &mut dyn Iterator<Item = f64>| -> f64 {
-            values
-                .zip(&self.weight)
-                .map(|(value, weight)| value * weight)
-                .sum()
+            values.zip(&self.weight).map(|(value, weight)| value * weight).sum()
         };
         let variances = [&self.x, &self.y].map(|values| {
             let mean = weighted_sum(&mut values.iter().copied()) / total;

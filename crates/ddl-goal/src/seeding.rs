@@ -12,26 +12,13 @@ use crate::points::{Points, squared_distance};
 ///
 /// # References
 /// Arthur & Vassilvitskii, *k-means++: the advantages of careful seeding*, SODA 2007 (the greedy variant of section 5).
-pub(crate) fn first_centres(
-    points: &Points,
-    clusters: usize,
-    rng: &mut ChaCha8Rng,
-) -> Vec<[f64; 2]> {
-    #[expect(
-        clippy::cast_sign_loss,
-        reason = "the logarithm of at least 1 is not negative"
-    )]
+pub(crate) fn first_centres(points: &Points, clusters: usize, rng: &mut ChaCha8Rng) -> Vec<[f64; 2]> {
+    #[expect(clippy::cast_sign_loss, reason = "the logarithm of at least 1 is not negative")]
     let draws = 2 + (clusters as f64).ln() as usize;
     let first = points.get(draw(&points.weight, rng));
     let mut centres = vec![first];
-    let [mut nearest, mut weighted, mut best, mut trial] =
-        [(); 4].map(|()| vec![0.0; points.len()]);
-    add_centre(
-        points,
-        &vec![f64::INFINITY; points.len()],
-        first,
-        &mut nearest,
-    );
+    let [mut nearest, mut weighted, mut best, mut trial] = [(); 4].map(|()| vec![0.0; points.len()]);
+    add_centre(points, &vec![f64::INFINITY; points.len()], first, &mut nearest);
     while centres.len() < clusters {
         for ((weighted, nearest), weight) in weighted.iter_mut().zip(&nearest).zip(&points.weight) {
             *weighted = nearest * weight;
@@ -56,11 +43,7 @@ fn add_centre(points: &Points, nearest: &[f64], centre: [f64; 2], into: &mut [f6
     let positions = points.x.iter().zip(&points.y);
     for ((into, nearest), (&x, &y)) in into.iter_mut().zip(nearest).zip(positions) {
         let distance = squared_distance([x, y], centre);
-        *into = if distance < *nearest {
-            distance
-        } else {
-            *nearest
-        };
+        *into = if distance < *nearest { distance } else { *nearest };
     }
     into.iter()
         .zip(&points.weight)

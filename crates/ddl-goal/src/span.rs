@@ -36,11 +36,7 @@ impl QuerySpan {
 ///
 /// # Shapes
 /// `track`: at least [`QuerySpan::positions`] positions (m), `time_step` (s) apart.
-pub(crate) fn velocities(
-    track: &[[f64; 2]],
-    time_step: f64,
-    span: QuerySpan,
-) -> Result<Vec<[f64; 2]>, TrackError> {
+pub(crate) fn velocities(track: &[[f64; 2]], time_step: f64, span: QuerySpan) -> Result<Vec<[f64; 2]>, TrackError> {
     let needed = span.positions();
     let read = track.get(..needed).ok_or(TrackError::TooShort {
         found: track.len(),
@@ -52,18 +48,13 @@ pub(crate) fn velocities(
         .map(|(index, pair)| {
             let velocity = [0, 1].map(|d| (pair[1][d] - pair[0][d]) / time_step);
             let finite = velocity.iter().all(|component| component.is_finite());
-            finite
-                .then_some(velocity)
-                .ok_or(TrackError::VelocityOverflow { index })
+            finite.then_some(velocity).ok_or(TrackError::VelocityOverflow { index })
         })
         .collect()
 }
 
 pub(crate) fn check_finite(positions: &[[f64; 2]]) -> Result<(), TrackError> {
-    match positions
-        .iter()
-        .position(|p| !(p[0].is_finite() && p[1].is_finite()))
-    {
+    match positions.iter().position(|p| !(p[0].is_finite() && p[1].is_finite())) {
         Some(index) => Err(TrackError::NonFinite {
             index,
             x: positions[index][0],
@@ -80,9 +71,7 @@ mod tests {
     use super::{QuerySpan, velocities};
 
     fn walk(positions: usize) -> Vec<[f64; 2]> {
-        (0..positions)
-            .map(|i| [0.5 * i as f64, -(i as f64).powi(2)])
-            .collect()
+        (0..positions).map(|i| [0.5 * i as f64, -(i as f64).powi(2)]).collect()
     }
 
     #[test]

@@ -14,12 +14,7 @@ use ddl_memory::SceneMemory;
 const PEDESTRIANS: usize = 25;
 
 /// A memory that has begun to forget, its crowd, the next frame, and queries for the memory.
-fn full() -> (
-    SceneMemory,
-    Crowd,
-    i64,
-    Vec<(PedestrianId, [Position; OBSERVED])>,
-) {
+fn full() -> (SceneMemory, Crowd, i64, Vec<(PedestrianId, [Position; OBSERVED])>) {
     let mut memory = SceneMemory::new(1, SceneMemory::DEFAULT_CAPACITY).expect("in range");
     let mut crowd = Crowd::new(1, PEDESTRIANS);
     let mut last = Vec::new();
@@ -30,12 +25,8 @@ fn full() -> (
     }
     let last = &last[last.len() - OBSERVED..];
     let observed = |id| {
-        last.iter().map(move |pedestrians| {
-            pedestrians
-                .iter()
-                .find(|seen| seen.0 == id)
-                .map(|seen| seen.1)
-        })
+        last.iter()
+            .map(move |pedestrians| pedestrians.iter().find(|seen| seen.0 == id).map(|seen| seen.1))
     };
     let queries = last[OBSERVED - 1].iter().filter_map(|&(id, _)| {
         let positions: Option<Vec<Position>> = observed(id).collect();

@@ -23,15 +23,9 @@ pub enum MemoryError {
     #[error("the capacity must lie in 1..={LARGEST_CAPACITY} stretches, found {found}")]
     Capacity { found: usize },
     #[error("cannot write {}: {source}", .path.display())]
-    Write {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Write { path: PathBuf, source: std::io::Error },
     #[error("cannot read {}: {source}", .path.display())]
-    Read {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Read { path: PathBuf, source: std::io::Error },
     #[error(
         "{} is not a readable scene memory: {problem}. Restore a copy, or remove the file and start with an \
          empty memory",

@@ -90,12 +90,10 @@ impl SceneMemory {
         let mut content = Vec::new();
         file.read_to_end(&mut content).map_err(failed)?;
         if head(&content).as_bytes() != start {
-            let problem =
-                "it is damaged or cut off: its SHA-256 differs from the one in its first line";
+            let problem = "it is damaged or cut off: its SHA-256 differs from the one in its first line";
             return Err(refused(problem.to_owned()));
         }
-        let stored =
-            serde_json::from_slice(&content).map_err(|error| refused(error.to_string()))?;
+        let stored = serde_json::from_slice(&content).map_err(|error| refused(error.to_string()))?;
         checked(stored).map_err(refused)
     }
 }
@@ -127,15 +125,8 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     if last_frames.max() > memory.last_frame {
         return Err("a pedestrian was seen after the last frame".to_owned());
     }
-    for track in memory
-        .ended
-        .iter()
-        .chain(of_running.map(|running| &running.track))
-    {
-        let earlier = track
-            .pieces
-            .split_last()
-            .map_or(&[][..], |(_, earlier)| earlier);
+    for track in memory.ended.iter().chain(of_running.map(|running| &running.track)) {
+        let earlier = track.pieces.split_last().map_or(&[][..], |(_, earlier)| earlier);
         if track.pieces.len() > MAX_RUNS || earlier.iter().any(|piece| piece.len() == 0) {
             return Err("a track has too many runs, or too short ones".to_owned());
         }
@@ -143,9 +134,7 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     }
     if memory.stretches > memory.capacity {
         let (found, most) = (memory.stretches, memory.capacity);
-        return Err(format!(
-            "it holds {found} stretches, more than its capacity {most}"
-        ));
+        return Err(format!("it holds {found} stretches, more than its capacity {most}"));
     }
     Ok(memory)
 }

@@ -77,10 +77,7 @@ pub(crate) struct Seen {
 impl Seen {
     fn add(&mut self, [x, y]: Position) {
         let [low, high] = self.extent.unwrap_or([[x, y]; 2]);
-        self.extent = Some([
-            [low[0].min(x), low[1].min(y)],
-            [high[0].max(x), high[1].max(y)],
-        ]);
+        self.extent = Some([[low[0].min(x), low[1].min(y)], [high[0].max(x), high[1].max(y)]]);
     }
 }
 
@@ -188,8 +185,7 @@ impl SceneMemory {
     fn end_tracks(&mut self, ends: impl Fn(&RunningTrack) -> bool) {
         let ending = self.running.extract_if(.., |_, running| ends(running));
         let tracks = ending.map(|(_, running)| running.track);
-        self.ended
-            .extend(tracks.filter(|track| track.stretches() > 0));
+        self.ended.extend(tracks.filter(|track| track.stretches() > 0));
     }
 
     fn make_room(&mut self) {

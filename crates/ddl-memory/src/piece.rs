@@ -175,11 +175,7 @@ impl Piece {
         for half in [4, 2, 1] {
             for lane in 0..half {
                 let other = least[lane + half];
-                least[lane] = if other < least[lane] {
-                    other
-                } else {
-                    least[lane]
-                };
+                least[lane] = if other < least[lane] { other } else { least[lane] };
             }
         }
         least[0]

@@ -21,12 +21,7 @@ impl SceneMemory {
     /// `own` is the id of this pedestrian, whose running track is left out. If a component of the motion is not finite,
     /// the result is empty.
     #[must_use]
-    pub fn recall(
-        &self,
-        observed: &[Position; OBSERVED],
-        own: Option<PedestrianId>,
-        count: usize,
-    ) -> Vec<Remembered> {
+    pub fn recall(&self, observed: &[Position; OBSERVED], own: Option<PedestrianId>, count: usize) -> Vec<Remembered> {
         let motion = Motion::of(observed);
         let running = self.running.iter().filter(|(id, _)| Some(**id) != own);
         let running = running.map(|(_, running)| &running.track);
@@ -39,9 +34,7 @@ impl SceneMemory {
                 _ => (),
             }
         }
-        let by_distance = |a: &(f32, usize, &Piece), b: &(f32, usize, &Piece)| {
-            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-        };
+        let by_distance = |a: &(f32, usize, &Piece), b: &(f32, usize, &Piece)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
         if count < near.len() {
             near.select_nth_unstable_by(count, by_distance);
             near.truncate(count);

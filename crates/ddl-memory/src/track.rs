@@ -44,9 +44,7 @@ impl Track {
     fn add(&mut self, piece: Piece) -> usize {
         let gone = match &self.pieces[..] {
             [.., last] if last.len() == 0 => self.pieces.pop(),
-            [earlier @ .., _, last] if earlier.iter().any(|old| last.is_repeated_by(old)) => {
-                self.pieces.pop()
-            }
+            [earlier @ .., _, last] if earlier.iter().any(|old| last.is_repeated_by(old)) => self.pieces.pop(),
             pieces if pieces.len() == MAX_RUNS => Some(self.pieces.remove(0)),
             _ => None,
         };

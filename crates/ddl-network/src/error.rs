@@ -24,10 +24,7 @@ pub enum NetworkError {
     #[error("weights: {tensor} {problem}")]
     Weights { tensor: String, problem: String },
     #[error("{}: {source}", path.display())]
-    Io {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Io { path: PathBuf, source: std::io::Error },
     #[error("{0}")]
     Backend(Box<dyn std::error::Error + Send + Sync>),
 }
@@ -56,11 +53,7 @@ impl NetworkError {
     }
 
     /// An error about windows, goals or tensors of unexpected shape.
-    pub fn shape(
-        operation: &'static str,
-        expected: impl Into<String>,
-        got: impl Into<String>,
-    ) -> Self {
+    pub fn shape(operation: &'static str, expected: impl Into<String>, got: impl Into<String>) -> Self {
         Self::Shape {
             operation,
             expected: expected.into(),

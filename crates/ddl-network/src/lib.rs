@@ -95,16 +95,14 @@ mod training_report;
 pub mod weights;
 
 pub use config::{
-    BackboneKind, LearningRateSchedule, MemoryConfig, MemoryTraining, NetworkFrame, Objective,
-    ProposalConfig, ProposalTraining, StarConfig, TrainingConfig, Variant,
+    BackboneKind, LearningRateSchedule, MemoryConfig, MemoryTraining, NetworkFrame, Objective, ProposalConfig,
+    ProposalTraining, StarConfig, TrainingConfig, Variant,
 };
 pub use error::NetworkError;
 pub use forecast::{
-    BatchRollout, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout,
-    length_unit, motion_bounds, visibility,
+    BatchRollout, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout, length_unit,
+    motion_bounds, visibility,
 };
 pub use precision::{DeviceChoice, Precision};
-pub use proposal::{
-    PedestrianView, ProposalExample, ProposalNetwork, ProposeEndpoints, ProposedEndpoints,
-};
+pub use proposal::{PedestrianView, ProposalExample, ProposalNetwork, ProposeEndpoints, ProposedEndpoints};
 pub use training_report::{EpochReport, ProposalStep, StepReport};

@@ -9,9 +9,7 @@ mod network;
 mod remembered;
 mod seen;
 
-pub use ends::{
-    ENDPOINT_UNIT, PedestrianView, ProposalExample, ProposeEndpoints, ProposedEndpoints,
-};
+pub use ends::{ENDPOINT_UNIT, PedestrianView, ProposalExample, ProposeEndpoints, ProposedEndpoints};
 pub use layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers, WAYPOINTS};
 pub use network::ProposalNetwork;
 pub use remembered::{REMEMBERED_FEATURES, SIMILARITY_SCALES};

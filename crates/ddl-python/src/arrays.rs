@@ -3,18 +3,14 @@
 use ddl::data::{COORDINATE_LIMIT, HORIZON, Position};
 use numpy::ndarray::IntoDimension;
 use numpy::{
-    Element, IntoPyArray as _, PyArrayMethods as _, PyReadonlyArray, PyReadonlyArray2,
-    PyReadonlyArray3, PyUntypedArrayMethods as _,
+    Element, IntoPyArray as _, PyArrayMethods as _, PyReadonlyArray, PyReadonlyArray2, PyReadonlyArray3,
+    PyUntypedArrayMethods as _,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// An array of this shape that takes over the memory of a vector.
-pub(crate) fn array<T: Element>(
-    py: Python<'_>,
-    flat: Vec<T>,
-    shape: impl IntoDimension,
-) -> PyResult<Py<PyAny>> {
+pub(crate) fn array<T: Element>(py: Python<'_>, flat: Vec<T>, shape: impl IntoDimension) -> PyResult<Py<PyAny>> {
     let flat = flat.into_pyarray(py);
     Ok(flat.reshape(shape)?.into_any().unbind())
 }
@@ -125,8 +121,7 @@ pub(crate) fn forecast(
         Some(goals) => Some(flat("goals", goals)?.as_chunks::<2>().0.to_vec()),
         None => None,
     };
-    ddl::Forecast::new(n, k, positions, weights, goals)
-        .map_err(|error| PyValueError::new_err(error.to_string()))
+    ddl::Forecast::new(n, k, positions, weights, goals).map_err(|error| PyValueError::new_err(error.to_string()))
 }
 
 /// Paths from Python code, which has converted them to float64.

@@ -34,9 +34,7 @@ pub(crate) fn baseline<'py>(
         "social_force" => Box::new(SocialForce),
         "straight_line" => Box::new(StraightLine::to(given(goals.as_ref(), &scene)?)),
         _ => {
-            return Err(PyValueError::new_err(format!(
-                "there is no baseline {name:?}"
-            )));
+            return Err(PyValueError::new_err(format!("there is no baseline {name:?}")));
         }
     };
     let forecast = scene
@@ -75,8 +73,7 @@ fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResul
         }
     }
     let all: Option<Vec<WeightedGoals>> = of_window.into_iter().collect();
-    let all =
-        all.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))?;
+    let all = all.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))?;
     Ok(GivenGoals(all))
 }
 

@@ -3,8 +3,8 @@
 use crate::arrays::{array, flat, points};
 use crate::errors::of_any;
 use ddl::dynamics::{
-    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Flow as _, LyapunovCertificate,
-    MetricSchedule, NaturalGradientFlow, StableEuler, State, rollout,
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Flow as _, LyapunovCertificate, MetricSchedule,
+    NaturalGradientFlow, StableEuler, State, rollout,
 };
 use nalgebra::{Matrix2, Vector2};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
@@ -45,12 +45,7 @@ impl Flow {
         Ok(Self(AvoidingFlow::new(free, balls, margin).map_err(wrong)?))
     }
 
-    fn velocity(
-        &self,
-        py: Python<'_>,
-        position: PyReadonlyArray2<'_, f64>,
-        step: usize,
-    ) -> PyResult<Py<PyAny>> {
+    fn velocity(&self, py: Python<'_>, position: PyReadonlyArray2<'_, f64>, step: usize) -> PyResult<Py<PyAny>> {
         let points = points("position", &position)?;
         let velocities = points.iter().map(|&point| {
             let state = State::new(point.into(), step, 0.0, &[]);
@@ -63,13 +58,7 @@ impl Flow {
     }
 
     /// `(n, steps + 1, 2)`, with the start first; the distance to the goal falls at each step.
-    fn rollout(
-        &self,
-        py: Python<'_>,
-        start: PyReadonlyArray2<'_, f64>,
-        dt: f64,
-        steps: usize,
-    ) -> PyResult<Py<PyAny>> {
+    fn rollout(&self, py: Python<'_>, start: PyReadonlyArray2<'_, f64>, dt: f64, steps: usize) -> PyResult<Py<PyAny>> {
         let starts = points("start", &start)?;
         if steps.saturating_mul(starts.len()) > MOST_POSITIONS {
             return Err(PyValueError::new_err(format!(
@@ -98,10 +87,7 @@ impl Flow {
         let length = [potentials.len()];
         let dict = PyDict::new(py);
         dict.set_item("holds", violation.is_none())?;
-        dict.set_item(
-            "violation",
-            violation.map(|violation| violation.to_string()),
-        )?;
+        dict.set_item("violation", violation.map(|violation| violation.to_string()))?;
         dict.set_item("potentials", array(py, potentials, length)?)?;
         let eigenvalue = certificate.min_eigenvalue().unwrap_or(f64::NAN);
         dict.set_item("min_eigenvalue", eigenvalue)?;
@@ -132,11 +118,8 @@ fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f6
     let sigma = 0.5 * smallest;
     let rest = matrix - Matrix2::from_diagonal_element(sigma);
     let factor = rest.cholesky().map(|of| of.l());
-    let factor = factor.ok_or_else(|| {
-        PyValueError::new_err(format!(
-            "P[{step}] is too close to a matrix with an eigenvalue of 0"
-        ))
-    })?;
+    let factor = factor
+        .ok_or_else(|| PyValueError::new_err(format!("P[{step}] is too close to a matrix with an eigenvalue of 0")))?;
     CholeskyMetric::new(factor, sigma).map_err(wrong)
 }
 

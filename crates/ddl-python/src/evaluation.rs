@@ -34,12 +34,8 @@ fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, D
 /// The conventions, with their folds.
 #[pyfunction]
 pub(crate) fn conventions() -> Vec<(&'static str, Vec<&'static str>)> {
-    let planned = Convention::ALL
-        .into_iter()
-        .filter(|of| *of != Convention::Own);
-    planned
-        .map(|of| (of.name(), of.fold_names().collect()))
-        .collect()
+    let planned = Convention::ALL.into_iter().filter(|of| *of != Convention::Own);
+    planned.map(|of| (of.name(), of.fold_names().collect())).collect()
 }
 
 /// The windows of a fold, or of a recording, with their futures.
@@ -124,13 +120,10 @@ impl TestSet {
         };
         let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold_by_name = dataset.fold(fold).map_err(raised)?;
-        let recordings = fold_by_name
-            .test_recordings()
-            .iter()
-            .map(|tracks| Recording {
-                tracks: Arc::new((*tracks).clone()),
-                parts: 1,
-            });
+        let recordings = fold_by_name.test_recordings().iter().map(|tracks| Recording {
+            tracks: Arc::new((*tracks).clone()),
+            parts: 1,
+        });
         Ok(Self {
             convention,
             rule,
@@ -191,25 +184,20 @@ impl TestSet {
         )>,
     ) -> PyResult<String> {
         let protocol: Protocol = parsed(protocol)?;
-        let made = forecasts
-            .iter()
-            .enumerate()
-            .map(|(index, (paths, weights, goals))| {
-                forecast(paths, weights.as_ref(), goals.as_ref()).map_err(|error| {
-                    let frame = self.windows.get(index).map(Window::start_frame);
-                    PyValueError::new_err(format!(
-                        "window {index} of {} (start frame {frame:?}): {error}",
-                        self.fold
-                    ))
-                })
-            });
+        let made = forecasts.iter().enumerate().map(|(index, (paths, weights, goals))| {
+            forecast(paths, weights.as_ref(), goals.as_ref()).map_err(|error| {
+                let frame = self.windows.get(index).map(Window::start_frame);
+                PyValueError::new_err(format!(
+                    "window {index} of {} (start frame {frame:?}): {error}",
+                    self.fold
+                ))
+            })
+        });
         let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
         let admitted = protocol.admit(made, name).map_err(|error| of_any(&error))?;
         let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
         let windows = Arc::clone(&self.windows);
-        let row = run(py, move |_| {
-            ResultRow::score(conditions, &windows, &admitted)
-        })?;
+        let row = run(py, move |_| ResultRow::score(conditions, &windows, &admitted))?;
         let row = row.map_err(|error| of_any(&error))?;
         serde_json::to_string(&row).map_err(|error| of_any(&error))
     }
@@ -255,17 +243,14 @@ pub(crate) fn evaluate_model(
     let evaluated = run_telling(py, work, tell)?;
     let rows = evaluated.map_err(raised)?.rows;
     let rows = rows.iter().map(serde_json::to_string);
-    rows.collect::<Result<_, _>>()
-        .map_err(|error| of_any(&error))
+    rows.collect::<Result<_, _>>().map_err(|error| of_any(&error))
 }
 
 /// A report of rows, as markdown.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, title: &str, rows: Vec<String>) -> PyResult<String> {
     let rows = rows.iter().map(|row| serde_json::from_str(row));
-    let rows: Vec<ResultRow> = rows
-        .collect::<Result<_, _>>()
-        .map_err(|error| of_any(&error))?;
+    let rows: Vec<ResultRow> = rows.collect::<Result<_, _>>().map_err(|error| of_any(&error))?;
     let report = Report::new(title, rows).map_err(|error| of_any(&error))?;
     run(py, move |_| report.to_markdown())
 }

@@ -30,10 +30,7 @@ impl Forecasted {
 
 /// The optional fields in the result for an empty window, the same as the forecaster gives for other windows.
 #[derive(Debug, Clone, Copy, Default)]
-#[expect(
-    clippy::struct_excessive_bools,
-    reason = "each tells whether one field is present"
-)]
+#[expect(clippy::struct_excessive_bools, reason = "each tells whether one field is present")]
 pub(crate) struct EmptyFields {
     pub(crate) hypotheses: usize,
     pub(crate) goals: bool,
@@ -53,21 +50,14 @@ pub(crate) fn parts<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let forecast = forecasted.map(Forecasted::forecast);
     let rows = &observed.rows;
-    let (n, k) = (
-        rows.len(),
-        forecast.map_or(empty.hypotheses, Forecast::hypotheses),
-    );
+    let (n, k) = (rows.len(), forecast.map_or(empty.hypotheses, Forecast::hypotheses));
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
-    let pairs = || {
-        rows.iter()
-            .flat_map(move |row| (0..k).map(move |k| (row, k)))
-    };
+    let pairs = || rows.iter().flat_map(move |row| (0..k).map(move |k| (row, k)));
     let paths = pairs().flat_map(|(row, k)| match of_row(row) {
         Some((forecast, i)) => forecast.hypothesis(i, k).to_vec(),
         None => vec![[f64::NAN; 2]; HORIZON],
     });
-    let weights =
-        pairs().map(|(row, k)| of_row(row).map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
+    let weights = pairs().map(|(row, k)| of_row(row).map_or(f64::NAN, |(forecast, i)| forecast.weight(i, k)));
     let goals = pairs().map(|(row, k)| {
         let goal = of_row(row).and_then(|(forecast, i)| forecast.goal(i, k));
         goal.unwrap_or([f64::NAN; 2])
@@ -88,10 +78,7 @@ pub(crate) fn parts<'py>(
     });
     let dict = PyDict::new(py);
     observed_rows(py, observed, &dict)?;
-    dict.set_item(
-        "paths",
-        array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?,
-    )?;
+    dict.set_item("paths", array(py, numbers(paths.collect()), [n, k, HORIZON, 2])?)?;
     dict.set_item("weights", array(py, weights.collect(), [n, k])?)?;
     let goals = if forecast.map_or(empty.goals, Forecast::has_goals) {
         Some(array(py, numbers(goals.collect()), [n, k, 2])?)
@@ -131,9 +118,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
     let n = rows.len();
     let made_up = rows.iter().flat_map(|row| {
         let made_up = window.zip(*row).map(|(window, i)| window.made_up(i));
-        made_up.map_or([0; 2], |made_up| {
-            [made_up.padded as i64, made_up.filled as i64]
-        })
+        made_up.map_or([0; 2], |made_up| [made_up.padded as i64, made_up.filled as i64])
     });
     let past = rows.iter().flat_map(|row| match window.zip(*row) {
         Some((window, i)) => window.observed(i).to_vec(),
@@ -245,9 +230,7 @@ pub(crate) fn region_radii<'py>(
     let mut radii = vec![f64::NAN; n * k * HORIZON];
     if !known.is_empty() {
         let of_known = known.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
-        let spreads = known
-            .iter()
-            .flat_map(|&i| spread.as_array().row(i).to_vec());
+        let spreads = known.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
         let positions = vec![[0.0; 2]; known.len() * k * HORIZON];
         let forecast = Forecast::new(known.len(), k, positions, of_known, None)
             .and_then(|forecast| forecast.with_spread(spreads.collect(), table.into()))
@@ -284,13 +267,11 @@ pub(crate) fn write_forecasts(
         let tracks = crate::arrays::tracks("past", &past, OBSERVED, false)?;
         let ids = ids.into_iter().map(PedestrianId).collect();
         let start = frame - (OBSERVED as i64 - 1);
-        let window =
-            Window::new(recording, start, 1, ids, tracks).map_err(|error| of_any(&error))?;
+        let window = Window::new(recording, start, 1, ids, tracks).map_err(|error| of_any(&error))?;
         written.push(forecast(&paths, Some(&weights), goals.as_ref())?);
         windows.push(window);
     }
     let mut text = Vec::new();
-    ddl::eval::external::write_forecasts(&windows, &written, &mut text)
-        .map_err(|error| of_any(&error))?;
+    ddl::eval::external::write_forecasts(&windows, &written, &mut text).map_err(|error| of_any(&error))?;
     ddl::write_atomically(&path, &text).map_err(crate::errors::raised)
 }

@@ -16,12 +16,7 @@ pub(crate) struct GoalEstimator(Arc<ddl::goal::GoalEstimator>);
 impl GoalEstimator {
     #[new]
     #[pyo3(signature = (experts, *, similar = 800, goals = 20, seed = 0))]
-    fn new(
-        experts: PyReadonlyArray3<'_, f64>,
-        similar: usize,
-        goals: usize,
-        seed: u64,
-    ) -> PyResult<Self> {
+    fn new(experts: PyReadonlyArray3<'_, f64>, similar: usize, goals: usize, seed: u64) -> PyResult<Self> {
         let tracks = tracks("experts", &experts, TRACK_LENGTH, false)?;
         let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| of_any(&error))?;
         let params = GoalEstimatorParams::default()
@@ -30,8 +25,7 @@ impl GoalEstimator {
             .seed(seed)
             .check()
             .map_err(|error| of_any(&error))?;
-        let estimator =
-            ddl::goal::GoalEstimator::new(params, library).map_err(|error| of_any(&error))?;
+        let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(|error| of_any(&error))?;
         Ok(Self(Arc::new(estimator)))
     }
 
@@ -40,11 +34,7 @@ impl GoalEstimator {
     }
 
     /// Goals `(n, k, 2)` and weights `(n, k)`.
-    fn estimate(
-        &self,
-        py: Python<'_>,
-        past: PyReadonlyArray3<'_, f64>,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    fn estimate(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let tracks = tracks("past", &past, OBSERVED, false)?;
         let (n, k) = (tracks.len(), self.0.params().clusters);
         let estimator = Arc::clone(&self.0);
@@ -55,9 +45,6 @@ impl GoalEstimator {
         let sets = sets.map_err(|error| of_any(&error))?;
         let goals = sets.iter().flat_map(|set| set.goals().to_vec()).collect();
         let weights = sets.iter().flat_map(|set| set.weights().to_vec()).collect();
-        Ok((
-            array(py, numbers(goals), [n, k, 2])?,
-            array(py, weights, [n, k])?,
-        ))
+        Ok((array(py, numbers(goals), [n, k, 2])?, array(py, weights, [n, k])?))
     }
 }

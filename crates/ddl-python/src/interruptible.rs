@@ -41,10 +41,7 @@ impl Stop {
 
 /// Runs the work on the pool for calls, without the GIL. Ctrl-C ends the call within 50 ms. The work should check its
 /// argument and stop.
-pub(crate) fn run<T: Send + 'static>(
-    py: Python<'_>,
-    work: impl FnOnce(&Stop) -> T + Send + 'static,
-) -> PyResult<T> {
+pub(crate) fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Stop) -> T + Send + 'static) -> PyResult<T> {
     run_on(User::Calls, py, work, |_| Ok(()))
 }
 
@@ -103,9 +100,7 @@ fn run_on<T: Send + 'static>(
 
 /// The pool of this process, replaced if the number of threads has changed.
 fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
-    let mut held = POOLS[user as usize]
-        .lock()
-        .unwrap_or_else(PoisonError::into_inner);
+    let mut held = POOLS[user as usize].lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
     let wanted = threads.or(held.as_ref().map(|held| held.count));
     if let Some(held) = &*held

@@ -46,9 +46,7 @@ mod _core {
     #[pymodule_export]
     use crate::live::Live;
     #[pymodule_export]
-    use crate::metrics::{
-        collisions, displacement_errors, kde_nll, mahalanobis, scores, spread_between,
-    };
+    use crate::metrics::{collisions, displacement_errors, kde_nll, mahalanobis, scores, spread_between};
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]

@@ -35,11 +35,7 @@ struct Watching {
 type Answer = (Option<(Window, Forecasted)>, Option<String>);
 
 impl Watching {
-    fn observe(
-        &mut self,
-        frame: i64,
-        seen: Vec<(PedestrianId, Position)>,
-    ) -> Result<Answer, DdlError> {
+    fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
         let forecast = if self.certificates {
             let now = self.live.push_certified(frame, seen)?;
             now.map(|now| (now.window, Forecasted::Certified(now.forecast)))
@@ -105,13 +101,7 @@ fn held(slot: &Slot) -> MutexGuard<'_, Option<Box<Watching>>> {
 impl Live {
     #[new]
     #[pyo3(signature = (model, fps, memory, whole, certificates))]
-    fn new(
-        model: &Model,
-        fps: f64,
-        memory: Option<PathBuf>,
-        whole: bool,
-        certificates: bool,
-    ) -> PyResult<Self> {
+    fn new(model: &Model, fps: f64, memory: Option<PathBuf>, whole: bool, certificates: bool) -> PyResult<Self> {
         let step = if fps.is_finite() && fps > 0.0 {
             whole_frame_step(fps.recip())
         } else {
@@ -195,18 +185,14 @@ impl Live {
     /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
-        let refused = turn
-            .watching()
-            .and_then(|watching| watching.live.refused_memory());
+        let refused = turn.watching().and_then(|watching| watching.live.refused_memory());
         Ok(refused.map(ToString::to_string))
     }
 
     /// Writes the memory and closes its file; returns a warning, if any.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
-        let told = run_live(py, move |_| {
-            turn.watching().map_or(Ok(None), Watching::close)
-        })?;
+        let told = run_live(py, move |_| turn.watching().map_or(Ok(None), Watching::close))?;
         told.map_err(raised)
     }
 }

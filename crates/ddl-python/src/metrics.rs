@@ -24,10 +24,7 @@ fn window(
     let truth = tracks("truth", truth, HORIZON, false)?;
     let pasts = match past {
         Some(past) => tracks("past", past, OBSERVED, false)?,
-        None => truth
-            .iter()
-            .map(|future| vec![future[0]; OBSERVED])
-            .collect(),
+        None => truth.iter().map(|future| vec![future[0]; OBSERVED]).collect(),
     };
     if pasts.len() != truth.len() {
         return Err(PyValueError::new_err(format!(
@@ -100,8 +97,7 @@ pub(crate) fn mahalanobis(
     let forecast = forecast(&paths, weights.as_ref(), None)?;
     of_scene(&truth, &forecast, |scene| {
         let n = scene.pedestrians();
-        let all: Vec<DistributionErrors> =
-            several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
+        let all: Vec<DistributionErrors> = several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
         let distances = all.iter().map(|of| of.mahalanobis).collect();
         let covariances = all.iter().map(|of| of.covariance);
         let covariances = covariances.flat_map(|of| [of.xx, of.xy, of.yy]).collect();
@@ -143,9 +139,7 @@ pub(crate) fn collisions(
     let n = all.len();
     let nearest = |i: usize| {
         let others = (0..n).filter(|j| *j != i);
-        others.fold(f64::INFINITY, |least, j| {
-            least.min(closest_approach(all[i], all[j]))
-        })
+        others.fold(f64::INFINITY, |least, j| least.min(closest_approach(all[i], all[j])))
     };
     let (collides, nearest) = py.detach(|| {
         let nearest: Vec<f64> = (0..n).map(nearest).collect();
@@ -182,7 +176,6 @@ pub(crate) fn scores(
 }
 
 fn several<T>(all: impl Iterator<Item = Option<T>>) -> PyResult<Vec<T>> {
-    all.collect::<Option<_>>().ok_or_else(|| {
-        PyValueError::new_err("paths have one hypothesis, but this metric needs several")
-    })
+    all.collect::<Option<_>>()
+        .ok_or_else(|| PyValueError::new_err("paths have one hypothesis, but this metric needs several"))
 }

@@ -47,8 +47,7 @@ impl Manner {
 
     fn forecast(self, model: &Ddl, windows: &[Window]) -> Result<Vec<Forecasted>, ForecastError> {
         let plain = |all: Vec<ddl::Forecast>| all.into_iter().map(Forecasted::Plain).collect();
-        let certified =
-            |all: Vec<ddl::CertifiedForecast>| all.into_iter().map(Forecasted::Certified).collect();
+        let certified = |all: Vec<ddl::CertifiedForecast>| all.into_iter().map(Forecasted::Certified).collect();
         Ok(match (self.one, self.certificates) {
             (false, false) => plain(model.forecast_all(windows)?),
             (true, false) => plain(model.forecast_central(windows)?),
@@ -58,12 +57,7 @@ impl Manner {
     }
 
     /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
-    fn forecast_until(
-        self,
-        model: &Ddl,
-        windows: &[Window],
-        stop: &Stop,
-    ) -> Result<Vec<Forecasted>, DdlError> {
+    fn forecast_until(self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<Forecasted>, DdlError> {
         let mut all = Vec::with_capacity(windows.len());
         while all.len() < windows.len() && !stop.is_asked() {
             let rest = &windows[all.len()..];
@@ -72,10 +66,7 @@ impl Manner {
                 pedestrians += window.len();
                 pedestrians >= BATCH
             };
-            let count = rest
-                .iter()
-                .position(enough)
-                .map_or(rest.len(), |last| last + 1);
+            let count = rest.iter().position(enough).map_or(rest.len(), |last| last + 1);
             all.extend(self.forecast(model, &rest[..count])?);
         }
         Ok(all)
@@ -177,12 +168,7 @@ impl Model {
     }
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
-    fn goals(
-        &self,
-        py: Python<'_>,
-        past: PyReadonlyArray3<'_, f64>,
-        asked: usize,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    fn goals(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>, asked: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let scene = Observed::new(&past, asked, completion(false))?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
@@ -222,16 +208,9 @@ impl Model {
 }
 
 impl Model {
-    fn forecasts(
-        &self,
-        py: Python<'_>,
-        manner: Manner,
-        windows: Vec<Window>,
-    ) -> PyResult<Vec<Forecasted>> {
+    fn forecasts(&self, py: Python<'_>, manner: Manner, windows: Vec<Window>) -> PyResult<Vec<Forecasted>> {
         let model = Arc::clone(&self.0);
-        let forecasts = run(py, move |stop| {
-            manner.forecast_until(&model, &windows, stop)
-        })?;
+        let forecasts = run(py, move |stop| manner.forecast_until(&model, &windows, stop))?;
         forecasts.map_err(raised)
     }
 }

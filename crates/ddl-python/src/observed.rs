@@ -18,11 +18,7 @@ pub(crate) struct Observed {
 impl Observed {
     /// The observation of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their
     /// neighbours.
-    pub(crate) fn new(
-        past: &PyReadonlyArray3<'_, f64>,
-        asked: usize,
-        completion: Completion,
-    ) -> PyResult<Self> {
+    pub(crate) fn new(past: &PyReadonlyArray3<'_, f64>, asked: usize, completion: Completion) -> PyResult<Self> {
         let tracks = tracks("past", past, OBSERVED, true)?;
         let mut live = LiveTracks::new().with_completion(completion);
         for frame in 0..OBSERVED {
@@ -54,9 +50,5 @@ impl Observed {
 
 /// Fills holes and pads late beginnings, as the program does, unless only whole observations count.
 pub(crate) fn completion(whole: bool) -> Completion {
-    if whole {
-        Completion::NONE
-    } else {
-        Completion::USUAL
-    }
+    if whole { Completion::NONE } else { Completion::USUAL }
 }

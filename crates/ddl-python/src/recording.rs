@@ -4,8 +4,8 @@ use crate::arrays::array;
 use crate::errors::{of_any, raised};
 use crate::observed::completion;
 use ddl::data::{
-    Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks,
-    RecordingError, Window, read_recording, write_recording,
+    Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks, RecordingError, Window,
+    read_recording, write_recording,
 };
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -38,9 +38,7 @@ impl Rate {
             ));
         }
         if let Some(step) = self.frame_step {
-            let tracks = tracks
-                .with_frame_step(step)
-                .map_err(|error| of_any(&error))?;
+            let tracks = tracks.with_frame_step(step).map_err(|error| of_any(&error))?;
             return Ok(Recording::whole(tracks));
         }
         if let Some(fps) = self.fps
@@ -53,9 +51,7 @@ impl Rate {
         let Some(frame_time) = self.fps.map(f64::recip).or(tracks.stated_frame_time()) else {
             return Ok(Recording::whole(tracks));
         };
-        let steps = tracks
-            .resampled_to_steps(frame_time)
-            .map_err(|error| of_any(&error))?;
+        let steps = tracks.resampled_to_steps(frame_time).map_err(|error| of_any(&error))?;
         Ok(Recording {
             tracks: Arc::new(steps.recording),
             parts: steps.parts,
@@ -108,11 +104,7 @@ impl Recording {
                 }
             }
             let position = [x[row], y[row]];
-            observations.push(Observation::new(
-                frame[row],
-                PedestrianId(id[row]),
-                position,
-            ));
+            observations.push(Observation::new(frame[row], PedestrianId(id[row]), position));
         }
         let made = Tracks::in_usual_step(name, observations);
         let mut tracks = made.map_err(|error| match (&error, &words) {
@@ -123,9 +115,7 @@ impl Recording {
             _ => of_any(&error),
         })?;
         if let Some(words) = words {
-            let numbered = (0..)
-                .map(PedestrianId)
-                .zip(words.into_iter().map(Arc::from));
+            let numbered = (0..).map(PedestrianId).zip(words.into_iter().map(Arc::from));
             tracks = tracks.with_words(numbered.collect());
         }
         Rate { fps, frame_step }.of(tracks)
@@ -150,14 +140,10 @@ impl Recording {
             })?;
             Format::guess(&path, &bytes)
         };
-        let mut tracks = py
-            .detach(|| read_recording(&path, format))
-            .map_err(raised)?;
+        let mut tracks = py.detach(|| read_recording(&path, format)).map_err(raised)?;
         if let Some(rows) = homography {
             let homography = Homography::new(rows).map_err(|error| of_any(&error))?;
-            tracks = homography
-                .to_ground(&tracks)
-                .map_err(|error| of_any(&error))?;
+            tracks = homography.to_ground(&tracks).map_err(|error| of_any(&error))?;
         }
         Rate { fps, frame_step }.of(tracks)
     }
@@ -210,13 +196,7 @@ impl Recording {
             let frames = all.iter().map(|seen| seen.frame as f64 / parts);
             array(py, frames.collect(), [n])?
         };
-        let axis = |axis: usize| {
-            array(
-                py,
-                all.iter().map(|seen| seen.position[axis]).collect(),
-                [n],
-            )
-        };
+        let axis = |axis: usize| array(py, all.iter().map(|seen| seen.position[axis]).collect(), [n]);
         let names = self.tracks.names();
         let numbered = all.iter().map(|seen| match names.of(seen.pedestrian) {
             PedestrianName::Number(number) => Some(number),

@@ -3,9 +3,7 @@
 use crate::arrays::array;
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::softdtw::{
-    Band, Cost, SearchIndex as Index, SlidingIndex as Sliding, SoftDtw, WindowNeighbour,
-};
+use ddl::softdtw::{Band, Cost, SearchIndex as Index, SlidingIndex as Sliding, SoftDtw, WindowNeighbour};
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -54,11 +52,9 @@ fn sequence<'py>(object: &Bound<'py, PyAny>, name: &str) -> PyResult<PyReadonlyA
         1 => array.call_method1("reshape", (-1, 1))?,
         _ => array,
     };
-    let array = array.cast_into::<PyArray2<f64>>().map_err(|_| {
-        PyValueError::new_err(format!(
-            "{name} must have the shape (steps, components) or (steps,)"
-        ))
-    })?;
+    let array = array
+        .cast_into::<PyArray2<f64>>()
+        .map_err(|_| PyValueError::new_err(format!("{name} must have the shape (steps, components) or (steps,)")))?;
     Ok(array.readonly())
 }
 
@@ -111,11 +107,7 @@ const LONG: usize = 20_000;
 
 /// Computes without the GIL if the work takes longer than releasing it.
 fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() -> T) -> T {
-    if cells < LONG {
-        work()
-    } else {
-        py.detach(work)
-    }
+    if cells < LONG { work() } else { py.detach(work) }
 }
 
 /// Soft-DTW of two sequences.
@@ -280,10 +272,7 @@ fn all_steps<const D: usize>(
     each.collect()
 }
 
-fn sequences<'py>(
-    objects: &[Bound<'py, PyAny>],
-    name: &str,
-) -> PyResult<Vec<PyReadonlyArray2<'py, f64>>> {
+fn sequences<'py>(objects: &[Bound<'py, PyAny>], name: &str) -> PyResult<Vec<PyReadonlyArray2<'py, f64>>> {
     let each = objects.iter().enumerate();
     each.map(|(index, object)| sequence(object, &format!("{name}[{index}]")))
         .collect()
@@ -291,9 +280,7 @@ fn sequences<'py>(
 
 fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<usize> {
     let first = arrays.first();
-    let first = first.ok_or_else(|| {
-        PyValueError::new_err(format!("{name} is empty; give at least one sequence"))
-    })?;
+    let first = first.ok_or_else(|| PyValueError::new_err(format!("{name} is empty; give at least one sequence")))?;
     Ok(first.shape()[1])
 }
 
@@ -344,12 +331,7 @@ impl SearchIndex {
     }
 
     /// Indices `(q, n)` and distances `(q, n)`, nearest first.
-    fn nearest(
-        &self,
-        py: Python<'_>,
-        queries: Vec<Bound<'_, PyAny>>,
-        n: usize,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
+    fn nearest(&self, py: Python<'_>, queries: Vec<Bound<'_, PyAny>>, n: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let found = search(py, &*self.index, self.components, &queries, n)?;
         let shape = [found.len(), n.min(self.index.len())];
         let flat = || found.iter().flatten();

@@ -93,21 +93,16 @@ impl Forecaster for Bending {
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let (mut positions, mut weights, mut goals, mut certified) =
-            (vec![], vec![], vec![], vec![]);
+        let (mut positions, mut weights, mut goals, mut certified) = (vec![], vec![], vec![], vec![]);
         for i in 0..window.len() {
             let observed = window.observed(i);
             let (fan, fan_weights) = Fan::of(observed);
             let nearest = |end| {
-                let nearer = |a: &&Position, b: &&Position| {
-                    distance(**a, end).total_cmp(&distance(**b, end))
-                };
+                let nearer = |a: &&Position, b: &&Position| distance(**a, end).total_cmp(&distance(**b, end));
                 fan.iter().min_by(nearer).copied()
             };
             let chosen: Vec<(Position, f64, f64)> = match window.end(i).and_then(nearest) {
-                Some(goal) => (0..20)
-                    .map(|k| (goal, 0.05 * (f64::from(k) - 9.5), 0.05))
-                    .collect(),
+                Some(goal) => (0..20).map(|k| (goal, 0.05 * (f64::from(k) - 9.5), 0.05)).collect(),
                 None => fan
                     .iter()
                     .zip(&fan_weights)
@@ -129,11 +124,7 @@ impl Forecaster for Bending {
     }
 }
 
-fn rows(
-    fold: &str,
-    windows: &[Window],
-    rule: WindowRule,
-) -> Result<Vec<ResultRow>, Box<dyn Error>> {
+fn rows(fold: &str, windows: &[Window], rule: WindowRule) -> Result<Vec<ResultRow>, Box<dyn Error>> {
     let mut rows = Vec::new();
     for protocol in Protocol::ALL {
         let named = |forecaster: String| Conditions {
@@ -142,11 +133,7 @@ fn rows(
             ..Conditions::new(Convention::Simulated, rule, protocol, fold, forecaster)
         };
         for forecaster in [&Bending as &dyn Forecaster, &StraightLine::to(Fan)] {
-            rows.push(ResultRow::measure(
-                named(forecaster.name()),
-                forecaster,
-                windows,
-            )?);
+            rows.push(ResultRow::measure(named(forecaster.name()), forecaster, windows)?);
         }
         // Two seeds; rows of forecasters without randomness are equal and kept once.
         for seed in [1, 2] {
@@ -164,17 +151,11 @@ fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
         let forecast = Bending.forecast(&under_way)?;
         let seen: Vec<Vec<Position>> = (0..window.len())
             .map(|i| {
-                let steps =
-                    HORIZON.saturating_sub(5 * at * (i % 3)) * usize::from(at + 1 < MOMENTS);
+                let steps = HORIZON.saturating_sub(5 * at * (i % 3)) * usize::from(at + 1 < MOMENTS);
                 window.track(i)[OBSERVED..OBSERVED + steps].to_vec()
             })
             .collect();
-        moments.push(Moment::under_way(
-            Bending.name(),
-            &under_way,
-            &forecast,
-            &seen,
-        )?);
+        moments.push(Moment::under_way(Bending.name(), &under_way, &forecast, &seen)?);
     }
     Ok(moments)
 }

@@ -22,8 +22,5 @@ pub enum ReportError {
     #[error("not a report: {0}")]
     Json(#[from] serde_json::Error),
     #[error("{path}: {source}", path = path.display())]
-    File {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
 }

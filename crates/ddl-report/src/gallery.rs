@@ -126,10 +126,7 @@ struct GalleryCase {
     min_ade: f64,
 }
 
-fn picks(
-    windows: &[Window],
-    forecasts: &[Forecast],
-) -> Result<Vec<(usize, Pick)>, EvaluationError> {
+fn picks(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<(usize, Pick)>, EvaluationError> {
     let mut cases: BTreeMap<Show, Vec<GalleryCase>> = BTreeMap::new();
     for (index, (window, forecast)) in windows.iter().zip(forecasts).enumerate() {
         let scene = Scene::new(window, forecast)?;
@@ -144,19 +141,12 @@ fn picks(
             }
         }
     }
-    Ok(cases
-        .into_iter()
-        .map(|(show, cases)| median(show, cases))
-        .collect())
+    Ok(cases.into_iter().map(|(show, cases)| median(show, cases)).collect())
 }
 
 fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
     let count = cases.len();
-    cases.sort_by(|a, b| {
-        a.min_ade
-            .total_cmp(&b.min_ade)
-            .then(a.window.cmp(&b.window))
-    });
+    cases.sort_by(|a, b| a.min_ade.total_cmp(&b.min_ade).then(a.window.cmp(&b.window)));
     let case = cases.swap_remove((count - 1) / 2);
     let rule = match count {
         1 => format!("the only such pedestrian (minADE {:.2} m)", case.min_ade),
@@ -231,16 +221,12 @@ fn mean_distance(a: &[Position], b: &[Position]) -> f64 {
 fn spread_over_time(windows: &[Window]) -> BTreeSet<usize> {
     let mut of_recording: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (index, window) in windows.iter().enumerate() {
-        of_recording
-            .entry(window.recording())
-            .or_default()
-            .push(index);
+        of_recording.entry(window.recording()).or_default().push(index);
     }
     of_recording
         .values()
         .flat_map(|indices| {
-            (0..MOMENTS_A_RECORDING)
-                .map(|part| indices[(2 * part + 1) * indices.len() / (2 * MOMENTS_A_RECORDING)])
+            (0..MOMENTS_A_RECORDING).map(|part| indices[(2 * part + 1) * indices.len() / (2 * MOMENTS_A_RECORDING)])
         })
         .collect()
 }

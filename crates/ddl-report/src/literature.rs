@@ -13,9 +13,8 @@ use crate::document::Table;
 pub const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 
 /// What `literature.json` holds.
-pub static LITERATURE: LazyLock<Literature> = LazyLock::new(|| {
-    serde_json::from_str(include_str!("literature.json")).expect("the file is part of this crate")
-});
+pub static LITERATURE: LazyLock<Literature> =
+    LazyLock::new(|| serde_json::from_str(include_str!("literature.json")).expect("the file is part of this crate"));
 
 /// Published numbers of others, and reference values of baselines measured by this project.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -146,9 +145,7 @@ fn published_table(rows: &[PublishedRow], digits: usize) -> Table {
     for row in rows {
         let convention = row.convention.map(|convention| convention.to_string());
         let convention = convention.unwrap_or_else(|| "other or unknown".to_owned());
-        let source = [Some(&row.source), row.remark.as_ref()]
-            .into_iter()
-            .flatten();
+        let source = [Some(&row.source), row.remark.as_ref()].into_iter().flatten();
         let source: Vec<&str> = source.map(String::as_str).collect();
         let start = [row.method.clone()].into_iter();
         let end = [convention, source.join("; ")];
@@ -215,9 +212,7 @@ mod tests {
             .chain(&LITERATURE.social_gan_single);
         let rows = published.map(|row| (&row.method, row.folds, row.mean));
         let ablation = LITERATURE.ablation.iter();
-        for (name, folds, mean) in
-            rows.chain(ablation.map(|row| (&row.variant, row.folds, row.mean)))
-        {
+        for (name, folds, mean) in rows.chain(ablation.map(|row| (&row.variant, row.folds, row.mean))) {
             for (error, printed) in mean.into_iter().enumerate() {
                 let found = folds.iter().map(|fold| fold[error]).sum::<f64>() / 5.0;
                 assert!((found - printed).abs() < 0.0101, "{name}: {found}");
@@ -230,20 +225,13 @@ mod tests {
     #[test]
     fn the_file_holds_the_rows_of_the_papers() {
         let all = &*LITERATURE;
-        let published = |rows: &[PublishedRow]| -> f64 {
-            rows.iter().flat_map(|row| row.folds).flatten().sum()
-        };
+        let published = |rows: &[PublishedRow]| -> f64 { rows.iter().flat_map(|row| row.folds).flatten().sum() };
         let ablation = all.ablation.iter().flat_map(|row| row.folds).flatten();
         let ade = all.measured.iter().filter_map(|row| row.ade).flatten();
         let fde = all.measured.iter().flat_map(|row| row.fde);
         for (rows, expected_rows, sum, expected) in [
             (all.table_one.len(), 11, published(&all.table_one), 51.82),
-            (
-                all.star_convention.len(),
-                5,
-                published(&all.star_convention),
-                11.752,
-            ),
+            (all.star_convention.len(), 5, published(&all.star_convention), 11.752),
             (
                 all.social_gan_convention.len(),
                 8,

@@ -103,12 +103,7 @@ impl Moment {
     ) -> Result<Self, EvaluationError> {
         let scene = Scene::new(window, forecast)?;
         let truths: Vec<&[Position]> = (0..window.len()).map(|i| scene.truth(i)).collect();
-        Ok(Self::of(
-            (fold.into(), forecaster.into()),
-            window,
-            forecast,
-            &truths,
-        ))
+        Ok(Self::of((fold.into(), forecaster.into()), window, forecast, &truths))
     }
 
     /// The moment of a window without a future, such as the last one of a recording.
@@ -142,12 +137,7 @@ impl Moment {
         Ok(Self::of((fold, forecaster.into()), window, forecast, &seen))
     }
 
-    fn of(
-        (fold, forecaster): (String, String),
-        window: &Window,
-        forecast: &Forecast,
-        truths: &[&[Position]],
-    ) -> Self {
+    fn of((fold, forecaster): (String, String), window: &Window, forecast: &Forecast, truths: &[&[Position]]) -> Self {
         Self {
             fold,
             forecaster,
@@ -170,12 +160,7 @@ impl Moment {
     }
 }
 
-fn pedestrian(
-    window: &Window,
-    forecast: &Forecast,
-    truth: &[Position],
-    i: usize,
-) -> MomentPedestrian {
+fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize) -> MomentPedestrian {
     let last = window.observed(i)[OBSERVED - 1];
     let hypothesis = |k: usize| {
         let goal = forecast.goal(i, k);

@@ -53,10 +53,7 @@ const VANISHING: Approximation = Approximation {
 
 /// 2^f on [0, 1], degree 5 (Remez exchange, 7.5e-8).
 #[cfg(target_arch = "x86_64")]
-#[expect(
-    clippy::excessive_precision,
-    reason = "digits as printed by the Remez exchange"
-)]
+#[expect(clippy::excessive_precision, reason = "digits as printed by the Remez exchange")]
 pub(crate) const UPWARD_POLYNOMIAL: [f32; 6] = [
     0.999_999_9,
     0.693_153_07,
@@ -89,19 +86,13 @@ const WIDE_POLYNOMIAL: [f64; 12] = [
 
 /// [`Register::exp2_each`] for instruction sets without special instructions.
 #[inline(always)]
-pub(crate) fn normal<R: Register, const G: usize>(
-    register: R,
-    exponents: [R::Floats; G],
-) -> [R::Floats; G] {
+pub(crate) fn normal<R: Register, const G: usize>(register: R, exponents: [R::Floats; G]) -> [R::Floats; G] {
     by_rounding(register, exponents, &NORMAL)
 }
 
 /// [`Simd::exp2`](crate::Simd::exp2): P(0) = 1 and a biased exponent of 0 leave no bit at −127.
 #[inline(always)]
-pub(crate) fn vanishing<R: Register, const G: usize>(
-    register: R,
-    exponents: [R::Floats; G],
-) -> [R::Floats; G] {
+pub(crate) fn vanishing<R: Register, const G: usize>(register: R, exponents: [R::Floats; G]) -> [R::Floats; G] {
     by_rounding(register, exponents, &VANISHING)
 }
 
@@ -138,10 +129,7 @@ fn by_rounding<R: Register, const G: usize>(
 /// The relative error is below [`EXP2_ERROR_64`]; every instruction set gives the same bits. Exponents below
 /// −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`], so that no result is denormal.
 #[inline(always)]
-pub fn wide_exp2_each<R: Register, const G: usize>(
-    register: R,
-    mut exponents: [R::Wide; G],
-) -> [R::Wide; G] {
+pub fn wide_exp2_each<R: Register, const G: usize>(register: R, mut exponents: [R::Wide; G]) -> [R::Wide; G] {
     let rounding = register.wide_splat(WIDE_ROUNDING);
     let mut fractions = exponents;
     for g in 0..G {

@@ -83,12 +83,7 @@ pub trait Simd: Copy + Send + Sync {
     #[inline(always)]
     fn read(self, quad: &Quad) -> Vectors<Self> {
         let [a, b, c, d] = quad;
-        [
-            self.load(&a.0),
-            self.load(&b.0),
-            self.load(&c.0),
-            self.load(&d.0),
-        ]
+        [self.load(&a.0), self.load(&b.0), self.load(&c.0), self.load(&d.0)]
     }
 
     /// Writes the vectors to a quad.
@@ -111,12 +106,7 @@ pub trait Simd: Copy + Send + Sync {
 
     /// `sum` + `weight` · `vectors`.
     #[inline(always)]
-    fn accumulate(
-        self,
-        sum: Vectors<Self>,
-        weight: Self::Floats,
-        vectors: Vectors<Self>,
-    ) -> Vectors<Self> {
+    fn accumulate(self, sum: Vectors<Self>, weight: Self::Floats, vectors: Vectors<Self>) -> Vectors<Self> {
         let mut sum = sum;
         for d in 0..DEPTH {
             sum[d] = self.mul_add(weight, vectors[d], sum[d]);

@@ -85,9 +85,9 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
     fn transpose(self, groups: Vectors<Self>) -> Vectors<Self> {
         let mut result = groups;
         for p in 0..P {
-            let [a, b, c, d] =
-                self.0
-                    .transpose([groups[0][p], groups[1][p], groups[2][p], groups[3][p]]);
+            let [a, b, c, d] = self
+                .0
+                .transpose([groups[0][p], groups[1][p], groups[2][p], groups[3][p]]);
             result[0][p] = a;
             result[1][p] = b;
             result[2][p] = c;

@@ -8,10 +8,7 @@
     reason = "instructions that not every processor has, and loads and stores through pointers"
 )]
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![allow(
-    clippy::wildcard_imports,
-    reason = "the names of instructions show their origin"
-)]
+#![allow(clippy::wildcard_imports, reason = "the names of instructions show their origin")]
 
 use std::arch::x86_64::*;
 

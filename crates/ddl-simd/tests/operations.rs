@@ -3,8 +3,8 @@
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use ddl_simd::{
-    DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd,
-    TiledKernel, WIDE_LANES, ZERO_QUAD,
+    DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd, TiledKernel,
+    WIDE_LANES, ZERO_QUAD,
 };
 use proptest::prelude::*;
 
@@ -214,11 +214,7 @@ impl Kernel for OnQuads<'_> {
 #[expect(clippy::float_cmp, reason = "small whole numbers are exact")]
 fn quads() {
     let quad = |seed: usize| -> Quad {
-        std::array::from_fn(|d| {
-            Lanes(std::array::from_fn(|l| {
-                ((l * 7 + d * 5 + seed) % 11) as f32 - 5.0
-            }))
-        })
+        std::array::from_fn(|d| Lanes(std::array::from_fn(|l| ((l * 7 + d * 5 + seed) % 11) as f32 - 5.0)))
     };
     let (a, b) = (quad(0), quad(3));
     for dispatch in each_set() {
@@ -270,10 +266,7 @@ fn the_fastest_set_is_the_last_of_those_that_are_available() {
     let available = InstructionSet::available();
     assert_eq!(available.last(), Some(&InstructionSet::detect()));
     assert_eq!(available.first(), Some(&InstructionSet::Portable));
-    assert_eq!(
-        Dispatch::detect().instruction_set(),
-        InstructionSet::detect()
-    );
+    assert_eq!(Dispatch::detect().instruction_set(), InstructionSet::detect());
     for dispatch in each_set() {
         let set = dispatch.instruction_set();
         assert!(set.is_available());

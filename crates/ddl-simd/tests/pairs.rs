@@ -21,11 +21,7 @@ fn ways() -> Vec<PairDispatch> {
     ways
 }
 
-struct All<'a>(
-    &'a [[f32; LANES]; 2],
-    &'a [[u32; LANES]; 2],
-    &'a mut Results,
-);
+struct All<'a>(&'a [[f32; LANES]; 2], &'a [[u32; LANES]; 2], &'a mut Results);
 
 #[derive(Default)]
 struct Results {
@@ -124,10 +120,8 @@ fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         any::<u32>().prop_map(f32::from_bits),
         -4.0..4.0_f32,
-        (any::<u16>(), 0x7ffe..0x8002_u32)
-            .prop_map(|(half, rest)| f32::from_bits(u32::from(half) << 16 | rest)),
-        (0..0x0200_0000_u32, any::<bool>())
-            .prop_map(|(bits, sign)| f32::from_bits(bits | u32::from(sign) << 31)),
+        (any::<u16>(), 0x7ffe..0x8002_u32).prop_map(|(half, rest)| f32::from_bits(u32::from(half) << 16 | rest)),
+        (0..0x0200_0000_u32, any::<bool>()).prop_map(|(bits, sign)| f32::from_bits(bits | u32::from(sign) << 31)),
     ]
 }
 

@@ -3,8 +3,8 @@
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use ddl_simd::{
-    COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64, InstructionSet, Kernel, LANES,
-    Register, RegisterKernel, Simd, WIDE_LANES, wide_exp2_each,
+    COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64, InstructionSet, Kernel, LANES, Register,
+    RegisterKernel, Simd, WIDE_LANES, wide_exp2_each,
 };
 
 type Narrow = [f32; LANES];
@@ -120,9 +120,7 @@ fn powers(dispatch: Dispatch, exponents: &[f32]) -> Vec<f32> {
 /// Compared with the standard library in f64, on steps that cover every fraction many times.
 #[test]
 fn groups_are_powers_of_two_to_seven_digits() {
-    let exponents: Vec<f32> = (0..2_000_000)
-        .map(|step| -126.0 * step as f32 / 2e6)
-        .collect();
+    let exponents: Vec<f32> = (0..2_000_000).map(|step| -126.0 * step as f32 / 2e6).collect();
     each_set(|dispatch| {
         let mut worst = 0.0_f64;
         for (exponent, power) in exponents.iter().zip(powers(dispatch, &exponents)) {
@@ -144,10 +142,7 @@ fn groups_are_one_at_zero_and_vanish() {
         assert_eq!(found, [1.0_f32.to_bits(), 0, 0, 0, 0, 0], "{set}");
         let small: Vec<f32> = (0..=1000).map(|i| -126.0 - i as f32 / 1000.0).collect();
         for (exponent, power) in small.iter().zip(powers(dispatch, &small)) {
-            assert!(
-                (0.0..=2.4e-38).contains(&power),
-                "{set}: 2^{exponent}: {power}"
-            );
+            assert!((0.0..=2.4e-38).contains(&power), "{set}: 2^{exponent}: {power}");
         }
     });
 }

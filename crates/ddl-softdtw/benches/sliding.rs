@@ -18,8 +18,7 @@ const QUERIES: usize = 30;
 
 fn sliding(criterion: &mut Criterion) {
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).expect("valid gamma");
-    let synthetic =
-        || [400, 1_800].map(|count| walks::Numbers(count).pedestrians(count as usize, 60));
+    let synthetic = || [400, 1_800].map(|count| walks::Numbers(count).pedestrians(count as usize, 60));
     let (source, [queries, tracks]) = match recorded::dataset() {
         Some(dataset) => ("real", recorded::split(&dataset, &["eth"])),
         None => ("synthetic", synthetic()),

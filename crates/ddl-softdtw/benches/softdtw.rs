@@ -16,9 +16,7 @@ fn dtw() -> SoftDtw {
 
 fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
     let at = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
-    (0..steps)
-        .map(|i| std::array::from_fn(|d| at(i, d)))
-        .collect()
+    (0..steps).map(|i| std::array::from_fn(|d| at(i, d))).collect()
 }
 
 fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {

@@ -97,13 +97,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         all.push((dtw.normalised(&query.velocities(), candidate)?, i));
     }
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let same = nearest
-        .iter()
-        .zip(&all)
-        .all(|(found, (_, i))| found.index == *i);
-    println!(
-        "an exhaustive search {}",
-        if same { "agrees" } else { "DISAGREES" }
-    );
+    let same = nearest.iter().zip(&all).all(|(found, (_, i))| found.index == *i);
+    println!("an exhaustive search {}", if same { "agrees" } else { "DISAGREES" });
     Ok(())
 }

@@ -84,24 +84,10 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             let (rest, own) = steps.split_at(steps.len() - (strip.end + 1 - strip.start));
             steps = rest;
             let of_lanes = match self.cost {
-                Cost::SquaredEuclidean => retreat(
-                    simd,
-                    Squared,
-                    &strip,
-                    own,
-                    &columns,
-                    (significand, TOTAL),
-                    &mut below,
-                ),
-                Cost::Euclidean => retreat(
-                    simd,
-                    Length,
-                    &strip,
-                    own,
-                    &columns,
-                    (significand, TOTAL),
-                    &mut below,
-                ),
+                Cost::SquaredEuclidean => {
+                    retreat(simd, Squared, &strip, own, &columns, (significand, TOTAL), &mut below)
+                }
+                Cost::Euclidean => retreat(simd, Length, &strip, own, &columns, (significand, TOTAL), &mut below),
             };
             for lane in 0..STRIP {
                 // Lanes above the first row belong to no row.

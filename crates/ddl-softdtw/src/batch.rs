@@ -73,8 +73,7 @@ impl<const D: usize> SoftDtwBatch<D> {
         }
         let slices: Vec<&[[f64; D]]> = sequences.iter().map(AsRef::as_ref).collect();
         for (index, sequence) in slices.iter().enumerate() {
-            check(sequence, SequenceRole::Y)
-                .map_err(|source| SearchError::Candidate { index, source })?;
+            check(sequence, SequenceRole::Y).map_err(|source| SearchError::Candidate { index, source })?;
         }
         let narrow = dtw.suits_lanes();
         Ok(Self {
@@ -144,11 +143,7 @@ impl<const D: usize> SoftDtwBatch<D> {
     /// # Errors
     /// [`SearchError::Weights`] for a wrong number of weights, [`SearchError::Weight`] for one that is not finite, and
     /// [`SoftDtwError::Overflow`] for a sum that is not; otherwise as [`SoftDtwBatch::values_and_gradients`].
-    pub fn weighted_sum(
-        &self,
-        x: &[[f64; D]],
-        weights: &[f64],
-    ) -> Result<(f64, Vec<[f64; D]>), SearchError> {
+    pub fn weighted_sum(&self, x: &[[f64; D]], weights: &[f64]) -> Result<(f64, Vec<[f64; D]>), SearchError> {
         if weights.len() != self.len() {
             return Err(SearchError::Weights {
                 weights: weights.len(),
@@ -195,20 +190,13 @@ impl<const D: usize> SoftDtwBatch<D> {
         }
         for index in beyond {
             let evaluated = self.dtw.value_and_gradient(x, &self.sequences[index]);
-            let (value, gradient) =
-                evaluated.map_err(|source| SearchError::Candidate { index, source })?;
+            let (value, gradient) = evaluated.map_err(|source| SearchError::Candidate { index, source })?;
             visit(index, value, &gradient);
         }
         Ok(())
     }
 
-    fn narrow_pairs(
-        &self,
-        blocks: &Blocks<D>,
-        x: &[[f64; D]],
-        left: &mut Vec<usize>,
-        visit: &mut impl Visit<D>,
-    ) {
+    fn narrow_pairs(&self, blocks: &Blocks<D>, x: &[[f64; D]], left: &mut Vec<usize>, visit: &mut impl Visit<D>) {
         let narrow = blocks.narrowing.narrow(x);
         let largest = blocks.largest.max(blocks.narrowing.largest(x.iter()));
         let slope = 2.0 / blocks.narrowing.scale;
@@ -259,13 +247,7 @@ struct Accurate {
 }
 
 impl Accurate {
-    fn new(
-        dispatch: Dispatch,
-        n: usize,
-        run: &BlockRun,
-        largest: f64,
-        dimension: usize,
-    ) -> Option<Self> {
+    fn new(dispatch: Dispatch, n: usize, run: &BlockRun, largest: f64, dimension: usize) -> Option<Self> {
         let range = Range::narrow(floor(dispatch), n, run.steps)?;
         let smallest = range.smallest_aligned_log2(n * run.steps);
         let error = range.error_log2(smallest, largest, dimension);

@@ -45,20 +45,10 @@ pub(crate) trait Metric: Copy {
     const SLOPE: f64;
 
     /// The costs of several pairs of steps, component by component: each has the bits of [`between`](Self::between).
-    fn of_lanes<S: Register, const D: usize>(
-        self,
-        simd: S,
-        a: &[Lanes; D],
-        b: [&Lanes; D],
-    ) -> Lanes;
+    fn of_lanes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> Lanes;
 
     /// [`slope`](Self::slope) of each cost, divided by [`SLOPE`](Self::SLOPE).
-    fn slopes<S: Register, const D: usize>(
-        self,
-        simd: S,
-        a: &[Lanes; D],
-        b: [&Lanes; D],
-    ) -> [Lanes; D];
+    fn slopes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> [Lanes; D];
 }
 
 #[derive(Clone, Copy)]
@@ -84,24 +74,14 @@ impl Metric for Squared {
     }
 
     #[inline(always)]
-    fn of_lanes<S: Register, const D: usize>(
-        self,
-        simd: S,
-        a: &[Lanes; D],
-        b: [&Lanes; D],
-    ) -> Lanes {
+    fn of_lanes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> Lanes {
         let mut sums = [0.0; STRIP];
         for part in 0..S::PARTS {
             let mut sum = simd.wide_splat(0.0);
             for k in 0..D {
-                let difference =
-                    simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
+                let difference = simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
                 let square = simd.wide_mul(difference, difference);
-                sum = if k == 0 {
-                    square
-                } else {
-                    simd.wide_add(sum, square)
-                };
+                sum = if k == 0 { square } else { simd.wide_add(sum, square) };
             }
             simd.wide_store(sum, &mut sums, part);
         }
@@ -109,17 +89,11 @@ impl Metric for Squared {
     }
 
     #[inline(always)]
-    fn slopes<S: Register, const D: usize>(
-        self,
-        simd: S,
-        a: &[Lanes; D],
-        b: [&Lanes; D],
-    ) -> [Lanes; D] {
+    fn slopes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> [Lanes; D] {
         let mut slopes = [[0.0; STRIP]; D];
         for k in 0..D {
             for part in 0..S::PARTS {
-                let difference =
-                    simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
+                let difference = simd.wide_sub(simd.wide_load(&a[k], part), simd.wide_load(b[k], part));
                 simd.wide_store(difference, &mut slopes[k], part);
             }
         }
@@ -143,22 +117,11 @@ impl Metric for Length {
     /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
     fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
         let length = self.between(a, b);
-        std::array::from_fn(|k| {
-            if length > 0.0 {
-                (a[k] - b[k]) / length
-            } else {
-                0.0
-            }
-        })
+        std::array::from_fn(|k| if length > 0.0 { (a[k] - b[k]) / length } else { 0.0 })
     }
 
     #[inline(always)]
-    fn of_lanes<S: Register, const D: usize>(
-        self,
-        simd: S,
-        a: &[Lanes; D],
-        b: [&Lanes; D],
-    ) -> Lanes {
+    fn of_lanes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> Lanes {
         let squared = Squared.of_lanes(simd, a, b);
         let mut lengths = [0.0; STRIP];
         for l in 0..STRIP {
@@ -171,12 +134,7 @@ impl Metric for Length {
     }
 
     #[inline(always)]
-    fn slopes<S: Register, const D: usize>(
-        self,
-        simd: S,
-        a: &[Lanes; D],
-        b: [&Lanes; D],
-    ) -> [Lanes; D] {
+    fn slopes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> [Lanes; D] {
         let lengths = self.of_lanes(simd, a, b);
         let mut slopes = [[0.0; STRIP]; D];
         for k in 0..D {
@@ -214,11 +172,7 @@ fn scaled_length<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     if largest == 0.0 || largest.is_infinite() {
         return largest;
     }
-    largest
-        * differences()
-            .map(|d| (d / largest).powi(2))
-            .sum::<f64>()
-            .sqrt()
+    largest * differences().map(|d| (d / largest).powi(2)).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
@@ -238,9 +192,6 @@ mod tests {
         assert_eq!(Length.slope(&[smallest], &[0.0]), [1.0]);
         assert_eq!(Length.slope(&[2.0, 3.0], &[2.0, 3.0]), [0.0; 2]);
         assert_eq!(Cost::Euclidean.between(&[1.0; 3], &[1.0; 3]), 0.0);
-        assert_eq!(
-            Cost::Euclidean.between(&[3.0e30_f32, 0.0], &[0.0, 4.0e30]),
-            5.0e30
-        );
+        assert_eq!(Cost::Euclidean.between(&[3.0e30_f32, 0.0], &[0.0, 4.0e30]), 5.0e30);
     }
 }

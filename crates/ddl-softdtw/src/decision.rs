@@ -53,9 +53,11 @@ impl<F> Candidates<'_, F> {
             beyond.retain(|at_least| at_least.distance <= last);
         }
         if !beyond.is_empty() {
-            found.extend(beyond.iter().map(|&Neighbour { index, .. }| {
-                neighbour(index, self.values.beyond(query, (self.sequence)(index)))
-            }));
+            found.extend(
+                beyond.iter().map(|&Neighbour { index, .. }| {
+                    neighbour(index, self.values.beyond(query, (self.sequence)(index)))
+                }),
+            );
             nearest_first(&mut found, wanted);
         }
         found
@@ -73,9 +75,7 @@ pub(crate) fn self_values<'y, const D: usize>(
 ) -> Vec<f64> {
     let indices: Vec<usize> = (0..count).collect();
     let chunks = indices.par_chunks(1024).flat_map(|indices| {
-        let pairs = indices
-            .iter()
-            .map(|&index| (sequence(index), sequence(index)));
+        let pairs = indices.iter().map(|&index| (sequence(index), sequence(index)));
         values.all(&pairs.collect::<Vec<_>>())
     });
     chunks.collect()
@@ -83,11 +83,7 @@ pub(crate) fn self_values<'y, const D: usize>(
 
 /// Leaves the `wanted` nearest (all, if there are fewer), in order, ties by index.
 fn nearest_first(found: &mut Vec<Neighbour>, wanted: usize) {
-    let order = |a: &Neighbour, b: &Neighbour| {
-        a.distance
-            .total_cmp(&b.distance)
-            .then(a.index.cmp(&b.index))
-    };
+    let order = |a: &Neighbour, b: &Neighbour| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index));
     if wanted < found.len() {
         found.select_nth_unstable_by(wanted, order);
         found.truncate(wanted);

@@ -39,10 +39,7 @@ pub(crate) fn exp2_minus<S: Register>(simd: S, t: S::Wide) -> (S::Wide, S::Wide)
     let f = simd.wide_sub(t, simd.wide_sub(rounding, minus));
     let ff = simd.wide_mul(f, f);
     // Even and odd powers apart: half the latency of one chain.
-    let mut sums = [
-        simd.wide_splat(POLYNOMIAL[10]),
-        simd.wide_splat(POLYNOMIAL[9]),
-    ];
+    let mut sums = [simd.wide_splat(POLYNOMIAL[10]), simd.wide_splat(POLYNOMIAL[9])];
     for (i, coefficient) in POLYNOMIAL.into_iter().enumerate().take(9).rev() {
         let product = simd.wide_mul(sums[i % 2], ff);
         sums[i % 2] = simd.wide_add(product, simd.wide_splat(coefficient));

@@ -77,26 +77,16 @@ impl SoftDtw {
         }
         let (self_x, own, _) = self.gradients_unchecked(x, x);
         let value = normalise(value, self_x, self.self_value(y));
-        for (component, own) in gradient
-            .as_flattened_mut()
-            .iter_mut()
-            .zip(own.as_flattened())
-        {
+        for (component, own) in gradient.as_flattened_mut().iter_mut().zip(own.as_flattened()) {
             *component -= own;
         }
         Ok((rounded(value)?, narrowed(&gradient)?))
     }
 
     /// The value and both gradients of checked sequences; not finite where they exceed the range of `f64`.
-    fn gradients_unchecked<T: Scalar, const D: usize>(
-        &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Gradients<D> {
+    fn gradients_unchecked<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Gradients<D> {
         let grid = self.grid(x, y);
-        let gradients = grid
-            .gradients()
-            .unwrap_or_else(|| grid.log_domain_gradients());
+        let gradients = grid.gradients().unwrap_or_else(|| grid.log_domain_gradients());
         let (value, of_rows, of_columns) = gradients;
         if x.len() < y.len() {
             (value, of_columns, of_rows)
@@ -116,11 +106,7 @@ impl SoftDtw {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
         let (value, of_rows, of_columns) = self.grid(x, y).log_domain_gradients();
-        let gradient = if x.len() < y.len() {
-            of_columns
-        } else {
-            of_rows
-        };
+        let gradient = if x.len() < y.len() { of_columns } else { of_rows };
         Ok((finite(value)?, narrowed(&gradient)?))
     }
 }

@@ -100,8 +100,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         let room = start - paths + ROOM;
         let bound = self.cost_bound() * self.scale();
         // A bound of all t is cheaper than their sum along a path of n cells, and often enough.
-        let fits = bound <= LARGEST
-            && (bound * n as f64 <= room || self.diagonal_cost() * self.scale() <= room);
+        let fits = bound <= LARGEST && (bound * n as f64 <= room || self.diagonal_cost() * self.scale() <= room);
         fits.then_some(start)
     }
 
@@ -182,9 +181,7 @@ impl Slanted {
         let mut window = [&[0.0; STRIP]; D];
         for (k, lanes) in window.iter_mut().enumerate() {
             let from = (k + 1) * self.stride - STRIP - d;
-            *lanes = self.numbers[from..from + STRIP]
-                .first_chunk()
-                .expect("of this length");
+            *lanes = self.numbers[from..from + STRIP].first_chunk().expect("of this length");
         }
         window
     }

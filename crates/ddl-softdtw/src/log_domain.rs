@@ -17,9 +17,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     /// The value; infinite when it exceeds the range of `f64`.
     pub(crate) fn log_domain_value(&self) -> f64 {
         match (self.cost, self.gamma > 0.0) {
-            (Cost::SquaredEuclidean, true) => {
-                self.rows(Squared, |a, b, c| softmin(a, b, c, self.gamma))
-            }
+            (Cost::SquaredEuclidean, true) => self.rows(Squared, |a, b, c| softmin(a, b, c, self.gamma)),
             (Cost::Euclidean, true) => self.rows(Length, |a, b, c| softmin(a, b, c, self.gamma)),
             (Cost::SquaredEuclidean, false) => self.rows(Squared, minimum),
             (Cost::Euclidean, false) => self.rows(Length, minimum),

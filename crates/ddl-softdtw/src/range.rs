@@ -127,9 +127,8 @@ impl Range {
         let cost = self.cost_log2(score_log2);
         let input = largest * UNIT;
         let spread = path * dimension;
-        let costs = 4.0 * input * (spread * cost).sqrt()
-            + 4.0 * input * input * spread
-            + (dimension + 3.0) * UNIT * cost;
+        let costs =
+            4.0 * input * (spread * cost).sqrt() + 4.0 * input * input * spread + (dimension + 3.0) * UNIT * cost;
         let cells = path * (EXP2_ERROR + 4.0 * UNIT) * std::f64::consts::LOG2_E;
         let tails = 2.0_f64.powf(-self.format.headroom) * 3.0;
         costs + cells + tails
@@ -164,11 +163,7 @@ pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
 
 /// What an instruction set adds to a sum of predecessors in `f32`.
 pub(crate) fn floor(dispatch: Dispatch) -> f32 {
-    if dispatch.is_fused() {
-        FUSED_FLOOR
-    } else {
-        FLOOR
-    }
+    if dispatch.is_fused() { FUSED_FLOOR } else { FLOOR }
 }
 
 /// Number of warping paths through an n × m grid, and the sum of that number over all sub-grids that share its end.

@@ -8,10 +8,7 @@
 //! every product is a normal number. What both do to small scores is bounded in [`crate::range`].
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(
-    clippy::needless_range_loop,
-    reason = "arrays of registers that advance together"
-)]
+#![expect(clippy::needless_range_loop, reason = "arrays of registers that advance together")]
 
 use ddl_simd::{Lanes, Register};
 

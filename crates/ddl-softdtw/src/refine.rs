@@ -41,10 +41,7 @@ impl PairValues {
         Self { dtw, dispatch }
     }
 
-    pub(crate) fn of<'a, const D: usize>(
-        &self,
-        pairs: impl Iterator<Item = Both<'a, D>>,
-    ) -> Vec<PairValue> {
+    pub(crate) fn of<'a, const D: usize>(&self, pairs: impl Iterator<Item = Both<'a, D>>) -> Vec<PairValue> {
         let mut pairs: Vec<Pair<'a, D>> = pairs.enumerate().map(|(i, (x, y))| (i, x, y)).collect();
         let mut values = vec![PairValue::AtLeast(f64::NEG_INFINITY); pairs.len()];
         if !GAMMAS.contains(&self.dtw.gamma()) || self.dtw.band().is_some() {
@@ -85,12 +82,7 @@ impl PairValues {
     }
 
     /// Sums over the warping paths of up to eight pairs of equal lengths, start value included.
-    fn block<const D: usize>(
-        &self,
-        range: Range,
-        pairs: &[Pair<'_, D>],
-        working: &mut WideWorking<D>,
-    ) -> WideLanes {
+    fn block<const D: usize>(&self, range: Range, pairs: &[Pair<'_, D>], working: &mut WideWorking<D>) -> WideLanes {
         let (_, x, y) = pairs[0];
         working.x.resize(x.len(), [[0.0; WIDE_LANES]; D]);
         working.y.resize(y.len(), [[0.0; WIDE_LANES]; D]);
@@ -175,11 +167,7 @@ impl<const D: usize> RegisterKernel for WideRecursion<'_, D> {
             for x in self.x {
                 let mut diagonal = corner;
                 left = zero;
-                for (row, y) in self
-                    .row
-                    .chunks_mut(WIDE_GROUP)
-                    .zip(self.y.chunks(WIDE_GROUP))
-                {
+                for (row, y) in self.row.chunks_mut(WIDE_GROUP).zip(self.y.chunks(WIDE_GROUP)) {
                     let mut exponents = [zero; WIDE_GROUP];
                     for (exponent, y) in exponents.iter_mut().zip(y) {
                         let mut cost = zero;

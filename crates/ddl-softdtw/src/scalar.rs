@@ -8,9 +8,7 @@ mod sealed {
 
 /// Component of a step: `f32` or `f64`. Everything is computed in `f64` and rounded once at the end: sealed, as that
 /// claim is proved for these two.
-pub trait Scalar:
-    sealed::SealedScalar + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static
-{
+pub trait Scalar: sealed::SealedScalar + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static {
     /// The same number as `f64`, exactly.
     fn widened(self) -> f64;
 
@@ -38,10 +36,7 @@ impl Scalar for f64 {
     }
 }
 
-#[expect(
-    clippy::inline_always,
-    reason = "the lanes of a strip must stay in registers"
-)]
+#[expect(clippy::inline_always, reason = "the lanes of a strip must stay in registers")]
 #[inline(always)]
 pub(crate) fn widened<T: Scalar, const D: usize>(step: &[T; D]) -> [f64; D] {
     let mut wide = [0.0; D];

@@ -119,11 +119,7 @@ impl<const D: usize> SearchIndex<D> {
     ///
     /// # Errors
     /// [`SearchError::BatchQuery`] for the first query that is not valid.
-    pub fn nearest_batch<S>(
-        &self,
-        queries: &[S],
-        n: usize,
-    ) -> Result<Vec<Vec<Neighbour>>, SearchError>
+    pub fn nearest_batch<S>(&self, queries: &[S], n: usize) -> Result<Vec<Vec<Neighbour>>, SearchError>
     where
         S: AsRef<[[f64; D]]> + Sync,
     {
@@ -140,18 +136,11 @@ impl<const D: usize> SearchIndex<D> {
             .collect()
     }
 
-    fn search(
-        &self,
-        queries: &[&[[f64; D]]],
-        n: usize,
-    ) -> Vec<Result<Vec<Neighbour>, SoftDtwError>> {
+    fn search(&self, queries: &[&[[f64; D]]], n: usize) -> Vec<Result<Vec<Neighbour>, SoftDtwError>> {
         let wanted = n.min(self.len());
         let checked = queries.iter().map(|query| check(query, SequenceRole::X));
         let checked: Vec<Result<(), SoftDtwError>> = checked.collect();
-        let sieve = self
-            .sieve
-            .as_ref()
-            .filter(|_| wanted > 0 && wanted < self.len());
+        let sieve = self.sieve.as_ref().filter(|_| wanted > 0 && wanted < self.len());
         let valid = queries.iter().zip(&checked);
         let valid: Vec<_> = valid.filter(|(_, c)| c.is_ok()).map(|(q, _)| *q).collect();
         let mut survivors = sieve
@@ -167,12 +156,7 @@ impl<const D: usize> SearchIndex<D> {
         queries.iter().zip(checked).map(answer).collect()
     }
 
-    fn rank(
-        &self,
-        query: &[[f64; D]],
-        candidates: &[usize],
-        wanted: usize,
-    ) -> Result<Vec<Neighbour>, SoftDtwError> {
+    fn rank(&self, query: &[[f64; D]], candidates: &[usize], wanted: usize) -> Result<Vec<Neighbour>, SoftDtwError> {
         if wanted == 0 {
             return Ok(Vec::new());
         }

@@ -32,11 +32,7 @@ struct Search<const D: usize> {
 
 impl<const D: usize> CandidateSieve<D> {
     /// The sieve of candidates of known D(y, y), or `None` when `f32` cannot hold them whatever the query.
-    pub(crate) fn build(
-        gamma: f64,
-        candidates: &[&[[f64; D]]],
-        self_values: &[f64],
-    ) -> Option<Self> {
+    pub(crate) fn build(gamma: f64, candidates: &[&[[f64; D]]], self_values: &[f64]) -> Option<Self> {
         let blocks = Blocks::new(gamma, candidates);
         let range = Range::narrow(FLOOR, 1, blocks.longest)?;
         range.margin_log2(f64::from(range.start_log2()), blocks.largest, D)?;
@@ -108,13 +104,7 @@ impl<const D: usize> CandidateSieve<D> {
         })
     }
 
-    fn sweep(
-        &self,
-        dispatch: Dispatch,
-        run: &BlockRun,
-        blocks: ops::Range<usize>,
-        search: &mut Search<D>,
-    ) {
+    fn sweep(&self, dispatch: Dispatch, run: &BlockRun, blocks: ops::Range<usize>, search: &mut Search<D>) {
         dispatch.run_on_registers(CandidateSweep {
             query: &search.steps,
             steps: run.steps,
@@ -171,13 +161,7 @@ impl<const D: usize> CandidateSweep<'_, D> {
 
     /// The scores of block `b`, offered where they reach the threshold.
     #[inline(always)]
-    fn block<S: Register, const G: usize>(
-        &mut self,
-        simd: S,
-        b: usize,
-        block: &[Step<D>],
-        row: &mut [S::Floats],
-    ) {
+    fn block<S: Register, const G: usize>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::Floats]) {
         let mut scores = [0.0; LANES];
         let threshold = simd.splat(self.selection.threshold());
         let mut mask = 0;
@@ -195,12 +179,7 @@ impl<const D: usize> CandidateSweep<'_, D> {
 
 #[cold]
 #[inline(never)]
-fn offer(
-    selection: &mut Selection,
-    scores: &[f32; LANES],
-    members: &[usize; LANES],
-    mut mask: u32,
-) {
+fn offer(selection: &mut Selection, scores: &[f32; LANES], members: &[usize; LANES], mut mask: u32) {
     while mask != 0 {
         let lane = mask.trailing_zeros() as usize;
         mask &= mask - 1;

@@ -58,12 +58,7 @@ impl<const D: usize> SlidingIndex<D> {
     ///
     /// # Errors
     /// A window of 0 steps, no window in any track, a track that is not finite.
-    pub fn build<T>(
-        dtw: &SoftDtw,
-        tracks: &[T],
-        length: usize,
-        tail: usize,
-    ) -> Result<Self, SlidingError>
+    pub fn build<T>(dtw: &SoftDtw, tracks: &[T], length: usize, tail: usize) -> Result<Self, SlidingError>
     where
         T: AsRef<[[f64; D]]> + Sync,
     {
@@ -73,8 +68,7 @@ impl<const D: usize> SlidingIndex<D> {
         let tracks: Vec<&[[f64; D]]> = tracks.iter().map(AsRef::as_ref).collect();
         for (index, track) in tracks.iter().enumerate() {
             if !track.is_empty() {
-                check(track, SequenceRole::Y)
-                    .map_err(|source| SlidingError::Track { index, source })?;
+                check(track, SequenceRole::Y).map_err(|source| SlidingError::Track { index, source })?;
             }
         }
         let windows = |track: &&[[f64; D]]| {
@@ -102,8 +96,7 @@ impl<const D: usize> SlidingIndex<D> {
         };
         index.self_values = index.own_values()?;
         if dtw.suits_lanes() {
-            let layout =
-                WindowLayout::new(dtw.gamma(), &tracks, &windows, length, &index.self_values);
+            let layout = WindowLayout::new(dtw.gamma(), &tracks, &windows, length, &index.self_values);
             index.sieve = WindowSieve::new(layout);
         }
         Ok(index)
@@ -148,11 +141,7 @@ impl<const D: usize> SlidingIndex<D> {
     /// # Errors
     /// A query that is not finite or not of the length of a window, or a distance to be returned beyond the range of
     /// `f64`.
-    pub fn nearest(
-        &self,
-        query: &[[f64; D]],
-        n: usize,
-    ) -> Result<Vec<WindowNeighbour>, SlidingError> {
+    pub fn nearest(&self, query: &[[f64; D]], n: usize) -> Result<Vec<WindowNeighbour>, SlidingError> {
         if query.len() != self.length {
             return Err(SlidingError::QueryLength {
                 found: query.len(),
@@ -169,11 +158,7 @@ impl<const D: usize> SlidingIndex<D> {
     ///
     /// # Errors
     /// As [`SlidingIndex::nearest`].
-    pub fn nearest_windows(
-        &self,
-        query: &[[f64; D]],
-        n: usize,
-    ) -> Result<Vec<Vec<WindowNeighbour>>, SlidingError> {
+    pub fn nearest_windows(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Vec<WindowNeighbour>>, SlidingError> {
         self.search_track(query, n).map_err(SlidingError::Query)
     }
 
@@ -197,17 +182,11 @@ impl<const D: usize> SlidingIndex<D> {
         found
             .into_iter()
             .enumerate()
-            .map(|(index, found)| {
-                found.map_err(|source| SlidingError::BatchQuery { index, source })
-            })
+            .map(|(index, found)| found.map_err(|source| SlidingError::BatchQuery { index, source }))
             .collect()
     }
 
-    fn search_track(
-        &self,
-        query: &[[f64; D]],
-        n: usize,
-    ) -> Result<Vec<Vec<WindowNeighbour>>, SoftDtwError> {
+    fn search_track(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Vec<WindowNeighbour>>, SoftDtwError> {
         if !query.is_empty() {
             check(query, SequenceRole::X)?;
         }
@@ -225,11 +204,7 @@ impl<const D: usize> SlidingIndex<D> {
         Ok(all)
     }
 
-    fn search(
-        &self,
-        query: &[[f64; D]],
-        n: usize,
-    ) -> Result<Vec<Vec<WindowNeighbour>>, SoftDtwError> {
+    fn search(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Vec<WindowNeighbour>>, SoftDtwError> {
         let windows: Vec<_> = query.windows(self.length).collect();
         let wanted = n.min(self.len());
         if wanted == 0 {
@@ -251,12 +226,7 @@ impl<const D: usize> SlidingIndex<D> {
         for ((window, survivors), own) in windows.into_iter().zip(survivors).zip(own) {
             let survivors = survivors.unwrap_or_else(|| (0..self.len()).collect());
             let nearest = candidates.nearest(window, finite(own)?, &survivors, wanted)?;
-            found.push(
-                nearest
-                    .iter()
-                    .map(|found| self.window_neighbour(found))
-                    .collect(),
-            );
+            found.push(nearest.iter().map(|found| self.window_neighbour(found)).collect());
         }
         Ok(found)
     }
@@ -266,9 +236,7 @@ impl<const D: usize> SlidingIndex<D> {
     }
 
     fn own_values(&self) -> Result<Vec<f64>, SlidingError> {
-        let values = self_values(&self.pair_values(), self.len(), |window| {
-            self.window(window)
-        });
+        let values = self_values(&self.pair_values(), self.len(), |window| self.window(window));
         match values.iter().position(|value| !value.is_finite()) {
             None => Ok(values),
             Some(window) => Err(SlidingError::Track {

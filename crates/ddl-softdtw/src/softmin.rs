@@ -25,10 +25,7 @@ pub(crate) fn softmin_weights(values: [f64; 3], gamma: f64) -> (f64, [f64; 3]) {
     }
     let weights = values.map(|value| decay(low, value, gamma));
     let total: f64 = weights.iter().sum();
-    (
-        softmin(a, b, c, gamma),
-        weights.map(|weight| weight / total),
-    )
+    (softmin(a, b, c, gamma), weights.map(|weight| weight / total))
 }
 
 /// e^(−(value − low)/γ) for `value >= low`.
@@ -54,10 +51,7 @@ mod tests {
         assert_eq!(softmin(1e6, 2e6, 3e6, 1e-3), 1e6);
         assert_eq!(softmin(1e6, f64::INFINITY, f64::INFINITY, 1e-3), 1e6);
         assert_eq!(softmin(1.0, 2.0, 3.0, f64::MIN_POSITIVE / 4.0), 1.0);
-        assert_eq!(
-            softmin(f64::INFINITY, f64::INFINITY, f64::INFINITY, 1.0),
-            f64::INFINITY
-        );
+        assert_eq!(softmin(f64::INFINITY, f64::INFINITY, f64::INFINITY, 1.0), f64::INFINITY);
     }
 
     #[test]
@@ -69,14 +63,9 @@ mod tests {
             let mut down = values;
             up[i] += h;
             down[i] -= h;
-            let slope = (softmin(up[0], up[1], up[2], gamma)
-                - softmin(down[0], down[1], down[2], gamma))
-                / (2.0 * h);
+            let slope = (softmin(up[0], up[1], up[2], gamma) - softmin(down[0], down[1], down[2], gamma)) / (2.0 * h);
             assert!((weights[i] - slope).abs() < 1e-9);
         }
-        assert_eq!(
-            softmin_weights([2.0, 1.0, 1.0], 0.0),
-            (1.0, [0.0, 1.0, 0.0])
-        );
+        assert_eq!(softmin_weights([2.0, 1.0, 1.0], 0.0), (1.0, [0.0, 1.0, 0.0]));
     }
 }

@@ -96,11 +96,7 @@ impl SoftDtw {
     ///
     /// # Errors
     /// An empty sequence, a component that is not finite, or a value beyond the range of `T`.
-    pub fn value<T: Scalar, const D: usize>(
-        &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Result<T, SoftDtwError> {
+    pub fn value<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Result<T, SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
         rounded(self.value_unchecked(x, y))
@@ -112,11 +108,7 @@ impl SoftDtw {
     ///
     /// # Errors
     /// As [`SoftDtw::value`].
-    pub fn normalised<T: Scalar, const D: usize>(
-        &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Result<T, SoftDtwError> {
+    pub fn normalised<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Result<T, SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
         let value = finite(self.value_unchecked(x, y))?;
@@ -138,21 +130,13 @@ impl SoftDtw {
     }
 
     /// The value of checked sequences; infinite when it exceeds the range of `f64`.
-    pub(crate) fn value_unchecked<T: Scalar, const D: usize>(
-        &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> f64 {
+    pub(crate) fn value_unchecked<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> f64 {
         let grid = self.grid(x, y);
         grid.value().unwrap_or_else(|| grid.log_domain_value())
     }
 
     /// The grid of two checked sequences, the shorter one along the rows of memory.
-    pub(crate) fn grid<'a, T, const D: usize>(
-        &self,
-        x: &'a [[T; D]],
-        y: &'a [[T; D]],
-    ) -> Grid<'a, T, D> {
+    pub(crate) fn grid<'a, T, const D: usize>(&self, x: &'a [[T; D]], y: &'a [[T; D]]) -> Grid<'a, T, D> {
         let (rows, columns) = if x.len() < y.len() { (y, x) } else { (x, y) };
         Grid {
             rows,
@@ -165,11 +149,7 @@ impl SoftDtw {
 
     /// [`SoftDtw::value`] by the recursion as it is written down: slow, and what tests hold the fast one to.
     #[doc(hidden)]
-    pub fn log_domain_value<T: Scalar, const D: usize>(
-        &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Result<f64, SoftDtwError> {
+    pub fn log_domain_value<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Result<f64, SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
         finite(self.grid(x, y).log_domain_value())
@@ -195,10 +175,7 @@ pub(crate) fn rounded<T: Scalar>(value: f64) -> Result<T, SoftDtwError> {
 }
 
 /// At least one step, and finite components only.
-pub(crate) fn check<T: Scalar, const D: usize>(
-    steps: &[[T; D]],
-    sequence: SequenceRole,
-) -> Result<(), SoftDtwError> {
+pub(crate) fn check<T: Scalar, const D: usize>(steps: &[[T; D]], sequence: SequenceRole) -> Result<(), SoftDtwError> {
     if steps.is_empty() {
         return Err(SoftDtwError::EmptySequence { sequence });
     }

@@ -71,9 +71,7 @@ impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
         let columns = Slanted::of(self.0.columns);
         let total = match self.0.plain_start() {
             Some(start) => self.0.run::<S, Plain>(simd, start, &columns, &mut Forget),
-            None => self
-                .0
-                .run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget),
+            None => self.0.run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget),
         };
         total.map(|total| self.0.value_of(total))
     }
@@ -119,48 +117,16 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             let (t_max, start) = (&mut largest, W::power(start));
             match (self.cost, self.band) {
                 (Cost::SquaredEuclidean, None) => {
-                    advance::<S, W, _, D, false>(
-                        simd,
-                        Squared,
-                        &strip,
-                        (scale, columns, start),
-                        row,
-                        t_max,
-                        record,
-                    );
+                    advance::<S, W, _, D, false>(simd, Squared, &strip, (scale, columns, start), row, t_max, record);
                 }
                 (Cost::SquaredEuclidean, Some(_)) => {
-                    advance::<S, W, _, D, true>(
-                        simd,
-                        Squared,
-                        &strip,
-                        (scale, columns, start),
-                        row,
-                        t_max,
-                        record,
-                    );
+                    advance::<S, W, _, D, true>(simd, Squared, &strip, (scale, columns, start), row, t_max, record);
                 }
                 (Cost::Euclidean, None) => {
-                    advance::<S, W, _, D, false>(
-                        simd,
-                        Length,
-                        &strip,
-                        (scale, columns, start),
-                        row,
-                        t_max,
-                        record,
-                    );
+                    advance::<S, W, _, D, false>(simd, Length, &strip, (scale, columns, start), row, t_max, record);
                 }
                 (Cost::Euclidean, Some(_)) => {
-                    advance::<S, W, _, D, true>(
-                        simd,
-                        Length,
-                        &strip,
-                        (scale, columns, start),
-                        row,
-                        t_max,
-                        record,
-                    );
+                    advance::<S, W, _, D, true>(simd, Length, &strip, (scale, columns, start), row, t_max, record);
                 }
             }
             if largest.iter().any(|&t| t > EXACT / path) {

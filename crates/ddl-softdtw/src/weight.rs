@@ -214,12 +214,7 @@ impl Weight for Scaled<Lanes> {
     }
 
     #[inline(always)]
-    fn shares<S: Register>(
-        simd: S,
-        a: &Self,
-        b: &Self,
-        (significand, exponent): (f64, f64),
-    ) -> Lanes {
+    fn shares<S: Register>(simd: S, a: &Self, b: &Self, (significand, exponent): (f64, f64)) -> Lanes {
         let inverse = simd.wide_splat(1.0 / significand);
         let mut shares = [0.0; STRIP];
         for part in 0..S::PARTS {
@@ -294,11 +289,7 @@ impl Weight for Plain {
     }
 
     #[inline(always)]
-    fn cells<S: Register>(
-        simd: S,
-        [diagonal, up, left]: [&Self; 3],
-        factor: &Lanes,
-    ) -> (Self, Self) {
+    fn cells<S: Register>(simd: S, [diagonal, up, left]: [&Self; 3], factor: &Lanes) -> (Self, Self) {
         let (mut sum, mut cells) = (Self::NONE, Self::NONE);
         for part in 0..S::PARTS {
             let factor = simd.wide_load(factor, part);

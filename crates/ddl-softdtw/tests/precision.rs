@@ -33,9 +33,7 @@ fn sequence<const D: usize>(steps: usize, seed: usize, spread: f64, offset: f64)
         let residue = (37 * i * i + 11 * seed * i + 29 * k + 13 * seed) % 101;
         offset + (residue as f64 - 50.0) * spread / 64.0
     };
-    (0..steps)
-        .map(|i| std::array::from_fn(|k| component(i, k)))
-        .collect()
+    (0..steps).map(|i| std::array::from_fn(|k| component(i, k))).collect()
 }
 
 /// The larger of the errors of value and normalised value, in units of the stated bound.
@@ -46,9 +44,7 @@ fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
         other => panic!("case {number}: unknown cost {other}"),
     };
     let free = SoftDtw::new(case.gamma, cost).unwrap();
-    let dtw = case
-        .radius
-        .map_or(free, |radius| free.with_band(Band::new(radius)));
+    let dtw = case.radius.map_or(free, |radius| free.with_band(Band::new(radius)));
     let x = sequence::<D>(case.n, 1, case.spread, case.offset);
     let y = sequence::<D>(case.m, 2, case.spread, 0.0);
     let (n, m) = (case.n as f64, case.m as f64);
@@ -71,9 +67,7 @@ fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
     assert!((slow - case.value).abs() <= slack, "case {number}: {slow}");
 
     // |Σ_j E(i, j) slope(i, j)| errs by at most 3 b / γ times its absolute terms, none of which is larger than this.
-    let longest = x
-        .iter()
-        .flat_map(|a| y.iter().map(|b| Cost::Euclidean.between(a, b)));
+    let longest = x.iter().flat_map(|a| y.iter().map(|b| Cost::Euclidean.between(a, b)));
     let slope = match cost {
         Cost::SquaredEuclidean => 2.0 * longest.fold(0.0, f64::max),
         _ => 1.0,
@@ -84,10 +78,7 @@ fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
     for (i, expected) in shown.zip(&case.gradient) {
         for (found, expected) in gradient[i].iter().zip(expected) {
             let error = (found - expected).abs();
-            assert!(
-                error <= slack,
-                "case {number}, step {i}: {found} {expected}"
-            );
+            assert!(error <= slack, "case {number}, step {i}: {found} {expected}");
         }
     }
     ratio

@@ -1,9 +1,6 @@
 //! The search on windows of the real recordings, against evaluating every candidate in `f64` and the log domain.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-#![expect(
-    clippy::print_stdout,
-    reason = "says why nothing is compared, and what was measured"
-)]
+#![expect(clippy::print_stdout, reason = "says why nothing is compared, and what was measured")]
 
 #[path = "../benches/recordings/mod.rs"]
 mod recordings;
@@ -25,10 +22,7 @@ fn windows(steps: usize) -> Option<Windows> {
 
 /// Distances of all candidates, sorted, and the one of each.
 fn oracle(dtw: &SoftDtw, query: &Walk, candidates: &[Walk]) -> (Vec<f64>, Vec<f64>) {
-    let each: Vec<f64> = candidates
-        .iter()
-        .map(|y| dtw.normalised(query, y).unwrap())
-        .collect();
+    let each: Vec<f64> = candidates.iter().map(|y| dtw.normalised(query, y).unwrap()).collect();
     let mut sorted = each.clone();
     sorted.sort_by(f64::total_cmp);
     (sorted, each)
@@ -67,16 +61,10 @@ fn the_hundred_nearest_are_those_of_the_oracle() {
             let clear = sorted[99] - 1e-12;
             for (index, &distance) in each.iter().enumerate() {
                 let kept = found.iter().any(|n| n.index == index);
-                assert!(
-                    kept || distance >= clear,
-                    "{index} at {distance} is missing"
-                );
+                assert!(kept || distance >= clear, "{index} at {distance} is missing");
             }
         }
         assert!(worst < 1e-12, "{worst:e}");
-        println!(
-            "{steps} steps, {} queries: largest error {worst:e}",
-            queries.len()
-        );
+        println!("{steps} steps, {} queries: largest error {worst:e}", queries.len());
     }
 }

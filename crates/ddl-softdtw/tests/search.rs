@@ -79,10 +79,7 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
 }
 
 fn bits(found: &[Neighbour]) -> Vec<(usize, u64)> {
-    found
-        .iter()
-        .map(|n| (n.index, n.distance.to_bits()))
-        .collect()
+    found.iter().map(|n| (n.index, n.distance.to_bits())).collect()
 }
 
 #[test]
@@ -104,10 +101,7 @@ fn instruction_sets_threads_and_company_change_nothing() {
         let dtw = SoftDtw::new(gamma, cost).unwrap();
         let index = SearchIndex::build(&dtw, &candidates).unwrap();
         assert_eq!(index.instruction_set(), InstructionSet::detect());
-        let expected: Vec<_> = queries
-            .iter()
-            .map(|q| bits(&index.nearest(q, 70).unwrap()))
-            .collect();
+        let expected: Vec<_> = queries.iter().map(|q| bits(&index.nearest(q, 70).unwrap())).collect();
         for set in InstructionSet::available() {
             let index = index.clone().with_instruction_set(set).unwrap();
             assert_eq!(index.instruction_set(), set);
@@ -124,11 +118,7 @@ fn instruction_sets_threads_and_company_change_nothing() {
 #[test]
 fn an_instruction_set_the_machine_lacks_is_refused() {
     let index = SearchIndex::build(&squared(1.0), &[vec![[0.0]]]).unwrap();
-    for set in [
-        InstructionSet::Portable,
-        InstructionSet::Avx2,
-        InstructionSet::Avx512,
-    ] {
+    for set in [InstructionSet::Portable, InstructionSet::Avx2, InstructionSet::Avx512] {
         let chosen = index.clone().with_instruction_set(set);
         assert_eq!(chosen.is_ok(), set.is_available());
         if let Err(error) = chosen {
@@ -147,10 +137,7 @@ fn bad_input_is_refused_by_name() {
     assert_eq!(index.nearest(&[[0.5]], 0), Ok(vec![]));
     assert_eq!((index.len(), index.is_empty()), (2, false));
     for (error, message) in [
-        (
-            SearchIndex::build(&dtw, &none).err(),
-            "no candidates were given",
-        ),
+        (SearchIndex::build(&dtw, &none).err(), "no candidates were given"),
         (
             SearchIndex::build(&dtw, &[vec![[0.0]], vec![]]).err(),
             "candidate 1: sequence y is empty",

@@ -12,10 +12,7 @@ use walks::{Numbers, Track, mapped, squared};
 type Nearest = Vec<WindowNeighbour>;
 
 /// The windows of `length` steps with `tail` more behind them: track, offset, steps.
-fn windows<const D: usize>(
-    tracks: &[Track<D>],
-    (length, tail): (usize, usize),
-) -> Vec<(usize, usize, &[[f64; D]])> {
+fn windows<const D: usize>(tracks: &[Track<D>], (length, tail): (usize, usize)) -> Vec<(usize, usize, &[[f64; D]])> {
     let mut windows = Vec::new();
     for (track, steps) in tracks.iter().enumerate() {
         for offset in 0..(steps.len() + 1).saturating_sub(length + tail) {
@@ -72,18 +69,9 @@ fn long_tracks_and_long_queries_are_cut_without_a_trace() {
     let mut tracks = [700, 0, 65 + 7, 64 + 7]
         .map(|steps| numbers.pedestrian::<2>(steps))
         .to_vec();
-    compare(
-        squared(1.0),
-        &tracks,
-        &[numbers.pedestrian(150)],
-        (8, 0),
-        10,
-    );
+    compare(squared(1.0), &tracks, &[numbers.pedestrian(150)], (8, 0), 10);
     // Everyone stands: all distances are 0.
-    tracks
-        .iter_mut()
-        .flatten()
-        .for_each(|step| *step = [0.0; 2]);
+    tracks.iter_mut().flatten().for_each(|step| *step = [0.0; 2]);
     compare(squared(1.0), &tracks, &[vec![[0.0; 2]; 9]], (8, 0), 40);
 }
 
@@ -101,23 +89,14 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
     }
     // Far queries saturate f32, data far from the origin or huge does not fit it.
     for (scale, by) in [(1.0, 5.0), (8.0, 0.0), (1.0, 40.0), (1e3, 0.0), (1e60, 0.0)] {
-        compare(
-            squared(1.0),
-            &tracks,
-            &mapped(&queries, scale, by),
-            (8, 0),
-            20,
-        );
+        compare(squared(1.0), &tracks, &mapped(&queries, scale, by), (8, 0), 20);
     }
     for (scale, by) in [(1.0, 1e6), (1e5, 0.0), (1e60, 0.0)] {
         let (tracks, queries) = (mapped(&tracks, scale, by), mapped(&queries, scale, by));
         compare(squared(1.0), &tracks, &queries, (8, 0), 20);
     }
     // Longer than f32 has paths for, and longer than f64 has.
-    let (tracks, query) = (
-        numbers.pedestrians::<2>(4, 300),
-        numbers.pedestrian::<2>(201),
-    );
+    let (tracks, query) = (numbers.pedestrians::<2>(4, 300), numbers.pedestrian::<2>(201));
     compare(squared(1.0), &tracks, &[query[..40].to_vec()], (36, 0), 5);
     compare(squared(1.0), &tracks, &[query], (200, 0), 5);
 }
@@ -163,10 +142,7 @@ fn bad_input_is_refused_by_name() {
             "none of the 2 tracks has a window: one needs 8 steps with 2 more behind it",
         ),
         (build(usize::MAX, usize::MAX).err(), "none of the 2 tracks"),
-        (
-            SlidingIndex::build(&dtw, &none, 8, 0).err(),
-            "none of the 0 tracks",
-        ),
+        (SlidingIndex::build(&dtw, &none, 8, 0).err(), "none of the 0 tracks"),
         (
             SlidingIndex::build(&dtw, &infinite, 1, 0).err(),
             "track 1: sequence y, step 1, component 0 is inf: must be finite",
@@ -213,18 +189,10 @@ fn recorded_pedestrians_have_the_neighbours_of_a_plain_index() {
         let queries: Vec<_> = queries.into_iter().step_by(stride).collect();
         compare(squared(1.0), &tracks, &queries, (length, tail), 100)
     });
-    assert!(
-        compared.iter().sum::<usize>() > 10_000,
-        "{compared:?} neighbours"
-    );
+    assert!(compared.iter().sum::<usize>() > 10_000, "{compared:?} neighbours");
 }
 
-fn any_dimension<const D: usize>(
-    numbers: &mut Numbers,
-    window: (usize, usize),
-    gamma: f64,
-    n: usize,
-) {
+fn any_dimension<const D: usize>(numbers: &mut Numbers, window: (usize, usize), gamma: f64, n: usize) {
     let mut tracks = numbers.pedestrians::<D>(30, 70);
     // At least one window.
     tracks.push(numbers.pedestrian(window.0 + window.1));

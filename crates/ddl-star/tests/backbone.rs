@@ -7,8 +7,7 @@ use ddl_network::backbone::{Backbone, output_layer};
 use ddl_network::backend::{Backend, Memory};
 use ddl_network::weights::{EncoderLayer, Layout, Linear, Sizes};
 use ddl_network::{
-    DeviceChoice, MotionNetwork, NetworkError, NetworkFrame, Noise, StarConfig, StepRule,
-    TrainingConfig, Variant,
+    DeviceChoice, MotionNetwork, NetworkError, NetworkFrame, Noise, StarConfig, StepRule, TrainingConfig, Variant,
 };
 use ddl_network::{ForecastWindows, WindowRollout};
 use ddl_star::{ComputeDevice, TorchNetwork, Trainer};

@@ -4,8 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime,
-    rollout,
+    Attractor, CholeskyMetric, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime, rollout,
 };
 use ddl_star::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
 use nalgebra::Vector2;
@@ -44,12 +43,7 @@ fn tensor_step(
     }
 }
 
-fn twin(
-    p: [f64; 2],
-    goal: [f64; 2],
-    factor: [f64; 3],
-    how: (f64, Option<(Bounds, StepTime<f64>)>),
-) -> [f64; 2] {
+fn twin(p: [f64; 2], goal: [f64; 2], factor: [f64; 3], how: (f64, Option<(Bounds, StepTime<f64>)>)) -> [f64; 2] {
     let [p, goal] = [p, goal].map(|place| Tensor::from_slice(&place));
     let next = tensor_step(&p, &goal, &Tensor::from_slice(&factor), how);
     let next: Vec<f64> = Vec::try_from(next).unwrap();
@@ -203,14 +197,8 @@ fn gradients_reach_back_to_the_first_step() {
         Some((2.15, [1.0, 0.0], 1.0, false)),
         Kind::Double,
     );
-    assert!(
-        are_numbers(&start) && are_numbers(&shape),
-        "{start} {shape}"
-    );
+    assert!(are_numbers(&start) && are_numbers(&shape), "{start} {shape}");
     assert!(shape.get(0).abs().max().double_value(&[]) > 1e-3, "{shape}");
     // the last step ends at the goal, whatever the network emits
-    assert!(
-        shape.get(HORIZON - 1).abs().max().double_value(&[]) < 1e-12,
-        "{shape}"
-    );
+    assert!(shape.get(HORIZON - 1).abs().max().double_value(&[]) < 1e-12, "{shape}");
 }

@@ -5,8 +5,8 @@
 use ddl_data::Remembered;
 use ddl_network::weights::Origin;
 use ddl_network::{
-    DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample,
-    ProposalNetwork, ProposalTraining, ProposeEndpoints as _, ProposedEndpoints,
+    DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
+    ProposalTraining, ProposeEndpoints as _, ProposedEndpoints,
 };
 use ddl_star::{ComputeDevice, ProposalTrainer, StarError, TorchProposals};
 use std::f64::consts::TAU;
@@ -34,9 +34,7 @@ fn network() -> TorchProposals {
 
 /// A view of a pedestrian at `speed` (m/s) with `neighbours` ahead.
 fn view(speed: f64, neighbours: usize) -> PedestrianView {
-    let walk = |speed: f64, x: f64, y: f64| {
-        std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
-    };
+    let walk = |speed: f64, x: f64, y: f64| std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y]);
     PedestrianView {
         own: walk(speed, 0.0, 0.0),
         neighbours: (0..neighbours)
@@ -94,17 +92,11 @@ fn training(steps: u64) -> ProposalTraining {
 
 /// Mean distance of the nearest endpoint to the true one (m).
 fn oracle(network: &TorchProposals, examples: &[ProposalExample]) -> f64 {
-    let views: Vec<_> = examples
-        .iter()
-        .map(|example| example.view.clone())
-        .collect();
+    let views: Vec<_> = examples.iter().map(|example| example.view.clone()).collect();
     let proposed = network.propose(&views).unwrap();
     let nearest = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
         let [x, y] = example.future[11];
-        let off = proposed
-            .ends
-            .iter()
-            .map(|end| (end[0] - x).hypot(end[1] - y));
+        let off = proposed.ends.iter().map(|end| (end[0] - x).hypot(end[1] - y));
         off.fold(f64::INFINITY, f64::min)
     };
     proposed.iter().zip(examples).map(nearest).sum::<f64>() / examples.len() as f64
@@ -125,10 +117,7 @@ fn it_learns_where_pedestrians_go_on_a_fork() {
     let before = oracle(&network(), &examples());
     let after = trained(250);
     let error = oracle(&after, &examples());
-    assert!(
-        before > 1.0 && error < 0.45,
-        "{before:.2} m before, {error:.2} m after"
-    );
+    assert!(before > 1.0 && error < 0.45, "{before:.2} m before, {error:.2} m after");
     // A faster pedestrian ends further away: the endpoints depend on the observation.
     let reach = |speed| {
         let proposed = after.propose(&[view(speed, 0)]).unwrap();
@@ -205,21 +194,12 @@ fn kernels_propose_the_endpoints_of_libtorch() {
         let weights = torch.parameters().to_weights().unwrap();
         let plain = ProposalNetwork::new(small(), 1).unwrap();
         let plain = plain.with_weights(weights).unwrap();
-        let (ours, known) = (
-            plain.propose(&views).unwrap(),
-            torch.propose(&views).unwrap(),
-        );
+        let (ours, known) = (plain.propose(&views).unwrap(), torch.propose(&views).unwrap());
         assert_eq!((ours.len(), known.len()), (views.len(), views.len()));
         for (i, (ours, known)) in ours.iter().zip(&known).enumerate() {
-            let numbers = |proposed: &ProposedEndpoints| {
-                [proposed.ends.as_flattened(), &proposed.weights].concat()
-            };
+            let numbers = |proposed: &ProposedEndpoints| [proposed.ends.as_flattened(), &proposed.weights].concat();
             let (ours, known) = (numbers(ours), numbers(known));
-            let numbers = if views[i].remembered.is_empty() {
-                36
-            } else {
-                72
-            };
+            let numbers = if views[i].remembered.is_empty() { 36 } else { 72 };
             assert_eq!((ours.len(), known.len()), (numbers, numbers));
             for (ours, known) in ours.into_iter().zip(known) {
                 assert!((ours - known).abs() < 1e-5, "view {i}: {ours} {known}");
@@ -268,10 +248,7 @@ fn invalid_examples_are_refused() {
     }
     let mut trainer = ProposalTrainer::new(network(), &broken, &[], training(5)).unwrap();
     let error = trainer.step().unwrap_err();
-    assert!(
-        matches!(error, StarError::ProposalNonFinite { step: 0, .. }),
-        "{error}"
-    );
+    assert!(matches!(error, StarError::ProposalNonFinite { step: 0, .. }), "{error}");
     assert_eq!(trainer.steps(), (0, 5 + MEMORY_STEPS));
     assert!(error.to_string().contains("of the examples"), "{error}");
 
@@ -283,10 +260,7 @@ fn invalid_examples_are_refused() {
     let broken = &broken[..7];
     let mut trainer = ProposalTrainer::new(network(), &examples(), broken, only_reversed).unwrap();
     let error = trainer.step().unwrap_err();
-    let StarError::ProposalNonFinite {
-        example, reversed, ..
-    } = error
-    else {
+    let StarError::ProposalNonFinite { example, reversed, .. } = error else {
         panic!("{error}")
     };
     assert!(reversed && example < broken.len(), "{error}");

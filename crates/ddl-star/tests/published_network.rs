@@ -30,9 +30,7 @@ impl Reference {
     }
 
     fn tensor(&self, pointer: &str, shape: &[i64], kind: Kind) -> Tensor {
-        Tensor::from_slice(&self.numbers(pointer))
-            .reshape(shape)
-            .to_kind(kind)
+        Tensor::from_slice(&self.numbers(pointer)).reshape(shape).to_kind(kind)
     }
 
     fn windows(&self) -> Vec<Window> {
@@ -92,10 +90,7 @@ impl Reference {
                 })
                 .collect();
             let _guard = tch::no_grad_guard();
-            let target = network
-                .parameters()
-                .get(name)
-                .unwrap_or_else(|| panic!("no {name}"));
+            let target = network.parameters().get(name).unwrap_or_else(|| panic!("no {name}"));
             assert_eq!(target.size(), shape, "{name}");
             target
                 .shallow_clone()
@@ -141,9 +136,7 @@ fn agrees(kind: Kind, tolerance: f64) {
     assert!(relative < 1e-3, "loss differs by {relative}");
     loss.backward();
     for (name, tensor) in network.parameters().iter() {
-        let expected = reference.0["train_forward"]["grad_norms"][name]
-            .as_f64()
-            .unwrap();
+        let expected = reference.0["train_forward"]["grad_norms"][name].as_f64().unwrap();
         let norm = tensor.grad().norm().double_value(&[]);
         assert!(
             (norm / expected - 1.0).abs() < 1e-3,
@@ -159,10 +152,7 @@ fn agrees(kind: Kind, tolerance: f64) {
         .squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));
-    assert!(
-        difference < tolerance,
-        "rolled-out positions differ by {difference}"
-    );
+    assert!(difference < tolerance, "rolled-out positions differ by {difference}");
 }
 
 #[test]

@@ -4,9 +4,7 @@
 
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_network::weights::Origin;
-use ddl_network::{
-    DeviceChoice, LearningRateSchedule, NetworkError, StarConfig, TrainingConfig, Variant,
-};
+use ddl_network::{DeviceChoice, LearningRateSchedule, NetworkError, StarConfig, TrainingConfig, Variant};
 use ddl_star::{ComputeDevice, StarError, TorchNetwork, Trainer};
 
 fn cpu() -> ComputeDevice {
@@ -78,11 +76,7 @@ fn path_trainer(epochs: usize, jitter: f64) -> Trainer {
     let aside = |[x, y]: [f64; 2]| [x + 0.3, y - 0.2];
     let goals = windows
         .iter()
-        .map(|window| {
-            (0..window.len())
-                .map(|i| aside(window.track(i)[19]))
-                .collect()
-        })
+        .map(|window| (0..window.len()).map(|i| aside(window.track(i)[19])).collect())
         .collect();
     let network = TorchNetwork::new(config, 7, cpu()).unwrap();
     Trainer::towards(network, windows, goals, training).unwrap()
@@ -165,9 +159,6 @@ fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
         let error = trainer.step().unwrap_err();
         assert!(matches!(error, StarError::NonFinite { .. }), "{error}");
         let said = error.to_string();
-        assert!(
-            said.contains("epoch 1, batch 0") && said.contains('@'),
-            "{said}"
-        );
+        assert!(said.contains("epoch 1, batch 0") && said.contains('@'), "{said}");
     }
 }

@@ -18,9 +18,7 @@ use std::path::Path;
 
 mod places;
 
-const LEVELS: [f64; 12] = [
-    0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99,
-];
+const LEVELS: [f64; 12] = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99];
 /// About this many pedestrian-windows of a folder are forecast by each model.
 const PEDESTRIANS: usize = 1500;
 /// Windows forecast at a time.
@@ -88,8 +86,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             );
         }
     }
-    let table = RegionTable::of(&balanced(&scores.iter().collect::<Vec<_>>()), &LEVELS)
-        .ok_or("no scores")?;
+    let table = RegionTable::of(&balanced(&scores.iter().collect::<Vec<_>>()), &LEVELS).ok_or("no scores")?;
     let fitted = Calibration {
         regions: table,
         ..Calibration::fitted().clone()
@@ -104,9 +101,7 @@ fn balanced(places: &[&TrueScores]) -> TrueScores {
     let least = places.iter().map(|scores| scores.len()).min().unwrap_or(0);
     let spread = |scores: &&TrueScores| {
         let count = scores.len();
-        (0..least)
-            .map(|k| scores[k * count / least])
-            .collect::<Vec<_>>()
+        (0..least).map(|k| scores[k * count / least]).collect::<Vec<_>>()
     };
     places.iter().flat_map(spread).collect()
 }
@@ -118,9 +113,7 @@ fn true_scores(windows: &[Window], forecasts: &[Forecast]) -> Result<TrueScores,
         for i in 0..window.len() {
             let mut scores = [0.0; HORIZON];
             for (t, (score, &at)) in scores.iter_mut().zip(scene.truth(i)).enumerate() {
-                *score = forecast
-                    .region_score(i, t, at)
-                    .ok_or("the forecast has no spread")?;
+                *score = forecast.region_score(i, t, at).ok_or("the forecast has no spread")?;
             }
             all.push(scores);
         }

@@ -93,13 +93,8 @@ fn print_place(place: &Place, models: &[(BuiltinModel, Ddl)]) -> Result<Figures,
     ratios.sort_by(f64::total_cmp);
     let range = format!("{:.3} to {:.3}", ratios[0], ratios[ratios.len() - 1]);
     let after = figures.iter().position(|(name, _)| *name == RATIO);
-    figures.insert(
-        after.map_or(0, |at| at + 1),
-        ("that ratio of the five models", range),
-    );
-    let default = models
-        .iter()
-        .find(|(name, _)| *name == BuiltinModel::default());
+    figures.insert(after.map_or(0, |at| at + 1), ("that ratio of the five models", range));
+    let default = models.iter().find(|(name, _)| *name == BuiltinModel::default());
     if let Some((name, model)) = default {
         print_recordings(name.name(), model, &place.windows)?;
         figures.extend(print_watching(name.name(), model, place)?);
@@ -130,10 +125,7 @@ fn count(windows: &[Window]) -> usize {
 
 fn baselines(windows: &[Window]) -> Result<Figures, Box<dyn Error>> {
     let forecasters = [
-        (
-            "constant velocity, last step (`single`)",
-            ConstantVelocity::last_step(),
-        ),
+        ("constant velocity, last step (`single`)", ConstantVelocity::last_step()),
         (
             "constant velocity, mean observed (`single`)",
             ConstantVelocity::mean_observed(),
@@ -165,20 +157,11 @@ fn measure(model: &Ddl, windows: &[Window]) -> Result<(f64, Vec<String>), Box<dy
     let scores = Scores::evaluate(windows, &ours)?;
     let of_lines = Scores::evaluate(windows, &lines)?;
     let one = Scores::evaluate(windows, &ones)?;
-    let (a, b) = (
-        block_errors(windows, &ours)?,
-        block_errors(windows, &lines)?,
-    );
+    let (a, b) = (block_errors(windows, &ours)?, block_errors(windows, &lines)?);
     let interval = interval(&a, &b, of_lines.min_ade)?;
     let number = |x: Option<f64>| x.unwrap_or(f64::NAN);
-    let [half, most] = scores
-        .coverage
-        .unwrap_or([f64::NAN; 2])
-        .map(|share| 100.0 * share);
-    let certified = scores
-        .stability
-        .as_ref()
-        .and_then(|s: &StabilityScores| s.certified);
+    let [half, most] = scores.coverage.unwrap_or([f64::NAN; 2]).map(|share| 100.0 * share);
+    let certified = scores.stability.as_ref().and_then(|s: &StabilityScores| s.certified);
     let errors = |scores: &Scores| format!("{:.3}/{:.3}", scores.min_ade, scores.min_fde);
     let ratio = scores.min_ade / of_lines.min_ade;
     let radius = scores.region_radius.map_or(f64::NAN, |[_, radius]| radius);
@@ -201,9 +184,7 @@ fn measure(model: &Ddl, windows: &[Window]) -> Result<(f64, Vec<String>), Box<dy
 }
 
 fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), Box<dyn Error>> {
-    let of_one: Vec<&[Window]> = windows
-        .chunk_by(|a, b| a.recording() == b.recording())
-        .collect();
+    let of_one: Vec<&[Window]> = windows.chunk_by(|a, b| a.recording() == b.recording()).collect();
     if of_one.len() < 2 {
         return Ok(());
     }
@@ -224,15 +205,8 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
             of(ConstantVelocity::mean_observed())?,
         );
         let noisy = of(ConstantVelocity::angular_noise(SEED))?;
-        let better = if last.min_ade <= mean.min_ade {
-            last
-        } else {
-            mean
-        };
-        let [half, most] = ours
-            .coverage
-            .unwrap_or([f64::NAN; 2])
-            .map(|share| 100.0 * share);
+        let better = if last.min_ade <= mean.min_ade { last } else { mean };
+        let [half, most] = ours.coverage.unwrap_or([f64::NAN; 2]).map(|share| 100.0 * share);
         println!(
             "| {} | {} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}/{:.3} | {:.3}/{:.3} | {half:.1} / {most:.1} % | {:.2} | \
              {:.2} |",
@@ -262,8 +236,7 @@ fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<Figures, Box
         let of_name = dataset.recordings().iter().find(|r| r.name() == recording);
         of_name.map_or(0.0, |recording| {
             let frames = recording.frames();
-            let steps =
-                (frames[frames.len() - 1] - frames[0]) as f64 / recording.frame_step() as f64;
+            let steps = (frames[frames.len() - 1] - frames[0]) as f64 / recording.frame_step() as f64;
             steps * TIME_STEP / 60.0
         })
     };
@@ -322,11 +295,7 @@ fn print_change(
 
 /// How many were observed to be faster than 3 m/s on average, and the minADE of the model and of straight lines on
 /// these.
-fn runners(
-    windows: &[Window],
-    ours: &[Forecast],
-    lines: &[Forecast],
-) -> Result<[String; 2], Box<dyn Error>> {
+fn runners(windows: &[Window], ours: &[Forecast], lines: &[Forecast]) -> Result<[String; 2], Box<dyn Error>> {
     let (mut count, mut sums) = (0, [0.0; 2]);
     for (window, pair) in windows.iter().zip(ours.iter().zip(lines)) {
         let errors = [pair.0, pair.1].map(|forecast| Scene::new(window, forecast));
@@ -347,18 +316,12 @@ fn runners(
 }
 
 fn mean_speed(observed: &[Position]) -> f64 {
-    let steps = observed
-        .array_windows()
-        .map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
+    let steps = observed.array_windows().map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
     steps.sum::<f64>() / ((OBSERVED - 1) as f64 * TIME_STEP)
 }
 
 /// The interval of the ratio, in words; none where there are too few blocks.
-fn interval(
-    ours: &[BlockErrors],
-    lines: &[BlockErrors],
-    error: f64,
-) -> Result<String, Box<dyn Error>> {
+fn interval(ours: &[BlockErrors], lines: &[BlockErrors], error: f64) -> Result<String, Box<dyn Error>> {
     let difference = paired_difference(&[ours], &[lines], BlockMetric::MinAde)?;
     Ok(difference.map_or_else(String::new, |paired| {
         let [low, high] = [paired.difference.low, paired.difference.high].map(|d| 1.0 + d / error);

@@ -46,9 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread is enough
     let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
-    let certified = model
-        .forecast_certified(std::slice::from_ref(window))?
-        .remove(0);
+    let certified = model.forecast_certified(std::slice::from_ref(window))?.remove(0);
     let forecast = &certified.forecast;
 
     println!(
@@ -59,9 +57,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     for (i, pedestrian) in window.pedestrians().iter().enumerate() {
         let ([x, y], seen) = (window.observed(i)[7], window.made_up(i).seen());
-        println!(
-            "pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, observed at {seen} of 8 time steps"
-        );
+        println!("pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, observed at {seen} of 8 time steps");
         // Hypotheses are in the order of their weights, the largest first.
         for k in 0..3.min(forecast.hypotheses()) {
             let [x, y] = forecast.goal(i, k).ok_or("a model without goals")?;

@@ -78,10 +78,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let of_tested = table(&tested);
     println!("# Recordings that are tested on\n\n{of_tested}");
-    println!(
-        "# Recordings that the constants were chosen on\n\n{}",
-        table(&others)
-    );
+    println!("# Recordings that the constants were chosen on\n\n{}", table(&others));
     page::publish("regions.md", &of_tested)?;
     let picture = drawn(&tested)?;
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/regions.svg");
@@ -97,10 +94,7 @@ fn is_enough(recording: &Recording) -> bool {
 }
 
 /// The model of the fold that tests on the recording.
-fn model_of(
-    dataset: &Dataset,
-    recording: &Recording,
-) -> Result<Option<BuiltinModel>, Box<dyn Error>> {
+fn model_of(dataset: &Dataset, recording: &Recording) -> Result<Option<BuiltinModel>, Box<dyn Error>> {
     for fold in dataset.folds() {
         if fold
             .test_recordings()
@@ -128,11 +122,9 @@ impl Watched {
                     minutes: (frame - first) as f64 * step_minutes,
                     people: window.len(),
                     seen: ahead.iter().map(Vec::len).sum(),
-                    held: [&fixed, &adaptive]
-                        .map(|forecast| LEVELS.map(|level| held(forecast, &ahead, level))),
-                    radii: [&fixed, &adaptive].map(|forecast| {
-                        [HALF, MOST].map(|level| radii(window, forecast, LEVELS[level]))
-                    }),
+                    held: [&fixed, &adaptive].map(|forecast| LEVELS.map(|level| held(forecast, &ahead, level))),
+                    radii: [&fixed, &adaptive]
+                        .map(|forecast| [HALF, MOST].map(|level| radii(window, forecast, LEVELS[level]))),
                 });
             }
         }
@@ -153,19 +145,14 @@ impl Watched {
 
     fn later(&self) -> &[Moment] {
         let quarter = 0.25 * self.minutes();
-        let from = self
-            .moments
-            .partition_point(|moment| moment.minutes < quarter);
+        let from = self.moments.partition_point(|moment| moment.minutes < quarter);
         &self.moments[from..]
     }
 
     /// Share of the minute before each moment: minutes and share.
     fn sliding(&self, kind: usize, level: usize) -> Vec<[f64; 2]> {
         let moments = (SLIDING / 3.0 / APART) as usize..=(self.minutes() / APART) as usize;
-        let until = |minutes: f64| {
-            self.moments
-                .partition_point(|moment| moment.minutes <= minutes)
-        };
+        let until = |minutes: f64| self.moments.partition_point(|moment| moment.minutes <= minutes);
         moments
             .filter_map(|moment| {
                 let now = moment as f64 * APART;
@@ -180,9 +167,7 @@ impl Watched {
     fn range(&self, kind: usize, level: usize) -> Option<[f64; 2]> {
         let from = (0.25 * self.minutes()).max(SLIDING);
         let sliding = self.sliding(kind, level).into_iter();
-        let shares = sliding
-            .filter(|point| point[0] >= from)
-            .map(|point| point[1]);
+        let shares = sliding.filter(|point| point[0] >= from).map(|point| point[1]);
         let ranges = shares.map(|share| [share; 2]);
         ranges.reduce(|[low, high], [other, _]| [low.min(other), high.max(other)])
     }
@@ -190,11 +175,8 @@ impl Watched {
 
 fn held(forecast: &Forecast, ahead: &[Vec<Position>], level: f64) -> usize {
     let of_pedestrian = |(i, ahead): (usize, &Vec<Position>)| {
-        let inside = |&(t, at): &(usize, &Position)| {
-            forecast
-                .region(i, t, level)
-                .is_some_and(|region| holds(&region, *at))
-        };
+        let inside =
+            |&(t, at): &(usize, &Position)| forecast.region(i, t, level).is_some_and(|region| holds(&region, *at));
         ahead.iter().enumerate().filter(inside).count()
     };
     ahead.iter().enumerate().map(of_pedestrian).sum()
@@ -225,9 +207,7 @@ fn radius(moments: &[Moment], kind: usize, which: usize) -> f64 {
 fn reliability(moments: &[Moment], kind: usize) -> [f64; 2] {
     let off = LEVELS.iter().enumerate();
     let off = off.map(|(at, level)| (share(moments, kind, at) - level).abs());
-    let (sum, most) = off.fold((0.0, 0.0_f64), |(sum, most), off| {
-        (sum + off, most.max(off))
-    });
+    let (sum, most) = off.fold((0.0, 0.0_f64), |(sum, most), off| (sum + off, most.max(off)));
     [1.0 - sum / LEVELS.len() as f64, 1.0 - most]
 }
 
@@ -241,11 +221,9 @@ fn table(recordings: &[Watched]) -> String {
         for (kind, name) in ["fixed", "adaptive"].into_iter().enumerate() {
             let later = watched.later();
             let percent = |moments: &[Moment], level: usize| 100.0 * share(moments, kind, level);
-            let range = watched
-                .range(kind, MOST)
-                .map_or("-".to_owned(), |[low, high]| {
-                    format!("{:.0} to {:.0}", 100.0 * low, 100.0 * high)
-                });
+            let range = watched.range(kind, MOST).map_or("-".to_owned(), |[low, high]| {
+                format!("{:.0} to {:.0}", 100.0 * low, 100.0 * high)
+            });
             let [mean, least] = reliability(&watched.moments, kind);
             let mut row = match kind {
                 0 => format!(

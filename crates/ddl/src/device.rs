@@ -4,8 +4,8 @@
 use crate::error::DdlError;
 use ddl_network::weights::{Layout, Weights};
 use ddl_network::{
-    DeviceChoice, ForecastWindows, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork,
-    ProposeEndpoints, StarConfig,
+    DeviceChoice, ForecastWindows, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, ProposeEndpoints,
+    StarConfig,
 };
 use std::sync::Arc;
 
@@ -128,9 +128,7 @@ pub fn prepare(device: DeviceChoice, threads: Option<usize>) -> Result<(), DdlEr
     #[cfg(feature = "torch")]
     ddl_star::set_threads(1);
     // An existing thread pool is kept: results do not depend on the number of threads.
-    let _ = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global();
+    let _ = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     Ok(())
 }
 

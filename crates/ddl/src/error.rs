@@ -51,9 +51,7 @@ pub enum DdlError {
     Measure(#[from] ddl_eval::MeasureError),
     #[error(transparent)]
     Report(#[from] ddl_report::ReportError),
-    #[error(
-        "validation = {0} is out of range: it is a share of the recordings' time, at least 0 and below 1"
-    )]
+    #[error("validation = {0} is out of range: it is a share of the recordings' time, at least 0 and below 1")]
     Validation(f64),
     #[error(
         "no pedestrian in the validation part was observed at 20 consecutive time steps; keep {}",
@@ -67,9 +65,7 @@ pub enum DdlError {
     Patience { patience: usize, validation: f64 },
     #[error("retrieved_share = {0} is out of range: 0 to 1")]
     RetrievedShare(f64),
-    #[error(
-        "a clearance of {0} m is out of range: it must be above 0 and at most 10 m, for example 0.4"
-    )]
+    #[error("a clearance of {0} m is out of range: it must be above 0 and at most 10 m, for example 0.4")]
     Clearance(f64),
     #[error(
         "the variant `{variant}` cannot keep a clearance: its network emits positions and has no flow; \
@@ -90,10 +86,7 @@ pub enum DdlError {
     #[error("model {model}: {problem}")]
     Model { model: String, problem: String },
     #[error("{}: {source}", path.display())]
-    Io {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    Io { path: PathBuf, source: std::io::Error },
     /// The caller asked to stop. Training keeps its saved steps; an evaluation starts again from the beginning.
     #[error("interrupted; saved training steps are kept, and the same command continues from them")]
     Interrupted,

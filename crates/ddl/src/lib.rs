@@ -67,10 +67,7 @@
 //!   Truncated, mismatched or non-finite files are errors that name the file and the problem.
 //! - A model reads the 8 observed positions alone. Its hypotheses belong to the goals of the estimator and carry their
 //!   weights, which sum to 1 for each pedestrian; the variant without goals (`star`) has 20 equally likely samples.
-#![cfg_attr(
-    not(feature = "torch"),
-    allow(dead_code, reason = "only training needs it")
-)]
+#![cfg_attr(not(feature = "torch"), allow(dead_code, reason = "only training needs it"))]
 
 mod device;
 mod error;

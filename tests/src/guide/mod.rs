@@ -60,10 +60,7 @@ pub fn check_to(page: &str, depth: fn(&str, &Command) -> Depth) {
         let text = shown::replaced(&text, answers);
         std::fs::write(checkout().join(page), text).unwrap();
     }
-    let faults: Vec<String> = problems
-        .into_iter()
-        .map(|(_, problem)| problem.text)
-        .collect();
+    let faults: Vec<String> = problems.into_iter().map(|(_, problem)| problem.text).collect();
     assert!(faults.is_empty(), "{page}\n{}", faults.join("\n"));
 }
 
@@ -72,15 +69,8 @@ fn check_cargo(page: &str, command: &Command) {
     let words = command
         .words()
         .unwrap_or_else(|| panic!("{page}:{}: not a plain call of cargo", command.line));
-    let after = |option: &str| {
-        words
-            .iter()
-            .skip_while(|&&word| word != option)
-            .nth(1)
-            .copied()
-    };
-    let package =
-        after("-p").unwrap_or_else(|| panic!("{page}:{}: no package is named", command.line));
+    let after = |option: &str| words.iter().skip_while(|&&word| word != option).nth(1).copied();
+    let package = after("-p").unwrap_or_else(|| panic!("{page}:{}: no package is named", command.line));
     let of_tests = package == "ddl-tests";
     let folder = checkout().join(match package {
         "ddl-tests" => "tests".to_owned(),

@@ -4,10 +4,7 @@ use crate::console::Command;
 
 /// The page with the answers of some commands replaced, in the order of the page. As many lines as were shown before
 /// the first and after the last line `...` are shown again.
-pub(super) fn replaced<'a>(
-    page: &str,
-    answers: impl Iterator<Item = (&'a Command, &'a str)>,
-) -> String {
+pub(super) fn replaced<'a>(page: &str, answers: impl Iterator<Item = (&'a Command, &'a str)>) -> String {
     let mut lines: Vec<&str> = page.lines().collect();
     let answers: Vec<_> = answers.collect();
     for (command, answer) in answers.into_iter().rev() {
@@ -39,8 +36,7 @@ mod tests {
 
     #[test]
     fn answers_are_replaced_and_what_was_left_out_is_left_out_again() {
-        let page =
-            "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
+        let page = "a\n```console\n$ x\n1\n...\n3\n$ for i in 1; do\n>   echo $i\n> done\n1\n```\nb\n";
         let commands = console::commands(page);
         let answers = commands.iter().zip(["4\n5\n6\n7\n", "8\n9\n"]);
         assert_eq!(

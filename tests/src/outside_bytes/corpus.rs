@@ -15,8 +15,8 @@ pub fn files(reader: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
         .join("fuzz/corpus")
         .join(reader);
-    let entries = std::fs::read_dir(&folder)
-        .unwrap_or_else(|error| panic!("{} has no corpus: {error}", folder.display()));
+    let entries =
+        std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{} has no corpus: {error}", folder.display()));
     let mut paths: Vec<PathBuf> = entries
         .map(|entry| entry.expect("the folder can be listed").path())
         .collect();
@@ -35,11 +35,7 @@ pub fn run((name, read): Reader) {
         let hand_over = |bytes: &[u8], how: &str| {
             let caught = std::panic::catch_unwind(|| read(bytes));
             if let Err(panic) = caught {
-                eprintln!(
-                    "{name}, {} {how}: {:?}",
-                    path.display(),
-                    String::from_utf8_lossy(bytes)
-                );
+                eprintln!("{name}, {} {how}: {:?}", path.display(), String::from_utf8_lossy(bytes));
                 std::panic::resume_unwind(panic);
             }
         };

@@ -45,8 +45,7 @@ fn check(bytes: &[u8], format: ExternalFormat) {
     } else {
         Coverage::Whole
     };
-    let read =
-        |file: &[u8], format| external::read_from(file, "fuzzed", format, windows(), coverage);
+    let read = |file: &[u8], format| external::read_from(file, "fuzzed", format, windows(), coverage);
     let matched = match read(file, format) {
         Ok(matched) => matched,
         Err(error) => {
@@ -55,14 +54,9 @@ fn check(bytes: &[u8], format: ExternalFormat) {
         }
     };
     for forecast in &matched.forecasts {
-        for (i, k) in (0..forecast.pedestrians())
-            .flat_map(|i| (0..forecast.hypotheses()).map(move |k| (i, k)))
-        {
+        for (i, k) in (0..forecast.pedestrians()).flat_map(|i| (0..forecast.hypotheses()).map(move |k| (i, k))) {
             let path = forecast.hypothesis(i, k).as_flattened();
-            assert!(
-                path.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
-                "{path:?}"
-            );
+            assert!(path.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT), "{path:?}");
         }
     }
     let mut written = Vec::new();

@@ -1,8 +1,6 @@
 //! A user's own tracks, as in `ddl forecast`: format guessed, rate given, windows cut.
 
-use ddl_data::{
-    COORDINATE_LIMIT, Completion, Format, OBSERVED, Recording, WindowRule, parse_recording,
-};
+use ddl_data::{COORDINATE_LIMIT, Completion, Format, OBSERVED, Recording, WindowRule, parse_recording};
 
 use super::tracks::bounded;
 

@@ -10,8 +10,7 @@ pub fn read(bytes: &[u8]) {
         return;
     };
     let text = report.to_json().expect("valid data can be written");
-    let again = Report::from_json(&text)
-        .unwrap_or_else(|error| panic!("a written report is refused: {error}\n{text}"));
+    let again = Report::from_json(&text).unwrap_or_else(|error| panic!("a written report is refused: {error}\n{text}"));
     assert_eq!(again, report);
     let document = report.document();
     let _ = (document.to_markdown(), document.to_latex());

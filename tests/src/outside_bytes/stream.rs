@@ -12,10 +12,7 @@ pub fn read(bytes: &[u8]) {
     };
     let whole = answers(FrameReader::new(text, "tracker"), text.len());
     let pieces = BufReader::with_capacity(1 + usize::from(piece), text);
-    assert_eq!(
-        answers(FrameReader::new(pieces, "tracker"), text.len()),
-        whole
-    );
+    assert_eq!(answers(FrameReader::new(pieces, "tracker"), text.len()), whole);
     let mut scenes = BTreeMap::new();
     for frame in whole.iter().flatten() {
         let unseen = || LiveTracks::new().with_completion(Completion::USUAL);
@@ -24,10 +21,7 @@ pub fn read(bytes: &[u8]) {
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
         assert_eq!(frame.is_first, last.is_none());
         let pedestrians = || frame.people.iter().copied();
-        assert!(
-            pedestrians()
-                .all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT))
-        );
+        assert!(pedestrians().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT)));
         let window = tracks
             .push(frame.number, pedestrians())
             .expect("frames from the reader can be pushed");
@@ -39,10 +33,7 @@ pub fn read(bytes: &[u8]) {
 }
 
 /// Every frame and every error until the end.
-fn answers<R: std::io::BufRead>(
-    mut reader: FrameReader<R>,
-    length: usize,
-) -> Vec<Result<Frame, String>> {
+fn answers<R: std::io::BufRead>(mut reader: FrameReader<R>, length: usize) -> Vec<Result<Frame, String>> {
     let mut answers = Vec::new();
     loop {
         match reader.next_frame() {
@@ -50,9 +41,6 @@ fn answers<R: std::io::BufRead>(
             Ok(Some(frame)) => answers.push(Ok(frame)),
             Err(error) => answers.push(Err(error.to_string())),
         }
-        assert!(
-            answers.len() <= 2 * length + 2,
-            "the reader makes no progress"
-        );
+        assert!(answers.len() <= 2 * length + 2, "the reader makes no progress");
     }
 }

@@ -14,9 +14,8 @@ pub fn table(bytes: &[u8]) {
 /// The four lines of the convention `star`.
 pub fn star_csv(bytes: &[u8]) {
     check(bytes, Format::StarCsv, |rows| {
-        let column = |field: &dyn Fn(&Observation) -> String| {
-            rows.iter().map(field).collect::<Vec<_>>().join(",") + "\n"
-        };
+        let column =
+            |field: &dyn Fn(&Observation) -> String| rows.iter().map(field).collect::<Vec<_>>().join(",") + "\n";
         [
             column(&|seen| seen.frame.to_string()),
             column(&|seen| seen.pedestrian.to_string()),
@@ -46,9 +45,7 @@ pub fn trajnet(bytes: &[u8]) {
 /// The eight columns of `obsmat.txt`.
 pub fn obsmat(bytes: &[u8]) {
     check(bytes, Format::Obsmat, |rows| {
-        lines(rows, |f, p, [x, y]| {
-            format!("{f}.0 {p} {x} 0 {y} nan 0 1e300")
-        })
+        lines(rows, |f, p, [x, y]| format!("{f}.0 {p} {x} 0 {y} nan 0 1e300"))
     });
 }
 
@@ -64,11 +61,7 @@ fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) -> String) {
     };
     bounded(&recording);
     // The rows below are written with numbers; words are tested in `ddl-data`.
-    if recording
-        .observations()
-        .iter()
-        .any(|seen| seen.pedestrian.0 >= 1 << 53)
-    {
+    if recording.observations().iter().any(|seen| seen.pedestrian.0 >= 1 << 53) {
         return;
     }
     let mut rows = recording.observations().to_vec();
@@ -87,9 +80,7 @@ fn check(bytes: &[u8], format: Format, written: fn(&[Observation]) -> String) {
 pub(super) fn bounded(recording: &Recording) {
     for seen in recording.observations() {
         assert!(
-            seen.position
-                .iter()
-                .all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
+            seen.position.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT),
             "{seen:?} is beyond the coordinate limit"
         );
         assert!(seen.frame.unsigned_abs() < 1 << 53, "{seen:?}");

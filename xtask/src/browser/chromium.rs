@@ -34,16 +34,10 @@ pub(super) fn find_or_install() -> Result<PathBuf> {
         bail!("no browser was found for the checks of pages: {ADVICE}");
     }
     debian::install(&PACKAGES).context(ADVICE)?;
-    find().with_context(|| {
-        format!("apt-get installed a browser, but it is not on the search path: {ADVICE}")
-    })
+    find().with_context(|| format!("apt-get installed a browser, but it is not on the search path: {ADVICE}"))
 }
 
 fn named_one(named: &OsStr) -> Result<PathBuf> {
-    find_on_path(named).with_context(|| {
-        format!(
-            "DDL_BROWSER={} is not a program: {ADVICE}",
-            Path::new(named).display()
-        )
-    })
+    find_on_path(named)
+        .with_context(|| format!("DDL_BROWSER={} is not a program: {ADVICE}", Path::new(named).display()))
 }

@@ -26,11 +26,7 @@ pub(super) fn ensure(python: &Python) -> Result<PathBuf> {
 fn folder_name(python: &Python) -> Result<String> {
     let script = "import sys; print('%s-%d.%d' % (sys.implementation.name, *sys.version_info[:2]))";
     let version = python::read(&mut python.script(script, [] as [&str; 0]))?;
-    Ok(format!(
-        "{}-{}",
-        REQUIREMENT.replace("==", "-"),
-        version.trim()
-    ))
+    Ok(format!("{}-{}", REQUIREMENT.replace("==", "-"), version.trim()))
 }
 
 fn fetch(work: &Path) -> Result<PathBuf> {
@@ -38,19 +34,13 @@ fn fetch(work: &Path) -> Result<PathBuf> {
     let target = work.join("packages");
     eprintln!("fetching {REQUIREMENT} with pip, once");
     let mut pip = python.module("pip");
-    pip.args([
-        "install",
-        "--quiet",
-        "--only-binary=:all:",
-        "--no-cache-dir",
-    ])
-    .args(["--disable-pip-version-check", "--no-warn-script-location"])
-    .args(["--timeout", "60", "--retries", "3", "--target"])
-    .arg(&target)
-    .arg(REQUIREMENT)
-    .stdout(Stdio::from(std::io::stderr()));
-    run_within(&mut pip, LIMIT).with_context(|| {
-        format!("pip could not fetch {REQUIREMENT}: connect to a package index")
-    })?;
+    pip.args(["install", "--quiet", "--only-binary=:all:", "--no-cache-dir"])
+        .args(["--disable-pip-version-check", "--no-warn-script-location"])
+        .args(["--timeout", "60", "--retries", "3", "--target"])
+        .arg(&target)
+        .arg(REQUIREMENT)
+        .stdout(Stdio::from(std::io::stderr()));
+    run_within(&mut pip, LIMIT)
+        .with_context(|| format!("pip could not fetch {REQUIREMENT}: connect to a package index"))?;
     Ok(target)
 }

@@ -16,11 +16,7 @@ pub(crate) struct Arguments {
     /// Options of `ddl benchmark`, such as `--profile smoke`; paths in them must lie below the checkout. `--convention`
     /// and `--data` also select the recordings to fetch, and `--publish` (without a folder) publishes in this checkout.
     /// `--cargo-profile dev` builds the program with less optimisation
-    #[arg(
-        trailing_var_arg = true,
-        allow_hyphen_values = true,
-        value_name = "OPTIONS"
-    )]
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     options: Vec<String>,
 }
 
@@ -81,11 +77,7 @@ fn handed_over(root: &Path, chosen: &Chosen, options: Vec<String>) -> Vec<String
 }
 
 fn take(options: &mut Vec<String>, name: &str) -> Result<Option<String>> {
-    let of_word = |word: &String| {
-        word.strip_prefix(name)?
-            .strip_prefix('=')
-            .map(str::to_owned)
-    };
+    let of_word = |word: &String| word.strip_prefix(name)?.strip_prefix('=').map(str::to_owned);
     if let Some(index) = options.iter().position(|word| of_word(word).is_some()) {
         return Ok(of_word(&options.remove(index)));
     }

@@ -82,9 +82,6 @@ fn pages_benchmark_and_wheel(workspace: &Workspace) -> Result<()> {
 
 /// On a machine with no other network access, the package index is the only source of real recordings.
 fn recordings(workspace: &Workspace) -> Result<()> {
-    println!(
-        "{}",
-        data::fetch_one(workspace, Convention::SocialGan, None)?
-    );
+    println!("{}", data::fetch_one(workspace, Convention::SocialGan, None)?);
     Ok(())
 }

@@ -23,8 +23,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let convention = data::choose(workspace, None, None, &mut |_| {})?.convention;
     let folder = workspace.path("target/cluster");
     if folder.exists() {
-        fs::remove_dir_all(&folder)
-            .with_context(|| format!("{} cannot be deleted", folder.display()))?;
+        fs::remove_dir_all(&folder).with_context(|| format!("{} cannot be deleted", folder.display()))?;
     }
     fs::create_dir_all(&folder)?;
     let begun = Instant::now();
@@ -39,8 +38,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     };
     for (name, check) in CHECKS {
         let begun = Instant::now();
-        check(&mut cluster)
-            .with_context(|| format!("{name}; logs are in {}", cluster.folder.display()))?;
+        check(&mut cluster).with_context(|| format!("{name}; logs are in {}", cluster.folder.display()))?;
         tell(name, begun);
     }
     Ok(())
@@ -98,13 +96,7 @@ struct Element {
 
 impl Cluster {
     /// Starts `ddl benchmark` of the first folds in the folder of this name.
-    fn begin(
-        &self,
-        name: &str,
-        folds: usize,
-        words: &[&str],
-        variables: &[(&str, &str)],
-    ) -> Result<Begun> {
+    fn begin(&self, name: &str, folds: usize, words: &[&str], variables: &[(&str, &str)]) -> Result<Begun> {
         let folds = self.folds[..folds].join(",");
         let out = self.folder.join(name).display().to_string();
         let options = ["--profile", "smoke", "--cargo-profile", "dev"].into_iter();
@@ -182,9 +174,7 @@ impl Cluster {
         let run = self.on_slurm("warned", NODES.len(), &short)?;
         let warned = until("a warned task in the queue again", || {
             let elements = self.elements()?;
-            Ok(elements
-                .into_iter()
-                .find(|element| element.reason == "BeginTime"))
+            Ok(elements.into_iter().find(|element| element.reason == "BeginTime"))
         })?;
         for element in self.elements()? {
             // One of them may have just ended.
@@ -204,24 +194,18 @@ impl Cluster {
         run.until_it_tells("1 of 1 tasks are not finished")?;
         run.end(1)?;
         self.ensure_restarts(&id, 0)?;
-        let log = self
-            .folder
-            .join(format!("cancelled/{}-full-1/log.txt", self.folds[0]));
+        let log = self.folder.join(format!("cancelled/{}-full-1/log.txt", self.folds[0]));
         let log = fs::read_to_string(log)?;
-        ensure!(
-            log.contains("interrupted"),
-            "the training did not save: {log}"
-        );
+        ensure!(log.contains("interrupted"), "the training did not save: {log}");
         self.on_slurm("cancelled", 1, &[])?.end(0)?;
         self.compare_tasks("cancelled", 1)
     }
 
     /// Waiting and running tasks.
     fn elements(&self) -> Result<Vec<Element>> {
-        let lines = self.slurm.ask(
-            "squeue",
-            &["--noheader", "--array", "--format=%F_%K|%T|%r|%N"],
-        )?;
+        let lines = self
+            .slurm
+            .ask("squeue", &["--noheader", "--array", "--format=%F_%K|%T|%r|%N"])?;
         let element = |line: &str| {
             let mut fields = line.split('|').map(str::to_owned);
             let mut next = || fields.next().context("squeue prints too little");
@@ -249,8 +233,7 @@ impl Cluster {
     }
 
     fn update(&self, id: &str, what: &str) -> Result<String> {
-        self.slurm
-            .ask("scontrol", &["update", &format!("JobId={id}"), what])
+        self.slurm.ask("scontrol", &["update", &format!("JobId={id}"), what])
     }
 
     fn ensure_restarts(&self, id: &str, times: usize) -> Result<()> {
@@ -279,10 +262,7 @@ impl Cluster {
             let file = self.folder.join(folder).join(file);
             fs::read(&file).with_context(|| format!("{} cannot be read", file.display()))
         };
-        ensure!(
-            read(name)? == read("here")?,
-            "{name}/{file} differs from here/{file}"
-        );
+        ensure!(read(name)? == read("here")?, "{name}/{file} differs from here/{file}");
         Ok(())
     }
 
@@ -311,9 +291,7 @@ impl Begun {
     }
 
     fn end(mut self, code: i32) -> Result<()> {
-        let status: ExitStatus = until("the end of `ddl benchmark`", || {
-            Ok(self.child.try_wait()?)
-        })?;
+        let status: ExitStatus = until("the end of `ddl benchmark`", || Ok(self.child.try_wait()?))?;
         if status.code() != Some(code) {
             bail!(
                 "`ddl benchmark` ended with {status} instead of {code}:\n{}",

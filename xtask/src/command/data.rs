@@ -82,13 +82,9 @@ impl Arguments {
                 }
             };
             let entry = manifest.entry(convention)?;
-            data::check(&folder, entry)
-                .with_context(|| format!("{convention} in {}", folder.display()))?;
+            data::check(&folder, entry).with_context(|| format!("{convention} in {}", folder.display()))?;
             let files = entry.files.len();
-            println!(
-                "{convention}: {files} files verified in {}",
-                folder.display()
-            );
+            println!("{convention}: {files} files verified in {}", folder.display());
         }
         if absent.len() == self.conventions().len() {
             bail!(
@@ -117,16 +113,11 @@ impl Arguments {
     }
 
     fn conventions(&self) -> Vec<Convention> {
-        self.convention
-            .map_or_else(|| RECORDED.to_vec(), |one| vec![one])
+        self.convention.map_or_else(|| RECORDED.to_vec(), |one| vec![one])
     }
 }
 
-pub(super) fn fetch_one(
-    workspace: &Workspace,
-    convention: Convention,
-    folder: Option<&Path>,
-) -> Result<String> {
+pub(super) fn fetch_one(workspace: &Workspace, convention: Convention, folder: Option<&Path>) -> Result<String> {
     if let Ok(Some(there)) = data::find_right(workspace, convention, folder) {
         return Ok(format!(
             "{convention}: the files are already present in {}",

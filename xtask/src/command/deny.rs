@@ -39,9 +39,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
         .status()
         .with_context(|| format!("{} cannot be started", tool.display()))?;
     if !status.success() {
-        bail!(
-            "deny.toml forbids a dependency (above): remove it, or allow it in deny.toml with a reason"
-        );
+        bail!("deny.toml forbids a dependency (above): remove it, or allow it in deny.toml with a reason");
     }
     Ok(())
 }

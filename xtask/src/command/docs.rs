@@ -33,12 +33,8 @@ impl Arguments {
             Browser::ready()?.run_check(&script, site, options)?;
         }
         if self.open {
-            open::that_detached(&first).with_context(|| {
-                format!(
-                    "no browser could be started; open {} yourself",
-                    first.display()
-                )
-            })?;
+            open::that_detached(&first)
+                .with_context(|| format!("no browser could be started; open {} yourself", first.display()))?;
         }
         Ok(())
     }
@@ -68,17 +64,10 @@ mod tests {
             let text = std::fs::read_to_string(workspace.root().join(&page)).unwrap();
             for command in console::commands(&text) {
                 let words = command.words().unwrap_or_default();
-                if let ["cargo", "xtask", arguments @ ..] | ["./xtask", arguments @ ..] =
-                    words.as_slice()
-                {
+                if let ["cargo", "xtask", arguments @ ..] | ["./xtask", arguments @ ..] = words.as_slice() {
                     let call = ["cargo xtask"].iter().chain(arguments);
                     if let Err(error) = crate::Arguments::try_parse_from(call) {
-                        panic!(
-                            "{}:{}: {}\n{error}",
-                            page.display(),
-                            command.line,
-                            command.typed
-                        );
+                        panic!("{}:{}: {}\n{error}", page.display(), command.line, command.typed);
                     }
                     understood += 1;
                 }

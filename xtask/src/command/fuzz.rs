@@ -13,8 +13,7 @@ use crate::workspace::{Workspace, absolute, find_on_path};
 const FOLDER: &str = "tests/fuzz";
 /// Temporary files of model readers are put into this memory file system if it exists.
 const MEMORY: &str = "/dev/shm";
-const HEADING: &str =
-    "| target | executions | a second | corpus | result |\n|---|---:|---:|---:|---|\n";
+const HEADING: &str = "| target | executions | a second | corpus | result |\n|---|---:|---:|---:|---|\n";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -64,8 +63,8 @@ impl Arguments {
             }
         }
         let manifest = workspace.path(FOLDER).join("Cargo.toml");
-        let manifest = fs::read_to_string(&manifest)
-            .with_context(|| format!("{} cannot be read", manifest.display()))?;
+        let manifest =
+            fs::read_to_string(&manifest).with_context(|| format!("{} cannot be read", manifest.display()))?;
         let targets = self.chosen(targets(&manifest)?)?;
         let library = if targets.iter().any(|target| target.needs_torch) {
             let ready = libtorch::ensure(workspace, &Request::default())?;
@@ -78,18 +77,15 @@ impl Arguments {
         let mut broken = Vec::new();
         for Target { name, .. } in targets {
             let found = workspace.path("target/fuzz-corpus").join(&name);
-            fs::create_dir_all(&found)
-                .with_context(|| format!("{} cannot be made", found.display()))?;
+            fs::create_dir_all(&found).with_context(|| format!("{} cannot be made", found.display()))?;
             eprintln!("fuzz: {name}");
-            let (log, passed) =
-                run(&mut self.command(workspace, &name, &found, library.as_deref()))?;
+            let (log, passed) = run(&mut self.command(workspace, &name, &found, library.as_deref()))?;
             let corpus = fs::read_dir(&found).map_or(0, Iterator::count);
             let row = row(&name, &log, corpus, passed);
             rows += &row.with_context(|| format!("{name} was not fuzzed (above)"))?;
             if let Some(table) = &table {
                 // After each target, so that an interrupted run keeps its results.
-                fs::write(table, &rows)
-                    .with_context(|| format!("{} cannot be written", table.display()))?;
+                fs::write(table, &rows).with_context(|| format!("{} cannot be written", table.display()))?;
             }
             if !passed {
                 broken.push(name);
@@ -110,10 +106,7 @@ impl Arguments {
             match all.iter().find(|target| target.name == *asked) {
                 None => {
                     let names: Vec<&str> = all.iter().map(|target| target.name.as_str()).collect();
-                    bail!(
-                        "there is no fuzz target {asked}; the targets are {}",
-                        names.join(", ")
-                    );
+                    bail!("there is no fuzz target {asked}; the targets are {}", names.join(", "));
                 }
                 Some(target) if target.needs_torch && self.no_torch => {
                     bail!("the fuzz target {asked} needs libtorch: leave --no-torch out");
@@ -128,13 +121,7 @@ impl Arguments {
         Ok(all.into_iter().filter(is_asked).collect())
     }
 
-    fn command(
-        &self,
-        workspace: &Workspace,
-        name: &str,
-        found: &Path,
-        library: Option<&Path>,
-    ) -> Command {
+    fn command(&self, workspace: &Workspace, name: &str, found: &Path, library: Option<&Path>) -> Command {
         let sanitizer = match self.sanitizer {
             Sanitizer::None => "none",
             Sanitizer::Address => "address",
@@ -196,9 +183,7 @@ fn row(name: &str, log: &str, corpus: usize, passed: bool) -> Option<String> {
     let executions = number("stat::number_of_executed_units")?;
     let rate = number("stat::average_exec_per_sec").unwrap_or(0);
     let result = if passed { "no fault" } else { "broke" };
-    Some(format!(
-        "| {name} | {executions} | {rate} | {corpus} | {result} |\n"
-    ))
+    Some(format!("| {name} | {executions} | {rate} | {corpus} | {result} |\n"))
 }
 
 #[cfg(test)]
@@ -221,8 +206,7 @@ mod tests {
 
     #[test]
     fn the_output_of_libfuzzer_becomes_a_row() {
-        let log =
-            "Done 10 runs\nstat::number_of_executed_units: 10\nstat::average_exec_per_sec:     5\n";
+        let log = "Done 10 runs\nstat::number_of_executed_units: 10\nstat::average_exec_per_sec:     5\n";
         let expected = "| table | 10 | 5 | 3 | no fault |\n";
         assert_eq!(row("table", log, 3, true).as_deref(), Some(expected));
         assert_eq!(row("table", "error: no such target", 3, false), None);

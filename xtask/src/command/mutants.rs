@@ -41,10 +41,7 @@ const NUMERIC: [(&str, &[&str]); 7] = [
         "ddl-network",
         &["backbone/**", "forecast/**", "kernel/**", "proposal/**"],
     ),
-    (
-        "ddl-eval",
-        &["baseline/**", "metric/**", "region", "significance/**"],
-    ),
+    ("ddl-eval", &["baseline/**", "metric/**", "region", "significance/**"]),
 ];
 /// Errors and tests affect no forecast.
 const EXCLUDED: [&str; 3] = ["**/error.rs", "**/tests.rs", "**/tests/**"];
@@ -77,8 +74,7 @@ struct Counts {
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let tool = TOOL.ensure(workspace)?;
-        let asked =
-            |name: &str| self.crates.is_empty() || self.crates.iter().any(|one| one == name);
+        let asked = |name: &str| self.crates.is_empty() || self.crates.iter().any(|one| one == name);
         let mut rows = HEADING.to_owned();
         for (name, places) in NUMERIC.into_iter().filter(|(name, _)| asked(name)) {
             let patterns = if self.files.is_empty() {
@@ -106,11 +102,7 @@ impl Arguments {
             let files = call().arg("--list-files").output();
             let files = files.context("cargo-mutants cannot be started")?.stdout;
             let counts = mutate(call().args(&self.rest), &out)?;
-            rows += &row(
-                name,
-                String::from_utf8_lossy(&files).lines().count(),
-                &counts,
-            );
+            rows += &row(name, String::from_utf8_lossy(&files).lines().count(), &counts);
             println!("{rows}");
         }
         Ok(())
@@ -161,10 +153,7 @@ mod tests {
     fn the_counts_of_cargo_mutants_become_a_row() {
         let outcomes = r#"{"outcomes": [], "total_mutants": 9, "missed": 1, "caught": 6, "timeout": 1, "unviable": 1}"#;
         let counts: Counts = serde_json::from_str(outcomes).unwrap();
-        assert_eq!(
-            row("ddl-simd", 2, &counts),
-            "| ddl-simd | 2 | 8 | 7 | 1 | 87.5 % |\n"
-        );
+        assert_eq!(row("ddl-simd", 2, &counts), "| ddl-simd | 2 | 8 | 7 | 1 | 87.5 % |\n");
         assert!(row("ddl-simd", 0, &Counts::default()).ends_with("| – |\n"));
     }
 

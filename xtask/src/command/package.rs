@@ -41,13 +41,7 @@ impl Arguments {
 
 /// Packs every published crate without building it, and checks the contents and size of the packages.
 pub(crate) fn check(workspace: &Workspace) -> Result<()> {
-    let pack = [
-        "package",
-        "--workspace",
-        "--quiet",
-        "--no-verify",
-        "--allow-dirty",
-    ];
+    let pack = ["package", "--workspace", "--quiet", "--no-verify", "--allow-dirty"];
     step("`cargo package --no-verify`", &workspace.cargo(pack))?;
     let metadata = workspace.metadata()?;
     let tracked = workspace.files()?;
@@ -68,17 +62,11 @@ pub(crate) fn check(workspace: &Workspace) -> Result<()> {
         let bytes = fs::metadata(&archive)
             .with_context(|| format!("{} was not made", archive.display()))?
             .len();
-        println!(
-            "{name:<16} {:>8} {:>7} KiB",
-            packed.len(),
-            bytes.div_ceil(1024)
-        );
+        println!("{name:<16} {:>8} {:>7} KiB", packed.len(), bytes.div_ceil(1024));
         let folder = Path::new(text("manifest_path")?).parent();
         let folder = folder.and_then(|folder| folder.strip_prefix(workspace.root()).ok());
         let folder = folder.context("a crate lies outside the workspace")?;
-        let own = tracked
-            .iter()
-            .filter_map(|file| file.strip_prefix(folder).ok());
+        let own = tracked.iter().filter_map(|file| file.strip_prefix(folder).ok());
         faults.extend(faults_of(name, own, &packed, bytes));
     }
     for fault in &faults {
@@ -130,12 +118,7 @@ mod tests {
 
     #[test]
     fn required_files_must_be_in_the_package() {
-        let own = [
-            "Cargo.toml",
-            "src/lib.rs",
-            "models/eth.safetensors",
-            "tests/a.rs",
-        ];
+        let own = ["Cargo.toml", "src/lib.rs", "models/eth.safetensors", "tests/a.rs"];
         let faults = |packed: &[&str], bytes| {
             let packed = packed.iter().map(PathBuf::from).collect();
             faults_of("ddl-forecast", own.iter().map(Path::new), &packed, bytes)

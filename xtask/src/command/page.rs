@@ -33,19 +33,8 @@ pub(crate) fn check(workspace: &Workspace) -> Result<()> {
 
 fn make_and_check(workspace: &Workspace, out: &Path, screenshots: Option<&Path>) -> Result<()> {
     let browser = Browser::ready()?;
-    let build = [
-        "run",
-        "--quiet",
-        "-p",
-        "ddl-report",
-        "--example",
-        "report_page",
-        "--",
-    ];
-    step(
-        "the example `report_page`",
-        &workspace.cargo(build).arg(out),
-    )?;
+    let build = ["run", "--quiet", "-p", "ddl-report", "--example", "report_page", "--"];
+    step("the example `report_page`", &workspace.cargo(build).arg(out))?;
     let script = workspace.path("tests/page/check_page.py");
     let pictures = screenshots.map(|folder| [Path::new("--screenshots"), folder]);
     browser.run_check(&script, out, pictures.into_iter().flatten())?;

@@ -71,8 +71,7 @@ fn make(workspace: &Workspace, out: &Path, profile: &str) -> Result<PathBuf> {
 fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
     let python = Python::with_pip()?;
     if folder.exists() {
-        fs::remove_dir_all(folder)
-            .with_context(|| format!("{} cannot be removed", folder.display()))?;
+        fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
     }
     let made = python.module("venv").arg(folder).status();
     if !made.is_ok_and(|status| status.success()) {
@@ -90,8 +89,7 @@ fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
 fn build(workspace: &Workspace, environment: &Path, out: &Path, profile: &str) -> Result<PathBuf> {
     let wheels = out.join("wheels");
     if wheels.exists() {
-        fs::remove_dir_all(&wheels)
-            .with_context(|| format!("{} cannot be removed", wheels.display()))?;
+        fs::remove_dir_all(&wheels).with_context(|| format!("{} cannot be removed", wheels.display()))?;
     }
     let maturin = in_environment(workspace, environment, "maturin")
         .args(["build", "--quiet", "--profile", profile])
@@ -136,10 +134,7 @@ fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Res
     let tests = workspace.path("crates/ddl-python/tests");
     let checks = [
         ("mypy", vec!["-m", "mypy", "--strict", "-p", "ddl_forecast"]),
-        (
-            "stubtest",
-            vec!["-m", "mypy.stubtest", "ddl_forecast._core"],
-        ),
+        ("stubtest", vec!["-m", "mypy.stubtest", "ddl_forecast._core"]),
     ];
     for (name, arguments) in checks {
         // Run in a folder from which the package cannot be imported unless it is installed.

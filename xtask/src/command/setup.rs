@@ -39,11 +39,7 @@ impl Arguments {
             if self.verify { ", hashes verified" } else { "" },
             start.elapsed().as_secs_f64()
         );
-        let written = if ready.reconfigured {
-            "written"
-        } else {
-            "up to date"
-        };
+        let written = if ready.reconfigured { "written" } else { "up to date" };
         println!("cargo configuration: .cargo/config.generated.toml {written}");
         Ok(())
     }
@@ -52,10 +48,7 @@ impl Arguments {
 /// Prints `export` lines for a shell: `eval "$(cargo xtask env)"`.
 pub(crate) fn print_environment(workspace: &Workspace) -> Result<()> {
     let ready = libtorch::ensure(workspace, &Request::default())?;
-    let folder = ready
-        .folder
-        .to_str()
-        .context("libtorch's path is not valid Unicode")?;
+    let folder = ready.folder.to_str().context("libtorch's path is not valid Unicode")?;
     let quoted = format!("'{}'", folder.replace('\'', "'\\''"));
     println!("export LIBTORCH={quoted}");
     println!("export LD_LIBRARY_PATH={quoted}/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}");

@@ -33,13 +33,7 @@ impl Arguments {
                 Err(error) => eprintln!("{error:#}"),
             }
         }
-        let selection = [
-            "--workspace",
-            "--exclude",
-            "ddl-star",
-            "--exclude",
-            "ddl-tests",
-        ];
+        let selection = ["--workspace", "--exclude", "ddl-star", "--exclude", "ddl-tests"];
         cargo_test(workspace, &selection, &self.rest)?;
         let selection = ["-p", "ddl-tests", "--no-default-features"];
         cargo_test(workspace, &selection, &self.rest)?;

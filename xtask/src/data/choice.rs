@@ -49,11 +49,7 @@ pub(crate) fn choose(
 }
 
 /// Tries the recorded conventions in order, then the simulated crowd.
-fn first_that_can_be_had(
-    workspace: &Workspace,
-    data: Option<&Path>,
-    say: &mut dyn FnMut(&str),
-) -> Result<Chosen> {
+fn first_that_can_be_had(workspace: &Workspace, data: Option<&Path>, say: &mut dyn FnMut(&str)) -> Result<Chosen> {
     let mut reasons = Vec::new();
     for convention in RECORDED {
         // Recordings that differ from the pinned ones are an error, not a reason to try the next convention.
@@ -175,11 +171,7 @@ mod tests {
         let chosen = first_that_can_be_had(&workspace, Some(&data), &mut |_| {}).unwrap();
         assert_eq!(chosen.convention, Convention::Simulated);
         assert_eq!(chosen.folder, None);
-        for word in [
-            "the star recordings",
-            "the social-gan recordings",
-            "simulated",
-        ] {
+        for word in ["the star recordings", "the social-gan recordings", "simulated"] {
             assert!(chosen.reason.contains(word), "{}", chosen.reason);
         }
         let error = choose(&workspace, Some(Convention::Star), Some(&data), &mut |_| {});

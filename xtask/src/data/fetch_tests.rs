@@ -124,9 +124,7 @@ fn members_of_an_archive_are_checked_one_by_one() {
     let entry = entry(folder.path(), &[]);
     let files: Vec<&PinnedFile> = entry.files.iter().collect();
     let target = tempfile::tempdir().unwrap();
-    let unpack = |member: &str, files: &[&PinnedFile]| {
-        source::unpack(&python, &archive, member, files, target.path())
-    };
+    let unpack = |member: &str, files: &[&PinnedFile]| source::unpack(&python, &archive, member, files, target.path());
     // The members are below p/, the paths of the manifest below data/.
     let message = format!("{:#}", unpack("{path}", &files).unwrap_err());
     assert!(message.contains("has no data/one.csv"), "{message}");

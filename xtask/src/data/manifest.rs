@@ -82,8 +82,7 @@ impl Source {
 
 impl Manifest {
     pub(crate) fn load(workspace: &Workspace) -> Result<Self> {
-        let text = fs::read_to_string(workspace.path(FILE))
-            .with_context(|| format!("{FILE} cannot be read"))?;
+        let text = fs::read_to_string(workspace.path(FILE)).with_context(|| format!("{FILE} cannot be read"))?;
         toml::from_str(&text).with_context(|| format!("{FILE} is not well formed"))
     }
 

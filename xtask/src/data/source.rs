@@ -16,12 +16,7 @@ use crate::python::{self, Python};
 const PATIENCE: &str = "10";
 
 /// Puts the files into a folder, each complete and right or not at all.
-pub(super) fn get(
-    python: &Python,
-    source: &Source,
-    files: &[&PinnedFile],
-    folder: &Path,
-) -> Result<()> {
+pub(super) fn get(python: &Python, source: &Source, files: &[&PinnedFile], folder: &Path) -> Result<()> {
     match source {
         Source::Address { address, .. } => {
             for file in files {
@@ -46,10 +41,7 @@ pub(super) fn get(
                 python,
                 &link.address,
                 &link.authorities,
-                Pin {
-                    sha256,
-                    bytes: *bytes,
-                },
+                Pin { sha256, bytes: *bytes },
                 &path,
             )
             .with_context(|| archive.clone())?;
@@ -67,18 +59,11 @@ struct Link {
 
 fn find_on_index(python: &Python, package: &str, archive: &str) -> Result<Link> {
     let mut script = python.script(python::INDEX_LINK, [package, archive]);
-    let text = python::read(&mut script)
-        .with_context(|| format!("{package} was not found on pip's package index"))?;
+    let text = python::read(&mut script).with_context(|| format!("{package} was not found on pip's package index"))?;
     serde_json::from_str(&text).context("the index script did not print a link")
 }
 
-fn download(
-    python: &Python,
-    address: &str,
-    authorities: &str,
-    pin: Pin<'_>,
-    path: &Path,
-) -> Result<()> {
+fn download(python: &Python, address: &str, authorities: &str, pin: Pin<'_>, path: &Path) -> Result<()> {
     let mut child = python
         .script(python::DOWNLOAD, [address, PATIENCE, authorities])
         .stdout(Stdio::piped())
@@ -94,9 +79,7 @@ fn download(
     let ended = bytes.ended;
     // Closing the pipe ends a script that would continue to send.
     drop(bytes);
-    let output = child
-        .wait_with_output()
-        .context("Python cannot be waited for")?;
+    let output = child.wait_with_output().context("Python cannot be waited for")?;
     match placed {
         // The bytes ended because the script failed; its output has the reason.
         Err(_) if ended && !output.status.success() => {
@@ -135,8 +118,8 @@ pub(super) fn unpack(
     script.args(rules);
     python::read(&mut script).context("the archive cannot be unpacked")?;
     for file in files {
-        let mut unpacked = File::open(work.path().join(&file.name))
-            .with_context(|| format!("{} was not unpacked", file.name))?;
+        let mut unpacked =
+            File::open(work.path().join(&file.name)).with_context(|| format!("{} was not unpacked", file.name))?;
         file.pin()
             .place(&mut unpacked, &folder.join(&file.name))
             .with_context(|| format!("{} in the archive", file.name))?;

@@ -23,11 +23,7 @@ pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
 
 pub(super) fn read(file: &Path) -> Option<PathBuf> {
     let table: toml::Table = fs::read_to_string(file).ok()?.parse().ok()?;
-    table
-        .get("env")?
-        .get("LIBTORCH")?
-        .as_str()
-        .map(PathBuf::from)
+    table.get("env")?.get("LIBTORCH")?.as_str().map(PathBuf::from)
 }
 
 fn render(libtorch: &Path) -> Result<String> {

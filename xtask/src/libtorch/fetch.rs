@@ -39,8 +39,7 @@ pub(super) fn is_complete(folder: &Path) -> bool {
     complete.libtorch == VERSION
         && complete.wheels == WHEELS.map(|wheel| wheel.sha256)
         && complete.libraries.iter().all(|library| {
-            fs::metadata(folder.join(&library.file))
-                .is_ok_and(|metadata| metadata.len() == library.bytes)
+            fs::metadata(folder.join(&library.file)).is_ok_and(|metadata| metadata.len() == library.bytes)
         })
 }
 
@@ -58,12 +57,7 @@ pub(super) fn verify(folder: &Path) -> Result<()> {
             bytes: library.bytes,
         }
         .check(&folder.join(&library.file))
-        .with_context(|| {
-            format!(
-                "a library has changed: delete {} and set up again",
-                folder.display()
-            )
-        })?;
+        .with_context(|| format!("a library has changed: delete {} and set up again", folder.display()))?;
     }
     Ok(())
 }
@@ -123,24 +117,15 @@ fn download(python: &Python, folder: &Path) -> Result<()> {
     let megabytes = WHEELS.iter().map(|wheel| wheel.bytes).sum::<u64>() / 1_000_000;
     eprintln!("downloading libtorch {VERSION} with pip, {megabytes} MB, once");
     let mut pip = python.module("pip");
-    pip.args([
-        "download",
-        "--no-deps",
-        "--only-binary=:all:",
-        "--no-cache-dir",
-    ])
-    .args(["--disable-pip-version-check", "--implementation", "cp"])
-    .args(["--python-version", pin::PYTHON_VERSION])
-    .args(
-        pin::PLATFORMS
-            .iter()
-            .flat_map(|platform| ["--platform", platform]),
-    )
-    .arg("--dest")
-    .arg(folder)
-    .args(WHEELS.iter().map(|wheel| wheel.requirement))
-    // Standard output may be a report or evaluated by a shell, so pip writes to standard error.
-    .stdout(Stdio::from(std::io::stderr()));
+    pip.args(["download", "--no-deps", "--only-binary=:all:", "--no-cache-dir"])
+        .args(["--disable-pip-version-check", "--implementation", "cp"])
+        .args(["--python-version", pin::PYTHON_VERSION])
+        .args(pin::PLATFORMS.iter().flat_map(|platform| ["--platform", platform]))
+        .arg("--dest")
+        .arg(folder)
+        .args(WHEELS.iter().map(|wheel| wheel.requirement))
+        // Standard output may be a report or evaluated by a shell, so pip writes to standard error.
+        .stdout(Stdio::from(std::io::stderr()));
     let status = pip.status().context("pip cannot be started")?;
     if !status.success() {
         bail!(
@@ -155,8 +140,7 @@ fn download(python: &Python, folder: &Path) -> Result<()> {
 
 /// Names an installed PyTorch of the right version, found without importing it.
 fn installed_hint(python: &Python) -> String {
-    let script =
-        "import importlib.util as u; print(u.find_spec('torch').submodule_search_locations[0])";
+    let script = "import importlib.util as u; print(u.find_spec('torch').submodule_search_locations[0])";
     python::read(&mut python.script(script, [] as [&str; 0]))
         .ok()
         .map(|text| text.trim().to_owned())
@@ -193,14 +177,10 @@ fn finish(folder: &Path) -> Result<()> {
     std::os::unix::fs::symlink("libtorch_cpu.so", folder.join("lib/libtorch.so"))
         .context("libtorch.so cannot be linked")?;
     // With this file the binding's build script compares the versions itself.
-    fs::write(folder.join("build-version"), format!("{VERSION}\n"))
-        .context("build-version cannot be written")?;
+    fs::write(folder.join("build-version"), format!("{VERSION}\n")).context("build-version cannot be written")?;
     let mut libraries = Vec::new();
     for rule in WHEELS.iter().flat_map(|wheel| wheel.members) {
-        if let Some((_, file)) = rule
-            .split_once('=')
-            .filter(|(_, to)| to.starts_with("lib/"))
-        {
+        if let Some((_, file)) = rule.split_once('=').filter(|(_, to)| to.starts_with("lib/")) {
             let (sha256, bytes) = measure(&folder.join(file))?;
             libraries.push(Library {
                 file: file.to_owned(),

@@ -66,9 +66,6 @@ fn missing_and_wrong_wheels_are_reported_and_nothing_is_left() {
     );
     fs::write(wheels.path().join(WHEELS[0].file), "half a wheel").unwrap();
     let message = format!("{:#}", fetch(&folder, Some(wheels.path())).unwrap_err());
-    assert!(
-        message.contains("ended after 12 of 530604548 bytes"),
-        "{message}"
-    );
+    assert!(message.contains("ended after 12 of 530604548 bytes"), "{message}");
     assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 0);
 }

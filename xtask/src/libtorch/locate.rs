@@ -37,9 +37,7 @@ fn version(folder: &Path) -> Option<String> {
         return Some(text.trim().to_owned());
     }
     let module = fs::read_to_string(folder.join("version.py")).ok()?;
-    let value = module
-        .lines()
-        .find_map(|line| line.strip_prefix("__version__"))?;
+    let value = module.lines().find_map(|line| line.strip_prefix("__version__"))?;
     value.split(['\'', '"']).nth(1).map(str::to_owned)
 }
 
@@ -53,10 +51,7 @@ mod tests {
         let libraries = ["torch", "torch_cpu", "c10"];
         let libraries = libraries.map(|name| format!("lib/{DLL_PREFIX}{name}{DLL_SUFFIX}"));
         let empty = libraries.iter().map(String::as_str).chain([HEADER]);
-        for (file, text) in empty
-            .map(|file| (file, ""))
-            .chain([(version_file, contents)])
-        {
+        for (file, text) in empty.map(|file| (file, "")).chain([(version_file, contents)]) {
             if file != missing {
                 whole_file::write(&folder.path().join(file), text.as_bytes()).unwrap();
             }
@@ -77,11 +72,7 @@ mod tests {
             let message = format!("it is libtorch {version}");
             assert_eq!(reason(file, contents, ""), Err(message));
         }
-        assert!(
-            reason("NOTES", "", "")
-                .unwrap_err()
-                .contains("build-version")
-        );
+        assert!(reason("NOTES", "", "").unwrap_err().contains("build-version"));
     }
 
     #[test]

@@ -76,11 +76,7 @@ pub(super) fn folder_name() -> String {
 }
 
 pub(super) fn is_supported() -> bool {
-    cfg!(all(
-        target_os = "linux",
-        target_arch = "x86_64",
-        target_env = "gnu"
-    ))
+    cfg!(all(target_os = "linux", target_arch = "x86_64", target_env = "gnu"))
 }
 
 #[cfg(test)]
@@ -108,9 +104,7 @@ mod tests {
     /// The fetched version is the one that runs record as their libtorch.
     #[test]
     fn the_version_that_runs_record_is_the_pinned_one() {
-        let device = Workspace::find()
-            .unwrap()
-            .path("crates/ddl-star/src/device.rs");
+        let device = Workspace::find().unwrap().path("crates/ddl-star/src/device.rs");
         let text = std::fs::read_to_string(device).unwrap();
         assert_eq!(WHEELS[0].requirement, format!("torch=={VERSION}"));
         assert!(text.contains(&format!("LIBTORCH_VERSION: &str = \"{VERSION}\"")));

@@ -40,10 +40,7 @@ pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
             Some(Library {
                 package: text(&package["name"]),
                 module: text(&of_kind("lib")?["name"]).replace('-', "_"),
-                folder: text(&package["manifest_path"])
-                    .rsplit('/')
-                    .nth(1)?
-                    .to_owned(),
+                folder: text(&package["manifest_path"]).rsplit('/').nth(1)?.to_owned(),
                 description: text(&package["description"]),
             })
         })
@@ -52,20 +49,14 @@ pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
 
 /// Runs rustdoc, for which every warning is an error (`[workspace.lints.rustdoc]`), and moves its pages from `made` to
 /// `out`.
-pub(super) fn build(
-    workspace: &Workspace,
-    libraries: &[Library],
-    made: &Path,
-    out: &Path,
-) -> Result<()> {
+pub(super) fn build(workspace: &Workspace, libraries: &[Library], made: &Path, out: &Path) -> Result<()> {
     // Crates that no longer exist, and dependencies from other calls, would appear in every list and search.
     super::remove(made)?;
     // rustdoc links to an item of another crate only if that crate's folder exists. Cargo removes a crate's folder
     // before it runs rustdoc for it. With one job, no other crate is rendered meanwhile.
     for library in libraries {
         let folder = made.join(&library.module);
-        fs::create_dir_all(&folder)
-            .with_context(|| format!("{} cannot be made", folder.display()))?;
+        fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
     }
     // The whole interface, on a machine without libtorch.
     let features = "ddl-cli/torch,ddl-cli/doc-only";
@@ -79,8 +70,7 @@ pub(super) fn build(
         features,
     ];
     step("`cargo doc`", &workspace.cargo(arguments))?;
-    fs::rename(made, out)
-        .with_context(|| format!("{} cannot be moved to {}", made.display(), out.display()))
+    fs::rename(made, out).with_context(|| format!("{} cannot be moved to {}", made.display(), out.display()))
 }
 
 #[cfg(test)]
@@ -94,10 +84,7 @@ mod tests {
         assert!(has("ddl-forecast") && has("ddl-softdtw"), "{found:?}");
         let front = found.iter().find(|library| library.module == "ddl");
         assert!(front.is_some_and(|library| library.folder == "ddl"));
-        assert!(
-            !["xtask", "ddl-tests", "ddl-cli"].into_iter().any(has),
-            "{found:?}"
-        );
+        assert!(!["xtask", "ddl-tests", "ddl-cli"].into_iter().any(has), "{found:?}");
         assert!(found.iter().all(|library| !library.description.is_empty()));
     }
 }

@@ -22,21 +22,15 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
     let mut pages = BTreeMap::new();
     let mut checked = Checked::default();
     for file in files_below(site)? {
-        let shown = file
-            .strip_prefix(site)
-            .unwrap_or(&file)
-            .display()
-            .to_string();
-        let text =
-            |file| fs::read_to_string(file).with_context(|| format!("{shown} cannot be read"));
+        let shown = file.strip_prefix(site).unwrap_or(&file).display().to_string();
+        let text = |file| fs::read_to_string(file).with_context(|| format!("{shown} cannot be read"));
         match file.extension().and_then(|extension| extension.to_str()) {
             Some("html") => {
                 let page = Page::read(&text(&file)?);
                 pages.insert(file, (shown, page));
             }
             Some("css") => {
-                let foreign =
-                    foreign_style(&text(&file)?).map(|what| format!("{shown} loads {what}"));
+                let foreign = foreign_style(&text(&file)?).map(|what| format!("{shown} loads {what}"));
                 checked.faults.extend(foreign);
             }
             _ => {}
@@ -46,10 +40,7 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
         for Reference { target, loaded } in &page.references {
             let what = if is_foreign(target) {
                 loaded.then_some("is loaded from elsewhere")
-            } else if OTHER_SCHEMES
-                .iter()
-                .any(|scheme| target.starts_with(scheme))
-            {
+            } else if OTHER_SCHEMES.iter().any(|scheme| target.starts_with(scheme)) {
                 None
             } else {
                 checked.links += 1;
@@ -66,11 +57,7 @@ pub(super) fn check(site: &Path) -> Result<Checked> {
 }
 
 /// The fault of a link from the page `file` to another place of the site, if any.
-fn fault(
-    file: &Path,
-    target: &str,
-    pages: &BTreeMap<PathBuf, (String, Page)>,
-) -> Option<&'static str> {
+fn fault(file: &Path, target: &str, pages: &BTreeMap<PathBuf, (String, Page)>) -> Option<&'static str> {
     let (path, anchor) = target.split_once('#').unwrap_or((target, ""));
     let path = resolved(file, path.split('?').next().unwrap_or_default());
     if !path.is_file() {
@@ -93,24 +80,17 @@ fn fault(
     // first line.
     let first_line = anchor.split_once('-').map_or(anchor, |(first, _)| first);
     let is_line = !first_line.is_empty() && first_line.bytes().all(|byte| byte.is_ascii_digit());
-    let found = known.contains(anchor)
-        || known.contains(&decoded(anchor))
-        || is_line && known.contains(first_line);
+    let found = known.contains(anchor) || known.contains(&decoded(anchor)) || is_line && known.contains(first_line);
     (!found).then_some("has an anchor that does not exist")
 }
 
 fn is_foreign(target: &str) -> bool {
-    ["//", "http:", "https:"]
-        .iter()
-        .any(|start| target.starts_with(start))
+    ["//", "http:", "https:"].iter().any(|start| target.starts_with(start))
 }
 
 /// Addresses outside the site that a style would load.
 fn foreign_style(css: &str) -> Option<&str> {
-    let loads = css
-        .split("url(")
-        .skip(1)
-        .chain(css.split("@import").skip(1));
+    let loads = css.split("url(").skip(1).chain(css.split("@import").skip(1));
     loads
         .map(|text| text.trim_start().trim_start_matches(['"', '\'']))
         .map(|text| text.split([')', '"', '\'']).next().unwrap_or_default())
@@ -131,11 +111,7 @@ fn resolved(file: &Path, address: &str) -> PathBuf {
             name => path.push(name),
         }
     }
-    if path.is_dir() {
-        path.join("index.html")
-    } else {
-        path
-    }
+    if path.is_dir() { path.join("index.html") } else { path }
 }
 
 /// Decodes `%20` and the like.
@@ -143,9 +119,7 @@ fn decoded(address: &str) -> String {
     let mut parts = address.split('%');
     let mut bytes = parts.next().unwrap_or_default().as_bytes().to_vec();
     for part in parts {
-        let byte = part
-            .get(..2)
-            .and_then(|digits| u8::from_str_radix(digits, 16).ok());
+        let byte = part.get(..2).and_then(|digits| u8::from_str_radix(digits, 16).ok());
         bytes.push(byte.unwrap_or(b'%'));
         bytes.extend_from_slice(
             part.get(if byte.is_some() { 2.. } else { 0.. })
@@ -179,10 +153,7 @@ mod tests {
         let site = tempfile::tempdir().unwrap();
         for (file, text) in [
             ("index.html", body),
-            (
-                "guide/index.html",
-                "<h1 id=\"a b\">x</h1><h2 id=\"B%3CT%3E\">y</h2>",
-            ),
+            ("guide/index.html", "<h1 id=\"a b\">x</h1><h2 id=\"B%3CT%3E\">y</h2>"),
             ("api/src/x.rs.html", "<a href=#3 id=3>3</a>"),
             (
                 "old.html",
@@ -202,10 +173,7 @@ mod tests {
             href=\"https://a.example/\"></a><a href=\"guide/index.html?q=1\"></a><img \
             src=\"data:image/png;base64,AA\"><script src=\"api/trait.impl/x/trait.X.js\"></script>\
              <script>\"<a href='x'>\"</script><!-- <a href='y'> -->";
-        assert_eq!(
-            faults(body, "a { background: url(\"x.svg\"); }"),
-            [] as [&str; 0]
-        );
+        assert_eq!(faults(body, "a { background: url(\"x.svg\"); }"), [] as [&str; 0]);
     }
 
     #[test]
@@ -216,15 +184,9 @@ mod tests {
                 "index.html: nowhere.html does not exist",
             ),
             ("<a href=ddl_star::Star></a>", "does not exist"),
-            (
-                "<a href=\"guide/index.html#c\"></a>",
-                "anchor that does not exist",
-            ),
+            ("<a href=\"guide/index.html#c\"></a>", "anchor that does not exist"),
             ("<a href=\"#top\"></a>", "anchor that does not exist"),
-            (
-                "<a href=\"api/src/x.rs.html#4-7\"></a>",
-                "anchor that does not exist",
-            ),
+            ("<a href=\"api/src/x.rs.html#4-7\"></a>", "anchor that does not exist"),
             ("<a href=\"style.css#x\"></a>", "not a page"),
             ("<img src=\"p.png\">", "p.png does not exist"),
         ] {
@@ -240,19 +202,13 @@ mod tests {
             "<link rel=stylesheet href=\"//a.example/x.css\">",
             "<img src=\"http://a.example/x.png\">",
         ] {
-            assert!(
-                faults(body, "")[0].contains("is loaded from elsewhere"),
-                "{body}"
-            );
+            assert!(faults(body, "")[0].contains("is loaded from elsewhere"), "{body}");
         }
         for css in [
             "@import \"https://a.example/x.css\";",
             "a { src: url('https://a.example/x.woff'); }",
         ] {
-            assert!(
-                faults("", css)[0].contains("style.css loads https"),
-                "{css}"
-            );
+            assert!(faults("", css)[0].contains("style.css loads https"), "{css}");
         }
     }
 }

@@ -19,12 +19,8 @@ pub(super) fn copy_book(book: &Path, to: &Path, libraries: &[Library], site: &Pa
     for file in check::files_below(book)? {
         let within = file.strip_prefix(book).unwrap_or(&file);
         let copy = to.join(within);
-        if within
-            .extension()
-            .is_some_and(|extension| extension == "md")
-        {
-            let text = fs::read_to_string(&file)
-                .with_context(|| format!("{} cannot be read", file.display()))?;
+        if within.extension().is_some_and(|extension| extension == "md") {
+            let text = fs::read_to_string(&file).with_context(|| format!("{} cannot be read", file.display()))?;
             let (text, linked) = changed(&included(&text, root)?, libraries);
             crate::whole_file::write(&copy, text.as_bytes())?;
             for (path, name) in linked {
@@ -48,8 +44,7 @@ fn included(page: &str, root: &Path) -> Result<String> {
     for part in parts {
         let (path, rest) = part.split_once("}}").context("an include has no end")?;
         let file = root.join(path);
-        let file = fs::read_to_string(&file)
-            .with_context(|| format!("{} cannot be read", file.display()))?;
+        let file = fs::read_to_string(&file).with_context(|| format!("{} cannot be read", file.display()))?;
         text.push_str(file.trim_end());
         text.push_str(rest);
     }

@@ -41,9 +41,7 @@ impl Page {
                 self.anchors.insert(value);
             }
             (b"meta", b"content") => {
-                let target = value
-                    .split_once(";URL=")
-                    .map(|(_, target)| target.to_owned());
+                let target = value.split_once(";URL=").map(|(_, target)| target.to_owned());
                 self.redirect = self.redirect.take().or(target);
             }
             (b"link", b"href") | (_, b"src" | b"poster" | b"data") => {

@@ -18,19 +18,11 @@ pub(super) fn faults(file: &Path, text: &str) -> Vec<String> {
         Some("md") => in_markdown(text),
         _ => Vec::new(),
     };
-    let fault = |number| {
-        format!(
-            "{}:{number}: the line has more than {COLUMNS} columns",
-            file.display()
-        )
-    };
+    let fault = |number| format!("{}:{number}: the line has more than {COLUMNS} columns", file.display());
     long.into_iter().map(fault).collect()
 }
 
-fn numbered<'a>(
-    lines: impl Iterator<Item = &'a str>,
-    mut is_long: impl FnMut(&str) -> bool,
-) -> Vec<usize> {
+fn numbered<'a>(lines: impl Iterator<Item = &'a str>, mut is_long: impl FnMut(&str) -> bool) -> Vec<usize> {
     let long = (1..).zip(lines).filter(|(_, line)| is_long(line));
     long.map(|(number, _)| number).collect()
 }
@@ -55,9 +47,7 @@ fn without_targets(line: &str) -> usize {
     let mut parts = line.split("](");
     let first = parts.next().unwrap_or_default().chars().count();
     let rest = parts.map(|part| {
-        let after = part
-            .split_once(')')
-            .map_or(0, |(_, after)| after.chars().count() + 1);
+        let after = part.split_once(')').map_or(0, |(_, after)| after.chars().count() + 1);
         2 + after
     });
     first + rest.sum::<usize>()
@@ -75,11 +65,7 @@ mod tests {
             ("a.rs", format!("{long}\nshort\n{long}\n"), vec![1, 3]),
             ("a.md", format!("{long}\n"), vec![1]),
             ("a.md", format!("| {long} |\n"), vec![]),
-            (
-                "a.md",
-                format!("```console\n{long}\n```\n{long}\n"),
-                vec![4],
-            ),
+            ("a.md", format!("```console\n{long}\n```\n{long}\n"), vec![4]),
             ("a.md", format!("```rust\n{long}\n```\n"), vec![2]),
             ("a.md", format!("see [this]({target}) page\n"), vec![]),
             ("a.md", format!("see [this]({target}) {long}\n"), vec![1]),

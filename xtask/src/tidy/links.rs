@@ -90,17 +90,11 @@ mod tests {
     #[test]
     fn links_that_lead_somewhere_pass() {
         for (file, text) in [
-            (
-                "docs/x.md",
-                "[a](../README.md#top), [b](https://other/y), [c](#d)",
-            ),
+            ("docs/x.md", "[a](../README.md#top), [b](https://other/y), [c](#d)"),
             ("docs/x.md", "[a](goals.md#b)\n```\n[a](b.md)\n```\n"),
             ("README.md", "[a](docs/goals.md) ![b](docs)"),
             ("datasets/README.md", "[a](../docs/goals.md)"),
-            (
-                "crates/b/README.md",
-                "[`Flow::chart`](Flow::chart) [c](Flow)",
-            ),
+            ("crates/b/README.md", "[`Flow::chart`](Flow::chart) [c](Flow)"),
         ] {
             assert_eq!(found(file, text), [] as [&str; 0], "{file}");
         }
@@ -109,11 +103,7 @@ mod tests {
     #[test]
     fn links_that_lead_nowhere_or_only_from_here_are_named() {
         for (file, text, needle) in [
-            (
-                "docs/x.md",
-                "[a](../gone.md)",
-                "../gone.md: the file does not exist",
-            ),
+            ("docs/x.md", "[a](../gone.md)", "../gone.md: the file does not exist"),
             (
                 "README.md",
                 "[a](docs/gone.md)",

@@ -3,9 +3,7 @@
 use std::path::Path;
 
 /// Files that are read by people.
-const READ: [&str; 9] = [
-    "md", "rs", "py", "toml", "html", "js", "css", "ipynb", "cff",
-];
+const READ: [&str; 9] = ["md", "rs", "py", "toml", "html", "js", "css", "ipynb", "cff"];
 /// What is not written, and what is written instead. Spelled in pieces, so that this file does not find itself.
 const PHRASES: [(&str, &str); 15] = [
     (concat!("wal", "ker"), "pedestrian"),
@@ -15,10 +13,7 @@ const PHRASES: [(&str, &str); 15] = [
     (concat!("that are", " none"), "say what they are"),
     (concat!("is no", " number"), "is not a number"),
     (concat!("are no", " numbers"), "are not numbers"),
-    (
-        concat!("of", " nobody"),
-        "of pedestrians that are not there",
-    ),
+    (concat!("of", " nobody"), "of pedestrians that are not there"),
     (concat!("knows", " nobody"), "say what is not known"),
     (concat!("know", " nobody"), "say what is not known"),
     (concat!("goes on", " as before"), "keeps its velocity"),
@@ -47,11 +42,8 @@ pub(super) fn faults(file: &Path, text: &str) -> Vec<String> {
     let mut faults = Vec::new();
     for at in 0..words.len() {
         for (phrase, parts, instead) in &phrases {
-            let found = parts.len() <= words.len() - at
-                && parts
-                    .iter()
-                    .zip(&words[at..])
-                    .all(|(part, (_, word))| part == word);
+            let found =
+                parts.len() <= words.len() - at && parts.iter().zip(&words[at..]).all(|(part, (_, word))| part == word);
             if found {
                 let (line, _) = words[at];
                 faults.push(format!("{}:{line}: {phrase:?}: {instead}", file.display()));
@@ -109,10 +101,7 @@ mod tests {
                 "{found:?}"
             );
         }
-        for text in [
-            format!("It {}. {after}", before.trim()),
-            "A walk is walked.".to_owned(),
-        ] {
+        for text in [format!("It {}. {after}", before.trim()), "A walk is walked.".to_owned()] {
             assert_eq!(faults(Path::new("a.rs"), &text), [] as [&str; 0], "{text}");
         }
         assert!(faults(Path::new("a.svg"), pedestrian).is_empty());

@@ -7,9 +7,7 @@ use std::path::PathBuf;
 
 /// Evaluate constant velocity and other baselines on test scenes
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example:\n  ddl baselines --convention social-gan --out runs/baselines-social-gan"
-)]
+#[command(after_help = "Example:\n  ddl baselines --convention social-gan --out runs/baselines-social-gan")]
 pub(crate) struct Baselines {
     /// star, social-gan, simulated or own
     #[arg(long)]

@@ -115,10 +115,7 @@ impl Benchmark {
         if let Some(checkout) = &self.publish {
             publish::check(checkout, &plan)?;
         }
-        let out = self
-            .out
-            .clone()
-            .unwrap_or_else(|| choice::usual_folder(&plan));
+        let out = self.out.clone().unwrap_or_else(|| choice::usual_folder(&plan));
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let claimed = RunLock::take(&out)?;
         // Not in the folders of tasks: a process of an earlier benchmark may still write there.
@@ -236,10 +233,8 @@ impl Benchmark {
     /// # Errors
     /// Also, after the report is written, when tasks are not finished.
     fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<Report> {
-        let (finished, missing): (Vec<&Task>, Vec<&Task>) = plan
-            .tasks
-            .iter()
-            .partition(|task| Record::of(task, out).is_some());
+        let (finished, missing): (Vec<&Task>, Vec<&Task>) =
+            plan.tasks.iter().partition(|task| Record::of(task, out).is_some());
         let runs = finished.iter().map(|task| task.run_folder(out)).collect();
         let report = report::write(plan, runs, out, &self.reporting)?;
         let names: Vec<&str> = missing.iter().map(|task| task.id.as_str()).collect();

@@ -41,27 +41,18 @@ pub(crate) struct Data {
 impl Data {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let files = recordings::files(&self.paths, &self.units)?;
-        let (memories, of_tracks): (Vec<PathBuf>, _) = files
-            .iter()
-            .cloned()
-            .partition(|file| place_memory::is_in(file));
+        let (memories, of_tracks): (Vec<PathBuf>, _) =
+            files.iter().cloned().partition(|file| place_memory::is_in(file));
         let (memories, not_memories) = place_memory::read_each(memories);
         let (read, mut errors) = recordings::read_each(&of_tracks, &self.units);
         errors.extend(not_memories);
         if errors.is_empty() {
             self.picture.draw(&memories)?;
         }
-        recordings::tell_notes(
-            read.iter()
-                .map(|(_, resampled_to_steps)| resampled_to_steps),
-        );
-        let summaries = read.iter().map(|(file, resampled_to_steps)| {
-            (
-                file,
-                resampled_to_steps.recording.summary(),
-                resampled_to_steps.clock,
-            )
-        });
+        recordings::tell_notes(read.iter().map(|(_, resampled_to_steps)| resampled_to_steps));
+        let summaries = read
+            .iter()
+            .map(|(file, resampled_to_steps)| (file, resampled_to_steps.recording.summary(), resampled_to_steps.clock));
         let mut text = String::new();
         let mut of_each = Vec::new();
         let mut total = Total::default();
@@ -72,9 +63,7 @@ impl Data {
         }
         if self.telling.json {
             let of_memories: Vec<Value> = memories.iter().map(PlaceMemory::facts).collect();
-            output::print_json(
-                &json!({"recordings": of_each, "memories": of_memories, "total": total}),
-            )?;
+            output::print_json(&json!({"recordings": of_each, "memories": of_memories, "total": total}))?;
             return recordings::all_read(errors, files.len());
         }
         if total.recordings > 1 {
@@ -84,10 +73,7 @@ impl Data {
             writeln!(text, "{memory}")?;
         }
         output::print(&text)?;
-        warn_of_unfamiliar(
-            read.iter()
-                .map(|(_, resampled_to_steps)| &resampled_to_steps.recording),
-        )?;
+        warn_of_unfamiliar(read.iter().map(|(_, resampled_to_steps)| &resampled_to_steps.recording))?;
         recordings::all_read(errors, files.len())
     }
 }
@@ -101,8 +87,7 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
         all += familiarity.len();
         unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR).count();
     }
-    let share =
-        100.0 * f64::from(u32::try_from(unfamiliar)?) / f64::from(u32::try_from(all.max(1))?);
+    let share = 100.0 * f64::from(u32::try_from(unfamiliar)?) / f64::from(u32::try_from(all.max(1))?);
     if share > MANY_UNFAMILIAR {
         tell(format_args!(
             "warning: {share:.0} % of the motions are unlike the training motions of the built-in model {model} \
@@ -144,11 +129,7 @@ impl std::fmt::Display for Total {
             "total: {} recordings, {}, {} in {} of 20 steps, {:.2} hours",
             self.recordings,
             many(self.pedestrians, "pedestrian", "pedestrians"),
-            many(
-                self.to_learn_from,
-                "pedestrian-window",
-                "pedestrian-windows"
-            ),
+            many(self.to_learn_from, "pedestrian-window", "pedestrian-windows"),
             many(self.windows, "window", "windows"),
             self.seconds / 3600.0
         )
@@ -163,9 +144,7 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     let mut facts = serde_json::to_value(summary)?;
     facts["file"] = file.display().to_string().into();
     let doubts = summary.doubts().into_iter();
-    facts["doubts"] = doubts
-        .map(|doubt| recordings::words(&clock.of_doubt(doubt)))
-        .collect();
+    facts["doubts"] = doubts.map(|doubt| recordings::words(&clock.of_doubt(doubt))).collect();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
         ("last_frame", summary.last_frame),
@@ -218,14 +197,12 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         many(s.to_forecast, "pedestrian-window", "pedestrian-windows"),
         s.seen_whole,
         many(s.holes, "hole", "holes"),
-        s.longest_hole
-            .as_ref()
-            .map_or_else(String::new, |hole| format!(
-                ", the longest {:.1} s (pedestrian {} after frame {})",
-                hole.seconds,
-                hole.pedestrian,
-                clock.nearest(hole.after)
-            )),
+        s.longest_hole.as_ref().map_or_else(String::new, |hole| format!(
+            ", the longest {:.1} s (pedestrian {} after frame {})",
+            hole.seconds,
+            hole.pedestrian,
+            clock.nearest(hole.after)
+        )),
     )?;
     writeln!(
         out,
@@ -234,11 +211,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         many(s.windows, "window", "windows")
     )?;
     for doubt in s.doubts() {
-        writeln!(
-            out,
-            "  doubtful: {}",
-            recordings::words(&clock.of_doubt(doubt))
-        )?;
+        writeln!(out, "  doubtful: {}", recordings::words(&clock.of_doubt(doubt)))?;
     }
     Ok(())
 }

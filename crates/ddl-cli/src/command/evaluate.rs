@@ -7,10 +7,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset};
 use ddl::report::Report;
-use ddl::{
-    BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory,
-    Split,
-};
+use ddl::{BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory, Split};
 use forecasts::OtherProgram;
 use std::path::PathBuf;
 
@@ -91,8 +88,7 @@ impl Evaluate {
     fn measure(&self, source: &ModelSource) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let model =
-            Ddl::open(source, self.machine.device)?.with_precision(self.exactness.precision())?;
+        let model = Ddl::open(source, self.machine.device)?.with_precision(self.exactness.precision())?;
         let model = self.clear.of(model)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),
@@ -113,11 +109,7 @@ impl Evaluate {
         }
         let title = match convention {
             Convention::Own => format!("own recordings, {}", model.config().star.variant),
-            _ => format!(
-                "{} {}",
-                model.config().data.fold,
-                model.config().star.variant
-            ),
+            _ => format!("{} {}", model.config().data.fold, model.config().star.variant),
         };
         // Results on recordings of another convention are not saved in the run.
         let kept = model.run().filter(|_| convention == trained_on);
@@ -129,9 +121,7 @@ impl Evaluate {
             && ddl::is_evaluated(&model, &dataset, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
-            return self
-                .reporting
-                .print(&Report::load(&run.report())?, &self.written(kept));
+            return self.reporting.print(&Report::load(&run.report())?, &self.written(kept));
         }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
@@ -150,10 +140,7 @@ impl Evaluate {
         self.reporting.print(&report, &self.written(kept))
     }
 
-    fn save_elsewhere(
-        &self,
-        results: impl FnOnce() -> Result<Results, DdlError>,
-    ) -> anyhow::Result<()> {
+    fn save_elsewhere(&self, results: impl FnOnce() -> Result<Results, DdlError>) -> anyhow::Result<()> {
         if let Some(folder) = &self.other.out {
             results()?
                 .save(folder)

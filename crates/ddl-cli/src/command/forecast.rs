@@ -126,9 +126,7 @@ impl Forecast {
             bail!("--region names {twice} twice; name each probability once");
         }
         if self.memory.is_some() && !self.tracks.are_live() {
-            bail!(
-                "--memory is for live tracks from standard input: `tracker | ddl forecast - --memory FILE`"
-            );
+            bail!("--memory is for live tracks from standard input: `tracker | ddl forecast - --memory FILE`");
         }
         if self.latest && !self.tracks.are_live() {
             bail!(
@@ -151,12 +149,7 @@ impl Forecast {
         ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         let model = self.model()?;
         let observed = self.tracks.observed(model.config())?;
-        let text = self.text(
-            &model,
-            (&observed.windows, &[]),
-            observed.clock,
-            &mut Onward::default(),
-        )?;
+        let text = self.text(&model, (&observed.windows, &[]), observed.clock, &mut Onward::default())?;
         write_output(self.output.as_deref(), &text)?;
         self.warn_of_flood(&text);
         observed.tell_what_is_made_up();
@@ -211,8 +204,7 @@ impl Forecast {
             }
             let pairs = windows.iter().zip(&certified);
             let each = pairs.enumerate();
-            each.map(|(i, pair)| Moment::certified(pair, scene(i), clock))
-                .collect()
+            each.map(|(i, pair)| Moment::certified(pair, scene(i), clock)).collect()
         } else {
             forecasts = if self.one {
                 model.forecast_central(windows)?
@@ -224,8 +216,7 @@ impl Forecast {
             }
             let pairs = windows.iter().zip(&forecasts);
             let each = pairs.enumerate();
-            each.map(|(i, pair)| Moment::plain(pair, scene(i), clock))
-                .collect()
+            each.map(|(i, pair)| Moment::plain(pair, scene(i), clock)).collect()
         };
         warn_of_violation(&moments);
         onward.warned = onward.warned || self.warn_of_unfamiliar(&moments);
@@ -273,11 +264,7 @@ impl Onward {
         self.regions.entry(scene).or_default()
     }
 
-    fn adapted(
-        &mut self,
-        (windows, scenes): Windows<'_>,
-        forecasts: Vec<ddl::Forecast>,
-    ) -> Vec<ddl::Forecast> {
+    fn adapted(&mut self, (windows, scenes): Windows<'_>, forecasts: Vec<ddl::Forecast>) -> Vec<ddl::Forecast> {
         let pairs = windows.iter().zip(forecasts).enumerate();
         pairs
             .map(|(i, (window, forecast))| self.regions(scenes, i).adapt(window, forecast))
@@ -307,17 +294,11 @@ fn probability(text: &str) -> Result<f64, String> {
     if (low..=high).contains(&level) {
         return Ok(level);
     }
-    Err(format!(
-        "the probability of a region must be from {low} to {high}"
-    ))
+    Err(format!("the probability of a region must be from {low} to {high}"))
 }
 
 impl<'a> Moment<'a> {
-    fn plain(
-        (window, forecast): (&'a Window, &'a ddl::Forecast),
-        scene: Option<&'a SceneName>,
-        clock: Clock,
-    ) -> Self {
+    fn plain((window, forecast): (&'a Window, &'a ddl::Forecast), scene: Option<&'a SceneName>, clock: Clock) -> Self {
         Self {
             scene,
             window,

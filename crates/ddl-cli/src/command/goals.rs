@@ -76,9 +76,7 @@ struct Row {
 
 impl Goals {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        if self.measure.is_none()
-            && (self.telling.json || self.svg.is_some() || self.data.is_some())
-        {
+        if self.measure.is_none() && (self.telling.json || self.svg.is_some() || self.data.is_some()) {
             bail!("--json, --svg and --data need --measure test or --measure validation");
         }
         let tracks = &self.tracks;

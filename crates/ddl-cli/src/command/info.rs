@@ -15,12 +15,7 @@ pub(crate) struct Info {
     #[arg(value_name = "MODEL")]
     model: Option<PathBuf>,
     /// The model as in other commands
-    #[arg(
-        long = "model",
-        value_name = "MODEL",
-        conflicts_with = "model",
-        hide = true
-    )]
+    #[arg(long = "model", value_name = "MODEL", conflicts_with = "model", hide = true)]
     named: Option<PathBuf>,
     #[command(flatten)]
     telling: Telling,
@@ -36,17 +31,11 @@ impl Info {
                     let model = Ddl::open(&source, DeviceChoice::Cpu)?;
                     let goals = model.goal_model();
                     let parameters = json!(model.parameter_count());
-                    (
-                        Some(summary(goals, "trained")),
-                        facts_of(goals, &parameters)?,
-                    )
+                    (Some(summary(goals, "trained")), facts_of(goals, &parameters)?)
                 } else {
                     let goals = GoalModel::open(&source, DeviceChoice::Cpu)?;
                     let parameters = json!("not trained yet");
-                    (
-                        Some(summary(&goals, "to be trained")),
-                        facts_of(&goals, &parameters)?,
-                    )
+                    (Some(summary(&goals, "to be trained")), facts_of(&goals, &parameters)?)
                 }
             }
         };
@@ -85,14 +74,8 @@ fn summary(goals: &GoalModel, trained: &str) -> String {
     )
 }
 
-fn facts_of(
-    goals: &GoalModel,
-    parameters: &serde_json::Value,
-) -> anyhow::Result<serde_json::Value> {
-    let epochs = goals
-        .source()
-        .run()
-        .map_or(Ok(Vec::new()), RunDirectory::metrics)?;
+fn facts_of(goals: &GoalModel, parameters: &serde_json::Value) -> anyhow::Result<serde_json::Value> {
+    let epochs = goals.source().run().map_or(Ok(Vec::new()), RunDirectory::metrics)?;
     Ok(json!({
         "config": goals.config(),
         "parameters": parameters,

@@ -30,26 +30,20 @@ impl TestWindows {
 
     pub(crate) fn ensure_no_rule_for_own(&self) -> anyhow::Result<()> {
         if self.window_rule.is_some() {
-            bail!(
-                "own recordings are evaluated on every complete window of 20 steps: leave out --window-rule"
-            );
+            bail!("own recordings are evaluated on every complete window of 20 steps: leave out --window-rule");
         }
         Ok(())
     }
 
     pub(crate) fn rule(&self, convention: Convention) -> WindowRule {
-        self.window_rule
-            .unwrap_or_else(|| convention.headline_rule())
+        self.window_rule.unwrap_or_else(|| convention.headline_rule())
     }
 
     /// The fold's name; `None` for all own recordings.
     fn fold(&self, convention: Convention) -> anyhow::Result<Option<&str>> {
         if self.fold.is_none() && convention != Convention::Own {
             let known: Vec<&str> = convention.fold_names().collect();
-            bail!(
-                "give the fold to test on, --fold NAME with one of {}",
-                known.join(", ")
-            );
+            bail!("give the fold to test on, --fold NAME with one of {}", known.join(", "));
         }
         if let (None, Convention::Star, Some(fold)) = (self.convention, convention, &self.fold) {
             ensure_scene_of_star(fold)?;
@@ -74,10 +68,7 @@ impl TestWindows {
         Ok(())
     }
 
-    pub(crate) fn windows(
-        &self,
-        recordings: &RecordingsAt,
-    ) -> anyhow::Result<(String, Vec<Window>)> {
+    pub(crate) fn windows(&self, recordings: &RecordingsAt) -> anyhow::Result<(String, Vec<Window>)> {
         let convention = self.convention(recordings, Convention::Star);
         let fold = self.fold(convention)?;
         let dataset = recordings.dataset(convention)?;

@@ -10,12 +10,10 @@ use anyhow::{Context as _, bail};
 use bars::TrainingBars;
 use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Dataset, Fold, Window};
-use ddl::network::{
-    BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig,
-};
+use ddl::network::{BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
-    BuiltinModel, DdlError, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
-    ValidationPart, Variant,
+    BuiltinModel, DdlError, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage, ValidationPart,
+    Variant,
 };
 use std::path::PathBuf;
 
@@ -138,20 +136,13 @@ impl Train {
         let own = convention == Convention::Own;
         let part = self.validation_part(&dataset, &fold)?;
         let kept = part.share > 0.0 || !part.recordings.is_empty();
-        let patience = self
-            .patience
-            .unwrap_or(if own && kept { PATIENCE } else { 0 });
+        let patience = self.patience.unwrap_or(if own && kept { PATIENCE } else { 0 });
         if self.patience.is_some_and(|patience| patience > 0) && !kept {
             let validation = part.share;
-            bail!(DdlError::Patience {
-                patience,
-                validation
-            });
+            bail!(DdlError::Patience { patience, validation });
         }
         if patience > 0 && self.last_epoch_only {
-            bail!(
-                "--last-epoch-only discards the best epoch: add --patience 0 to use the last epoch as the model"
-            );
+            bail!("--last-epoch-only discards the best epoch: add --patience 0 to use the last epoch as the model");
         }
         let from = self.starting_model(&dataset, &fold, &part)?;
         let goals = self.goal_recipe(from.is_some())?;
@@ -183,18 +174,13 @@ impl Train {
         });
         let stood = progress.close();
         trained.map_err(|error| match error {
-            DdlError::Interrupted => anyhow::Error::new(error)
-                .context(format!("{}, {stood}", request.out.path().display())),
+            DdlError::Interrupted => {
+                anyhow::Error::new(error).context(format!("{}, {stood}", request.out.path().display()))
+            }
             error => error.into(),
         })?;
-        let compared =
-            finished::compare_with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
-        finished::print(
-            &request,
-            compared.as_ref(),
-            &self.recordings,
-            &self.reporting,
-        )
+        let compared = finished::compare_with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
+        finished::print(&request, compared.as_ref(), &self.recordings, &self.reporting)
     }
 
     fn validation_part(&self, dataset: &Dataset, fold: &str) -> anyhow::Result<ValidationPart> {
@@ -246,12 +232,9 @@ impl Train {
         if dataset.convention() != Convention::Own || !usual {
             return Ok(None);
         }
-        let fold =
-            ddl::fold_by_name(dataset, fold)?.with_validation_recordings(&part.recordings)?;
+        let fold = ddl::fold_by_name(dataset, fold)?.with_validation_recordings(&part.recordings)?;
         let rule = dataset.convention().headline_rule();
-        let windows = fold
-            .training_split(rule, part.share.clamp(0.0, 1.0))
-            .training;
+        let windows = fold.training_split(rule, part.share.clamp(0.0, 1.0)).training;
         let pedestrians: usize = windows.iter().map(Window::len).sum();
         if pedestrians == 0 || pedestrians >= FEW {
             return Ok(None);
@@ -296,10 +279,7 @@ impl Train {
                     TrainingConfig::recommended(self.variant)
                 },
             ),
-            Recipe::Published => (
-                StarConfig::published(self.variant),
-                TrainingConfig::published(),
-            ),
+            Recipe::Published => (StarConfig::published(self.variant), TrainingConfig::published()),
         };
         set(&mut star.backbone, self.backbone);
         set(&mut star.feed_forward_width, self.feed_forward_width);
@@ -307,10 +287,7 @@ impl Train {
         set(&mut training.epochs, self.epochs);
         set(&mut training.batch_pedestrians, self.batch_pedestrians);
         set(&mut training.learning_rate, self.learning_rate);
-        set(
-            &mut training.learning_rate_schedule,
-            self.learning_rate_schedule,
-        );
+        set(&mut training.learning_rate_schedule, self.learning_rate_schedule);
         if self.pedestrians_per_epoch.is_some() {
             training.pedestrians_per_epoch = self.pedestrians_per_epoch;
         }
@@ -320,11 +297,10 @@ impl Train {
 
     fn goal_recipe(&self, further: bool) -> anyhow::Result<GoalRecipe> {
         if let Some(path) = &self.goal_recipe {
-            let text = std::fs::read_to_string(path)
-                .with_context(|| format!("cannot read {}", path.display()))?;
+            let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
             let wrong = || format!("{} holds no settings of goals", path.display());
-            let mut recipe: serde_json::Value = serde_json::from_str(&text)
-                .with_context(|| format!("{} is not JSON", path.display()))?;
+            let mut recipe: serde_json::Value =
+                serde_json::from_str(&text).with_context(|| format!("{} is not JSON", path.display()))?;
             // a whole config.json works as well
             if let Some(goals) = recipe.get_mut("goals") {
                 recipe = goals.take();

@@ -11,9 +11,7 @@ use std::path::PathBuf;
 /// observed raw frame), pedestrian, and the 8 observed positions in metres, 0.4 s apart. They hold no future positions.
 /// `ddl evaluate --forecasts` scores the other program's forecasts.
 #[derive(Debug, Args)]
-#[command(
-    after_help = "Example:\n  ddl windows --convention star --fold zara1 --output windows.jsonl"
-)]
+#[command(after_help = "Example:\n  ddl windows --convention star --fold zara1 --output windows.jsonl")]
 pub(crate) struct Windows {
     #[command(flatten)]
     of: TestWindows,

@@ -16,9 +16,7 @@ pub(super) fn parse(
 ) -> Result<Vec<TrackRow>, FormatError> {
     // Blank lines are an error between observations, but allowed after the last one.
     let lines = text.trim_end().lines().enumerate();
-    lines
-        .map(|(index, line)| row(line, index + 1, origin))
-        .collect()
+    lines.map(|(index, line)| row(line, index + 1, origin)).collect()
 }
 
 fn fields<'a, const COUNT: usize>(
@@ -30,11 +28,7 @@ fn fields<'a, const COUNT: usize>(
     let fields: Vec<&str> = text.split_ascii_whitespace().collect();
     let (expected, found) = (COUNT, fields.len());
     fields.try_into().map_err(|_| {
-        let problem = FormatProblem::FieldCount {
-            expected,
-            found,
-            names,
-        };
+        let problem = FormatProblem::FieldCount { expected, found, names };
         FilePlace::line(line).wrong(origin, problem)
     })
 }
@@ -51,12 +45,7 @@ pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, 
     // Pedestrians are floats in this format, never words.
     let number = at(2).read(origin, field::integer(pedestrian, "pedestrian"))?;
     // Height and velocities are not used. Checking that they are numbers confirms the order of the columns.
-    for (field, name, text) in [
-        (4, "z", z),
-        (6, "v_x", v_x),
-        (7, "v_z", v_z),
-        (8, "v_y", v_y),
-    ] {
+    for (field, name, text) in [(4, "z", z), (6, "v_x", v_x), (7, "v_z", v_z), (8, "v_y", v_y)] {
         at(field).read(origin, field::number(text, name))?;
     }
     Ok(TrackRow {

@@ -49,10 +49,7 @@ impl PedestrianField {
 pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<PedestrianField, FormatProblem> {
     let text = text.trim();
     match integer(text, name) {
-        Ok(number) => Ok(PedestrianField::Number(
-            number,
-            (!is_plain(text)).then(|| text.into()),
-        )),
+        Ok(number) => Ok(PedestrianField::Number(number, (!is_plain(text)).then(|| text.into()))),
         Err(problem) if text.is_empty() || is_fraction_or_infinite(text) => Err(problem),
         Err(_) => Ok(PedestrianField::Word(text.into())),
     }
@@ -87,12 +84,10 @@ pub(super) fn coordinate(text: &str, name: &'static str) -> Result<f64, FormatPr
 
 /// Checks that an unused field holds a number, of any size or NaN.
 pub(super) fn number(text: &str, name: &'static str) -> Result<(), FormatProblem> {
-    text.parse::<f64>()
-        .map(|_| ())
-        .map_err(|_| FormatProblem::NotNumber {
-            name,
-            found: quoted(text),
-        })
+    text.parse::<f64>().map(|_| ()).map_err(|_| FormatProblem::NotNumber {
+        name,
+        found: quoted(text),
+    })
 }
 
 pub(super) fn quoted(text: &str) -> String {
@@ -120,10 +115,7 @@ mod tests {
             assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
         }
         for text in ["", " ", "1.5", "NaN", "inf", "-inf"] {
-            assert!(
-                integer(text, "frame").is_err() && read(text).is_err(),
-                "{text}"
-            );
+            assert!(integer(text, "frame").is_err() && read(text).is_err(), "{text}");
         }
         for text in ["1e300", "9007199254740992", "1,0", "0x10"] {
             assert!(integer(text, "frame").is_err(), "{text}");

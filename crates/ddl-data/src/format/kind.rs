@@ -26,13 +26,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Self; 5] = [
-        Self::StarCsv,
-        Self::SocialGan,
-        Self::Table,
-        Self::TrajNet,
-        Self::Obsmat,
-    ];
+    pub const ALL: [Self; 5] = [Self::StarCsv, Self::SocialGan, Self::Table, Self::TrajNet, Self::Obsmat];
 
     /// The format's name.
     pub fn name(self) -> &'static str {
@@ -66,9 +60,7 @@ impl Format {
         if named("ndjson") || named("jsonl") || first.starts_with(b"{") {
             Self::TrajNet
         } else if !first.contains(&b',') && (named("txt") || !(named("csv") || first.is_empty())) {
-            let fields = first
-                .split(u8::is_ascii_whitespace)
-                .filter(|field| !field.is_empty());
+            let fields = first.split(u8::is_ascii_whitespace).filter(|field| !field.is_empty());
             if fields.count() == 8 {
                 Self::Obsmat
             } else {
@@ -98,8 +90,7 @@ fn is_star(lines: &[&[u8]]) -> bool {
     };
     filled.clone().count() == 4
         && filled.into_iter().all(|line| {
-            line.split(|&byte| byte == b',').count() != 4
-                && line.split(|&byte| byte == b',').next().is_some_and(number)
+            line.split(|&byte| byte == b',').count() != 4 && line.split(|&byte| byte == b',').next().is_some_and(number)
         })
 }
 

@@ -63,9 +63,7 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
         return Err(place.wrong(origin, FormatProblem::Compressed).into());
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
-        let line = bytes[..error.valid_up_to()]
-            .split(|&byte| byte == b'\n')
-            .count();
+        let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
         FilePlace::line(line).wrong(origin, FormatProblem::NotUtf8)
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
@@ -85,10 +83,4 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
 }
 
 /// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.
-const COMPRESSED: [&[u8]; 5] = [
-    b"\x1f\x8b",
-    b"PK\x03\x04",
-    b"BZh",
-    b"\xfd7zXZ",
-    b"\x28\xb5\x2f\xfd",
-];
+const COMPRESSED: [&[u8]; 5] = [b"\x1f\x8b", b"PK\x03\x04", b"BZh", b"\xfd7zXZ", b"\x28\xb5\x2f\xfd"];

@@ -30,11 +30,7 @@ impl FilePlace {
         }
     }
 
-    pub(super) fn read<T>(
-        self,
-        origin: &str,
-        read: Result<T, FormatProblem>,
-    ) -> Result<T, FormatError> {
+    pub(super) fn read<T>(self, origin: &str, read: Result<T, FormatProblem>) -> Result<T, FormatError> {
         read.map_err(|problem| self.wrong(origin, problem))
     }
 }

@@ -47,9 +47,7 @@ impl TrackRow {
 /// The recording of all rows, with an inferred frame step.
 pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
-        return Err(FilePlace::line(1)
-            .wrong(origin, FormatProblem::Empty)
-            .into());
+        return Err(FilePlace::line(1).wrong(origin, FormatProblem::Empty).into());
     }
     if let Some(row) = rows.iter().find(|row| row.scene.is_some()) {
         return Err(row.place.wrong(origin, FormatProblem::ScenesInFile).into());
@@ -89,16 +87,10 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
 }
 
 /// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
-fn refuse_duplicates(
-    rows: &mut [Placed],
-    names: &PedestrianNames,
-    origin: &str,
-) -> Result<(), FormatError> {
+fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, origin: &str) -> Result<(), FormatError> {
     let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
     rows.sort_unstable_by_key(|row| (key(row), row.1));
-    let pairs = rows
-        .windows(2)
-        .filter(|pair| key(&pair[0]) == key(&pair[1]));
+    let pairs = rows.windows(2).filter(|pair| key(&pair[0]) == key(&pair[1]));
     match pairs.min_by_key(|pair| pair[1].1) {
         None => Ok(()),
         Some(pair) => {

@@ -274,10 +274,7 @@ impl<R: BufRead> FrameReader<R> {
         self.hear(&seen.scene)?;
         self.spoken_of.clone_from(&seen.scene);
         let name = seen.scene.clone();
-        let scene = self
-            .scenes
-            .entry(name.clone())
-            .or_insert_with(Scene::unseen);
+        let scene = self.scenes.entry(name.clone()).or_insert_with(Scene::unseen);
         let reached = scene.current.as_ref().map(|growing| growing.frame.number);
         if let Some(last) = reached.or(scene.last)
             && (seen.frame < last || (reached.is_none() && seen.frame == last))
@@ -296,10 +293,7 @@ impl<R: BufRead> FrameReader<R> {
         };
         let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
         let (line, limit) = (self.lines, LARGEST_CROWD);
-        let scene = self
-            .scenes
-            .entry(name.clone())
-            .or_insert_with(Scene::unseen);
+        let scene = self.scenes.entry(name.clone()).or_insert_with(Scene::unseen);
         let known = scene.current.as_ref();
         if let Some(&first_line) = known.and_then(|known| known.lines.get(&pedestrian)) {
             let word = word.map(|word| PedestrianName::Word(word.to_string()));
@@ -340,9 +334,7 @@ impl<R: BufRead> FrameReader<R> {
     /// Lines that name a scene and lines that name none are not of one stream.
     fn refuse_mixed(&mut self, named: bool) -> Result<(), FormatError> {
         match *self.named.get_or_insert((named, self.lines)) {
-            (first, first_line) if first != named => {
-                Err(self.wrong(FormatProblem::MixedScenes { named, first_line }))
-            }
+            (first, first_line) if first != named => Err(self.wrong(FormatProblem::MixedScenes { named, first_line })),
             _ => Ok(()),
         }
     }
@@ -379,11 +371,7 @@ impl<R: BufRead> FrameReader<R> {
     }
 
     /// The number of a pedestrian of the scene, and its word if it has one.
-    fn numbered(
-        &mut self,
-        name: &Option<SceneName>,
-        who: PedestrianField,
-    ) -> (PedestrianId, Option<Arc<str>>) {
+    fn numbered(&mut self, name: &Option<SceneName>, who: PedestrianField) -> (PedestrianId, Option<Arc<str>>) {
         let who = match who {
             PedestrianField::Number(number, None) => return (PedestrianId(number), None),
             // after a word, `1e3` is one as well, unless it was a number before

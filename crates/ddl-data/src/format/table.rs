@@ -56,12 +56,7 @@ impl TrackColumns {
         Self::of(&record(text, line, origin)?, line, origin)
     }
 
-    pub(super) fn row_of_line(
-        &self,
-        text: &str,
-        line: usize,
-        origin: &str,
-    ) -> Result<TrackRow, FormatError> {
+    pub(super) fn row_of_line(&self, text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
         let record = record(text, line, origin)?;
         if record.len() != self.count {
             let problem = FormatProblem::FieldCount {
@@ -97,10 +92,7 @@ impl TrackColumns {
                 return Err(wrong(Some(index + 1), detail));
             };
             if places[column].replace(index).is_some() {
-                return Err(wrong(
-                    Some(index + 1),
-                    format!("column {name} appears twice"),
-                ));
+                return Err(wrong(Some(index + 1), format!("column {name} appears twice")));
             }
         }
         let mut columns = [0; 4];
@@ -114,12 +106,7 @@ impl TrackColumns {
         })
     }
 
-    fn row(
-        &self,
-        record: &StringRecord,
-        line: usize,
-        origin: &str,
-    ) -> Result<TrackRow, FormatError> {
+    fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
         let field = |column: usize| (column + 1, record.get(column).unwrap_or_default());
         let row = TrackRow::of(line, origin, self.places.map(field))?;
         let Some(column) = self.scene else {
@@ -140,41 +127,32 @@ fn advice(name: &str, header: &StringRecord) -> String {
     let letters = name.chars().filter(char::is_ascii_alphanumeric);
     let plain = letters.collect::<String>().to_ascii_lowercase();
     let meant = match plain.as_str() {
-        "id" | "ped" | "pedid" | "pedestrianid" | "agent" | "agentid" | "track" | "trackid"
-        | "person" | "personid" | "object" | "objectid" => Some("pedestrian"),
+        "id" | "ped" | "pedid" | "pedestrianid" | "agent" | "agentid" | "track" | "trackid" | "person" | "personid"
+        | "object" | "objectid" => Some("pedestrian"),
         "t" | "time" | "timestamp" => return "rename it to frame, and count frames".to_owned(),
         "observeduntil" => {
-            return "this is a table of forecasts; give the tracks that they were made from"
-                .to_owned();
+            return "this is a table of forecasts; give the tracks that they were made from".to_owned();
         }
         "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if !known(SCENE) => {
-            return "for `ddl forecast -` rename it scene, for anything else leave it out"
-                .to_owned();
+            return "for `ddl forecast -` rename it scene, for anything else leave it out".to_owned();
         }
         "frameid" | "framenumber" | "frameno" | "framenr" | "frameindex" => Some("frame"),
         "posx" | "xpos" | "positionx" | "xm" | "px" | "centerx" | "worldx" => Some("x"),
         "posy" | "ypos" | "positiony" | "ym" | "py" | "centery" | "worldy" => Some("y"),
         _ => None,
     };
-    let missing: Vec<&str> = COLUMNS
-        .into_iter()
-        .filter(|column| !known(column))
-        .collect();
+    let missing: Vec<&str> = COLUMNS.into_iter().filter(|column| !known(column)).collect();
     if let Some(meant) = meant.filter(|meant| missing.contains(meant)) {
         return format!("rename it to {meant}");
     }
     if header.len() == 1 && name.contains(['{', '[']) {
-        "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line"
-            .to_owned()
+        "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line".to_owned()
     } else if name.contains([';', '\t']) {
         "separate columns by commas, and use a decimal point".to_owned()
     } else if missing.is_empty() {
         "remove it".to_owned()
     } else {
-        format!(
-            "still missing: {}; rename the column, or remove it",
-            missing.join(", ")
-        )
+        format!("still missing: {}; rename the column, or remove it", missing.join(", "))
     }
 }
 
@@ -204,9 +182,7 @@ fn quoted_record(text: &str, line: usize, origin: &str) -> Result<StringRecord, 
 fn table_error(error: &csv::Error, origin: &str) -> FormatError {
     let line = error.position().map_or(1, |p| p.line() as usize);
     let problem = match error.kind() {
-        ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => FormatProblem::FieldCount {
+        ErrorKind::UnequalLengths { expected_len, len, .. } => FormatProblem::FieldCount {
             expected: *expected_len as usize,
             found: *len as usize,
             names: names(*expected_len as usize, *len as usize),

@@ -14,10 +14,7 @@ use crate::error::{FormatError, FormatProblem};
 use crate::{PedestrianName, Position, SceneName};
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
-#[expect(
-    clippy::float_cmp,
-    reason = "a repeated track is written with the same digits"
-)]
+#[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]
 pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), FormatError> {
     let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
@@ -141,10 +138,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     let wrong = |error: serde_json::Error| not_one(error.to_string());
     if !text.trim_start().starts_with('{') {
         let other: Value = serde_json::from_str(text).map_err(wrong)?;
-        return Err(not_one(format!(
-            "found {}",
-            field::quoted(&other.to_string())
-        )));
+        return Err(not_one(format!("found {}", field::quoted(&other.to_string()))));
     }
     let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // A scene that is not an object shows that the file is of another kind.
@@ -165,9 +159,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
     let pedestrian = match track.p {
         // A quoted pedestrian is a word, whatever its characters.
-        Some(Value::String(word)) if !word.trim().is_empty() => {
-            PedestrianField::Word(word.trim().into())
-        }
+        Some(Value::String(word)) if !word.trim().is_empty() => PedestrianField::Word(word.trim().into()),
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
         other => {
             let number = field::integer(&text(other, "track.p")?, "track.p")?;
@@ -194,10 +186,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
 }
 
 /// The fields of a part; `None` where it is missing or null.
-fn fields<'a, T: Deserialize<'a>>(
-    part: Option<&'a RawValue>,
-    name: &'static str,
-) -> Result<Option<T>, FormatProblem> {
+fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str) -> Result<Option<T>, FormatProblem> {
     let Some(text) = part.map(RawValue::get) else {
         return Ok(None);
     };

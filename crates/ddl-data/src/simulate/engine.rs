@@ -71,11 +71,7 @@ struct Engine<'a> {
 
 impl Engine<'_> {
     fn admit(&mut self, time: f64, groups: &mut Vec<Vec<PedestrianId>>) {
-        while self
-            .parties
-            .get(self.next)
-            .is_some_and(|party| party.time <= time)
-        {
+        while self.parties.get(self.next).is_some_and(|party| party.time <= time) {
             self.waiting.push(self.next);
             self.next += 1;
         }
@@ -136,8 +132,7 @@ impl Engine<'_> {
                 velocity
             };
             self.pedestrians[index].motion.velocity = velocity;
-            self.pedestrians[index].motion.position =
-                add(before[index].position, scale(velocity, DT));
+            self.pedestrians[index].motion.position = add(before[index].position, scale(velocity, DT));
         }
         self.separate_bodies();
         for (pedestrian, before) in self.pedestrians.iter_mut().zip(&before) {
@@ -182,15 +177,11 @@ impl Engine<'_> {
         centre = scale(centre, 1.0 / f64::from(size));
         let party = &self.parties[pedestrian.party];
         let legs = &self.layout.routes[party.route].legs;
-        let standing =
-            matches!(legs[pedestrian.leg], Leg::Stand(_)) && pedestrian.is_within(ARRIVED);
+        let standing = matches!(legs[pedestrian.leg], Leg::Stand(_)) && pedestrian.is_within(ARRIVED);
         if size > 1 && !standing {
             total = add(total, force::cohesion(me, centre, party.members.len()));
         }
-        total = add(
-            total,
-            force::driving(me, pedestrian.desired(legs, party.speed, centre)),
-        );
+        total = add(total, force::driving(me, pedestrian.desired(legs, party.speed, centre)));
         for wall in &self.layout.walls {
             total = add(total, force::wall(me, wall));
         }

@@ -54,11 +54,7 @@ pub(super) fn driving(pedestrian: WalkingMotion, desired: Position) -> Position 
 /// unit vector to the other and `D = lambda (v_i - v_j) + e`, the force decays with `exp(-d / B)`, `B = gamma |D|`,
 /// along `D` (braking) and across it (turning); `d` is counted between the bodies. Source: Moussaïd et al., Proc. R.
 /// Soc. B 276 (2009), equations 4 and 5.
-pub(super) fn stranger(
-    pedestrian: WalkingMotion,
-    other: WalkingMotion,
-    other_radius: f64,
-) -> Position {
+pub(super) fn stranger(pedestrian: WalkingMotion, other: WalkingMotion, other_radius: f64) -> Position {
     let apart = sub(other.position, pedestrian.position);
     let distance = norm(apart);
     let gap = (distance - BODY - other_radius).max(0.0);
@@ -66,10 +62,7 @@ pub(super) fn stranger(
         return [0.0, 0.0];
     }
     let towards = unit(apart);
-    let meeting = add(
-        scale(sub(pedestrian.velocity, other.velocity), FORESIGHT),
-        towards,
-    );
+    let meeting = add(scale(sub(pedestrian.velocity, other.velocity), FORESIGHT), towards);
     let reach = REACH * norm(meeting);
     if reach == 0.0 {
         return scale(towards, -STRENGTH * (-gap / REACH).exp());
@@ -94,10 +87,7 @@ pub(super) fn pillar(pedestrian: WalkingMotion, pillar: &Pillar) -> Position {
 pub(super) fn wall(pedestrian: WalkingMotion, wall: &Wall) -> Position {
     let away = sub(pedestrian.position, wall.nearest(pedestrian.position));
     let gap = norm(away) - BODY;
-    scale(
-        unit(away),
-        WALL_STRENGTH * (-gap.max(0.0) / WALL_REACH).exp(),
-    )
+    scale(unit(away), WALL_STRENGTH * (-gap.max(0.0) / WALL_REACH).exp())
 }
 
 /// Attraction towards the centre of the own group of `size` members, beyond the comfortable distance.

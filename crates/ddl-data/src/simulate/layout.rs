@@ -28,11 +28,7 @@ impl GateLine {
     pub(super) fn beyond(&self, from: Position) -> Position {
         let normal = left(unit(sub(self.b, self.a)));
         let ahead = dot(sub(self.at(0.5), from), normal);
-        if ahead < 0.0 {
-            scale(normal, -1.0)
-        } else {
-            normal
-        }
+        if ahead < 0.0 { scale(normal, -1.0) } else { normal }
     }
 }
 
@@ -96,10 +92,7 @@ fn corridor() -> SceneLayout {
     let eastward = Route::new(1.0, west, &[east]);
     let westward = Route::new(1.0, east, &[west]);
     SceneLayout {
-        walls: vec![
-            Wall::new([-1.0, 0.0], [27.0, 0.0]),
-            Wall::new([-1.0, 6.0], [27.0, 6.0]),
-        ],
+        walls: vec![Wall::new([-1.0, 0.0], [27.0, 0.0]), Wall::new([-1.0, 6.0], [27.0, 6.0])],
         pillars: vec![Pillar::new([9.0, 3.0], 0.3), Pillar::new([17.0, 3.0], 0.3)],
         routes: vec![
             eastward.clone(),
@@ -118,10 +111,7 @@ fn crossing() -> SceneLayout {
     // Arms in the order east, north, west, south: each is the previous one turned by 90 degrees.
     let turn = |point: Position, quarters: usize| (0..quarters).fold(point, |p, _| left(p));
     let gate = |distance: f64, quarters: usize| {
-        GateLine::new(
-            turn([distance, -HALF], quarters),
-            turn([distance, HALF], quarters),
-        )
+        GateLine::new(turn([distance, -HALF], quarters), turn([distance, HALF], quarters))
     };
     let mut walls = Vec::new();
     let mut routes = Vec::new();
@@ -221,9 +211,7 @@ fn bottleneck() -> SceneLayout {
         routes: vec![
             inward.clone().standing(0.05, 0, [[2.0, -3.9], [6.5, -3.9]]),
             inward,
-            outward
-                .clone()
-                .standing(0.03, 0, [[17.0, 3.4], [21.5, 3.4]]),
+            outward.clone().standing(0.03, 0, [[17.0, 3.4], [21.5, 3.4]]),
             outward,
         ],
         arrival_interval: 2.8,
@@ -253,10 +241,7 @@ fn doorway() -> SceneLayout {
             Wall::new(doors[0].b, doors[1].a),
             Wall::new(doors[1].b, [18.0, 10.0]),
         ],
-        pillars: vec![
-            Pillar::new([9.0, 5.0], 0.35),
-            Pillar::new([9.0, 15.0], 0.35),
-        ],
+        pillars: vec![Pillar::new([9.0, 5.0], 0.35), Pillar::new([9.0, 15.0], 0.35)],
         routes,
         arrival_interval: 2.6,
     }

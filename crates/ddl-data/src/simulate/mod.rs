@@ -38,10 +38,7 @@ const STEPS: i64 = 450;
 impl CrowdScene {
     /// Simulates three minutes of the scene. The same seed gives the same bytes.
     #[must_use]
-    #[expect(
-        clippy::missing_panics_doc,
-        reason = "the comment shows that no seed panics"
-    )]
+    #[expect(clippy::missing_panics_doc, reason = "the comment shows that no seed panics")]
     pub fn simulate(self, seed: u64) -> Crowd {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self as u64);

@@ -59,12 +59,7 @@ impl SimulatedPedestrian {
 
     pub(super) fn advance(&mut self, legs: &[Leg]) {
         let done = match legs[self.leg] {
-            Leg::Pass(gate) => {
-                dot(
-                    sub(self.motion.position, gate.a),
-                    gate.beyond(self.leg_start),
-                ) > 0.0
-            }
+            Leg::Pass(gate) => dot(sub(self.motion.position, gate.a), gate.beyond(self.leg_start)) > 0.0,
             Leg::Stand(_) => {
                 if self.is_within(CLOSE_BY) {
                     self.rest_left -= DT;
@@ -104,8 +99,7 @@ mod tests {
     /// At 1.2 m/s to the place to stand, slowly over the last 0.6 m, and through a gate without slowing down.
     #[test]
     fn pedestrians_slow_down_only_where_they_will_stand() {
-        let near =
-            |[x, y]: Position, expected: f64| (x - expected).abs() < 1e-12 && y.abs() < 1e-12;
+        let near = |[x, y]: Position, expected: f64| (x - expected).abs() < 1e-12 && y.abs() < 1e-12;
         assert!(near(desired(Leg::Stand, [-5.0, 0.0]), 1.2));
         assert!(near(desired(Leg::Stand, [-0.5, 0.0]), 0.4));
         assert!(near(desired(Leg::Pass, [-5.0, 0.0]), 1.2));

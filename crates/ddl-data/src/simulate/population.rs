@@ -42,8 +42,7 @@ pub(super) struct PartyMember {
 
 /// All parties that arrive before `end` (s), in order of time.
 pub(super) fn draw(layout: &SceneLayout, end: f64, rng: &mut ChaCha8Rng) -> Vec<Party> {
-    let interval = Exp::new(1.0 / layout.arrival_interval)
-        .expect("arrival intervals of the five layouts are positive");
+    let interval = Exp::new(1.0 / layout.arrival_interval).expect("arrival intervals of the five layouts are positive");
     let mut parties = Vec::new();
     let mut time = interval.sample(rng);
     while time < end {
@@ -59,8 +58,8 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
         draw if draw < 0.9 => 2,
         _ => 3,
     };
-    let speeds = Normal::new(DESIRED_SPEED.0, DESIRED_SPEED.1)
-        .expect("the standard deviation of the desired speed is positive");
+    let speeds =
+        Normal::new(DESIRED_SPEED.0, DESIRED_SPEED.1).expect("the standard deviation of the desired speed is positive");
     let mean = (0..size)
         .map(|_| speeds.sample(rng).clamp(SPEED_RANGE.0, SPEED_RANGE.1))
         .sum::<f64>()
@@ -85,11 +84,7 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     let members = entries
         .into_iter()
         .zip(targets)
-        .map(|(entry, targets)| PartyMember {
-            entry,
-            targets,
-            rest,
-        })
+        .map(|(entry, targets)| PartyMember { entry, targets, rest })
         .collect();
     Party {
         time,
@@ -128,17 +123,12 @@ fn in_a_ring(centre: Position, size: usize, rng: &mut ChaCha8Rng) -> Vec<Positio
     (0..size)
         .map(|i| {
             let angle = turn + std::f64::consts::TAU * i as f64 / size as f64;
-            [
-                centre[0] + radius * angle.cos(),
-                centre[1] + radius * angle.sin(),
-            ]
+            [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()]
         })
         .collect()
 }
 
 /// Whether all others are at least `distance` (m) away from a place.
 pub(super) fn is_free(place: Position, others: &[Position], distance: f64) -> bool {
-    others
-        .iter()
-        .all(|&other| norm(sub(place, other)) >= distance)
+    others.iter().all(|&other| norm(sub(place, other)) >= distance)
 }

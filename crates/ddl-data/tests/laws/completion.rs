@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use ddl_data::{
-    Completion, CompletionCounts, CompletionError, OBSERVED, Observation, PedestrianId, Position,
-    Recording, Window,
+    Completion, CompletionCounts, CompletionError, OBSERVED, Observation, PedestrianId, Position, Recording, Window,
 };
 use proptest::prelude::*;
 
@@ -155,10 +154,7 @@ fn parameters_out_of_range_are_refused() {
         let error = CompletionError::LeastSeen { found: least };
         assert_eq!(Completion::new(least, 0), Err(error));
     }
-    assert_eq!(
-        Completion::new(2, 3),
-        Err(CompletionError::LongestGap { found: 3 })
-    );
+    assert_eq!(Completion::new(2, 3), Err(CompletionError::LongestGap { found: 3 }));
     assert_eq!(Completion::new(8, 0), Ok(Completion::NONE));
     assert_eq!(Completion::new(2, 2), Ok(Completion::USUAL));
     let frames = [0, 4, 8, 20, 24, 28];

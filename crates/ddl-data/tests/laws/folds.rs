@@ -13,10 +13,7 @@ fn key(window: &Window) -> (String, i64) {
 /// Training and validation share no moment, and every window is one of the recording.
 fn check_splits(dataset: &Dataset) {
     for fold in dataset.folds() {
-        for rule in [
-            WindowRule::Complete,
-            WindowRule::SocialGan { min_pedestrians: 1 },
-        ] {
+        for rule in [WindowRule::Complete, WindowRule::SocialGan { min_pedestrians: 1 }] {
             let all: BTreeSet<_> = fold.training_windows(rule).iter().map(key).collect();
             for fraction in [0.2, 0.5] {
                 let split = fold.training_split(rule, fraction);
@@ -72,9 +69,7 @@ fn recordings_set_apart_are_validated_on_whole_and_not_trained_on() {
     let mut others = fold.training_split(rule, 0.25).training;
     others.retain(|w| !is_crossing(&w));
     assert_eq!(split.training, others);
-    let error = fold
-        .with_validation_recordings(&["plaza".to_owned()])
-        .unwrap_err();
+    let error = fold.with_validation_recordings(&["plaza".to_owned()]).unwrap_err();
     let expected = "\"plaza\" is not one of these recordings: corridor";
     assert!(error.to_string().starts_with(expected), "{error}");
 }
@@ -152,10 +147,7 @@ fn folds_never_train_on_what_they_test_on() {
     );
     for fold in dataset.folds() {
         let names = |rs: &[&Recording]| rs.iter().map(|r| r.name().to_owned()).collect::<Vec<_>>();
-        let (test, training) = (
-            names(fold.test_recordings()),
-            names(fold.training_recordings()),
-        );
+        let (test, training) = (names(fold.test_recordings()), names(fold.training_recordings()));
         assert!(test.iter().all(|name| !training.contains(name)));
         assert_eq!(test.len() + training.len(), dataset.recordings().len());
     }
@@ -181,10 +173,7 @@ fn a_memory_of_the_place_holds_only_other_training_recordings() {
             for recording in dataset.recordings() {
                 let name = recording.name();
                 let others = names(&fold.training_recordings_of_place(name));
-                assert!(
-                    others.is_subset(&training) && !others.contains(name),
-                    "{name}"
-                );
+                assert!(others.is_subset(&training) && !others.contains(name), "{name}");
                 all += others.len();
                 if !training.contains(name) {
                     of_test.extend(others);

@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use std::time::Duration;
 
 use ddl_data::{
-    Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Position,
-    Recording, SceneName, parse_recording, write_recording,
+    Convention, DataError, Format, Frame, FrameReader, Observation, PedestrianId, Position, Recording, SceneName,
+    parse_recording, write_recording,
 };
 use proptest::prelude::*;
 
@@ -22,19 +22,13 @@ type Seen = Vec<(i64, Vec<(PedestrianId, Position)>)>;
 fn of_whole(recording: &Recording) -> Seen {
     let pedestrians = |frame: &i64| {
         let at = recording.at(*frame).iter();
-        (
-            *frame,
-            at.map(|seen| (seen.pedestrian, seen.position)).collect(),
-        )
+        (*frame, at.map(|seen| (seen.pedestrian, seen.position)).collect())
     };
     recording.frames().iter().map(pedestrians).collect()
 }
 
 fn of_frames(frames: Vec<Frame>) -> Seen {
-    frames
-        .into_iter()
-        .map(|frame| (frame.number, frame.people))
-        .collect()
+    frames.into_iter().map(|frame| (frame.number, frame.people)).collect()
 }
 
 /// Checks that a written recording is read back, whatever the order of its rows, and also frame by frame where the
@@ -86,10 +80,7 @@ fn an_empty_line_ends_a_frame_at_once() {
     assert_eq!(numbers("\u{feff}\n\n"), [] as [i64; 0]);
     assert_eq!(numbers(""), [] as [i64; 0]);
     let again = frames(b"0 1 2 3\n\n0 2 2 3\n").unwrap_err().to_string();
-    assert!(
-        again.contains("line 3: frame 0 comes after frame 0"),
-        "{again}"
-    );
+    assert!(again.contains("line 3: frame 0 comes after frame 0"), "{again}");
 }
 
 #[test]
@@ -98,10 +89,7 @@ fn errors_name_their_line() {
     for (text, needles) in [
         ("frame,pedestrian,x\n", ["line 1", "column y is missing"]),
         ("0 1 2 3\n0 1 2 4\n", ["line 2", "already (line 1)"]),
-        (
-            "5 1 2 3\n4 1 2 4\n",
-            ["line 2", "frame 4 comes after frame 5"],
-        ),
+        ("5 1 2 3\n4 1 2 4\n", ["line 2", "frame 4 comes after frame 5"]),
     ] {
         let message = message(text);
         for needle in needles {
@@ -234,13 +222,19 @@ fn what_is_wrong_with_scenes_is_named() {
             "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n{\"track\":{\"f\":0,\"p\":1,\
              \"x\":2,\"y\":3}}\n"
                 .to_owned(),
-            ["line 2: track.scene is missing here, but present on line 1", "or omit it everywhere"],
+            [
+                "line 2: track.scene is missing here, but present on line 1",
+                "or omit it everywhere",
+            ],
         ),
         (
             "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\
              \"scene\":\"a\"}}\n"
                 .to_owned(),
-            ["line 2: a scene is named here, but not on line 1", "or omit it everywhere"],
+            [
+                "line 2: a scene is named here, but not on line 1",
+                "or omit it everywhere",
+            ],
         ),
     ] {
         let message = frames(text.as_bytes()).unwrap_err().to_string();
@@ -279,10 +273,7 @@ fn scenes_that_fall_silent_make_room() {
         "{error}"
     );
     let early = reader.next_frame().unwrap_err().to_string();
-    assert!(
-        early.contains("frame 0 of scene 7 comes after frame 5"),
-        "{early}"
-    );
+    assert!(early.contains("frame 0 of scene 7 comes after frame 5"), "{early}");
     assert_eq!(std::iter::from_fn(|| reader.unfinished()).count(), 1_000);
     // Where silence begins at once, every frame is the first of its scene.
     let reader = FrameReader::new(text.as_bytes(), "tracker");
@@ -293,9 +284,7 @@ fn scenes_that_fall_silent_make_room() {
 }
 
 fn written(rows: &[Observation], format: Format) -> String {
-    let column = |value: &dyn Fn(&Observation) -> String| {
-        rows.iter().map(value).collect::<Vec<_>>().join(",")
-    };
+    let column = |value: &dyn Fn(&Observation) -> String| rows.iter().map(value).collect::<Vec<_>>().join(",");
     let mut text = String::new();
     match format {
         Format::StarCsv => {
@@ -318,16 +307,8 @@ fn written(rows: &[Observation], format: Format) -> String {
                 let [x, y] = o.position;
                 let (f, p) = (o.frame, o.pedestrian);
                 let span = format!(r#""p":{p},"s":{f},"e":{f}"#);
-                writeln!(
-                    text,
-                    r#"{{"scene":{{"id":{scene},{span},"fps":2.5,"tag":[4,[]]}}}}"#
-                )
-                .unwrap();
-                writeln!(
-                    text,
-                    "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":{x:?},\"y\":{y:?}}}}}"
-                )
-                .unwrap();
+                writeln!(text, r#"{{"scene":{{"id":{scene},{span},"fps":2.5,"tag":[4,[]]}}}}"#).unwrap();
+                writeln!(text, "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":{x:?},\"y\":{y:?}}}}}").unwrap();
                 // A forecast of the same frame, which is not an observation.
                 let place = format!(r#""f":{f},"p":{p},"x":0.5,"y":{x:?}"#);
                 writeln!(

@@ -20,10 +20,7 @@ fn a_camera_above_a_street() {
         ([100.5, 400.25], [-1.943_158_346, 9.553_733_768]),
     ] {
         let [x, y] = ground.apply(pixel).unwrap();
-        assert!(
-            (x - place[0]).hypot(y - place[1]) < 1e-8,
-            "{pixel:?}: {x} {y}"
-        );
+        assert!((x - place[0]).hypot(y - place[1]) < 1e-8, "{pixel:?}: {x} {y}");
     }
 }
 

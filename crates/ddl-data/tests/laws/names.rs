@@ -11,9 +11,7 @@ fn pedestrians_may_be_words() {
         (Format::Table, "frame,pedestrian,x,y\n", |t, name| {
             format!("{t},{name},{t},0\n")
         }),
-        (Format::SocialGan, "", |t, name| {
-            format!("{t} {name} {t} 0\n")
-        }),
+        (Format::SocialGan, "", |t, name| format!("{t} {name} {t} 0\n")),
         (Format::TrajNet, "", |t, name| {
             format!("{{\"track\": {{\"f\": {t}, \"p\": \"{name}\", \"x\": {t}, \"y\": 0}}}}\n")
         }),
@@ -33,10 +31,7 @@ fn pedestrians_may_be_words() {
         let read = parse_recording(twice.as_bytes(), "f", format);
         if format != Format::TrajNet {
             let told = read.unwrap_err().to_string();
-            assert!(
-                told.contains("pedestrian 1e3 is in frame 7 already"),
-                "{told}"
-            );
+            assert!(told.contains("pedestrian 1e3 is in frame 7 already"), "{told}");
         }
         // The stream reader returns the same names.
         let mut frames = FrameReader::new(text.as_bytes(), "tracker");

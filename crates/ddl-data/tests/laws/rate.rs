@@ -1,8 +1,6 @@
 //! Recordings at other frame rates.
 
-use ddl_data::{
-    Format, Observation, PedestrianId, RateError, Recording, ResampledRecording, parse_recording,
-};
+use ddl_data::{Format, Observation, PedestrianId, RateError, Recording, ResampledRecording, parse_recording};
 use proptest::prelude::*;
 
 use crate::readers::complaint;
@@ -10,9 +8,7 @@ use crate::readers::complaint;
 /// Two pedestrians that walk straight on, seen at every `spacing`-th frame of the given ones.
 fn pedestrians(frames: impl Iterator<Item = i64>, spacing: i64) -> Recording {
     let place = |id: i64, frame: i64| [0.05 * frame as f64 + id as f64, -0.02 * frame as f64];
-    let seen = frames.flat_map(|frame| {
-        [1, 2].map(|id| Observation::new(frame, PedestrianId(id), place(id, frame)))
-    });
+    let seen = frames.flat_map(|frame| [1, 2].map(|id| Observation::new(frame, PedestrianId(id), place(id, frame))));
     Recording::new("film", spacing, seen.collect()).unwrap()
 }
 
@@ -51,10 +47,7 @@ fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
 fn a_few_late_frames_are_left_alone() {
     let late = |late: &'static [i64]| {
         let frames = (0..41_i64).map(|t| 3 + 5 * t + i64::from(late.contains(&t)));
-        pedestrians(frames, 5)
-            .resampled_to_steps(0.04)
-            .unwrap()
-            .resampled
+        pedestrians(frames, 5).resampled_to_steps(0.04).unwrap().resampled
     };
     assert!(!late(&[20]));
     assert!(late(&[10, 30]));
@@ -140,30 +133,21 @@ fn a_jittering_clock_is_resampled() {
 fn trajnet_at_2_fps(scenes: &str) -> String {
     let track = |t: u32| {
         let x = 0.65 * f64::from(t);
-        format!(
-            "{{\"track\": {{\"f\": {}, \"p\": 1, \"x\": {x}, \"y\": 0}}}}\n",
-            12 * t
-        )
+        format!("{{\"track\": {{\"f\": {}, \"p\": 1, \"x\": {x}, \"y\": 0}}}}\n", 12 * t)
     };
     scenes.to_owned() + &(0..30).map(track).collect::<String>()
 }
 
 #[test]
 fn scenes_of_trajnet_state_the_frame_rate() {
-    let scene =
-        |fps: &str| format!("{{\"scene\": {{\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 240{fps}}}}}\n");
-    let read = |scenes: &str| {
-        parse_recording(trajnet_at_2_fps(scenes).as_bytes(), "f", Format::TrajNet).unwrap()
-    };
+    let scene = |fps: &str| format!("{{\"scene\": {{\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 240{fps}}}}}\n");
+    let read = |scenes: &str| parse_recording(trajnet_at_2_fps(scenes).as_bytes(), "f", Format::TrajNet).unwrap();
     let rate = |scenes: &str| read(scenes).rate();
     assert_eq!(rate(""), None);
     assert_eq!(rate(&scene("")), None);
     assert_eq!(rate(&scene(r#", "fps": null"#)), None);
     let two = scene(r#", "fps": 2"#);
-    assert_eq!(
-        rate(&(scene("") + &two + &scene(r#", "fps": 2.0"#))),
-        Some(2.0)
-    );
+    assert_eq!(rate(&(scene("") + &two + &scene(r#", "fps": 2.0"#))), Some(2.0));
 
     // 24 frame numbers per second, 9.6 in 0.4 s.
     let recording = read(&two);
@@ -176,29 +160,22 @@ fn scenes_of_trajnet_state_the_frame_rate() {
 
     // The usual files, with frames 0.4 s apart whatever their numbers, are left unchanged.
     let usual = read(&scene(r#", "fps": 2.5"#));
-    let steps = usual
-        .resampled_to_steps(usual.stated_frame_time().unwrap())
-        .unwrap();
+    let steps = usual.resampled_to_steps(usual.stated_frame_time().unwrap()).unwrap();
     assert_eq!((steps.recording, steps.resampled), (usual, false));
 }
 
 #[test]
 fn scenes_that_disagree_about_the_rate_are_named() {
-    let scenes =
-        "{\"scene\": {\"id\": 0, \"fps\": 2.5}}\n\n{\"scene\": {\"id\": 1, \"fps\": 25}}\n";
+    let scenes = "{\"scene\": {\"id\": 0, \"fps\": 2.5}}\n\n{\"scene\": {\"id\": 1, \"fps\": 25}}\n";
     let told = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
     assert!(
-        told.starts_with(
-            "f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"
-        ),
+        told.starts_with("f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"),
         "{told}"
     );
     for fps in ["0", "-2.5", "\"fast\"", "[2.5]"] {
         let scenes = format!("{{\"scene\": {{\"id\": 0, \"fps\": {fps}}}}}\n");
         let told = complaint(trajnet_at_2_fps(&scenes), Format::TrajNet);
-        let expected = format!(
-            "f, line 1: scene.fps must be a number above 0, the frames in a second, found {fps}"
-        );
+        let expected = format!("f, line 1: scene.fps must be a number above 0, the frames in a second, found {fps}");
         assert_eq!(told, expected);
     }
 }

@@ -3,9 +3,7 @@
 use ddl_data::{Convention, DataError, Format, Observation, PedestrianId, parse_recording};
 
 pub(crate) fn complaint(text: impl AsRef<[u8]>, format: Format) -> String {
-    parse_recording(text.as_ref(), "f", format)
-        .unwrap_err()
-        .to_string()
+    parse_recording(text.as_ref(), "f", format).unwrap_err().to_string()
 }
 
 #[test]
@@ -16,22 +14,13 @@ fn good_files_are_read() {
         Observation::new(10, PedestrianId(3), [0.0, 4e-2]),
     ];
     for (format, text) in [
-        (
-            Format::StarCsv,
-            "10,0,10\n3,1,1\n4e-2,-2.0,-2\n0,1.5,1.75\n",
-        ),
-        (
-            Format::StarCsv,
-            "10,0,10\r\n3,1,1\r\n4e-2,-2.0,-2\r\n0,1.5,1.75",
-        ),
+        (Format::StarCsv, "10,0,10\n3,1,1\n4e-2,-2.0,-2\n0,1.5,1.75\n"),
+        (Format::StarCsv, "10,0,10\r\n3,1,1\r\n4e-2,-2.0,-2\r\n0,1.5,1.75"),
         (
             Format::SocialGan,
             "10.0\t3.0\t0\t0.04\n0\t1.0\t1.5\t-2\n10\t1\t1.75\t-2\n\n",
         ),
-        (
-            Format::SocialGan,
-            "10 3 0 0.04\n  0 1 1.5 -2\n10 1 1.75   -2",
-        ),
+        (Format::SocialGan, "10 3 0 0.04\n  0 1 1.5 -2\n10 1 1.75   -2"),
         (
             Format::Table,
             "frame,pedestrian,x,y\n0,1,1.5,-2\n10,1,1.75,-2\n10,3,0,0.04\n",
@@ -156,8 +145,7 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
     check(Format::TrajNet, cases);
     let row = |y| format!(r#"{{"track": {{"f": 0, "p": 1, "x": 2, "y": {y}}}}}"#);
     let found = complaint(format!("{}\n{}\n", row("3"), row("3.5")), Format::TrajNet);
-    let expected =
-        "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]";
+    let expected = "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]";
     assert!(found.starts_with(expected), "{found}");
 }
 
@@ -198,10 +186,7 @@ fn the_most_common_difference_is_the_step() {
 fn binary_files_are_refused() {
     for format in Format::ALL {
         let told = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
-        assert!(
-            told.starts_with("f, line 2: the text is not UTF-8"),
-            "{told}"
-        );
+        assert!(told.starts_with("f, line 2: the text is not UTF-8"), "{told}");
     }
     for bytes in [&b"\x1f\x8b\x08\x00"[..], b"PK\x03\x04\x14"] {
         let told = complaint(bytes, Format::Table);
@@ -247,10 +232,7 @@ frame\tpedestrian\tx\ty => separate columns by commas
     for case in cases.trim().lines() {
         let (header, advice) = case.split_once(" => ").unwrap();
         let message = read(header).unwrap_err().to_string();
-        assert!(
-            message.contains("line 1") && message.contains(advice),
-            "{message}"
-        );
+        assert!(message.contains("line 1") && message.contains(advice), "{message}");
     }
 }
 

@@ -33,13 +33,7 @@ fn share(count: usize, of: usize) -> f64 {
 
 fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
     let recording = &crowd.recording;
-    let at = |&frame| {
-        recording
-            .at(frame)
-            .iter()
-            .map(|o| (o.pedestrian, o.position))
-            .collect()
-    };
+    let at = |&frame| recording.at(frame).iter().map(|o| (o.pedestrian, o.position)).collect();
     recording.frames().iter().map(at)
 }
 
@@ -62,10 +56,7 @@ fn speeds_are_plausible() {
         let speeds = speeds(&scene.simulate(SEED));
         let walking: Vec<_> = speeds.iter().copied().filter(|&v| v > 0.4).collect();
         let mean = walking.iter().sum::<f64>() / walking.len() as f64;
-        assert!(
-            (1.0..1.4).contains(&mean),
-            "{scene}: mean of pedestrians {mean} m/s"
-        );
+        assert!((1.0..1.4).contains(&mean), "{scene}: mean of pedestrians {mean} m/s");
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
         assert!(fastest < 2.7, "{scene}: {fastest} m/s");
         let standing = share(speeds.iter().filter(|&&v| v < 0.2).count(), speeds.len());
@@ -112,10 +103,7 @@ fn bodies_hardly_overlap() {
                 }
             }
         }
-        assert!(
-            share(close, pairs) < 1e-3,
-            "{scene}: {close} of {pairs} pairs overlap"
-        );
+        assert!(share(close, pairs) < 1e-3, "{scene}: {close} of {pairs} pairs overlap");
     }
 }
 

@@ -18,12 +18,8 @@ fn implausible_speeds_are_doubted() {
     // 1.3 m/s in steps of 0.4 s.
     assert_eq!(doubts(walk(0.52)), []);
     // The same walk at 25 frames per second, and in pixels.
-    assert!(
-        matches!(doubts(walk(0.052))[..], [PlausibilityWarning::Slow { brisk }] if brisk < 0.14)
-    );
-    assert!(
-        matches!(doubts(walk(30.0))[..], [PlausibilityWarning::Fast { median }] if median > 70.0)
-    );
+    assert!(matches!(doubts(walk(0.052))[..], [PlausibilityWarning::Slow { brisk }] if brisk < 0.14));
+    assert!(matches!(doubts(walk(30.0))[..], [PlausibilityWarning::Fast { median }] if median > 70.0));
     // A standing pedestrian causes no doubt, even with the noise of a tracker.
     assert_eq!(doubts(walk(0.001)), []);
 }
@@ -42,9 +38,7 @@ fn degrees_are_doubted() {
 #[test]
 fn missing_detections_are_reported() {
     let seen: Vec<Observation> = (0..1000)
-        .flat_map(|t| {
-            [1, 2].map(|id| Observation::new(t, PedestrianId(id), [0.05 * t as f64, id as f64]))
-        })
+        .flat_map(|t| [1, 2].map(|id| Observation::new(t, PedestrianId(id), [0.05 * t as f64, id as f64])))
         .filter(|seen| (seen.frame + 5 * seen.pedestrian.0) % 10 != 7)
         .collect();
     let summary = Recording::new("film", 10, seen).unwrap().summary();
@@ -67,15 +61,8 @@ fn a_track_that_jumps_is_reported_with_its_frame() {
     let [PlausibilityWarning::Jump(fastest)] = &doubts[..] else {
         panic!("{doubts:?}");
     };
-    assert_eq!(
-        (&fastest.pedestrian, fastest.frame),
-        (&PedestrianId(1).into(), 40)
-    );
-    assert!(
-        doubts[0]
-            .to_string()
-            .contains("pedestrian 1 jumps at frame 40")
-    );
+    assert_eq!((&fastest.pedestrian, fastest.frame), (&PedestrianId(1).into(), 40));
+    assert!(doubts[0].to_string().contains("pedestrian 1 jumps at frame 40"));
 }
 
 #[test]
@@ -83,21 +70,12 @@ fn holes_and_training_samples_are_counted() {
     let mut seen = walk(0.5);
     seen.remove(50);
     let summary = Recording::new("yard", 1, seen).unwrap().summary();
-    assert_eq!(
-        (summary.holes, summary.pedestrians, summary.frames),
-        (1, 1, 99)
-    );
+    assert_eq!((summary.holes, summary.pedestrians, summary.frames), (1, 1, 99));
     let hole = summary.longest_hole.unwrap();
-    assert_eq!(
-        (&hole.pedestrian, hole.after),
-        (&PedestrianId(1).into(), 49)
-    );
+    assert_eq!((&hole.pedestrian, hole.after), (&PedestrianId(1).into(), 49));
     assert!((hole.seconds - 0.8).abs() < 1e-12);
     // 50 and 49 positions in a row: 31 and 30 windows of 20.
     assert_eq!(summary.to_learn_from, 61);
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
-    assert_eq!(
-        few.summary().doubts(),
-        [PlausibilityWarning::NothingToLearnFrom]
-    );
+    assert_eq!(few.summary().doubts(), [PlausibilityWarning::NothingToLearnFrom]);
 }

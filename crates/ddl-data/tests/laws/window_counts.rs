@@ -94,12 +94,7 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
         let rule = WindowRule::SocialGan { min_pedestrians };
         let folds = dataset.folds().into_iter();
         let found: Map<String, Value> = folds
-            .map(|fold| {
-                (
-                    fold.name().to_owned(),
-                    count(&fold.test_windows(rule)).to_vec().into(),
-                )
-            })
+            .map(|fold| (fold.name().to_owned(), count(&fold.test_windows(rule)).to_vec().into()))
             .collect();
         assert_eq!(Value::from(found), all[part], "{part}");
     }

@@ -1,8 +1,8 @@
 //! Laws of windows, neighbours and rotations, on made-up recordings.
 
 use ddl_data::{
-    Neighbours, OBSERVED, Observation, PedestrianId, Places, Position, Recording, Remembered,
-    Rotation, Window, WindowError, WindowRule,
+    Neighbours, OBSERVED, Observation, PedestrianId, Places, Position, Recording, Remembered, Rotation, Window,
+    WindowError, WindowRule,
 };
 use proptest::prelude::*;
 
@@ -14,11 +14,7 @@ const RULES: [WindowRule; 4] = [
 ];
 
 fn recording() -> impl Strategy<Value = Vec<Observation>> {
-    let pedestrian = (
-        0_i64..30,
-        1_i64..60,
-        prop::collection::btree_set(0_i64..60, 0..3),
-    );
+    let pedestrian = (0_i64..30, 1_i64..60, prop::collection::btree_set(0_i64..60, 0..3));
     (prop::collection::vec(pedestrian, 1..7), any::<bool>()).prop_map(|(pedestrians, origin)| {
         let mut rows = Vec::new();
         for (id, (start, length, missed)) in (0_i64..).zip(pedestrians) {
@@ -163,24 +159,12 @@ fn invalid_windows_are_refused() {
     };
     refused(vec![], vec![], "a window needs at least one pedestrian");
     refused(ids(0..2), vec![track(20)], "2 pedestrian ids but 1 tracks");
-    refused(
-        ids(0..1),
-        vec![track(9)],
-        "pedestrian 0: a track of 9 positions",
-    );
+    refused(ids(0..1), vec![track(9)], "pedestrian 0: a track of 9 positions");
     let unequal = vec![track(20), track(8)];
     refused(ids(0..2), unequal, "pedestrian 1: a track of 8");
-    refused(
-        ids(0..1),
-        vec![spoiled],
-        "pedestrian 0, position 11 of the track",
-    );
+    refused(ids(0..1), vec![spoiled], "pedestrian 0, position 11 of the track");
     let twice = vec![PedestrianId(1), PedestrianId(1)];
-    refused(
-        twice,
-        vec![track(8); 2],
-        "pedestrian 1 is in the window twice",
-    );
+    refused(twice, vec![track(8); 2], "pedestrian 1 is in the window twice");
     for (start, step) in [(0, 0), (0, -10), (i64::MAX, 10), (0, i64::MAX)] {
         let refused = new(start, step, ids(0..1), vec![track(20)]);
         assert!(matches!(refused, WindowError::Frames { .. }));
@@ -189,23 +173,13 @@ fn invalid_windows_are_refused() {
 
 #[test]
 fn changing_positions_changes_nothing_else() {
-    let tracks = vec![
-        (0..20).map(|t| [f64::from(t), 0.0]).collect(),
-        vec![[5.0, 5.0]; 20],
-    ];
+    let tracks = vec![(0..20).map(|t| [f64::from(t), 0.0]).collect(), vec![[5.0, 5.0]; 20]];
     let window = Window::new("r", 100, 6, ids(4..6), tracks).unwrap();
     let alone = window.keeping(|i| i == 1).unwrap();
     assert_eq!(alone.pedestrians(), ids(5..6));
-    assert_eq!(
-        (alone.track(0), window.keeping(|_| false)),
-        (window.track(1), None)
-    );
+    assert_eq!((alone.track(0), window.keeping(|_| false)), (window.track(1), None));
     let later = |_, step, [x, y]: Position| {
-        if step >= OBSERVED {
-            [x + 1.0, y]
-        } else {
-            [x, y]
-        }
+        if step >= OBSERVED { [x + 1.0, y] } else { [x, y] }
     };
     let changed = window.map_positions(later);
     assert_eq!(window.reversed().track(0)[..2], [[19.0, 0.0], [18.0, 0.0]]);
@@ -217,10 +191,7 @@ fn changing_positions_changes_nothing_else() {
         (214, 20, true)
     );
     let observation = window.without_future();
-    assert_eq!(
-        (observation.frames().len(), observation.has_future()),
-        (8, false)
-    );
+    assert_eq!((observation.frames().len(), observation.has_future()), (8, false));
     assert!(observation.future(0).is_empty() && observation.end(0).is_none());
     assert_eq!(observation.track(0), window.observed(0));
 }
@@ -257,10 +228,7 @@ fn remembered_tracks_stay_with_their_pedestrian() {
         .clone()
         .with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
     assert_eq!(remembering.remembered(2), [remembered(2); 2]);
-    assert_eq!(
-        remembering.without_future().remembered(2),
-        [remembered(2); 2]
-    );
+    assert_eq!(remembering.without_future().remembered(2), [remembered(2); 2]);
     let kept = remembering.keeping(|i| i != 1).unwrap();
     assert_eq!(kept.remembered(0), []);
     assert_eq!(kept.remembered(1), [remembered(2); 2]);

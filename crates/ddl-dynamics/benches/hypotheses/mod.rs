@@ -1,8 +1,6 @@
 //! Synthetic hypotheses: a pedestrian, a goal, and a metric for each of 12 steps, as from a network.
 
-use ddl_dynamics::{
-    Attractor, CholeskyMetric, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
-};
+use ddl_dynamics::{Attractor, CholeskyMetric, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real};
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

@@ -2,8 +2,8 @@
 //! paths among pillars, where the distance falls.
 
 use ddl_dynamics::{
-    Attractor, AvoidingFlow, Ball, Chain, CholeskyMetric, DiffeomorphicFlow, DynamicsError, Flow,
-    NaturalGradientFlow, PUBLISHED_SIGMA, StableEuler, rollout,
+    Attractor, AvoidingFlow, Ball, Chain, CholeskyMetric, DiffeomorphicFlow, DynamicsError, Flow, NaturalGradientFlow,
+    PUBLISHED_SIGMA, StableEuler, rollout,
 };
 use nalgebra::Vector2;
 
@@ -112,15 +112,11 @@ pub(crate) fn draw() -> Result<String, DynamicsError> {
     let mut sheet = Sheet::new(692.0, title, &legend);
     let (wall, pillars) = (behind_a_wall()?, among_pillars()?);
     let others = wall.others([[-0.5, -0.5], [1.8, -1.0], [4.1, -0.4], [1.1, 1.8]])?;
-    AROUND.draw(
-        &mut sheet,
-        "Around the end of a wall (axes in m)",
-        |sheet| {
-            sheet.line(&WALL.map(|corner| AROUND.pixel(corner)), SOLID);
-            sheet.line(&SHOWN.map(|p| AROUND.pixel(p)), SHOWN_WAY);
-            draw_ways(sheet, &AROUND, &wall.path, &others);
-        },
-    );
+    AROUND.draw(&mut sheet, "Around the end of a wall (axes in m)", |sheet| {
+        sheet.line(&WALL.map(|corner| AROUND.pixel(corner)), SOLID);
+        sheet.line(&SHOWN.map(|p| AROUND.pixel(p)), SHOWN_WAY);
+        draw_ways(sheet, &AROUND, &wall.path, &others);
+    });
     wall.draw_falling(&mut sheet, "V falls in every step (m)", &AROUND);
     let others = pillars.others([[0.0, -0.4], [0.2, -1.4], [2.0, 1.5], [3.4, -1.5]])?;
     AMONG.draw(&mut sheet, "Among pillars (axes in m)", |sheet| {

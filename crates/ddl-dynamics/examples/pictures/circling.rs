@@ -2,8 +2,7 @@
 //! and the distance to the goal over the steps.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, NaturalGradientFlow, PUBLISHED_SIGMA,
-    StableEuler, rollout,
+    Attractor, CholeskyMetric, DynamicsError, Euler, NaturalGradientFlow, PUBLISHED_SIGMA, StableEuler, rollout,
 };
 use nalgebra::{Rotation2, Vector2};
 
@@ -40,11 +39,7 @@ pub(crate) fn draw() -> Result<String, DynamicsError> {
         (140.0, STABLE, "\u{25CF} StableEuler"),
         (270.0, GOAL, "\u{25EF} goal"),
         (345.0, "#E69F00", "\u{25A0}"),
-        (
-            363.0,
-            INK,
-            "where no Euler step of 0.4 s approaches the goal",
-        ),
+        (363.0, INK, "where no Euler step of 0.4 s approaches the goal"),
     ];
     let mut sheet = Sheet::new(398.0, "One flow, two integrators", &legend);
     // In the direction of the unit vector `u` a plain Euler step approaches the goal if `dt < 2 Phi u^T P u / |P u|^2`.

@@ -30,8 +30,7 @@ impl Sheet {
     pub(crate) fn line(&mut self, points: &[Pixel], attributes: &str) {
         let points = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}"));
         let points = points.collect::<Vec<_>>().join(" ");
-        self.0
-            .push(format!("<polyline points='{points}' {attributes}/>"));
+        self.0.push(format!("<polyline points='{points}' {attributes}/>"));
     }
 
     pub(crate) fn circles(&mut self, centres: &[Pixel], radius: f64, attributes: &str) {
@@ -45,8 +44,7 @@ impl Sheet {
     /// A text whose `anchor` (`start`, `middle` or `end`) is at this point.
     pub(crate) fn text(&mut self, [x, y]: Pixel, anchor: &str, colour: &str, text: &str) {
         let place = format!("x='{x:.2}' y='{y:.2}' dy='0.35em' text-anchor='{anchor}'");
-        self.0
-            .push(format!("<text {place} fill='{colour}'>{text}</text>"));
+        self.0.push(format!("<text {place} fill='{colour}'>{text}</text>"));
     }
 
     /// Steps of `StableEuler`: a strong line through dots.
@@ -109,13 +107,11 @@ impl Plot {
         }
         let (width, height) = (right - left, bottom - top);
         let place = format!("x='{left}' y='{top}' width='{width:.2}' height='{height:.2}'");
-        sheet.0.push(format!(
-            "<svg {place} viewBox='{left} {top} {width:.2} {height:.2}'>"
-        ));
-        content(sheet);
         sheet
             .0
-            .push(format!("</svg>\n<rect {place} stroke='{INK}'/>"));
+            .push(format!("<svg {place} viewBox='{left} {top} {width:.2} {height:.2}'>"));
+        content(sheet);
+        sheet.0.push(format!("</svg>\n<rect {place} stroke='{INK}'/>"));
     }
 }
 

@@ -29,10 +29,7 @@ use crate::real::Real;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(
     deny_unknown_fields,
-    bound(
-        serialize = "T: Real + Serialize",
-        deserialize = "T: Real + Deserialize<'de>"
-    )
+    bound(serialize = "T: Real + Serialize", deserialize = "T: Real + Deserialize<'de>")
 )]
 pub struct Chain<T, const D: usize> {
     layers: Vec<LocalTranslation<T, D>>,
@@ -51,9 +48,9 @@ impl<T: Real, const D: usize> Chain<T, D> {
 
     /// The natural logarithm of a lower bound of `det J` (no unit). The bound itself may be too small for `T`.
     pub fn log_determinant_lower_bound(&self) -> T {
-        self.layers.iter().fold(T::zero(), |sum, layer| {
-            sum + layer.determinant_lower_bound().ln()
-        })
+        self.layers
+            .iter()
+            .fold(T::zero(), |sum, layer| sum + layer.determinant_lower_bound().ln())
     }
 }
 

@@ -43,10 +43,7 @@ const BISECTIONS: usize = 53;
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(
     try_from = "UncheckedTranslation<T, D>",
-    bound(
-        serialize = "T: Real + Serialize",
-        deserialize = "T: Real + Deserialize<'de>"
-    )
+    bound(serialize = "T: Real + Serialize", deserialize = "T: Real + Deserialize<'de>")
 )]
 pub struct LocalTranslation<T, const D: usize> {
     centre: SVector<T, D>,
@@ -80,11 +77,7 @@ impl<T: Real, const D: usize> LocalTranslation<T, D> {
     /// - [`DynamicsError::NonFinite`]: a component of the centre or the translation.
     /// - [`DynamicsError::NotPositive`]: the rate is not positive and finite.
     /// - [`DynamicsError::NotInvertible`]: the contraction is above [`MAX_CONTRACTION`](Self::MAX_CONTRACTION).
-    pub fn new(
-        centre: SVector<T, D>,
-        rate: T,
-        translation: SVector<T, D>,
-    ) -> Result<Self, DynamicsError> {
+    pub fn new(centre: SVector<T, D>, rate: T, translation: SVector<T, D>) -> Result<Self, DynamicsError> {
         ensure_finite("centre", &centre)?;
         ensure_finite("translation", &translation)?;
         ensure_positive("the rate of a Gaussian bump", " per metre", rate)?;
@@ -165,11 +158,7 @@ impl<T: Real, const D: usize> Diffeomorphism<T, D> for LocalTranslation<T, D> {
     }
 
     fn inverse(&self, image: &SVector<T, D>) -> SVector<T, D> {
-        let share = share(
-            &self.scaled_offset(image),
-            &self.scaled_translation(),
-            NEWTON_STEPS,
-        );
+        let share = share(&self.scaled_offset(image), &self.scaled_translation(), NEWTON_STEPS);
         image - self.translation * share
     }
 
@@ -247,8 +236,7 @@ mod tests {
     fn an_offset_that_overflows_still_has_an_effect() {
         // rho (x - c) = 5e-309 * 2 * 1.797...e308, although x - c alone is infinite.
         let (far, rate) = (f64::MAX, 5e-309);
-        let map = LocalTranslation::new(Vector2::new(-far, 0.0), rate, Vector2::new(-1e308, 0.0))
-            .unwrap();
+        let map = LocalTranslation::new(Vector2::new(-far, 0.0), rate, Vector2::new(-1e308, 0.0)).unwrap();
         let image = map.apply(&Vector2::new(far, 0.0));
         let k = (-(2.0 * (far * rate)).powi(2)).exp();
         assert!(k > 0.03);
@@ -259,8 +247,7 @@ mod tests {
     #[test]
     fn a_translation_by_hand() {
         // rho = 1/2, x - c = (2, 0): k = 1/e; J = I - 2/4 k v (2, 0) = [1 - k/2, 0; -k, 1].
-        let map =
-            LocalTranslation::new(Vector2::new(1.0, 1.0), 0.5, Vector2::new(0.5, 1.0)).unwrap();
+        let map = LocalTranslation::new(Vector2::new(1.0, 1.0), 0.5, Vector2::new(0.5, 1.0)).unwrap();
         let k = (-1.0_f64).exp();
         let (image, jacobian) = map.apply_with_jacobian(&Vector2::new(3.0, 1.0));
         assert!((image - Vector2::new(3.0 + 0.5 * k, 1.0 + k)).norm() < 1e-15);

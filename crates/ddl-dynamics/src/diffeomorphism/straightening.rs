@@ -73,10 +73,7 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// nonlinear dynamical systems", Systems & Control Letters 96 (2016). R. L. Bishop, "There is more than one way to
     /// frame a curve", American Mathematical Monthly 82 (1975). W. Kabsch, "A solution for the best rotation to relate
     /// two sets of vectors", Acta Crystallographica A 32 (1976).
-    pub fn straightening(
-        path: &[SVector<T, D>],
-        layers: usize,
-    ) -> Result<Straightening<T, D>, DynamicsError> {
+    pub fn straightening(path: &[SVector<T, D>], layers: usize) -> Result<Straightening<T, D>, DynamicsError> {
         ensure_finite_path(path)?;
         let path: Vec<_> = path.iter().map(|point| point.map(T::as_f64)).collect();
         let length = length(&path);
@@ -115,10 +112,7 @@ impl<T: Real, const D: usize> Chain<T, D> {
         Ok(Straightening::new(
             Self::new(chain),
             samples.iter().map(outside).collect(),
-            shape[before..before + SAMPLES]
-                .iter()
-                .map(outside)
-                .collect(),
+            shape[before..before + SAMPLES].iter().map(outside).collect(),
         ))
     }
 }
@@ -142,9 +136,7 @@ impl<T: Real, const D: usize> Straightening<T, D> {
     }
 }
 
-fn ensure_finite_path<T: Real, const D: usize>(
-    path: &[SVector<T, D>],
-) -> Result<(), DynamicsError> {
+fn ensure_finite_path<T: Real, const D: usize>(path: &[SVector<T, D>]) -> Result<(), DynamicsError> {
     for (point, position) in path.iter().enumerate() {
         if let Some(component) = position.iter().position(|x| !x.is_finite()) {
             return Err(DynamicsError::NonFinite {
@@ -160,11 +152,7 @@ fn ensure_finite_path<T: Real, const D: usize>(
 fn length<const D: usize>(path: &[SVector<f64, D>]) -> f64 {
     let sides = path.windows(2).map(|pair| polar(&(pair[1] - pair[0])).0);
     let length = sides.fold(0.0, |sum: f64, side| sum + side);
-    if length.is_nan() {
-        f64::INFINITY
-    } else {
-        length
-    }
+    if length.is_nan() { f64::INFINITY } else { length }
 }
 
 /// Whether the layers of a path from `start` fit into `T`: images stay within a few path lengths.

@@ -70,11 +70,7 @@ where
     ///
     /// # Errors
     /// [`DynamicsError::NotPositive`] unless the margin is positive and finite.
-    pub fn new(
-        flow: NaturalGradientFlow<T, D, M>,
-        obstacles: O,
-        margin: T,
-    ) -> Result<Self, DynamicsError> {
+    pub fn new(flow: NaturalGradientFlow<T, D, M>, obstacles: O, margin: T) -> Result<Self, DynamicsError> {
         Ok(Self {
             flow,
             obstacles,
@@ -82,10 +78,7 @@ where
         })
     }
 
-    fn surfaces<'a>(
-        &'a self,
-        state: &'a State<'_, T, D>,
-    ) -> impl Iterator<Item = (T, SVector<T, D>)> + 'a {
+    fn surfaces<'a>(&'a self, state: &'a State<'_, T, D>) -> impl Iterator<Item = (T, SVector<T, D>)> + 'a {
         let balls = self.obstacles.obstacles(state).iter();
         balls.map(|ball| ball.gap_and_normal(&state.position))
     }

@@ -75,12 +75,7 @@ where
         Self::with_metric(goal, psi, source, Given::InChart)
     }
 
-    fn with_metric(
-        goal: SVector<T, D>,
-        psi: Psi,
-        source: M,
-        given: Given,
-    ) -> Result<Self, DynamicsError> {
+    fn with_metric(goal: SVector<T, D>, psi: Psi, source: M, given: Given) -> Result<Self, DynamicsError> {
         ensure_finite("goal", &goal)?;
         let image = psi.apply(&goal);
         let attractor = Attractor::new(*ensure_finite("image of the goal", &image)?)?;

@@ -4,8 +4,8 @@ use nalgebra::SVector;
 
 use super::Flow;
 use crate::{
-    attractor::Attractor, error::DynamicsError, metric::CholeskyMetric,
-    metric_source::MetricSource, real::Real, state::State,
+    attractor::Attractor, error::DynamicsError, metric::CholeskyMetric, metric_source::MetricSource, real::Real,
+    state::State,
 };
 
 /// Natural gradient descent: `v = -P grad Phi`, `P = L L^T + sigma I`.

@@ -117,10 +117,7 @@ impl<T: Real, const D: usize> Integrator<T, D> for DormandPrince<T> {
     }
 }
 
-fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
-    flow: &F,
-    position: &SVector<T, D>,
-) -> T {
+fn distance<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(flow: &F, position: &SVector<T, D>) -> T {
     match flow.chart() {
         None => flow.attractor().distance(position),
         Some(psi) => flow.attractor().distance(&psi.apply(position)),
@@ -154,11 +151,7 @@ fn growth<T: Real>(relative: T) -> T {
     }
     let ideal = T::rounded(SAFETY) * relative.powf(T::rounded(-0.2));
     // A stage that overflowed gives NaN here: shrink.
-    if ideal >= least {
-        ideal.min(most)
-    } else {
-        least
-    }
+    if ideal >= least { ideal.min(most) } else { least }
 }
 
 /// Times of stages 2 to 6, in units of the step.
@@ -203,10 +196,7 @@ fn inner_step<T: Real, const D: usize, F: Flow<T, D> + ?Sized>(
     Ok((stage.position, error))
 }
 
-fn combined<T: Real, const D: usize>(
-    weights: &[f64],
-    velocities: &[SVector<T, D>],
-) -> SVector<T, D> {
+fn combined<T: Real, const D: usize>(weights: &[f64], velocities: &[SVector<T, D>]) -> SVector<T, D> {
     let terms = velocities.iter().zip(weights);
     terms.fold(SVector::zeros(), |sum, (velocity, &weight)| {
         sum + velocity * T::rounded(weight)

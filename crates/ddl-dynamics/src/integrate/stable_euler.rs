@@ -109,8 +109,7 @@ fn descend<T: Real, const D: usize>(
         return ended(*position, StepLimit::AtGoal);
     }
     // Spacing of floating-point numbers at the coarser of the two points; never 0, so that doubling works.
-    let resolution =
-        (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
+    let resolution = (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
 
     let (speed, heading) = polar(velocity);
     let cosine = -away.dot(&heading);
@@ -157,18 +156,13 @@ impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
             let dt = flow
                 .longest_step(state, &velocity)
                 .map_or(dt, |longest| longest.min(dt));
-            return Self::advance(flow.attractor(), &state.position, &velocity, dt)
-                .map(|step| step.position);
+            return Self::advance(flow.attractor(), &state.position, &velocity, dt).map(|step| step.position);
         };
         // In the coordinates of the chart the flow is a natural gradient: take the step there and transform back.
         let image = psi.apply(&state.position);
-        let velocity = -flow
-            .metric(state)?
-            .apply(&flow.attractor().gradient(&image));
+        let velocity = -flow.metric(state)?.apply(&flow.attractor().gradient(&image));
         let attractor = flow.attractor();
-        let step = descend(attractor, &image, &velocity, dt, |next| {
-            psi.apply(&psi.inverse(next))
-        })?;
+        let step = descend(attractor, &image, &velocity, dt, |next| psi.apply(&psi.inverse(next)))?;
         match step.limit {
             StepLimit::AtGoal => Ok(state.position),
             _ if step.position == *attractor.goal() => Ok(*flow.goal()),

@@ -60,19 +60,12 @@ impl<T: Real> CertifiedStep<T> {
         // Written so that NaN also breaks the guarantee; certificates made here hold no NaN.
         let (definite, descending) = (min_eigenvalue > 0.0, rate < 0.0);
         match (before == 0.0, after == 0.0) {
-            _ if !definite => Err(Violation::NotPositiveDefinite {
-                step,
-                min_eigenvalue,
-            }),
+            _ if !definite => Err(Violation::NotPositiveDefinite { step, min_eigenvalue }),
             (true, true) => Ok(()),
             (true, false) => Err(Violation::LeftGoal { step, after }),
             _ if !descending => Err(Violation::NotDescending { step, rate }),
             _ if after < before => Ok(()),
-            _ => Err(Violation::NotDecreasing {
-                step,
-                before,
-                after,
-            }),
+            _ => Err(Violation::NotDecreasing { step, before, after }),
         }
     }
 }

@@ -90,12 +90,8 @@ impl<T: Real> MotionEvidence<T> {
         };
         let (deviation, distance_left) = if alone {
             let half = T::rounded(0.5);
-            let sideways = ranges
-                .iter()
-                .map(|range| (range.largest - range.smallest) * dt * half);
-            let left = path
-                .last()
-                .map_or(T::zero(), |last| attractor.distance(last));
+            let sideways = ranges.iter().map(|range| (range.largest - range.smallest) * dt * half);
+            let left = path.last().map_or(T::zero(), |last| attractor.distance(last));
             (
                 Some(Bounded {
                     largest: farthest_from_line(path, attractor.goal()),
@@ -126,10 +122,7 @@ impl<T: Real> MotionEvidence<T> {
     pub(super) fn check(&self) -> Result<(), Violation> {
         let named = [
             ("speed (m/s)", Some(self.speed)),
-            (
-                "change of speed between steps (m/s)",
-                Some(self.speed_change),
-            ),
+            ("change of speed between steps (m/s)", Some(self.speed_change)),
             ("distance from the straight line (m)", self.deviation),
             ("distance from the goal at the end (m)", self.distance_left),
         ];
@@ -145,16 +138,9 @@ impl<T: Real> MotionEvidence<T> {
     }
 }
 
-fn out_of_reach<T: Real>(
-    path: &[SVector<T, 2>],
-    attractor: &Attractor<T, 2>,
-    bounds: &MotionBounds<T>,
-    dt: T,
-) -> T {
+fn out_of_reach<T: Real>(path: &[SVector<T, 2>], attractor: &Attractor<T, 2>, bounds: &MotionBounds<T>, dt: T) -> T {
     let reach = bounds.top_speed() * dt * T::rounded(path.len().saturating_sub(1) as f64);
-    let start = path
-        .first()
-        .map_or(T::zero(), |start| attractor.distance(start));
+    let start = path.first().map_or(T::zero(), |start| attractor.distance(start));
     (start - reach).max(T::zero())
 }
 
@@ -194,16 +180,7 @@ mod tests {
         assert_eq!(said(|t| [0.4 * t, 0.0]), "");
         // At rest at the start, then at a constant speed: a jump of 0.9 m, and 0 m/s before 2.1 m/s.
         let late = |first: f64, leap: f64, pace: f64| {
-            said(move |t| {
-                [
-                    if t < first {
-                        0.0
-                    } else {
-                        leap + pace * (t - first)
-                    },
-                    0.0,
-                ]
-            })
+            said(move |t| [if t < first { 0.0 } else { leap + pace * (t - first) }, 0.0])
         };
         for (said, figure) in [
             (late(1.0, 0.9, 0.354), "speed (m/s)"),

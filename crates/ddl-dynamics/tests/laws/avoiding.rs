@@ -1,8 +1,8 @@
 //! Obstacles change the path, but the goal is still reached.
 
 use ddl_dynamics::{
-    Attractor, AvoidingFlow, Ball, CholeskyMetric, Flow, LyapunovCertificate, NaturalGradientFlow,
-    ObstacleSchedule, Real, StableEuler, State, rollout,
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, Flow, LyapunovCertificate, NaturalGradientFlow, ObstacleSchedule,
+    Real, StableEuler, State, rollout,
 };
 use nalgebra::{Rotation2, Vector2};
 use proptest::{collection::vec, prelude::*, test_runner::TestCaseResult};
@@ -29,9 +29,7 @@ fn balls<T: Real, const D: usize>(scene: &SceneDraw) -> Vec<Ball<T, D>> {
 /// The certificate holds for all obstacles, starts and time steps. A pedestrian outside the balls stays outside, up to
 /// rounding: on a surface that it reached by rounding, epsilon of its speed remains as approach, which is visible at a
 /// million metres per second.
-fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
-    scene: &SceneDraw,
-) -> TestCaseResult {
+fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let start = scene.start::<T, D>();
     let metrics: Vec<CholeskyMetric<T, D>> = scene.metrics();
     let path = |balls: Vec<Ball<T, D>>| {
@@ -45,10 +43,7 @@ fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
     path(balls.clone())?;
     balls.retain(|ball| ball.gap_and_normal(&start).0 > T::zero());
     let path = path(balls.clone())?;
-    let far = path
-        .iter()
-        .map(nalgebra::Matrix::amax)
-        .fold(T::zero(), T::max);
+    let far = path.iter().map(nalgebra::Matrix::amax).fold(T::zero(), T::max);
     let noise = T::rounded(64.0) * T::EPSILON * far.max(T::one());
     for ball in &balls {
         let mut deepest = -noise;
@@ -58,10 +53,7 @@ fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(
                 let speed = metric.eigenvalue_range().largest;
                 deepest -= T::rounded(2.0) * T::EPSILON * speed * scene.dt();
             }
-            prop_assert!(
-                after >= deepest,
-                "{before:?} m to {after:?} m from {ball:?}"
-            );
+            prop_assert!(after >= deepest, "{before:?} m to {after:?} m from {ball:?}");
         }
     }
     Ok(())
@@ -73,13 +65,8 @@ for_every_space!(the_distance_falls_and_no_ball_is_entered, any_scene);
 fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>, f64)> {
     let place = || (-6.0..6.0_f64, -6.0..6.0_f64).prop_map(|(x, y)| Vector2::new(x, y));
     let factor = (-0.7..0.0_f64, 0.0..std::f64::consts::PI);
-    (
-        vec((place(), 0.2..1.5_f64), 0..14),
-        place(),
-        factor,
-        0.3..3.0_f64,
-    )
-        .prop_map(|(pillars, start, (slow, turn), margin)| {
+    (vec((place(), 0.2..1.5_f64), 0..14), place(), factor, 0.3..3.0_f64).prop_map(
+        |(pillars, start, (slow, turn), margin)| {
             let mut kept: Vec<Ball<f64, 2>> = Vec::new();
             for (centre, radius) in pillars {
                 let ball = Ball::new(centre, radius).unwrap();
@@ -91,13 +78,9 @@ fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMet
             }
             let turn = Rotation2::new(turn);
             let metric = CholeskyMetric::planar(1.0, 0.0, 10_f64.powf(slow), 1e-8).unwrap();
-            (
-                kept,
-                start,
-                metric.congruent(turn.matrix()).unwrap(),
-                margin,
-            )
-        })
+            (kept, start, metric.congruent(turn.matrix()).unwrap(), margin)
+        },
+    )
 }
 
 proptest! {
@@ -200,18 +183,10 @@ fn invalid_obstacles_are_refused() {
     let centre = Vector2::new(0.0, 0.0);
     for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = Ball::new(centre, radius).unwrap_err().to_string();
-        assert!(
-            error.starts_with("the radius of the obstacle is"),
-            "{error}"
-        );
+        assert!(error.starts_with("the radius of the obstacle is"), "{error}");
         let flow = straight_to(centre);
-        let error = AvoidingFlow::new(flow, Vec::new(), radius)
-            .unwrap_err()
-            .to_string();
-        assert!(
-            error.starts_with("the margin around obstacles is"),
-            "{error}"
-        );
+        let error = AvoidingFlow::new(flow, Vec::new(), radius).unwrap_err().to_string();
+        assert!(error.starts_with("the margin around obstacles is"), "{error}");
     }
     assert!(Ball::new(Vector2::new(f64::NAN, 0.0), 1.0).is_err());
 }

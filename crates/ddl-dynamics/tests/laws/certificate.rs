@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, MetricSchedule,
-    NaturalGradientFlow, Real, StableEuler, Violation, rollout,
+    Attractor, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, MetricSchedule, NaturalGradientFlow, Real,
+    StableEuler, Violation, rollout,
 };
 use nalgebra::{SVector, Vector1, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -15,11 +15,7 @@ use crate::{
 
 fn stable_path<T: Real, const D: usize>(
     scene: &SceneDraw,
-) -> (
-    Vec<SVector<T, D>>,
-    Vec<CholeskyMetric<T, D>>,
-    Attractor<T, D>,
-) {
+) -> (Vec<SVector<T, D>>, Vec<CholeskyMetric<T, D>>, Attractor<T, D>) {
     let flow = scene.flow();
     let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), METRICS).unwrap();
     (path, scene.metrics(), scene.attractor())
@@ -31,11 +27,7 @@ fn holds_for_every_stable_rollout<T: Real, const D: usize>(scene: &SceneDraw) ->
     let (path, metrics, attractor) = stable_path::<T, D>(scene);
     let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
     prop_assert_eq!(certificate.holds(), Ok(()));
-    prop_assert!(
-        certificate
-            .potentials()
-            .eq(path.iter().map(|p| attractor.potential(p)))
-    );
+    prop_assert!(certificate.potentials().eq(path.iter().map(|p| attractor.potential(p))));
     for ((step, metric), position) in certificate.steps().iter().zip(&metrics).zip(&path) {
         let u = attractor.gradient(position).map(Real::as_f64);
         let p = crate::draw::formed(metric);
@@ -97,11 +89,7 @@ fn figures_by_hand() {
     assert_relative_eq!(step.potential, 0.5, epsilon = 1e-14);
     assert_relative_eq!(step.rate, -0.68, epsilon = 1e-14);
     // (3 - sqrt(5)) / 2
-    assert_relative_eq!(
-        step.min_eigenvalue,
-        0.381_966_011_250_105_1,
-        epsilon = 1e-15
-    );
+    assert_relative_eq!(step.min_eigenvalue, 0.381_966_011_250_105_1, epsilon = 1e-15);
     // dt_max = 2 * 0.5 * 0.68 / 1.04 = 17/26; 1 - 0.4 * 26/17 = 33/85
     assert_relative_eq!(step.step_margin.unwrap(), 33.0 / 85.0, epsilon = 1e-13);
     // The move (0.08, 0.4) against the direction (-0.6, 0.8): cos = 0.272 / 0.4079...
@@ -111,10 +99,7 @@ fn figures_by_hand() {
     assert_relative_eq!(certificate.largest_angle(), step.angle);
     assert_eq!(certificate.min_eigenvalue(), Some(step.min_eigenvalue));
     assert_eq!(certificate.min_step_margin(), step.step_margin);
-    assert_eq!(
-        (certificate.goal(), certificate.time_step()),
-        (&[10.0, 20.0][..], 0.4)
-    );
+    assert_eq!((certificate.goal(), certificate.time_step()), (&[10.0, 20.0][..], 0.4));
     assert_eq!(certificate.holds(), Ok(()));
 }
 
@@ -134,15 +119,9 @@ fn a_deserialised_certificate_is_checked() {
         min_eigenvalue,
     };
     assert_eq!(with("min_eigenvalue", 0.0), not_definite);
-    assert_eq!(
-        with("rate", 0.0),
-        Violation::NotDescending { step: 0, rate: 0.0 }
-    );
+    assert_eq!(with("rate", 0.0), Violation::NotDescending { step: 0, rate: 0.0 });
     let after = by_hand().final_potential();
-    assert_eq!(
-        with("potential", 0.0),
-        Violation::LeftGoal { step: 0, after }
-    );
+    assert_eq!(with("potential", 0.0), Violation::LeftGoal { step: 0, after });
 }
 
 #[test]
@@ -162,10 +141,7 @@ fn positions_and_metrics_must_belong_together() {
         assert_eq!(certify(path, metrics), mismatch);
     }
     let broken = certify(&[at, Vector2::new(f64::NAN, 0.0)], &[metric]).to_string();
-    assert!(
-        broken.starts_with("step 1 of the rollout failed"),
-        "{broken}"
-    );
+    assert!(broken.starts_with("step 1 of the rollout failed"), "{broken}");
 }
 
 #[test]
@@ -174,10 +150,7 @@ fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
     let attractor = Attractor::new(Vector1::new(0.0)).unwrap();
     let flow = NaturalGradientFlow::straight(attractor);
     let path = rollout(&flow, &Euler, Vector1::new(1.25), 0.5, 6).unwrap();
-    assert_eq!(
-        path,
-        [1.25, 0.75, 0.25, -0.25, 0.25, -0.25, 0.25].map(Vector1::new)
-    );
+    assert_eq!(path, [1.25, 0.75, 0.25, -0.25, 0.25, -0.25, 0.25].map(Vector1::new));
     let metric = CholeskyMetric::new([[1.0]].into(), 1e-8).unwrap();
     let certificate = LyapunovCertificate::new(&path, &[metric; 6], &attractor, 0.5).unwrap();
     let violation = Violation::NotDecreasing {

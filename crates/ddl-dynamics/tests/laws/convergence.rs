@@ -10,16 +10,13 @@ use crate::{
 };
 
 /// `Phi <= tolerance` after `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps.
-fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(
-    scene: &SceneDraw,
-) -> TestCaseResult {
+fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let (start, metric) = (scene.start::<T, D>(), scene.metrics::<T, D>()[0]);
     // A time step of at least a few seconds, so that a kilometre is not a million steps.
     let dt = scene.dt::<T>().max(T::rounded(2.0));
     let distance = attractor.potential(&start).as_f64();
-    let tolerance =
-        256.0 * T::EPSILON.as_f64() * start.amax().max(attractor.goal().amax()).as_f64();
+    let tolerance = 256.0 * T::EPSILON.as_f64() * start.amax().max(attractor.goal().amax()).as_f64();
     if distance <= tolerance {
         return Ok(());
     }
@@ -30,16 +27,10 @@ fn arrives_within_the_proved_number_of_steps<T: Real, const D: usize>(
     let flow = NaturalGradientFlow::new(attractor, metric);
     let path = rollout(&flow, &StableEuler, start, dt, steps).unwrap();
     let left = attractor.potential(&path[steps]).as_f64();
-    prop_assert!(
-        left <= tolerance,
-        "{left} m left of {distance} m after {steps} steps"
-    );
+    prop_assert!(left <= tolerance, "{left} m left of {distance} m after {steps} steps");
     Ok(())
 }
-for_every_space!(
-    arrives_within_the_proved_number_of_steps,
-    well_conditioned_scene
-);
+for_every_space!(arrives_within_the_proved_number_of_steps, well_conditioned_scene);
 
 /// Straight to the goal at 1 m/s: exactly on the goal after `Phi(0) / dt` steps, rounded up, plus one.
 fn the_gradient_flow_arrives_exactly<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {

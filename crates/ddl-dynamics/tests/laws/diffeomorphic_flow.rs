@@ -1,8 +1,8 @@
 //! Flows transformed by a diffeomorphism: they turn around corners and stay stable.
 
 use ddl_dynamics::{
-    Chain, CholeskyMetric, DiffeomorphicFlow, DormandPrince, Flow, Integrator, LyapunovCertificate,
-    MetricSchedule, Real, StableEuler, State, rollout,
+    Chain, CholeskyMetric, DiffeomorphicFlow, DormandPrince, Flow, Integrator, LyapunovCertificate, MetricSchedule,
+    Real, StableEuler, State, rollout,
 };
 use nalgebra::{ComplexField, SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -26,9 +26,7 @@ fn flows<T: Real, const D: usize>((maps, scene): &(MapDraw, SceneDraw)) -> [Bent
 }
 
 /// For every map, metric, start and time step: the computed `V` falls in every step, or the pedestrian is on the goal.
-fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
-    draw: &(MapDraw, SceneDraw),
-) -> TestCaseResult {
+fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(draw: &(MapDraw, SceneDraw)) -> TestCaseResult {
     let dt = draw.1.dt();
     for flow in flows::<T, D>(draw) {
         for start in draw.0.positions() {
@@ -44,9 +42,7 @@ fn the_certificate_holds_in_the_chart<T: Real, const D: usize>(
 for_every_space!(the_certificate_holds_in_the_chart, any_bent_scene);
 
 /// `J v = -P u` in the chart, with the metric that the flow has there, and `u^T P u > 0`.
-fn velocity_and_metric_agree<T: Real, const D: usize>(
-    draw: &(MapDraw, SceneDraw),
-) -> TestCaseResult {
+fn velocity_and_metric_agree<T: Real, const D: usize>(draw: &(MapDraw, SceneDraw)) -> TestCaseResult {
     for flow in flows::<T, D>(draw) {
         let psi = flow.chart().unwrap();
         for position in draw.0.positions() {
@@ -58,8 +54,7 @@ fn velocity_and_metric_agree<T: Real, const D: usize>(
             // Neither side loses more digits than forming J P J^T and applying J^-1 and J.
             let stretch = jacobian.norm() * (T::one() + jacobian.try_inverse().unwrap().norm());
             let given = draw.1.metrics::<T, D>()[0].eigenvalue_range().largest;
-            let scale =
-                (given + metric.eigenvalue_range().largest) * (T::one() + stretch * stretch);
+            let scale = (given + metric.eigenvalue_range().largest) * (T::one() + stretch * stretch);
             let difference = (seen + metric.apply(&u)).norm();
             prop_assert!(difference <= T::rounded(256.0) * T::EPSILON * scale);
             prop_assert!(u == SVector::<T, D>::zeros() || metric.quadratic_form(&u) > T::zero());
@@ -69,9 +64,7 @@ fn velocity_and_metric_agree<T: Real, const D: usize>(
 }
 for_every_space!(velocity_and_metric_agree, any_bent_scene);
 
-fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(
-    draw: &(MapDraw, SceneDraw),
-) -> TestCaseResult {
+fn no_finite_input_breaks_a_bent_flow<T: Real, const D: usize>(draw: &(MapDraw, SceneDraw)) -> TestCaseResult {
     let (maps, scene) = draw;
     let psi = maps.chain::<T, D>();
     let metric = scene.metrics::<T, D>()[0];
@@ -127,9 +120,7 @@ fn a_goal_without_an_image_is_refused() {
     let metric = CholeskyMetric::<f64, 2>::identity();
     let error = DiffeomorphicFlow::new(goal, psi, metric).unwrap_err();
     assert!(
-        error
-            .to_string()
-            .starts_with("component 0 of the goal is NaN"),
+        error.to_string().starts_with("component 0 of the goal is NaN"),
         "{error}"
     );
 }

@@ -47,8 +47,7 @@ fn the_inverse_undoes_the_map<T: Real, const D: usize>(draw: &MapDraw) -> TestCa
             let source = chain.inverse(&position);
             let (large, small) = stretch(&chain, &position);
             let (large_there, small_there) = stretch(&chain, &source);
-            let size =
-                40.0 + double(&position).norm() + double(&image).norm() + double(&source).norm();
+            let size = 40.0 + double(&position).norm() + double(&image).norm() + double(&source).norm();
             let magnified = (1.0 + large.max(large_there)) * (1.0 + small.max(small_there));
             let tolerance = 200.0 * T::EPSILON.as_f64() * size * magnified;
             let back = (double(&chain.inverse(&image)) - double(&position)).norm();
@@ -69,8 +68,7 @@ fn a_translation_is_undone_to_rounding<T: Real, const D: usize>(draw: &MapDraw) 
     for map in draw.translations::<T, D>() {
         for image in draw.positions::<T, D>() {
             let back = map.apply(&map.inverse(&image));
-            let size =
-                image.amax().max(map.centre().amax()).as_f64() + map.translation().amax().as_f64();
+            let size = image.amax().max(map.centre().amax()).as_f64() + map.translation().amax().as_f64();
             // The smallest number covers the loss below the normal numbers.
             let tolerance = 64.0 * T::EPSILON.as_f64() * size
                 + 8.0 * f64::MIN_POSITIVE.max((T::MIN_POSITIVE * T::EPSILON).as_f64());
@@ -177,9 +175,7 @@ proptest! {
 
 #[test]
 fn maps_that_are_not_invertible_are_refused() {
-    let new = |x: f64, rate: f64, v: f64| {
-        LocalTranslation::new(Vector2::new(0.0, x), rate, Vector2::new(v, 0.0))
-    };
+    let new = |x: f64, rate: f64, v: f64| LocalTranslation::new(Vector2::new(0.0, x), rate, Vector2::new(v, 0.0));
     let refused = |x, rate, v, message: &str| {
         let error = new(x, rate, v).unwrap_err().to_string();
         assert!(error.contains(message), "{error}");
@@ -189,18 +185,8 @@ fn maps_that_are_not_invertible_are_refused() {
     refused(0.0, -1.0, 0.0, &format!("{rate} -1 per metre"));
     refused(0.0, f64::NAN, 0.0, &format!("{rate} NaN"));
     refused(f64::NAN, 1.0, 0.0, "component 1 of the centre is NaN");
-    refused(
-        0.0,
-        1.0,
-        f64::INFINITY,
-        "component 0 of the translation is inf",
-    );
-    refused(
-        0.0,
-        f64::MAX,
-        f64::MAX,
-        "the local translation is not invertible",
-    );
+    refused(0.0, 1.0, f64::INFINITY, "component 0 of the translation is inf");
+    refused(0.0, f64::MAX, f64::MAX, "the local translation is not invertible");
     refused(
         0.0,
         1.0,
@@ -230,11 +216,7 @@ fn forged_files_are_refused() {
         ("rate", serde_json::json!(-1.0), "positive and finite"),
         ("rate", serde_json::Value::Null, "null"),
         ("centre", serde_json::json!([0.0]), "invalid length"),
-        (
-            "translation",
-            serde_json::json!([0.1, 0.1, 0.1]),
-            "invalid length",
-        ),
+        ("translation", serde_json::json!([0.1, 0.1, 0.1]), "invalid length"),
         ("center", serde_json::json!([0.0, 0.0]), "unknown field"),
     ] {
         let mut forged = honest.clone();

@@ -1,8 +1,8 @@
 //! The adaptive integrator follows the continuous flow and keeps the decrease.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DormandPrince, DynamicsError, LyapunovCertificate,
-    NaturalGradientFlow, Real, StableEuler, State, rollout,
+    Attractor, CholeskyMetric, DormandPrince, DynamicsError, LyapunovCertificate, NaturalGradientFlow, Real,
+    StableEuler, State, rollout,
 };
 use nalgebra::{DMatrix, SVector, SymmetricEigen, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -12,9 +12,7 @@ use crate::{
     for_every_space,
 };
 
-fn arrives_within_the_finite_time_bound<T: Real, const D: usize>(
-    scene: &SceneDraw,
-) -> TestCaseResult {
+fn arrives_within_the_finite_time_bound<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (attractor, start) = (scene.attractor::<T, D>(), scene.start::<T, D>());
     let metric = scene.metrics::<T, D>()[0];
     let distance = attractor.distance(&start);
@@ -44,16 +42,11 @@ fn follows_the_matrix_exponential<T: Real, const D: usize>(scene: &SceneDraw) ->
     let p = formed(&metric);
     let eigen = SymmetricEigen::new(DMatrix::from_fn(D, D, |row, column| p[(row, column)]));
     let dt = scene.dt::<T>().min(T::one());
-    let fading = eigen
-        .eigenvalues
-        .map(|rate| (-rate * 3.0 * dt.as_f64()).exp());
-    let propagator =
-        &eigen.eigenvectors * DMatrix::from_diagonal(&fading) * eigen.eigenvectors.transpose();
+    let fading = eigen.eigenvalues.map(|rate| (-rate * 3.0 * dt.as_f64()).exp());
+    let propagator = &eigen.eigenvectors * DMatrix::from_diagonal(&fading) * eigen.eigenvectors.transpose();
     let offset = (start - goal).map(Real::as_f64);
     let known = goal.map(Real::as_f64)
-        + SVector::<f64, D>::from_fn(|row, _| {
-            (0..D).map(|k| propagator[(row, k)] * offset[k]).sum()
-        });
+        + SVector::<f64, D>::from_fn(|row, _| (0..D).map(|k| propagator[(row, k)] * offset[k]).sum());
     let scale = start.amax().max(goal.amax()).max(T::one());
     let precise = DormandPrince::new(T::rounded(1e3) * T::EPSILON * scale).unwrap();
     let flow = NaturalGradientFlow::new(attractor, metric);
@@ -89,12 +82,7 @@ for_every_space!(decreases_or_reports_stiffness, any_scene);
 fn agrees_with_ten_thousand_stable_steps() {
     let attractor = Attractor::new(Vector2::new(4.0, 1.5)).unwrap();
     let source = |state: &State<'_, f64, 2>| {
-        CholeskyMetric::planar(
-            1.1,
-            0.6 - 0.1 * state.time,
-            0.8 + 0.1 * state.position.y,
-            1e-8,
-        )
+        CholeskyMetric::planar(1.1, 0.6 - 0.1 * state.time, 0.8 + 0.1 * state.position.y, 1e-8)
     };
     let flow = NaturalGradientFlow::new(attractor, source);
     let precise = DormandPrince::new(1e-10).unwrap();

@@ -1,15 +1,12 @@
 //! Random scenes, drawn as `f64` in three dimensions and reduced to the space under test.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, EigenvalueRange, MetricSchedule, NaturalGradientFlow,
-    PUBLISHED_SIGMA, Real,
+    Attractor, CholeskyMetric, EigenvalueRange, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
 };
 use nalgebra::{SMatrix, SVector};
 use proptest::{array::uniform3, collection::vec, prelude::*};
 
-pub(crate) use crate::map_draw::{
-    any_bent_scene, any_maps, any_polygon, wild_bent_scene, wild_maps,
-};
+pub(crate) use crate::map_draw::{any_bent_scene, any_maps, any_polygon, wild_bent_scene, wild_maps};
 
 pub(crate) const METRICS: usize = 12;
 
@@ -36,10 +33,7 @@ fn signed(largest: f64) -> impl Strategy<Value = f64> {
 }
 
 fn metric_draw(largest: f64) -> impl Strategy<Value = MetricDraw> {
-    let sigma = prop_oneof![
-        Just(PUBLISHED_SIGMA),
-        (-8.0..=0.0).prop_map(|x| 10_f64.powf(x))
-    ];
+    let sigma = prop_oneof![Just(PUBLISHED_SIGMA), (-8.0..=0.0).prop_map(|x| 10_f64.powf(x))];
     (uniform3(uniform3(signed(largest))), sigma)
 }
 
@@ -69,13 +63,8 @@ pub(crate) fn any_scene() -> impl Strategy<Value = SceneDraw> {
 pub(crate) fn well_conditioned_scene() -> impl Strategy<Value = SceneDraw> {
     let entry = || -0.5..=0.5;
     let diagonal = || prop_oneof![0.5..=2.0, -2.0..=-0.5];
-    let factor = (uniform3(diagonal()), uniform3(entry())).prop_map(|(d, low)| {
-        [
-            [d[0], 0.0, 0.0],
-            [low[0], d[1], 0.0],
-            [low[1], low[2], d[2]],
-        ]
-    });
+    let factor = (uniform3(diagonal()), uniform3(entry()))
+        .prop_map(|(d, low)| [[d[0], 0.0, 0.0], [low[0], d[1], 0.0], [low[1], low[2], d[2]]]);
     scene_with((factor, Just(PUBLISHED_SIGMA)))
 }
 
@@ -118,9 +107,7 @@ impl SceneDraw {
         self.metrics.iter().map(metric).collect()
     }
 
-    pub(crate) fn flow<T: Real, const D: usize>(
-        &self,
-    ) -> NaturalGradientFlow<T, D, MetricSchedule<T, D>> {
+    pub(crate) fn flow<T: Real, const D: usize>(&self) -> NaturalGradientFlow<T, D, MetricSchedule<T, D>> {
         let metrics = MetricSchedule::new(self.metrics()).unwrap();
         NaturalGradientFlow::new(self.attractor(), metrics)
     }
@@ -141,13 +128,7 @@ impl SceneDraw {
 }
 
 fn metric<T: Real, const D: usize>((entries, sigma): &MetricDraw) -> CholeskyMetric<T, D> {
-    let factor = SMatrix::from_fn(|row, column| {
-        T::rounded(if column > row {
-            0.0
-        } else {
-            entries[row][column]
-        })
-    });
+    let factor = SMatrix::from_fn(|row, column| T::rounded(if column > row { 0.0 } else { entries[row][column] }));
     CholeskyMetric::new(factor, T::rounded(*sigma)).unwrap()
 }
 

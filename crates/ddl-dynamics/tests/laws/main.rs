@@ -1,10 +1,7 @@
 //! Properties of the crate, each in `f32` and `f64` and in one, two and three dimensions.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-#![allow(
-    clippy::cast_sign_loss,
-    reason = "numbers of steps are computed as positive floats"
-)]
+#![allow(clippy::cast_sign_loss, reason = "numbers of steps are computed as positive floats")]
 
 mod avoiding;
 mod certificate;

@@ -37,8 +37,7 @@ fn eigenvalues_agree_and_enclose<T: Real, const D: usize>(scene: &SceneDraw) -> 
     for metric in scene.metrics::<T, D>() {
         let range = metric.eigenvalue_range();
         let p = formed(&metric);
-        let eigenvalues =
-            DMatrix::from_fn(D, D, |row, column| p[(row, column)]).symmetric_eigenvalues();
+        let eigenvalues = DMatrix::from_fn(D, D, |row, column| p[(row, column)]).symmetric_eigenvalues();
         let tolerance = 32.0 * T::EPSILON.as_f64() * p.norm();
         prop_assert!((range.smallest.as_f64() - eigenvalues.min()).abs() <= tolerance);
         prop_assert!((range.largest.as_f64() - eigenvalues.max()).abs() <= tolerance);

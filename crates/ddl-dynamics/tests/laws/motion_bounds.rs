@@ -1,8 +1,8 @@
 //! Motions within bounds: limited speed, nearer to the goal at every step, never past it, and on it with the last step.
 
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds,
-    NaturalGradientFlow, Real, StableEuler, StepTime, rollout,
+    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Real,
+    StableEuler, StepTime, rollout,
 };
 use nalgebra::Vector2;
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -28,10 +28,7 @@ type Within<T> = (
     LyapunovCertificate<T>,
 );
 
-fn within<T: Real>(
-    scene: &SceneDraw,
-    (spare, share, dt, own, absolute): BoundsDraw,
-) -> Option<Within<T>> {
+fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, own, absolute): BoundsDraw) -> Option<Within<T>> {
     let (start, attractor, dt) = (scene.start::<T, 2>(), scene.attractor(), T::rounded(dt));
     let arriving = attractor.distance(&start) / (dt * T::rounded(METRICS as f64));
     let top_speed = (arriving * T::rounded(spare)).max(T::rounded(1e-3));
@@ -42,9 +39,7 @@ fn within<T: Real>(
     let flow = NaturalGradientFlow::new(attractor, schedule);
     let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
-    let certificate = certificate
-        .within(&path, &attractor, &bounds, true)
-        .unwrap();
+    let certificate = certificate.within(&path, &attractor, &bounds, true).unwrap();
     Some((path, attractor, bounds, certificate))
 }
 
@@ -82,20 +77,14 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
         if let Some((was, [slowest, fastest])) = before {
             let most = f64::max(fast - slowest, fastest - slow);
             let change = f64::abs(speed - was);
-            prop_assert!(
-                change <= most + near(fast + fastest),
-                "step {k}: {change} over {most}"
-            );
+            prop_assert!(change <= most + near(fast + fastest), "step {k}: {change} over {most}");
         }
         before = Some((speed, [slow, fast]));
         sideways += 0.5 * dt * (fast - slow + near(fast)) + off;
         let start = path[0].map(Real::as_f64);
         if let Some(ahead) = (goal - start).try_normalize(1e3 * off) {
             let deviation = ahead.perp(&(to - start)).abs();
-            prop_assert!(
-                deviation <= sideways,
-                "step {k}: {deviation} over {sideways}"
-            );
+            prop_assert!(deviation <= sideways, "step {k}: {deviation} over {sideways}");
         }
         if d > 1e3 * off && speed * dt > 1e3 * off {
             let (ahead, moved) = ((goal - from).normalize(), (to - from).normalize());
@@ -176,11 +165,7 @@ fn shaped_by_hand() {
     let (half, arriving) = (Vector2::new(1.0, 0.5 / g), Vector2::new(1.0, 0.0));
     let within = |own, share| MotionBounds::new(2.15, own, share).unwrap();
     for (bounds, [a, c], expected) in [
-        (
-            within(half, 1.0).absolute(),
-            [3.0_f64, 0.2],
-            [2.0, 0.0, 0.25],
-        ),
+        (within(half, 1.0).absolute(), [3.0_f64, 0.2], [2.0, 0.0, 0.25]),
         (within(half, 0.0).absolute(), [3.0, 0.2], [1.0, 0.5, 1.5]),
         (within(half, 0.5).absolute(), [3.0, 0.2], [1.5, 0.25, 0.875]),
         (within(arriving, 1.0), [1.5, 1.5], [2.0, 0.0, 2.0]),
@@ -188,9 +173,7 @@ fn shaped_by_hand() {
         (within(arriving, 1.0), [0.5_f64.sqrt(); 2], [0.5, 0.0, 0.5]),
     ] {
         let metric = CholeskyMetric::planar(a, 0.0, c, 1e-12).unwrap();
-        let shaped = bounds
-            .shape(&metric, &Vector2::new(4.8, 0.0), first)
-            .to_matrix();
+        let shaped = bounds.shape(&metric, &Vector2::new(4.8, 0.0), first).to_matrix();
         for (found, expected) in [shaped.m11, shaped.m12, shaped.m22].iter().zip(expected) {
             assert!((found - expected).abs() < 2e-12, "{shaped}");
         }
@@ -208,9 +191,7 @@ fn a_goal_out_of_reach_is_reported() {
     let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 12).unwrap();
     assert!((path[12] - Vector2::new(9.6, 0.0)).norm() < 1e-12);
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4).unwrap();
-    let certificate = certificate
-        .within(&path, &attractor, &bounds, true)
-        .unwrap();
+    let certificate = certificate.within(&path, &attractor, &bounds, true).unwrap();
     assert_eq!(certificate.holds(), Ok(()));
     let left = certificate.motion().unwrap().distance_left.unwrap();
     assert!((left.largest - 10.4).abs() < 1e-9 && (left.bound - 10.4).abs() < 1e-6);

@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, Flow, Integrator, LyapunovCertificate, NaturalGradientFlow,
-    Real, StableEuler, State, StepLimit, rollout,
+    Attractor, CholeskyMetric, Euler, Flow, Integrator, LyapunovCertificate, NaturalGradientFlow, Real, StableEuler,
+    State, StepLimit, rollout,
 };
 use nalgebra::{SVector, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -120,10 +120,7 @@ fn a_step_below_the_spacing_of_f32_still_shows() {
     // One spacing from the goal: the next number is the goal itself.
     let near = Attractor::new(Vector2::new(1.0_f32.next_down(), 0.0)).unwrap();
     let step = StableEuler::advance(&near, &start, &velocity, 0.4).unwrap();
-    assert_eq!(
-        (step.position, step.limit),
-        (*near.goal(), StepLimit::Resolution)
-    );
+    assert_eq!((step.position, step.limit), (*near.goal(), StepLimit::Resolution));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Straightening: paths with corners and turns become straight lines, and the flow follows them.
 
 use ddl_dynamics::{
-    Chain, CholeskyMetric, DiffeomorphicFlow, Diffeomorphism, DynamicsError, LyapunovCertificate,
-    Real, StableEuler, Straightening, rollout,
+    Chain, CholeskyMetric, DiffeomorphicFlow, Diffeomorphism, DynamicsError, LyapunovCertificate, Real, StableEuler,
+    Straightening, rollout,
 };
 use nalgebra::{ComplexField, SVector, Vector1, Vector2, Vector3};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -47,11 +47,7 @@ struct Descent<const D: usize> {
     missed: f64,
 }
 
-fn descended<const D: usize>(
-    psi: &Chain<f64, D>,
-    start: SVector<f64, D>,
-    path: &[SVector<f64, D>],
-) -> Descent<D> {
+fn descended<const D: usize>(psi: &Chain<f64, D>, start: SVector<f64, D>, path: &[SVector<f64, D>]) -> Descent<D> {
     let (goal, step) = (path[path.len() - 1], 0.01);
     let identity = CholeskyMetric::identity();
     let flow = DiffeomorphicFlow::in_chart(goal, psi.clone(), identity).unwrap();
@@ -64,9 +60,7 @@ fn descended<const D: usize>(
         .windows(2)
         .map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])));
     Descent {
-        departure: (positions[1] - start)
-            .angle(&(path[1] - path[0]))
-            .to_degrees(),
+        departure: (positions[1] - start).angle(&(path[1] - path[0])).to_degrees(),
         widest: turns.fold(0.0, f64::max).to_degrees(),
         missed: (positions[steps] - goal).norm(),
         positions,
@@ -128,11 +122,7 @@ fn around_the_end_of_a_wall_and_back() {
     assert!(way.widest > 120.0, "{}", way.widest);
     // Never through the wall, which is at y = 0.5 from far left to x = 2.8.
     for pair in way.positions.windows(2) {
-        assert!(
-            (pair[0].y < 0.5) == (pair[1].y < 0.5) || pair[1].x > 2.8,
-            "{}",
-            pair[1]
-        );
+        assert!((pair[0].y < 0.5) == (pair[1].y < 0.5) || pair[1].x > 2.8, "{}", pair[1]);
     }
     let chain = Chain::straightening(&path, LAYERS).unwrap().chain;
     for start in [[0.0, -0.4], [1.5, 0.2], [3.6, 0.5], [-1.0, 0.0], [1.0, 2.0]] {
@@ -146,10 +136,7 @@ fn the_same_path_gives_the_same_chain_in_any_unit_and_place() {
     let path = hairpin(1.0);
     let first = Chain::straightening(&path, 60).unwrap();
     assert_eq!(first, Chain::straightening(&path, 60).unwrap());
-    let elsewhere: Vec<_> = path
-        .iter()
-        .map(|p| p * 1024.0 + Vector2::new(-4096.0, 512.0))
-        .collect();
+    let elsewhere: Vec<_> = path.iter().map(|p| p * 1024.0 + Vector2::new(-4096.0, 512.0)).collect();
     let second = Chain::straightening(&elsewhere, 60).unwrap();
     assert!((second.mean_residual / first.mean_residual / 1024.0 - 1.0).abs() < 1e-6);
 }
@@ -174,10 +161,7 @@ fn invalid_paths_are_refused() {
     assert_eq!(refused(&[]), length(0, 0.0));
     assert_eq!(refused(&[[1.0, 2.0]]), length(1, 0.0));
     assert_eq!(refused(&[[1.0, 2.0]; 3]), length(3, 0.0));
-    assert_eq!(
-        refused(&[[-f64::MAX, 0.0], [f64::MAX, 0.0]]),
-        length(2, f64::INFINITY)
-    );
+    assert_eq!(refused(&[[-f64::MAX, 0.0], [f64::MAX, 0.0]]), length(2, f64::INFINITY));
     assert_eq!(refused(&[[0.0, 0.0], [5e-324, 0.0]]), length(2, 5e-324));
     // 16 times the distance of the start overflows `f64`, but the path itself does not.
     let far = refused(&[[2e307, 0.0], [2e307, 1e300]]);
@@ -187,9 +171,7 @@ fn invalid_paths_are_refused() {
         infinite.starts_with("component 1 of point 1 of the path is inf"),
         "{infinite}"
     );
-    let DynamicsError::PathTurnsBack { along } =
-        refused(&[[0.0, 0.0], [0.0, 2.0], [0.0, 1.0], [3.0, 1.0]])
-    else {
+    let DynamicsError::PathTurnsBack { along } = refused(&[[0.0, 0.0], [0.0, 2.0], [0.0, 1.0], [3.0, 1.0]]) else {
         panic!("not the expected error")
     };
     assert!((along - 2.0).abs() < 0.1, "{along}");
@@ -202,13 +184,7 @@ fn no_polygon_breaks_it<T: Real, const D: usize>(draw: &PolygonDraw) -> TestCase
             prop_assert!(straightening.mean_residual <= straightening.largest_residual);
             for point in straightening.samples.iter().chain(&straightening.targets) {
                 prop_assert!(point.iter().all(ComplexField::is_finite));
-                prop_assert!(
-                    straightening
-                        .chain
-                        .apply(point)
-                        .iter()
-                        .all(ComplexField::is_finite)
-                );
+                prop_assert!(straightening.chain.apply(point).iter().all(ComplexField::is_finite));
             }
         }
         Err(DynamicsError::InvalidPathLength { .. } | DynamicsError::PathTurnsBack { .. }) => {}

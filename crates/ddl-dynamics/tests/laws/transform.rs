@@ -16,9 +16,7 @@ fn smallest_eigenvalue<const D: usize>(matrix: &SMatrix<f64, D, D>) -> f64 {
 }
 
 /// `n^T P' u = share n^T P u`, `share P <= P' <= P`, and `u^T P' u > 0` as computed.
-fn slowed_along_a_direction_and_no_more<T: Real, const D: usize>(
-    scene: &SceneDraw,
-) -> TestCaseResult {
+fn slowed_along_a_direction_and_no_more<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let Some(n) = scene.unit::<T, D>() else {
         return Ok(());
     };
@@ -63,9 +61,7 @@ fn seen_through_a_map<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseRes
 }
 for_every_space!(seen_through_a_map, any_scene);
 
-fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(
-    scene: &SceneDraw,
-) -> TestCaseResult {
+fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let direction = scene.direction::<T, D>();
     let map = SMatrix::<T, D, D>::from_fn(|row, column| {
         if row == column {
@@ -104,10 +100,7 @@ fn invalid_transforms_are_refused() {
     }
     let no_direction = metric.damped_along(&Vector2::zeros(), 0.5);
     assert_eq!(no_direction, Err(DynamicsError::NoDirection));
-    for singular in [
-        Matrix2::new(1.0, 2.0, 2.0, 4.0),
-        Matrix2::new(1.0, f64::NAN, 0.0, 1.0),
-    ] {
+    for singular in [Matrix2::new(1.0, 2.0, 2.0, 4.0), Matrix2::new(1.0, f64::NAN, 0.0, 1.0)] {
         assert_eq!(metric.congruent(&singular), Err(DynamicsError::SingularMap));
     }
 }

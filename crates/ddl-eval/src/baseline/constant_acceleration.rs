@@ -84,21 +84,12 @@ mod tests {
     /// by 0.6 m.
     #[test]
     fn ends_by_hand() {
-        let (free, bounded) = (
-            ConstantAcceleration::unbounded(),
-            ConstantAcceleration::bounded(),
-        );
+        let (free, bounded) = (ConstantAcceleration::unbounded(), ConstantAcceleration::bounded());
         for (forecaster, usual, (at, other), last, expected) in [
             (free, 1.0, (5, [1.0, -0.1]), 1.0, [19.0, 7.7]),
             (free, 1.0, (5, [1.0, 0.0]), 0.75, [6.75 - 10.5, 0.0]),
             (bounded, 1.0, (5, [1.0, 0.0]), 0.75, [7.5, 0.0]),
-            (
-                bounded,
-                0.5,
-                (2, [0.6, 0.0]),
-                0.55,
-                [3.65 + 12.0 * 0.6, 0.0],
-            ),
+            (bounded, 0.5, (2, [0.6, 0.0]), 0.55, [3.65 + 12.0 * 0.6, 0.0]),
             (bounded, 0.0, (5, [0.0, 0.0]), 0.0, [0.0, 0.0]),
         ] {
             let mut track = vec![[0.0, 0.0]];

@@ -49,10 +49,7 @@ impl ConstantVelocity {
             1
         };
         let (from, to) = (observed[OBSERVED - 1 - back], observed[OBSERVED - 1]);
-        [
-            (to[0] - from[0]) / back as f64,
-            (to[1] - from[1]) / back as f64,
-        ]
+        [(to[0] - from[0]) / back as f64, (to[1] - from[1]) / back as f64]
     }
 }
 
@@ -92,11 +89,7 @@ impl Forecaster for ConstantVelocity {
                 }));
             }
         }
-        Ok(Forecast::with_equal_weights(
-            window.len(),
-            samples,
-            positions,
-        )?)
+        Ok(Forecast::with_equal_weights(window.len(), samples, positions)?)
     }
 }
 
@@ -114,10 +107,7 @@ fn stream(seed: u64, window: &Window) -> ChaCha8Rng {
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::float_cmp,
-    reason = "sums and products of small integers are exact"
-)]
+#[allow(clippy::float_cmp, reason = "sums and products of small integers are exact")]
 mod tests {
     use approx::assert_relative_eq;
     use ddl_data::PedestrianId;
@@ -159,9 +149,7 @@ mod tests {
         assert_eq!(forecast, noisy.forecast(&turning()).unwrap());
         assert_ne!(
             forecast,
-            ConstantVelocity::angular_noise(4)
-                .forecast(&turning())
-                .unwrap()
+            ConstantVelocity::angular_noise(4).forecast(&turning()).unwrap()
         );
     }
 }

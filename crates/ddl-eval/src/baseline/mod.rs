@@ -24,11 +24,7 @@ pub const NOISE_SEED: u64 = 1;
 ///
 /// # Errors
 /// The windows cannot be scored.
-pub fn measure(
-    conditions: &Conditions,
-    windows: &[Window],
-    noise_seed: u64,
-) -> Result<Vec<ResultRow>, MeasureError> {
+pub fn measure(conditions: &Conditions, windows: &[Window], noise_seed: u64) -> Result<Vec<ResultRow>, MeasureError> {
     measure_among(conditions, windows, windows, noise_seed)
 }
 
@@ -57,10 +53,7 @@ pub(crate) fn measure_among(
         row(&ConstantVelocity::mean_observed(), None)?,
     ];
     if conditions.protocol.hypotheses() > 1 {
-        rows.push(row(
-            &ConstantVelocity::angular_noise(noise_seed),
-            Some(noise_seed),
-        )?);
+        rows.push(row(&ConstantVelocity::angular_noise(noise_seed), Some(noise_seed))?);
     }
     rows.push(row(&ConstantAcceleration::bounded(), None)?);
     rows.push(row(&SocialForce, None)?);
@@ -86,10 +79,7 @@ mod tests {
             let (convention, rule) = (Convention::Star, WindowRule::Complete);
             let conditions = Conditions::new(convention, rule, protocol, "yard", "mine");
             let rows = measure(&conditions, &windows, 5).unwrap();
-            assert_eq!(
-                rows[0].conditions.forecaster,
-                "constant velocity (last step)"
-            );
+            assert_eq!(rows[0].conditions.forecaster, "constant velocity (last step)");
             assert!(rows[0].scores.min_fde < 1e-9);
             let seeded = rows.iter().filter_map(|row| row.conditions.seed).collect();
             (rows.len(), seeded)

@@ -50,9 +50,7 @@ impl Forecaster for SocialForce {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let n = window.len();
-        let mut pedestrians: Vec<ForcedPedestrian> = (0..n)
-            .map(|i| ForcedPedestrian::of(window.observed(i)))
-            .collect();
+        let mut pedestrians: Vec<ForcedPedestrian> = (0..n).map(|i| ForcedPedestrian::of(window.observed(i))).collect();
         let mut positions = vec![[0.0, 0.0]; n * HORIZON];
         let mut forces = vec![[0.0, 0.0]; n];
         for t in 0..HORIZON {
@@ -72,10 +70,7 @@ impl Forecaster for SocialForce {
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        windows
-            .par_iter()
-            .map(|window| self.forecast(window))
-            .collect()
+        windows.par_iter().map(|window| self.forecast(window)).collect()
     }
 }
 
@@ -187,12 +182,7 @@ mod tests {
     /// The repulsion is the gradient of the potential, here by differences of 1e-6 m.
     #[test]
     fn the_push_of_who_walks_is_the_slope_of_the_potential() {
-        let other = ForcedPedestrian::of(
-            &[[0.0, 0.0]; 7]
-                .into_iter()
-                .chain([[0.3, 0.4]])
-                .collect::<Vec<_>>(),
-        );
+        let other = ForcedPedestrian::of(&[[0.0, 0.0]; 7].into_iter().chain([[0.3, 0.4]]).collect::<Vec<_>>());
         let potential = |p: Position| {
             let s = FORESIGHT * 1.25;
             let next = [0.3 + s * 0.6, 0.4 + s * 0.8];
@@ -223,31 +213,15 @@ mod tests {
             .forecast(&pedestrians(&[meets, met, overtakes, stands]))
             .unwrap();
         let expected = [
-            [
-                [0.474_506, -0.129_691],
-                [2.147_765, -0.658_875],
-                [4.869_37, -0.085_545],
-            ],
-            [
-                [3.601_167, 0.300_444],
-                [2.411_451, -0.055_36],
-                [0.049_612, 0.255_175],
-            ],
-            [
-                [-0.074_799, 0.351_699],
-                [2.540_464, 0.591_208],
-                [5.858_509, 0.937_668],
-            ],
+            [[0.474_506, -0.129_691], [2.147_765, -0.658_875], [4.869_37, -0.085_545]],
+            [[3.601_167, 0.300_444], [2.411_451, -0.055_36], [0.049_612, 0.255_175]],
+            [[-0.074_799, 0.351_699], [2.540_464, 0.591_208], [5.858_509, 0.937_668]],
             [[2.2, -0.9], [2.2, -0.9], [2.2, -0.9]],
         ];
         for (i, expected) in expected.into_iter().enumerate() {
             let path = forecast.hypothesis(i, 0);
             for (t, expected) in [0, 5, 11].into_iter().zip(expected) {
-                assert!(
-                    distance(path[t], expected) < 1e-6,
-                    "{i}, {t}: {:?}",
-                    path[t]
-                );
+                assert!(distance(path[t], expected) < 1e-6, "{i}, {t}: {:?}", path[t]);
             }
         }
     }
@@ -256,12 +230,8 @@ mod tests {
     fn who_overtakes_gives_way_and_the_order_of_pedestrians_does_not_matter() {
         let ahead = ([1.5, 0.0], [0.2, 0.0]);
         let behind = ([0.0, 0.001], [0.5, 0.0]);
-        let one = SocialForce
-            .forecast(&pedestrians(&[ahead, behind]))
-            .unwrap();
-        let other = SocialForce
-            .forecast(&pedestrians(&[behind, ahead]))
-            .unwrap();
+        let one = SocialForce.forecast(&pedestrians(&[ahead, behind])).unwrap();
+        let other = SocialForce.forecast(&pedestrians(&[behind, ahead])).unwrap();
         assert_eq!(one.hypothesis(0, 0), other.hypothesis(1, 0));
         assert_eq!(one.hypothesis(1, 0), other.hypothesis(0, 0));
         let pushed = one.hypothesis(1, 0)[11];

@@ -125,18 +125,12 @@ impl<G: GoalSource> Forecaster for StraightLine<G> {
             })
         };
         if sets.len() != window.len() {
-            return refuse(format!(
-                "{} goal sets for {} pedestrians",
-                sets.len(),
-                window.len()
-            ));
+            return refuse(format!("{} goal sets for {} pedestrians", sets.len(), window.len()));
         }
         let hypotheses = sets.first().map_or(0, |set| set.goals.len());
         if let Some(odd) = sets.iter().find(|set| set.goals.len() != hypotheses) {
             let found = odd.goals.len();
-            return refuse(format!(
-                "sets of {hypotheses} and of {found} goals in one window"
-            ));
+            return refuse(format!("sets of {hypotheses} and of {found} goals in one window"));
         }
         let mut positions = Vec::with_capacity(window.len() * hypotheses * HORIZON);
         for (i, set) in sets.iter().enumerate() {
@@ -145,14 +139,8 @@ impl<G: GoalSource> Forecaster for StraightLine<G> {
                 positions.extend((1..=HORIZON).map(|t| between(start, *goal, t)));
             }
         }
-        let weights = sets
-            .iter()
-            .flat_map(|set| set.weights.iter().copied())
-            .collect();
-        let goals = sets
-            .iter()
-            .flat_map(|set| set.goals.iter().copied())
-            .collect();
+        let weights = sets.iter().flat_map(|set| set.weights.iter().copied()).collect();
+        let goals = sets.iter().flat_map(|set| set.goals.iter().copied()).collect();
         Ok(Forecast::new(
             window.len(),
             hypotheses,
@@ -176,10 +164,7 @@ fn between(start: Position, goal: Position, t: usize) -> Position {
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::float_cmp,
-    reason = "sums and products of small integers are exact"
-)]
+#[allow(clippy::float_cmp, reason = "sums and products of small integers are exact")]
 mod tests {
     use super::*;
     use crate::{Protocol, fixture::window};
@@ -209,9 +194,7 @@ mod tests {
         assert_eq!(forecast.most_likely(0), 1);
         let single = Protocol::Single.forecast(&straight, &windows).unwrap();
         assert_eq!(single, [forecast.single()]);
-        let error = StraightLine::to(Corners(0))
-            .forecast(&windows[0])
-            .unwrap_err();
+        let error = StraightLine::to(Corners(0)).forecast(&windows[0]).unwrap_err();
         let expected = "goal source `two corners`: 0 goal sets for 1 pedestrians";
         assert_eq!(error.to_string(), expected);
     }

@@ -61,12 +61,7 @@ pub enum Interaction {
 
 impl Interaction {
     /// All kinds, in display order.
-    pub const ALL: [Self; 4] = [
-        Self::LeaderFollower,
-        Self::CollisionAvoidance,
-        Self::Group,
-        Self::Other,
-    ];
+    pub const ALL: [Self; 4] = [Self::LeaderFollower, Self::CollisionAvoidance, Self::Group, Self::Other];
 
     /// The kinds of pedestrian `i`, in the order of [`Interaction::ALL`]; empty without interaction or future.
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
@@ -83,10 +78,7 @@ impl Interaction {
         if kinds.is_empty() && ahead {
             return vec![Self::Other];
         }
-        Self::ALL
-            .into_iter()
-            .filter(|kind| kinds.contains(kind))
-            .collect()
+        Self::ALL.into_iter().filter(|kind| kinds.contains(kind)).collect()
     }
 
     /// The kinds of pedestrian `i` with pedestrian `j`, without [`Interaction::Other`]; empty without a future, and for
@@ -197,10 +189,7 @@ mod tests {
             (vec![beside(0.9)], vec![]),
             (vec![([0.0, 0.1], [0.5, 0.05])], vec![]),
             (vec![([9.0, 0.0], [0.0, 0.0])], vec![Other]),
-            (
-                vec![beside(0.6), ([1.5, 0.0], EAST)],
-                vec![LeaderFollower, Group],
-            ),
+            (vec![beside(0.6), ([1.5, 0.0], EAST)], vec![LeaderFollower, Group]),
         ] {
             let window = walking(&[vec![([0.0, 0.0], EAST)], others].concat(), 20);
             assert_eq!(Interaction::of(&window, 0), expected, "{window:?}");

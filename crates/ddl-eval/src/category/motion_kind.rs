@@ -79,11 +79,7 @@ impl MotionKind {
         let turn = turn(minus(last, first), minus(end, last));
         if turn.abs() >= TURN {
             let left = turn > 0.0;
-            return Some(if left {
-                Self::TurningLeft
-            } else {
-                Self::TurningRight
-            });
+            return Some(if left { Self::TurningLeft } else { Self::TurningRight });
         }
         let before = observed / ((OBSERVED - 1) as f64 * TIME_STEP);
         let after = future / (HORIZON as f64 * TIME_STEP);
@@ -148,11 +144,7 @@ mod tests {
             ([0.0, 0.01], [0.5, 0.0], SpeedingUp),
             ([0.5, 0.0], [0.0, -0.02], SlowingDown),
         ] {
-            assert_eq!(
-                MotionKind::of(&track(before, after)),
-                Some(expected),
-                "{after:?}"
-            );
+            assert_eq!(MotionKind::of(&track(before, after)), Some(expected), "{after:?}");
         }
     }
 

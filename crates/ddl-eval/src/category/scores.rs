@@ -30,9 +30,8 @@ pub struct CategoryScores {
 
 impl CategoryScores {
     pub(crate) fn of<'a>(pedestrians: impl Iterator<Item = &'a PedestrianScores>) -> Vec<Self> {
-        let mut groups: Vec<(Category, Vec<&PedestrianScores>)> = Category::all()
-            .map(|category| (category, Vec::new()))
-            .collect();
+        let mut groups: Vec<(Category, Vec<&PedestrianScores>)> =
+            Category::all().map(|category| (category, Vec::new())).collect();
         for pedestrian in pedestrians {
             for (category, members) in &mut groups {
                 if pedestrian.categories.contains(category) {
@@ -41,18 +40,14 @@ impl CategoryScores {
             }
         }
         groups.retain(|(_, members)| !members.is_empty());
-        let scores = groups
-            .iter()
-            .map(|(category, members)| Self::mean(*category, members));
+        let scores = groups.iter().map(|(category, members)| Self::mean(*category, members));
         scores.collect()
     }
 
     fn mean(category: Category, members: &[&PedestrianScores]) -> Self {
         let n = members.len() as f64;
-        let mean =
-            |of: fn(&PedestrianScores) -> f64| members.iter().map(|w| of(w)).sum::<f64>() / n;
-        let share =
-            |of: fn(&PedestrianScores) -> bool| members.iter().filter(|w| of(w)).count() as f64 / n;
+        let mean = |of: fn(&PedestrianScores) -> f64| members.iter().map(|w| of(w)).sum::<f64>() / n;
+        let share = |of: fn(&PedestrianScores) -> bool| members.iter().filter(|w| of(w)).count() as f64 / n;
         Self {
             category,
             pedestrians: members.len(),

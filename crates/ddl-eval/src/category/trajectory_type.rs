@@ -38,12 +38,7 @@ pub enum TrajectoryType {
 
 impl TrajectoryType {
     /// All types, I to IV.
-    pub const ALL: [Self; 4] = [
-        Self::Static,
-        Self::Linear,
-        Self::Interacting,
-        Self::NonInteracting,
-    ];
+    pub const ALL: [Self; 4] = [Self::Static, Self::Linear, Self::Interacting, Self::NonInteracting];
 
     /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
     pub fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
@@ -93,11 +88,7 @@ mod tests {
 
     #[test]
     fn each_type_by_hand() {
-        let of = |tracks| {
-            TrajectoryType::with_interactions(&of_tracks(tracks), 0)
-                .unwrap()
-                .0
-        };
+        let of = |tracks| TrajectoryType::with_interactions(&of_tracks(tracks), 0).unwrap().0;
         // 19 steps of 5 cm are 0.95 m, of 6 cm 1.14 m.
         let slow = |step: f64| (0..20).map(|t| [step * f64::from(t), 0.0]).collect();
         assert_eq!(of(vec![slow(0.05)]), Static);

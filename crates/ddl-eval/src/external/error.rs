@@ -12,15 +12,9 @@ use crate::error::{EvaluationError, ForecastError, ForecastShapeError, MeasureEr
 #[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum ExternalError {
     #[error("cannot read {}: {source}", path.display())]
-    File {
-        path: PathBuf,
-        source: std::io::Error,
-    },
+    File { path: PathBuf, source: std::io::Error },
     #[error("{origin}: {source}")]
-    Io {
-        origin: String,
-        source: std::io::Error,
-    },
+    Io { origin: String, source: std::io::Error },
     #[error("{origin}, line {line}{}: {problem}", field.as_deref().map(|f| format!(", {f}")).unwrap_or_default())]
     Line {
         origin: String,
@@ -60,23 +54,15 @@ pub enum ExternalError {
         metres: f64,
         hint: &'static str,
     },
-    #[error(
-        "two windows of `{recording}` are observed until frame {observed_until}: use the windows of one rule"
-    )]
-    AmbiguousWindows {
-        recording: String,
-        observed_until: i64,
-    },
+    #[error("two windows of `{recording}` are observed until frame {observed_until}: use the windows of one rule")]
+    AmbiguousWindows { recording: String, observed_until: i64 },
     #[error(
         "forecasts of a file cannot be measured under the protocol `published`, in which the forecaster chooses the \
          goal with the TRUE end before it forecasts; use `fair` or `single`"
     )]
     Published,
     #[error("{origin}: {source}")]
-    Shape {
-        origin: String,
-        source: ForecastShapeError,
-    },
+    Shape { origin: String, source: ForecastShapeError },
     #[error(transparent)]
     Forecast(#[from] ForecastError),
     #[error(transparent)]
@@ -111,21 +97,12 @@ pub(super) enum ExternalProblem {
     #[error("is missing")]
     Missing,
     #[error("must be {expected}, found {found}")]
-    Kind {
-        expected: &'static str,
-        found: String,
-    },
-    #[error(
-        "must be a finite number, found {found}; a model that diverged must be reported as such, not scored"
-    )]
+    Kind { expected: &'static str, found: String },
+    #[error("must be a finite number, found {found}; a model that diverged must be reported as such, not scored")]
     NotFinite { found: String },
-    #[error(
-        "{found} positions; a forecast has {expected}, 0.4 s apart, after the last observed frame"
-    )]
+    #[error("{found} positions; a forecast has {expected}, 0.4 s apart, after the last observed frame")]
     Length { expected: usize, found: usize },
-    #[error(
-        "the forecast has the frames {found}; the 12 after the last observed one are {expected}"
-    )]
+    #[error("the forecast has the frames {found}; the 12 after the last observed one are {expected}")]
     Frames { expected: String, found: String },
     #[error(
         "the scene has the frames {found}; the window that starts there has the observed frames {observed} and the \
@@ -161,9 +138,7 @@ pub(super) enum ExternalProblem {
     OpenQuote,
     #[error("at least one hypothesis is needed")]
     NoHypothesis,
-    #[error(
-        "hypothesis {hypothesis} appeared before; the rows of a hypothesis must be consecutive"
-    )]
+    #[error("hypothesis {hypothesis} appeared before; the rows of a hypothesis must be consecutive")]
     Scattered { hypothesis: i64 },
     #[error("all hypotheses of a pedestrian must have weights, or none")]
     WeightsOfSome,

@@ -80,19 +80,13 @@ impl<'a> ExpectedForecasts<'a> {
                 expected.recordings.len() - 1
             });
             let observed_until = last_observed(window);
-            if expected
-                .by_last
-                .insert((recording, observed_until), index)
-                .is_some()
-            {
+            if expected.by_last.insert((recording, observed_until), index).is_some() {
                 return Err(ExternalError::AmbiguousWindows {
                     recording: name.to_owned(),
                     observed_until,
                 });
             }
-            expected
-                .slots
-                .push(window.pedestrians().iter().map(|_| None).collect());
+            expected.slots.push(window.pedestrians().iter().map(|_| None).collect());
         }
         Ok(expected)
     }
@@ -180,9 +174,7 @@ impl<'a> ExpectedForecasts<'a> {
         if has_goals != expected {
             return Err(whole_line(ExternalProblem::GoalsOfSome { first_line }));
         }
-        forecast
-            .check_weights()
-            .map_err(|problem| in_field("weight", problem))
+        forecast.check_weights().map_err(|problem| in_field("weight", problem))
     }
 
     fn remember_unknown(&mut self, who: &PedestrianKey, recording: Option<usize>) {
@@ -192,13 +184,9 @@ impl<'a> ExpectedForecasts<'a> {
             window.is_some_and(|w| self.windows[w].named(&who.pedestrian).is_some())
         };
         let step = self.windows.first().map_or(1, Window::frame_step);
-        let as_first_frame = in_window(
-            who.observed_until
-                .saturating_add(step * (OBSERVED as i64 - 1)),
-        );
+        let as_first_frame = in_window(who.observed_until.saturating_add(step * (OBSERVED as i64 - 1)));
         let as_next_frame = in_window(who.observed_until.saturating_sub(step));
-        self.unknown
-            .remember(who, known, as_first_frame, as_next_frame);
+        self.unknown.remember(who, known, as_first_frame, as_next_frame);
     }
 }
 

@@ -44,12 +44,7 @@ impl Unknown {
     }
 
     /// A likely reason why the forecasts match no pedestrian, given how many others match.
-    pub(super) fn hint(
-        &self,
-        recordings: &[&str],
-        range: Option<(i64, i64)>,
-        fitting: usize,
-    ) -> String {
+    pub(super) fn hint(&self, recordings: &[&str], range: Option<(i64, i64)>, fitting: usize) -> String {
         if !self.recordings.is_empty() {
             return format!(
                 "the windows are of {}, the file also of {}; is it of another fold?",

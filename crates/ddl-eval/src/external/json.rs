@@ -86,8 +86,9 @@ fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
         }
     }
     let expected = match (name, depth) {
-        ("observed_until" | "id" | "s" | "e" | "f" | "prediction_number" | "scene_id", 0)
-        | ("frames", 1) => "a whole number",
+        ("observed_until" | "id" | "s" | "e" | "f" | "prediction_number" | "scene_id", 0) | ("frames", 1) => {
+            "a whole number"
+        }
         ("pedestrian" | "p", 0) => "a whole number or a word",
         ("recording", 0) => "a name in quotes",
         ("frames" | "hypotheses" | "positions", 0) => "a list",

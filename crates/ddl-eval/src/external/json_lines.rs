@@ -38,10 +38,7 @@ fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::
     f64::deserialize(deserializer).map(Some)
 }
 
-pub(super) fn read(
-    mut lines: Lines<impl BufRead>,
-    expected: &mut ExpectedForecasts<'_>,
-) -> Result<(), ExternalError> {
+pub(super) fn read(mut lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
     while let Some((number, text)) = lines.next_line()? {
         let taken = json::read(text).and_then(|line: JsonForecast| {
             let (who, forecast) = line.taken_apart()?;
@@ -65,11 +62,7 @@ impl JsonForecast {
         if count > Protocol::MAX_HYPOTHESES {
             return Err(in_field("hypotheses", who.too_many_hypotheses()));
         }
-        let weighted = self
-            .hypotheses
-            .iter()
-            .filter(|h| h.weight.is_some())
-            .count();
+        let weighted = self.hypotheses.iter().filter(|h| h.weight.is_some()).count();
         if weighted != 0 && weighted != count {
             return Err(in_field("hypotheses", ExternalProblem::WeightsOfSome));
         }
@@ -78,9 +71,7 @@ impl JsonForecast {
             positions: Vec::with_capacity(count * HORIZON),
             weights: (weighted > 0).then(|| Vec::with_capacity(count)),
             goals: (with_goal > 0).then(|| Vec::with_capacity(count)),
-            frames: self
-                .frames
-                .map(|frames| frames.iter().map(|frame| frame.0).collect()),
+            frames: self.frames.map(|frames| frames.iter().map(|frame| frame.0).collect()),
         };
         for (k, hypothesis) in self.hypotheses.into_iter().enumerate() {
             let found = hypothesis.positions.len();
@@ -100,8 +91,7 @@ impl JsonForecast {
                 weights.push(weight);
             }
             if let Some(goals) = &mut forecast.goals {
-                let missing =
-                    || in_field(format!("hypotheses[{k}].goal"), ExternalProblem::Missing);
+                let missing = || in_field(format!("hypotheses[{k}].goal"), ExternalProblem::Missing);
                 goals.push(hypothesis.goal.ok_or_else(missing)?);
             }
         }

@@ -93,10 +93,7 @@ pub(super) fn whole(number: f64) -> Option<i64> {
 }
 
 /// Refuses a position so far away that later computations would overflow.
-pub(super) fn within_bounds(
-    position: Position,
-    field: impl FnOnce() -> String,
-) -> Result<(), Wrong> {
+pub(super) fn within_bounds(position: Position, field: impl FnOnce() -> String) -> Result<(), Wrong> {
     let far = position.into_iter().find(|c| c.abs() > COORDINATE_LIMIT);
     match far {
         None => Ok(()),

@@ -19,11 +19,7 @@ const FARTHEST: f64 = 3.0;
 /// # Errors
 /// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] where half of the
 /// forecasts start more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
-pub fn measure(
-    conditions: &Conditions,
-    matched: &Matched,
-    noise_seed: u64,
-) -> Result<Vec<ResultRow>, ExternalError> {
+pub fn measure(conditions: &Conditions, matched: &Matched, noise_seed: u64) -> Result<Vec<ResultRow>, ExternalError> {
     if conditions.protocol == Protocol::Published {
         return Err(ExternalError::Published);
     }
@@ -36,10 +32,7 @@ pub fn measure(
         .collect();
     let conditions = Conditions {
         test_subset: (!subsets.is_empty()).then(|| subsets.join("; ")),
-        selection: Some(format!(
-            "made by another program, read from {}",
-            matched.file()
-        )),
+        selection: Some(format!("made by another program, read from {}", matched.file())),
         ..conditions.clone()
     };
     let forecasts = conditions
@@ -74,11 +67,7 @@ impl Matched {
             })
             .collect();
         let apart = |as_if: fn(Position, Position) -> Position| {
-            median(
-                starts
-                    .iter()
-                    .map(|&(last, first)| distance(last, as_if(last, first))),
-            )
+            median(starts.iter().map(|&(last, first)| distance(last, as_if(last, first))))
         };
         let metres = apart(|_, first| first);
         if metres <= FARTHEST {
@@ -102,8 +91,5 @@ impl Matched {
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
-    values
-        .get(values.len().saturating_sub(1) / 2)
-        .copied()
-        .unwrap_or(0.0)
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(0.0)
 }

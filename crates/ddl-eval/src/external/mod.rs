@@ -77,13 +77,7 @@ impl FromStr for ExternalFormat {
 
     fn from_str(word: &str) -> Result<Self, UnknownName> {
         let expected = "jsonl, csv, ndjson";
-        UnknownName::find(
-            word,
-            &Self::ALL,
-            Self::name,
-            "format of forecasts",
-            expected,
-        )
+        UnknownName::find(word, &Self::ALL, Self::name, "format of forecasts", expected)
     }
 }
 

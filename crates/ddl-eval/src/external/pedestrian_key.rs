@@ -27,11 +27,7 @@ impl PedestrianKey {
     }
 }
 
-pub(super) fn named(
-    recording: Option<&str>,
-    observed_until: i64,
-    pedestrian: &PedestrianName,
-) -> String {
+pub(super) fn named(recording: Option<&str>, observed_until: i64, pedestrian: &PedestrianName) -> String {
     let recording = recording.map_or_else(String::new, |name| format!("`{name}` "));
     format!("{recording}observed until {observed_until} pedestrian {pedestrian}")
 }
@@ -68,11 +64,7 @@ pub(super) struct HypothesisNumbering {
 
 impl HypothesisNumbering {
     /// Checks that sorted numbers are 0 ... K - 1 or 1 ... K, alike for all pedestrians of the file.
-    pub(super) fn check(
-        &mut self,
-        sorted: &[i64],
-        pedestrian: &str,
-    ) -> Result<(), ExternalProblem> {
+    pub(super) fn check(&mut self, sorted: &[i64], pedestrian: &str) -> Result<(), ExternalProblem> {
         let counts_from = |first: i64| sorted.iter().copied().eq((first..).take(sorted.len()));
         let first = match self.first {
             Some(first) => Some(first).filter(|&first| counts_from(first)),

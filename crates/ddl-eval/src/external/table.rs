@@ -14,10 +14,7 @@ use crate::Protocol;
 
 const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
 
-pub(super) fn read(
-    lines: Lines<impl BufRead>,
-    expected: &mut ExpectedForecasts<'_>,
-) -> Result<(), ExternalError> {
+pub(super) fn read(lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
     let mut rows = TableRows::new(lines);
     let Some(header) = rows.next()? else {
         return Ok(());
@@ -96,8 +93,7 @@ impl TableColumns {
             let (expected, found) = (self.count, fields.len());
             return Err(whole_line(ExternalProblem::FieldCount { expected, found }));
         }
-        let [observed_until, pedestrian, frame, x, y] =
-            self.required.map(|place| fields.get(place));
+        let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| fields.get(place));
         let who = PedestrianKey {
             recording: self
                 .recording
@@ -152,16 +148,8 @@ impl PedestrianRows {
 
     fn add(&mut self, row: &TablePosition, line: usize) -> Result<(), Wrong> {
         let hypothesis = row.hypothesis;
-        if self
-            .hypotheses
-            .last()
-            .is_none_or(|last| last.hypothesis != hypothesis)
-        {
-            if self
-                .hypotheses
-                .iter()
-                .any(|known| known.hypothesis == hypothesis)
-            {
+        if self.hypotheses.last().is_none_or(|last| last.hypothesis != hypothesis) {
+            if self.hypotheses.iter().any(|known| known.hypothesis == hypothesis) {
                 let problem = ExternalProblem::Scattered { hypothesis };
                 return Err(in_field("hypothesis", problem));
             }
@@ -240,16 +228,10 @@ fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
 
 /// A pedestrian: a whole number, or a word that is not a number.
 fn name(text: &str) -> Result<PedestrianName, Wrong> {
-    let wrong = text.is_empty()
-        || text
-            .parse::<f64>()
-            .is_ok_and(|n| !n.is_infinite() && n.fract() != 0.0);
+    let wrong = text.is_empty() || text.parse::<f64>().is_ok_and(|n| !n.is_infinite() && n.fract() != 0.0);
     if wrong {
         let (expected, found) = ("a whole number or a word", format!("{:?}", quoted(text)));
-        return Err(in_field(
-            REQUIRED[1],
-            ExternalProblem::Kind { expected, found },
-        ));
+        return Err(in_field(REQUIRED[1], ExternalProblem::Kind { expected, found }));
     }
     Ok(PedestrianName::of_text(text))
 }

@@ -70,9 +70,7 @@ impl<R: BufRead> TableRows<R> {
             self.ends.resize(self.line.len(), 0);
         }
         let line = &self.line[self.at..];
-        let (result, read, _, count) =
-            self.reader
-                .read_record(line, &mut self.fields, &mut self.ends);
+        let (result, read, _, count) = self.reader.read_record(line, &mut self.fields, &mut self.ends);
         self.at += read;
         if result != ReadRecordResult::Record {
             return Err(self.wrong(whole_line(ExternalProblem::OpenQuote)));

@@ -57,10 +57,7 @@ struct OpenScene<'a> {
     tracks: BTreeMap<PedestrianName, (usize, Predictions)>,
 }
 
-pub(super) fn read(
-    mut lines: Lines<impl BufRead>,
-    expected: &mut ExpectedForecasts<'_>,
-) -> Result<(), ExternalError> {
+pub(super) fn read(mut lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<'_>) -> Result<(), ExternalError> {
     let mut reading = Reading::new(expected);
     while let Some((number, text)) = lines.next_line()? {
         let taken = json::read(text)
@@ -89,10 +86,7 @@ impl<'w, 'a> Reading<'w, 'a> {
         let windows = expected.windows.iter().enumerate();
         let by_start = windows
             .filter_map(|(index, window)| {
-                let recording = expected
-                    .recordings
-                    .iter()
-                    .position(|&r| r == window.recording())?;
+                let recording = expected.recordings.iter().position(|&r| r == window.recording())?;
                 Some(((recording, window.start_frame()), index))
             })
             .collect();
@@ -157,20 +151,10 @@ impl<'w, 'a> Reading<'w, 'a> {
             return Err(wrong_end(first, &scene));
         }
         let tracks = BTreeMap::new();
-        Ok(OpenScene {
-            scene,
-            window,
-            tracks,
-        })
+        Ok(OpenScene { scene, window, tracks })
     }
 
-    fn add(
-        &self,
-        open: &mut OpenScene<'a>,
-        track: &NdjsonTrack,
-        prediction: i64,
-        number: usize,
-    ) -> Result<(), Wrong> {
+    fn add(&self, open: &mut OpenScene<'a>, track: &NdjsonTrack, prediction: i64, number: usize) -> Result<(), Wrong> {
         let in_window = |w: &Window| w.named(&track.p).is_some();
         if track.p != open.scene.p && !open.window.is_some_and(in_window) {
             return Ok(());
@@ -196,16 +180,10 @@ impl<'w, 'a> Reading<'w, 'a> {
         Ok(())
     }
 
-    fn who(
-        &self,
-        scene: &NdjsonScene,
-        window: Option<&Window>,
-        pedestrian: PedestrianName,
-    ) -> PedestrianKey {
+    fn who(&self, scene: &NdjsonScene, window: Option<&Window>, pedestrian: PedestrianName) -> PedestrianKey {
         PedestrianKey {
             recording: scene.recording.clone(),
-            observed_until: window
-                .map_or_else(|| self.unknown_last(scene), |w| w.frames()[OBSERVED - 1]),
+            observed_until: window.map_or_else(|| self.unknown_last(scene), |w| w.frames()[OBSERVED - 1]),
             pedestrian,
         }
     }
@@ -214,11 +192,7 @@ impl<'w, 'a> Reading<'w, 'a> {
         let Some(open) = self.open.take() else {
             return Ok(());
         };
-        let OpenScene {
-            scene,
-            window,
-            tracks,
-        } = open;
+        let OpenScene { scene, window, tracks } = open;
         self.finished.insert(scene.id);
         for (pedestrian, (line, predictions)) in tracks {
             let primary = pedestrian == scene.p;
@@ -257,20 +231,14 @@ fn wrong_end(window: &Window, scene: &NdjsonScene) -> Wrong {
     in_field(format!("scene {}", scene.id), problem)
 }
 
-fn forecast(
-    predictions: Predictions,
-    window: Option<&Window>,
-) -> Result<PedestrianForecast, Wrong> {
+fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<PedestrianForecast, Wrong> {
     let mut forecast = PedestrianForecast::default();
     for (number, mut rows) in predictions {
         let path = || format!("prediction_number {number}");
         rows.sort_by_key(|&(frame, _)| frame);
         if rows.len() != HORIZON {
             let (expected, found) = (HORIZON, rows.len());
-            return Err(in_field(
-                path(),
-                ExternalProblem::Length { expected, found },
-            ));
+            return Err(in_field(path(), ExternalProblem::Length { expected, found }));
         }
         let frames: Vec<i64> = rows.iter().map(|&(frame, _)| frame).collect();
         if let Some(window) = window {

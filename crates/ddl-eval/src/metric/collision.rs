@@ -79,9 +79,7 @@ pub fn true_futures_collide(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let everybody = scene.everybody();
     let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();
     let hit = collides(&tracks, radius);
-    (0..scene.pedestrians())
-        .map(|i| hit[scene.place(i)])
-        .collect()
+    (0..scene.pedestrians()).map(|i| hit[scene.place(i)]).collect()
 }
 
 /// Whether the representative forecast of each pedestrian collides with the true future of another; `[N]`.
@@ -90,8 +88,7 @@ pub fn collides_with_true_futures(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
     let runs_into_another = |i: usize| {
         let track = forecast.hypothesis(i, forecast.representative(i));
         let own = scene.place(i);
-        (0..everybody.len())
-            .any(|j| j != own && closest_approach(track, everybody.future(j)) < 2.0 * radius)
+        (0..everybody.len()).any(|j| j != own && closest_approach(track, everybody.future(j)) < 2.0 * radius)
     };
     (0..scene.pedestrians()).map(runs_into_another).collect()
 }

@@ -37,11 +37,7 @@ pub fn distance(a: Position, b: Position) -> f64 {
 /// When the two differ in length or are empty.
 pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
     check(forecast, truth);
-    let sum: f64 = forecast
-        .iter()
-        .zip(truth)
-        .map(|(f, t)| distance(*f, *t))
-        .sum();
+    let sum: f64 = forecast.iter().zip(truth).map(|(f, t)| distance(*f, *t)).sum();
     sum / truth.len() as f64
 }
 
@@ -139,9 +135,7 @@ fn least(errors: &[f64]) -> usize {
 /// When `i` is out of range or there are more errors than hypotheses.
 pub fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
     let weighted = errors.iter().enumerate();
-    weighted
-        .map(|(k, error)| forecast.weight(i, k) * error)
-        .sum()
+    weighted.map(|(k, error)| forecast.weight(i, k) * error).sum()
 }
 
 /// JADE of a scene, metres.
@@ -154,10 +148,7 @@ pub fn joint_fde(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::fde)
 }
 
-fn least_scene_mean(
-    errors: &DisplacementErrors,
-    of: fn(&DisplacementErrors, usize) -> &[f64],
-) -> f64 {
+fn least_scene_mean(errors: &DisplacementErrors, of: fn(&DisplacementErrors, usize) -> &[f64]) -> f64 {
     let n = errors.pedestrians();
     (0..errors.hypotheses())
         .map(|k| (0..n).map(|i| of(errors, i)[k]).sum::<f64>() / n as f64)
@@ -178,9 +169,6 @@ pub(crate) fn minus(a: Position, b: Position) -> Position {
 
 /// Angle from one direction to another, degrees; positive to the left, from x to y.
 pub(crate) fn turn(from: Position, to: Position) -> f64 {
-    let (cross, dot) = (
-        from[0] * to[1] - from[1] * to[0],
-        from[0] * to[0] + from[1] * to[1],
-    );
+    let (cross, dot) = (from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
     cross.atan2(dot).to_degrees()
 }

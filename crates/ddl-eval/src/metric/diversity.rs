@@ -31,10 +31,7 @@ impl Diversity {
         let (mut path, mut ends) = (0.0, 0.0);
         for a in 0..k {
             for b in a + 1..k {
-                let pairs = forecast
-                    .hypothesis(i, a)
-                    .iter()
-                    .zip(forecast.hypothesis(i, b));
+                let pairs = forecast.hypothesis(i, a).iter().zip(forecast.hypothesis(i, b));
                 let mut steps = 0_usize;
                 let (mut sum, mut last) = (0.0, 0.0);
                 for (p, q) in pairs {

@@ -49,11 +49,7 @@ pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     // 1 - sum of squares, without cancellation when one weight is nearly 1.
     let unbiased: f64 = weights.iter().map(|w| w * (1.0 - w)).sum();
     let scott = concentration.powf(1.0 / 6.0);
-    let factor = if unbiased > 0.0 {
-        scott * scott / unbiased
-    } else {
-        0.0
-    };
+    let factor = if unbiased > 0.0 { scott * scott / unbiased } else { 0.0 };
     let bandwidth = moments
         .covariance
         .scaled(factor)
@@ -62,23 +58,14 @@ pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     mixture_log_density((points, weights), bandwidth, at)
 }
 
-fn mixture_log_density(
-    (points, weights): (&[Position], &[f64]),
-    bandwidth: PrincipalAxes,
-    at: Position,
-) -> f64 {
-    let exponent =
-        |p: &Position| -0.5 * bandwidth.mahalanobis_squared([at[0] - p[0], at[1] - p[1]]);
+fn mixture_log_density((points, weights): (&[Position], &[f64]), bandwidth: PrincipalAxes, at: Position) -> f64 {
+    let exponent = |p: &Position| -0.5 * bandwidth.mahalanobis_squared([at[0] - p[0], at[1] - p[1]]);
     let terms = || points.iter().zip(weights).filter(|(_, w)| **w > 0.0);
-    let largest = terms()
-        .map(|(p, _)| exponent(p))
-        .fold(f64::NEG_INFINITY, f64::max);
+    let largest = terms().map(|(p, _)| exponent(p)).fold(f64::NEG_INFINITY, f64::max);
     if largest == f64::NEG_INFINITY {
         return largest;
     }
-    let sum: f64 = terms()
-        .map(|(p, w)| w * (exponent(p) - largest).exp())
-        .sum();
+    let sum: f64 = terms().map(|(p, w)| w * (exponent(p) - largest).exp()).sum();
     largest + sum.ln() - std::f64::consts::TAU.ln() - 0.5 * bandwidth.ln_determinant()
 }
 

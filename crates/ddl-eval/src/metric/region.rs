@@ -76,11 +76,7 @@ mod tests {
         let scores = [vec![[1.5; HORIZON]; 10], vec![[3.0; HORIZON]; 9]].concat();
         let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
         let scene = Scene::new(&window, &bare).unwrap();
-        assert_relative_eq!(
-            weight_log_loss(&scene, 0).unwrap(),
-            -(0.2_f64.ln()),
-            epsilon = 1e-12
-        );
+        assert_relative_eq!(weight_log_loss(&scene, 0).unwrap(), -(0.2_f64.ln()), epsilon = 1e-12);
         assert_eq!(RegionScores::of(&scene, 0), None);
         let forecast = bare.with_spread(vec![0.5; HORIZON], table.into()).unwrap();
         let scene = Scene::new(&window, &forecast).unwrap();

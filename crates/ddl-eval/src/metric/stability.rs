@@ -87,9 +87,7 @@ impl StabilityScores {
         }
         let n = rollouts.len() as f64;
         let mean = |of: fn(&RolloutStability) -> f64| rollouts.iter().map(of).sum::<f64>() / n;
-        let share = |of: fn(&RolloutStability) -> bool| {
-            rollouts.iter().filter(|&r| of(r)).count() as f64 / n
-        };
+        let share = |of: fn(&RolloutStability) -> bool| rollouts.iter().filter(|&r| of(r)).count() as f64 / n;
         let all_have_one = rollouts.iter().all(|r| r.certified.is_some());
         Some(Self {
             rollouts: rollouts.len(),
@@ -109,13 +107,9 @@ pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
         .flat_map(|i| (0..scene.hypotheses()).map(move |k| (i, k)))
         .filter_map(|(i, k)| {
             let goal = forecast.goal(i, k)?;
-            let judged =
-                RolloutStability::of(scene.last_observed(i), forecast.hypothesis(i, k), goal);
+            let judged = RolloutStability::of(scene.last_observed(i), forecast.hypothesis(i, k), goal);
             let certified = forecast.certified(i, k);
-            Some(RolloutStability {
-                certified,
-                ..judged
-            })
+            Some(RolloutStability { certified, ..judged })
         })
         .collect()
 }

@@ -86,20 +86,17 @@ impl AdaptiveRegions {
         let Some(table) = forecast.shared_regions() else {
             return forecast;
         };
-        let learned = self
-            .learned
-            .get_or_insert_with(|| TrackedQuantiles::new(table));
+        let learned = self.learned.get_or_insert_with(|| TrackedQuantiles::new(table));
         let (now, step) = (window.frames()[OBSERVED - 1], window.frame_step());
         if self.pending.back().is_some_and(|last| last.frame >= now) {
             self.pending.clear();
         }
-        let share = self.pending.back().map_or(1.0, |last| {
-            ((now - last.frame) as f64 / step as f64).min(1.0)
-        });
+        let share = self
+            .pending
+            .back()
+            .map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
         let judged = self.pending.iter();
-        let outcomes: Vec<Outcomes> = judged
-            .filter_map(|pending| pending.outcomes(window))
-            .collect();
+        let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window)).collect();
         learned.learn(&outcomes, share);
         let forecast = forecast.with_regions(learned.table());
         let over = |pending: &Pending| now - pending.frame >= HORIZON as i64 * step;
@@ -117,9 +114,7 @@ impl Pending {
             frame: window.frames()[OBSERVED - 1],
             pedestrians: window.pedestrians().to_vec(),
             forecast: forecast.clone(),
-            log_weights: (0..window.len())
-                .flat_map(|i| forecast.log_weights(i))
-                .collect(),
+            log_weights: (0..window.len()).flat_map(|i| forecast.log_weights(i)).collect(),
         }
     }
 
@@ -143,11 +138,7 @@ impl Pending {
             .filter_map(|(i, id)| self.score(i, step, position(id)?))
             .collect();
         let table = self.forecast.shared_regions()?;
-        (!scores.is_empty()).then_some(Outcomes {
-            step,
-            table,
-            scores,
-        })
+        (!scores.is_empty()).then_some(Outcomes { step, table, scores })
     }
 
     /// As [`Forecast::region_score`].
@@ -190,8 +181,7 @@ mod tests {
 
     /// Forecasts of two hypotheses, standing still and walking on, of pedestrians in this order, up to each frame.
     fn forecasts(tracks: &Tracks, order: [usize; PEOPLE]) -> Vec<(Window, Forecast)> {
-        let scores: Vec<[f64; HORIZON]> =
-            (1..100).map(|n| [f64::from(n) / 30.0; HORIZON]).collect();
+        let scores: Vec<[f64; HORIZON]> = (1..100).map(|n| [f64::from(n) / 30.0; HORIZON]).collect();
         let table = Arc::new(RegionTable::of(&scores, &[0.3, 0.5, 0.9]).unwrap());
         let until = |last: usize| {
             // The second pedestrian is away for a while.
@@ -286,13 +276,10 @@ mod tests {
 
     #[test]
     fn the_first_frames_have_the_table_as_it_is_and_forecasts_without_regions_pass() {
-        let tracks = (0..30)
-            .map(|t| vec![[0.3 * f64::from(t), 1.0]; PEOPLE])
-            .collect();
+        let tracks = (0..30).map(|t| vec![[0.3 * f64::from(t), 1.0]; PEOPLE]).collect();
         let stream = forecasts(&tracks, ORDER);
         let mut regions = AdaptiveRegions::default();
-        let bare =
-            Forecast::with_equal_weights(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
+        let bare = Forecast::with_equal_weights(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
         assert_eq!(regions.adapt(&stream[0].0, bare.clone()), bare);
         assert_eq!(regions.learned(), None);
         let (window, forecast) = &stream[0];

@@ -58,9 +58,7 @@ impl TryFrom<Columns> for TrackedQuantiles {
     fn try_from(Columns { start, shifts }: Columns) -> Result<Self, Self::Error> {
         let bounded = |shift: &f64| shift.abs() <= LARGEST_SHIFT;
         if shifts.len() != start.0.levels.len() || !shifts.as_flattened().iter().all(bounded) {
-            return Err(
-                "tracked quantiles need a row of 12 shifts for each level, none beyond ln 64",
-            );
+            return Err("tracked quantiles need a row of 12 shifts for each level, none beyond ln 64");
         }
         let now = shifted(&start, &shifts).into();
         let start = Arc::new(start);
@@ -105,12 +103,7 @@ impl TrackedQuantiles {
 
     /// Learns from all outcomes of one frame, `share` of a step (0 to 1) after the frame before.
     pub(super) fn learn(&mut self, outcomes: &[Outcomes], share: f64) {
-        for Outcomes {
-            step,
-            table,
-            scores,
-        } in outcomes
-        {
+        for Outcomes { step, table, scores } in outcomes {
             let count = scores.len() as f64;
             let weight = share * count.sqrt().min(LARGEST_WEIGHT);
             let LevelQuantiles { levels, quantiles } = &table.0;
@@ -172,18 +165,10 @@ mod tests {
     fn five_frames_as_computed_elsewhere() {
         let mut tracked = TrackedQuantiles::new(table(&[(0.5, 1.0), (0.9, 4.0)]));
         let frames: [(f64, &[f64], [f64; 2]); 5] = [
-            (
-                1.0,
-                &[0.5, 2.0, 5.0],
-                [1.017_471_377_864, 4.098_180_408_623],
-            ),
+            (1.0, &[0.5, 2.0, 5.0], [1.017_471_377_864, 4.098_180_408_623]),
             (0.5, &[6.0], [1.032_848_488_542, 4.210_338_601_735]),
             (1.0, &[0.1; 16], [0.943_952_443_339, 4.135_230_507_658]),
-            (
-                1.0,
-                &[9.0, 9.0, 0.2, 1.5],
-                [0.972_700_075_075, 4.338_562_501_638],
-            ),
+            (1.0, &[9.0, 9.0, 0.2, 1.5], [0.972_700_075_075, 4.338_562_501_638]),
             (0.25, &[3.0, 0.9], [0.972_700_075_075, 4.329_368_775_608]),
         ];
         for (share, scores, expected) in frames {

@@ -49,10 +49,7 @@ fn what_does_not_belong_together_is_refused() {
         WindowProblem::Pedestrians { expected, found }
     );
     let ahead = [windows[0].without_future()];
-    assert_eq!(
-        of_window(&ahead, std::slice::from_ref(&one)),
-        WindowProblem::NoFuture
-    );
+    assert_eq!(of_window(&ahead, std::slice::from_ref(&one)), WindowProblem::NoFuture);
     assert_eq!(
         error(&ahead, &[one]).to_string(),
         "window of `made up` starting at frame 0 has no true future: it can be forecast but not scored"

@@ -38,8 +38,7 @@ impl BlockErrors {
 
     /// Whether both have the same windows: recording, block and pedestrians agree.
     pub fn same_windows(&self, other: &Self) -> bool {
-        (&self.recording, self.block, self.pedestrians)
-            == (&other.recording, other.block, other.pedestrians)
+        (&self.recording, self.block, self.pedestrians) == (&other.recording, other.block, other.pedestrians)
     }
 }
 
@@ -47,23 +46,15 @@ impl BlockErrors {
 ///
 /// # Errors
 /// A window has no future, or a forecast does not belong to its window's pedestrians.
-pub fn block_errors(
-    windows: &[Window],
-    forecasts: &[Forecast],
-) -> Result<Vec<BlockErrors>, EvaluationError> {
+pub fn block_errors(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<BlockErrors>, EvaluationError> {
     EvaluationError::unless_one_each(windows, forecasts.len())?;
     let sums: Vec<[f64; 2]> = windows
         .par_iter()
         .zip(forecasts)
         .map(|(window, forecast)| {
             let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
-            let sum = |of: fn(&DisplacementErrors, usize) -> f64| {
-                (0..window.len()).map(|i| of(&errors, i)).sum()
-            };
-            Ok([
-                sum(DisplacementErrors::min_ade),
-                sum(DisplacementErrors::min_fde),
-            ])
+            let sum = |of: fn(&DisplacementErrors, usize) -> f64| (0..window.len()).map(|i| of(&errors, i)).sum();
+            Ok([sum(DisplacementErrors::min_ade), sum(DisplacementErrors::min_fde)])
         })
         .collect::<Result<_, EvaluationError>>()?;
     let mut blocks: BTreeMap<(&str, i64), BlockErrors> = BTreeMap::new();

@@ -33,12 +33,7 @@ pub struct Interval {
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
     let folds: Vec<Vec<PartialSum>> = folds
         .iter()
-        .map(|blocks| {
-            blocks
-                .iter()
-                .map(|b| PartialSum::of(b.sum(metric), b))
-                .collect()
-        })
+        .map(|blocks| blocks.iter().map(|b| PartialSum::of(b.sum(metric), b)).collect())
         .collect();
     interval(&folds)
 }
@@ -137,13 +132,7 @@ mod tests {
     #[expect(clippy::float_cmp, reason = "quarters of small integers are exact")]
     fn percentiles_lie_between_two_values_by_proportion() {
         let sorted = [1.0, 2.0, 4.0, 8.0, 16.0];
-        let expected = [
-            (0.0, 1.0),
-            (0.25, 2.0),
-            (0.3125, 2.5),
-            (0.9375, 14.0),
-            (1.0, 16.0),
-        ];
+        let expected = [(0.0, 1.0), (0.25, 2.0), (0.3125, 2.5), (0.9375, 14.0), (1.0, 16.0)];
         for (share, expected) in expected {
             assert_eq!(percentile(&sorted, share), expected, "{share}");
         }

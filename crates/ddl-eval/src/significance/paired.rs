@@ -83,11 +83,7 @@ fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
     for _ in 0..RESAMPLES {
         let means = folds.iter().map(|fold| {
             let flipped = fold.iter().map(|part| PartialSum {
-                sum: if random.random::<bool>() {
-                    part.sum
-                } else {
-                    -part.sum
-                },
+                sum: if random.random::<bool>() { part.sum } else { -part.sum },
                 ..*part
             });
             mean(flipped).unwrap_or(f64::NAN)
@@ -141,11 +137,7 @@ mod tests {
         let (a, mut b) = (blocks(&[0.1, 0.2]), blocks(&[0.1, 0.2]));
         b[1].pedestrians = 5;
         let error = paired_difference(&[&a], &[&b], BlockMetric::MinFde).unwrap_err();
-        assert!(
-            error
-                .to_string()
-                .contains("block 1 of a with 4 pedestrians against")
-        );
+        assert!(error.to_string().contains("block 1 of a with 4 pedestrians against"));
         let error = paired_difference(&[&a], &[&b[..1]], BlockMetric::MinFde).unwrap_err();
         assert!(error.to_string().contains("2 blocks against 1"), "{error}");
         assert!(paired_difference(&[&a], &[], BlockMetric::MinFde).is_err());

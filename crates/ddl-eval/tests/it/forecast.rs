@@ -28,10 +28,7 @@ fn wrong_shapes_and_weights_are_named() {
     check(2, 1, &nan, &[1.0, 1.0], not_finite);
     let goals = Some(vec![[f64::INFINITY, 0.0]]);
     let refused = Forecast::new(1, 1, one, vec![1.0], goals).unwrap_err();
-    assert!(matches!(
-        refused,
-        ForecastShapeError::NotFinite { field: "goals", .. }
-    ));
+    assert!(matches!(refused, ForecastShapeError::NotFinite { field: "goals", .. }));
 }
 
 #[test]

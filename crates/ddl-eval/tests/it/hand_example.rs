@@ -20,20 +20,13 @@ use ddl_eval::{Category, Forecast, MotionKind, Scores, category::TrajectoryType}
 type Path = fn(f64) -> Position;
 
 /// Positions of the three pedestrians at frame `s`, 0 being the last observed one.
-const TRUTH: [Path; 3] = [
-    |s| [3.5 + 0.5 * s, 0.0],
-    |_| [9.1, 2.56],
-    |s| [12.5 - 0.5 * s, 0.3],
-];
+const TRUTH: [Path; 3] = [|s| [3.5 + 0.5 * s, 0.0], |_| [9.1, 2.56], |s| [12.5 - 0.5 * s, 0.3]];
 
 /// Offsets of the hypotheses from the truth at frame `s`.
 const OFFSETS: [[Path; 2]; 3] = [
     [|_| [0.24, 0.32], |s| [0.06 * s, 0.08 * s]],
     [|s| [0.15 * s, -0.2 * s], |_| [0.9, -1.2]],
-    [
-        |_| [0.72, 0.96],
-        |s| if s < 12.0 { [1.28, -0.96] } else { [0.0, 0.0] },
-    ],
+    [|_| [0.72, 0.96], |s| if s < 12.0 { [1.28, -0.96] } else { [0.0, 0.0] }],
 ];
 
 fn hypothesis(i: usize, k: usize, s: f64) -> Position {
@@ -54,13 +47,7 @@ fn scores() -> Scores {
         _ => hypothesis(i, k, 12.0),
     });
     let weights = vec![0.75, 0.25, 0.2, 0.8, 0.6, 0.4];
-    let forecast = Forecast::new(
-        3,
-        2,
-        pairs().flat_map(path).collect(),
-        weights,
-        Some(goals.collect()),
-    );
+    let forecast = Forecast::new(3, 2, pairs().flat_map(path).collect(), weights, Some(goals.collect()));
     let verdicts = vec![true, true, false, true, true, false];
     let forecast = forecast.unwrap().with_certified(verdicts).unwrap();
     Scores::evaluate(&[window], &[forecast]).unwrap()
@@ -68,10 +55,7 @@ fn scores() -> Scores {
 
 fn check(what: &str, found: impl Into<Option<f64>>, expected: f64) {
     let found = found.into().unwrap();
-    assert!(
-        (found - expected).abs() < 1e-12,
-        "{what}: {found}, by hand {expected}"
-    );
+    assert!((found - expected).abs() < 1e-12, "{what}: {found}, by hand {expected}");
 }
 
 #[test]

@@ -12,10 +12,7 @@ use crate::generated::{self, position};
 
 fn scene(n: usize, k: usize) -> impl Strategy<Value = (Window, Forecast)> {
     let forecast = generated::forecast(n, k, true, position());
-    (
-        generated::window(("made up", 0, 10), n, position()),
-        forecast,
-    )
+    (generated::window(("made up", 0, 10), n, position()), forecast)
 }
 
 fn any_scene() -> impl Strategy<Value = (Window, Forecast)> {
@@ -37,9 +34,7 @@ fn invariants(scores: &Scores) -> Vec<f64> {
                 }
             }
             Value::Object(fields) => {
-                let lengths = fields
-                    .into_iter()
-                    .filter(|(name, _)| name != "largest_turn");
+                let lengths = fields.into_iter().filter(|(name, _)| name != "largest_turn");
                 lengths.for_each(|(_, value)| numbers(value, found));
             }
             _ => {}
@@ -63,11 +58,7 @@ fn rebuilt(forecast: &Forecast, order: &[usize], by: impl Fn(Position) -> Positi
     let path = |(i, h)| forecast.hypothesis(i, h).iter().map(|p| by(*p));
     let all = k == forecast.hypotheses();
     let weight = |(i, h)| {
-        if all {
-            forecast.weight(i, h)
-        } else {
-            1.0 / k as f64
-        }
+        if all { forecast.weight(i, h) } else { 1.0 / k as f64 }
     };
     let goals = pairs().map(|(i, h)| forecast.goal(i, h).map(&by)).collect();
     let positions = pairs().flat_map(path).collect();
@@ -86,23 +77,19 @@ fn walking(n: usize) -> impl Strategy<Value = Window> {
         (-0.12..0.12_f64, 0.94..1.06_f64),
     );
     vec(pedestrian, n).prop_map(|pedestrians| {
-        let tracks =
-            pedestrians
-                .iter()
-                .map(|&((x, y), (mut speed, mut heading), (turn, growth))| {
-                    let mut here = [x, y];
-                    let mut track = vec![here];
-                    for _ in 1..WINDOW {
-                        here = [
-                            here[0] + speed * heading.cos(),
-                            here[1] + speed * heading.sin(),
-                        ];
-                        track.push(here);
-                        speed = (speed * growth).min(0.8);
-                        heading += turn;
-                    }
-                    track
-                });
+        let tracks = pedestrians
+            .iter()
+            .map(|&((x, y), (mut speed, mut heading), (turn, growth))| {
+                let mut here = [x, y];
+                let mut track = vec![here];
+                for _ in 1..WINDOW {
+                    here = [here[0] + speed * heading.cos(), here[1] + speed * heading.sin()];
+                    track.push(here);
+                    speed = (speed * growth).min(0.8);
+                    heading += turn;
+                }
+                track
+            });
         let ids = (0..).take(pedestrians.len()).map(PedestrianId).collect();
         Window::new("made up", 0, 10, ids, tracks.collect()).unwrap()
     })

@@ -1,9 +1,6 @@
 //! Tests of the public interface.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a helper that fails is a test that fails"
-)]
+#![allow(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
 
 mod distribution;
 mod external;

@@ -10,15 +10,11 @@ use ddl_eval::{
 
 /// The recordings of the `star` convention; without them the test is skipped, except in CI.
 fn recordings() -> Option<Dataset> {
-    let found =
-        locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
+    let found = locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
     match found {
         Ok(dataset) => Some(dataset),
         Err(why) => {
-            assert!(
-                std::env::var_os("CI").is_none(),
-                "CI needs the recordings: {why}"
-            );
+            assert!(std::env::var_os("CI").is_none(), "CI needs the recordings: {why}");
             eprintln!("skipped, no recordings: {why}");
             None
         }
@@ -38,18 +34,9 @@ fn pedestrians_are_of_the_types_counted_independently() {
         [2767, 432, 1751, 950, 297, 301, 1048, 422],
     ];
     for (fold, expected) in Convention::Star.fold_names().zip(counted) {
-        let windows = dataset
-            .fold(fold)
-            .unwrap()
-            .test_windows(WindowRule::Published);
+        let windows = dataset.fold(fold).unwrap().test_windows(WindowRule::Published);
         let row = ResultRow::measure(
-            Conditions::new(
-                Convention::Star,
-                WindowRule::Published,
-                Protocol::Single,
-                fold,
-                "any",
-            ),
+            Conditions::new(Convention::Star, WindowRule::Published, Protocol::Single, fold, "any"),
             &ConstantVelocity::last_step(),
             &windows,
         );
@@ -68,10 +55,7 @@ fn pedestrians_are_of_the_types_counted_independently() {
 #[test]
 fn forecasters_that_look_ahead_are_found_out() {
     let Some(dataset) = recordings() else { return };
-    let windows = dataset
-        .fold("zara1")
-        .unwrap()
-        .test_windows(WindowRule::Published);
+    let windows = dataset.fold("zara1").unwrap().test_windows(WindowRule::Published);
     let crowded = windows.iter().max_by_key(|window| window.len()).unwrap();
     let honest: [Box<dyn Forecaster>; 5] = [
         Box::new(ConstantVelocity::last_step()),

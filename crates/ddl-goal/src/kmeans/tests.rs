@@ -56,10 +56,7 @@ fn as_good_as_scikit_learn() {
         let seeds = set.inertia_of_seeds.len();
         let ours: f64 = (0..seeds as u64).map(|seed| inertia(10, seed)).sum();
         let theirs: f64 = set.inertia_of_seeds.iter().sum();
-        assert!(
-            ours <= theirs * 1.02,
-            "{name}: {ours} against {theirs} of {seeds}"
-        );
+        assert!(ours <= theirs * 1.02, "{name}: {ours} against {theirs} of {seeds}");
         // The best of all: ten runs of ten restarts in scikit-learn, one of a hundred here.
         let (found, best) = (inertia(100, 0), set.inertia);
         assert!(found <= best * 1.02, "{name}: {found} against {best}");
@@ -78,18 +75,14 @@ fn fewer_distinct_points_than_clusters_repeat_centres() {
     assert_eq!(clustering.sizes(), [60, 40, 0, 0, 0]);
     assert_eq!(clustering.inertia, 0.0);
     // The two zeros are one point.
-    let zeros = KMeans::new(2, 10)
-        .fit(&[[0.0, -0.0], [-0.0, 0.0]], 0)
-        .unwrap();
+    let zeros = KMeans::new(2, 10).fit(&[[0.0, -0.0], [-0.0, 0.0]], 0).unwrap();
     assert_eq!(zeros.sizes(), [2, 0]);
 }
 
 #[test]
 fn a_point_out_of_range_is_reported() {
     for bad in [f64::NAN, f64::INFINITY, 1e200, 1e150] {
-        let error = KMeans::new(1, 1)
-            .fit(&[[0.0, 0.0], [0.0, bad]], 0)
-            .unwrap_err();
+        let error = KMeans::new(1, 1).fit(&[[0.0, 0.0], [0.0, bad]], 0).unwrap_err();
         let of_the_second = "the clustering of the experts' endpoints: point 1 is (0, ";
         assert!(error.to_string().starts_with(of_the_second), "{error}");
     }

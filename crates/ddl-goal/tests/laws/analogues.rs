@@ -75,9 +75,7 @@ fn distances_weights_and_endpoints_agree_with_the_definition() {
 fn a_goal_is_the_weighted_mean_of_its_analogues() {
     let reference = reference();
     let DefinedPedestrian {
-        track: walk,
-        analogues,
-        ..
+        track: walk, analogues, ..
     } = &reference.pedestrians[0];
     let estimator = of_six(&reference.library, 2);
     let set = estimator.estimate(&track(*walk)).unwrap();

@@ -1,8 +1,6 @@
 //! The estimator on synthetic pedestrians: what it reads, what it depends on, what it returns.
 
-use ddl_goal::{
-    ExpertLibrary, GoalError, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan, TrackError,
-};
+use ddl_goal::{ExpertLibrary, GoalError, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan, TrackError};
 use proptest::prelude::*;
 
 use crate::tracks::{self, Positions, distance, walk};
@@ -112,10 +110,7 @@ fn the_published_query_reads_the_ninth_position_and_no_further() {
 
 #[test]
 fn a_pedestrian_finds_itself_and_goals_near_where_it_goes() {
-    for params in [
-        GoalEstimatorParams::default(),
-        GoalEstimatorParams::published(),
-    ] {
+    for params in [GoalEstimatorParams::default(), GoalEstimatorParams::published()] {
         let estimator = estimator(params);
         let track = estimator.library().tracks()[237].clone();
         let goals = estimator.estimate(&track).unwrap();
@@ -157,11 +152,7 @@ fn the_seed_decides_in_the_frame_of_the_world_only() {
     let track = walk(1.1, 0.4, 0.01);
     let [own, world] = both_frames().map(|params| {
         (1..12)
-            .map(|seed| {
-                estimator(params.clone().seed(seed))
-                    .estimate(&track)
-                    .unwrap()
-            })
+            .map(|seed| estimator(params.clone().seed(seed)).estimate(&track).unwrap())
             .collect::<Vec<_>>()
     });
     assert!(own.iter().all(|set| bits(set) == bits(&own[0])));

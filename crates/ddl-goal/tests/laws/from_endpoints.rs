@@ -14,10 +14,7 @@ fn mean_distance(set: &GoalSet, ends: &[[f64; 2]], weights: &[f64]) -> f64 {
         let goal = set.goals()[set.nearest([x, y])];
         (goal[0] - x).hypot(goal[1] - y)
     };
-    ends.iter()
-        .zip(weights)
-        .map(|(end, w)| nearest(end) * w / total)
-        .sum()
+    ends.iter().zip(weights).map(|(end, w)| nearest(end) * w / total).sum()
 }
 
 proptest! {
@@ -61,24 +58,17 @@ fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
     assert_eq!(set.weights(), [0.75, 0.25, 0.0, 0.0]);
     assert_eq!(set.goals()[0], frame().to_world([4.0, 0.0]));
     assert_eq!(set.goals()[1], frame().to_world([5.0, 2.0]));
-    assert!(
-        set.goals()[2..]
-            .iter()
-            .all(|goal| set.goals()[..2].contains(goal))
-    );
+    assert!(set.goals()[2..].iter().all(|goal| set.goals()[..2].contains(goal)));
 }
 
 #[test]
 fn invalid_endpoints_are_reported() {
-    let of = |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::from_endpoints(
-        &frame(),
-        ends,
-        weights,
-        clusters,
-    ) {
-        Err(error @ GoalError::Ends { .. }) => error.to_string(),
-        other => panic!("{other:?}"),
-    };
+    let of =
+        |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::from_endpoints(&frame(), ends, weights, clusters)
+        {
+            Err(error @ GoalError::Ends { .. }) => error.to_string(),
+            other => panic!("{other:?}"),
+        };
     let end = [[1.0, 1.0]];
     assert!(of(&[], &[], 3).contains("0 endpoints"));
     assert!(of(&end, &[0.5, 0.5], 3).contains("1 endpoints with 2 weights"));

@@ -14,16 +14,12 @@ struct SceneMotion {
 impl SceneMotion {
     fn of(self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.angle.sin_cos();
-        [
-            cos * x - sin * y + self.by[0],
-            sin * x + cos * y + self.by[1],
-        ]
+        [cos * x - sin * y + self.by[0], sin * x + cos * y + self.by[1]]
     }
 }
 
 fn motion() -> impl Strategy<Value = SceneMotion> {
-    (-4.0..4.0_f64, prop::array::uniform2(-100.0..100.0_f64))
-        .prop_map(|(angle, by)| SceneMotion { angle, by })
+    (-4.0..4.0_f64, prop::array::uniform2(-100.0..100.0_f64)).prop_map(|(angle, by)| SceneMotion { angle, by })
 }
 
 /// 8 positions of a pedestrian with steps of up to 0.8 m.
@@ -107,10 +103,7 @@ fn a_standing_pedestrian_has_the_axes_of_the_world() {
 fn invalid_positions_are_reported() {
     let refused = |positions: &[[f64; 2]]| HeadingFrame::new(positions).unwrap_err();
     let (found, needed) = (1, 2);
-    assert_eq!(
-        refused(&[[0.0, 0.0]]),
-        TrackError::TooShort { found, needed }
-    );
+    assert_eq!(refused(&[[0.0, 0.0]]), TrackError::TooShort { found, needed });
     let nan = refused(&[[0.0, f64::NAN], [0.0, 0.0]]);
     assert!(matches!(nan, TrackError::NonFinite { index: 0, .. }));
     let far = refused(&[[-1e308, 0.0], [1e308, 0.0]]);

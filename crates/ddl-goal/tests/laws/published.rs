@@ -38,8 +38,7 @@ fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows 
 fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEstimator {
     let names = dataset.recordings().iter().map(Recording::name);
     let training = names.filter(|&name| name != test_recording);
-    let tracks =
-        training.flat_map(|name| windows(dataset, name, WindowRule::Complete).into_values());
+    let tracks = training.flat_map(|name| windows(dataset, name, WindowRule::Complete).into_values());
     let params = GoalEstimatorParams::published().experts(experts).seed(1);
     estimator(params, tracks.collect())
 }
@@ -115,10 +114,7 @@ fn the_mean_goal_error_of_a_test_scene_is_the_published_one() {
         .map(|(goals, track)| goal_error(goals, track));
     let mean = errors.sum::<f64>() / queries.len() as f64;
     assert!((mean - 0.548).abs() < 0.01, "{mean} m");
-    println!(
-        "mean goal error of {} pedestrians: {mean:.4} m",
-        queries.len()
-    );
+    println!("mean goal error of {} pedestrians: {mean:.4} m", queries.len());
 }
 
 /// The library and the pedestrians are from recordings of different streets: students, and shoppers elsewhere.

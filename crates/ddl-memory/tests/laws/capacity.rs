@@ -51,10 +51,7 @@ fn repeated_tracks_are_removed_first_oldest_first() {
     let number = |y: f64| (y * 1e3).round() as i64;
     let mut pedestrians: Vec<i64> = common.iter().map(|it| number(it.track[0][1])).collect();
     pedestrians.sort_unstable();
-    assert_eq!(
-        pedestrians,
-        (200 - pedestrians.len() as i64..200).collect::<Vec<_>>()
-    );
+    assert_eq!(pedestrians, (200 - pedestrians.len() as i64..200).collect::<Vec<_>>());
     assert!((60..64).contains(&pedestrians.len()), "{pedestrians:?}");
     assert_eq!(memory.recall(&observed(100.0), None, 12).len(), 1);
 }
@@ -66,11 +63,7 @@ fn without_repetition_the_oldest_tracks_are_removed() {
     for pedestrian in 0..100 {
         walk(&mut memory, 100 * pedestrian, 10.0 * pedestrian as f64);
     }
-    let is_held = |pedestrian: &i64| {
-        !memory
-            .recall(&observed(10.0 * *pedestrian as f64), None, 1)
-            .is_empty()
-    };
+    let is_held = |pedestrian: &i64| !memory.recall(&observed(10.0 * *pedestrian as f64), None, 1).is_empty();
     let held: Vec<i64> = (0..100).filter(is_held).collect();
     assert_eq!(held, (100 - held.len() as i64..100).collect::<Vec<_>>());
     assert_eq!(held.len(), memory.stretches());
@@ -81,11 +74,7 @@ fn without_repetition_the_oldest_tracks_are_removed() {
 fn standing_pedestrians_do_not_displace_passing_ones() {
     let mut memory = SceneMemory::new(1, 2_500).unwrap();
     for pedestrian in 0..900 {
-        walk(
-            &mut memory,
-            100 * pedestrian - 100_000,
-            3.0 * pedestrian as f64,
-        );
+        walk(&mut memory, 100 * pedestrian - 100_000, 3.0 * pedestrian as f64);
     }
     let mut crowd = Crowd::new(4, 60);
     let still = crowd.step();
@@ -99,11 +88,7 @@ fn standing_pedestrians_do_not_displace_passing_ones() {
         memory.observe(frame, still.iter().map(moved)).unwrap();
     }
     assert_eq!(memory.summary().tracks, 960);
-    assert!(
-        memory.stretches() <= 900 + 60 * 24 + 24,
-        "{}",
-        memory.stretches()
-    );
+    assert!(memory.stretches() <= 900 + 60 * 24 + 24, "{}", memory.stretches());
     let leaving = std::array::from_fn(|t| {
         let [x, y] = still[0].1;
         [x - 0.4 * t as f64, y]
@@ -129,10 +114,7 @@ fn a_pedestrian_walking_about_for_hours_does_not_fill_a_memory() {
     let newest: [Position; OBSERVED] = std::array::from_fn(|t| [0.5 * (19_980 + t) as f64, 0.0]);
     assert!(memory.recall(&newest, None, 1)[0].distance < 1e-9);
     let summary = memory.summary();
-    assert_eq!(
-        (summary.tracks, summary.frames, summary.pedestrians),
-        (2, 20_020, 2)
-    );
+    assert_eq!((summary.tracks, summary.frames, summary.pedestrians), (2, 20_020, 2));
     assert_eq!(summary.extent, Some([[0.0, 0.0], [9_999.5, 3.0]]));
 }
 

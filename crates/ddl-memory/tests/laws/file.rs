@@ -102,10 +102,7 @@ fn damaged_files_are_refused() {
     for length in 0..whole.len() {
         let error = read(&path, &whole[..length]).unwrap_err();
         let says = "gate.memory is not a readable scene memory";
-        assert!(
-            error.contains(says) && error.contains("Restore a copy"),
-            "{error}"
-        );
+        assert!(error.contains(says) && error.contains("Restore a copy"), "{error}");
         if length >= HEAD {
             assert!(read(&path, &signed(&whole[HEAD..length])).is_err());
         }
@@ -120,15 +117,9 @@ fn damaged_files_are_refused() {
     assert!(error.contains("trailing characters"), "{error}");
     assert_eq!(read(&path, &whole).unwrap(), memory);
     std::fs::remove_file(&path).unwrap();
-    assert!(matches!(
-        SceneMemory::read(&path),
-        Err(MemoryError::Read { .. })
-    ));
+    assert!(matches!(SceneMemory::read(&path), Err(MemoryError::Read { .. })));
     let nowhere = path.join("deep");
-    assert!(matches!(
-        memory.write(&nowhere),
-        Err(MemoryError::Write { .. })
-    ));
+    assert!(matches!(memory.write(&nowhere), Err(MemoryError::Write { .. })));
 }
 
 /// Invalid content that the digest does not reveal, because it was computed again after the edit.
@@ -138,39 +129,15 @@ fn impossible_memories_are_refused() {
     memory_of(&frames(1, 2, 25, 1), 20).write(&path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     for (from, to, problem) in [
-        (
-            "\"capacity\":20",
-            "\"capacity\":1",
-            "more than its capacity 1",
-        ),
+        ("\"capacity\":20", "\"capacity\":1", "more than its capacity 1"),
         ("\"capacity\":20", "\"capacity\":0", "the capacity must lie"),
-        (
-            "\"frame_step\":1",
-            "\"frame_step\":0",
-            "the frame step must lie",
-        ),
-        (
-            "\"last_frame\":24",
-            "\"last_frame\":23",
-            "after the last frame",
-        ),
-        (
-            "\"last_frame\":24",
-            "\"last_frame\":9007199254740992",
-            "not below 2^53",
-        ),
-        (
-            "\"last\":24",
-            "\"last\":-9223372036854775808",
-            "not below 2^53",
-        ),
+        ("\"frame_step\":1", "\"frame_step\":0", "the frame step must lie"),
+        ("\"last_frame\":24", "\"last_frame\":23", "after the last frame"),
+        ("\"last_frame\":24", "\"last_frame\":9007199254740992", "not below 2^53"),
+        ("\"last\":24", "\"last\":-9223372036854775808", "not below 2^53"),
         ("\"track\":[[", "\"track\":[[[0,0]],[", "too short"),
         ("\"track\":[[", "\"track\":[[],[", "a run has 0 positions"),
-        (
-            "\"track\":[[[",
-            "\"track\":[[[1.1e7,0],[",
-            "too far from the origin",
-        ),
+        ("\"track\":[[[", "\"track\":[[[1.1e7,0],[", "too far from the origin"),
         ("\"seen\"", "\"more\":0,\"seen\"", "unknown field `more`"),
     ] {
         assert!(text.contains(from), "{from}");

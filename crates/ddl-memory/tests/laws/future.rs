@@ -25,11 +25,7 @@ fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<Remembered>> {
 
 /// Whether the answer of a memory after the frames before `end` depends on a later frame or shows one. `fed` creates
 /// the memory that answers.
-fn sees_the_future(
-    fed: impl Fn(&Frames, usize) -> SceneMemory,
-    frames: &Frames,
-    end: usize,
-) -> bool {
+fn sees_the_future(fed: impl Fn(&Frames, usize) -> SceneMemory, frames: &Frames, end: usize) -> bool {
     let now = frames[..end].to_vec();
     let found = answers(&fed(frames, end), &now);
     let was_seen = |person: PedestrianId, track: &[[f64; 2]; WINDOW]| {
@@ -68,10 +64,7 @@ fn a_memory_does_not_see_the_future() {
             examples += recalled.iter().map(Vec::len).sum::<usize>();
         }
     }
-    assert!(
-        noticed > 60,
-        "{noticed} of 88 memories that are ahead were detected"
-    );
+    assert!(noticed > 60, "{noticed} of 88 memories that are ahead were detected");
     assert!(examples > 1_000, "only {examples} examples");
 }
 

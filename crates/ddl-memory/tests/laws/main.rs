@@ -52,15 +52,9 @@ fn memory_of(frames: &Frames, capacity: usize) -> SceneMemory {
 /// The last 8 positions of the pedestrians in the last frame, as queries.
 fn queries(frames: &Frames) -> Vec<(PedestrianId, [Position; OBSERVED])> {
     let last = &frames[frames.len().saturating_sub(OBSERVED)..];
-    let place = |pedestrians: &Pedestrians, id| {
-        pedestrians
-            .iter()
-            .find(|seen| seen.0 == id)
-            .map(|seen| seen.1)
-    };
+    let place = |pedestrians: &Pedestrians, id| pedestrians.iter().find(|seen| seen.0 == id).map(|seen| seen.1);
     let query = |&(id, _): &(PedestrianId, Position)| {
-        let observed: Option<Vec<Position>> =
-            last.iter().map(|(_, seen)| place(seen, id)).collect();
+        let observed: Option<Vec<Position>> = last.iter().map(|(_, seen)| place(seen, id)).collect();
         Some((id, observed?.try_into().ok()?))
     };
     last.last().map_or(Vec::new(), |(_, pedestrians)| {

@@ -21,10 +21,7 @@ fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
                 *first = *frame;
             }
             *last = *frame;
-            tracks
-                .entry((*id, *first))
-                .or_default()
-                .insert(*frame, *position);
+            tracks.entry((*id, *first)).or_default().insert(*frame, *position);
         }
     }
     let pedestrian = |((id, _), track): ((PedestrianId, i64), BTreeMap<i64, Position>)| {
@@ -43,20 +40,14 @@ fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
 fn distance(a: &[Position], b: &[Position]) -> f64 {
     let squared = |d: [f64; 2], scale: f64| (d[0] * d[0] + d[1] * d[1]) / (scale * scale);
     let between = |a: Position, b: Position| [a[0] - b[0], a[1] - b[1]];
-    let velocity = |track: &[Position], from: usize| {
-        between(track[from + 3], track[from]).map(|way| way / 1.2)
-    };
+    let velocity = |track: &[Position], from: usize| between(track[from + 3], track[from]).map(|way| way / 1.2);
     squared(between(a[7], b[7]), 1.0)
         + squared(between(velocity(a, 4), velocity(b, 4)), 0.4)
         + squared(between(velocity(a, 0), velocity(b, 0)), 0.6)
 }
 
 /// The smallest distance of each pedestrian except `own`, in order, below the limit.
-fn reference(
-    frames: &Frames,
-    observed: &[Position; OBSERVED],
-    own: Option<PedestrianId>,
-) -> Vec<f64> {
+fn reference(frames: &Frames, observed: &[Position; OBSERVED], own: Option<PedestrianId>) -> Vec<f64> {
     let others = stretches(frames)
         .into_iter()
         .filter(|(id, runs, _)| !(*runs && Some(*id) == own));
@@ -161,20 +152,14 @@ fn a_jump_of_the_tracker_costs_no_precision() {
         let mut memory = SceneMemory::new(1, 1_000).unwrap();
         let at = |t: usize| [0.5 * t as f64 + if t < 23 { 0.0 } else { far }, 0.0];
         for t in 0..60 {
-            memory
-                .observe(t as i64, [(PedestrianId(1), at(t))])
-                .unwrap();
+            memory.observe(t as i64, [(PedestrianId(1), at(t))]).unwrap();
         }
         assert_eq!(memory.stretches(), 41);
         for first in (0..41).filter(|first| !(14..24).contains(first)) {
             let observed = std::array::from_fn(|t| [at(first + t)[0] + 1e-3, 0.0]);
             let found = memory.recall(&observed, None, 1)[0];
             assert_eq!(found.track, std::array::from_fn(|t| at(first + t)));
-            assert!(
-                (found.distance - 1e-6).abs() < 1e-7,
-                "{far} {first} {}",
-                found.distance
-            );
+            assert!((found.distance - 1e-6).abs() < 1e-7, "{far} {first} {}", found.distance);
         }
     }
 }
@@ -216,15 +201,10 @@ fn frames_between_steps_give_no_stretches() {
     // Every third frame: no two are one step apart.
     let mut memory = SceneMemory::new(10, 1_000).unwrap();
     for frame in (0..600).step_by(3) {
-        memory
-            .observe(frame, [(PedestrianId(1), [0.0; 2])])
-            .unwrap();
+        memory.observe(frame, [(PedestrianId(1), [0.0; 2])]).unwrap();
     }
     let summary = memory.summary();
-    assert_eq!(
-        (summary.frames, summary.pedestrians, summary.stretches),
-        (200, 1, 0)
-    );
+    assert_eq!((summary.frames, summary.pedestrians, summary.stretches), (200, 1, 0));
 }
 
 /// The positions of all pedestrians, each once, without holes; pedestrians without a stretch are left out.
@@ -236,14 +216,9 @@ fn tracks_are_the_positions_held() {
         let third = (t > 60).then_some((PedestrianId(3), [1.0; 2]));
         let second = (t < 25).then_some((PedestrianId(2), [0.5 * t as f64, 3.0]));
         let first = (t != 47).then_some((PedestrianId(1), at(t)));
-        memory
-            .observe(t, [first, second, third].into_iter().flatten())
-            .unwrap();
+        memory.observe(t, [first, second, third].into_iter().flatten()).unwrap();
     }
     let tracks: Vec<Vec<Position>> = memory.tracks().collect();
     let second: Vec<Position> = (0..25).map(|t| [at(t)[0], 3.0]).collect();
-    assert_eq!(
-        tracks,
-        [second, (0..70).filter(|t| *t != 47).map(at).collect()]
-    );
+    assert_eq!(tracks, [second, (0..70).filter(|t| *t != 47).map(at).collect()]);
 }

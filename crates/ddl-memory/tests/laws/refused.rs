@@ -22,11 +22,7 @@ fn errors_change_nothing() {
                 "pedestrian 3 is in frame",
             ),
             (last + 6, vec![other, (id, [f64::NAN, 0.0])], "not finite"),
-            (
-                last + 6,
-                vec![other, (id, [0.0, f64::INFINITY])],
-                "not finite",
-            ),
+            (last + 6, vec![other, (id, [0.0, f64::INFINITY])], "not finite"),
         ] {
             let error = memory.observe(frame, pedestrians).unwrap_err().to_string();
             assert!(error.contains(problem), "{error}");
@@ -48,10 +44,7 @@ fn input_of_live_tracks_is_accepted() {
             30 | 60.. => far[frame as usize % 4],
             _ => 0.4 * frame as f64,
         };
-        let pedestrians = [
-            (PedestrianId(1), [x, 0.0]),
-            (PedestrianId(2), [0.0, frame as f64]),
-        ];
+        let pedestrians = [(PedestrianId(1), [x, 0.0]), (PedestrianId(2), [0.0, frame as f64])];
         tracks.push(frame, pedestrians).unwrap();
         memory.observe(frame, pedestrians).unwrap();
     }
@@ -66,18 +59,14 @@ fn input_of_live_tracks_is_accepted() {
 fn a_memory_needs_a_step_and_a_capacity() {
     for step in [0, -1, (1 << 31) + 1, i64::MIN] {
         let error = SceneMemory::new(step, 1);
-        assert!(
-            matches!(error, Err(MemoryError::Frame(LiveError::FrameStep { found })) if found == step)
-        );
+        assert!(matches!(error, Err(MemoryError::Frame(LiveError::FrameStep { found })) if found == step));
     }
     for capacity in [0, (1 << 18) + 1, usize::MAX] {
         let error = SceneMemory::new(1, capacity);
         assert!(matches!(error, Err(MemoryError::Capacity { found }) if found == capacity));
     }
     let mut memory = SceneMemory::new(1 << 31, 1 << 18).unwrap();
-    memory
-        .observe(1 - (1 << 53), [(PedestrianId(1), [0.0; 2])])
-        .unwrap();
+    memory.observe(1 - (1 << 53), [(PedestrianId(1), [0.0; 2])]).unwrap();
     memory.observe((1 << 53) - 1, []).unwrap();
     assert_eq!(memory.stretches(), 0);
 }

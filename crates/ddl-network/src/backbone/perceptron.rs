@@ -39,14 +39,7 @@ impl<B: Backend> Backbone<B> for Perceptron {
         centred.clone()
     }
 
-    fn step(
-        &self,
-        backend: &B,
-        memory: &mut Memory<B>,
-        relative: &B::Tokens,
-        _: &B::Tokens,
-        _: &B::Seen,
-    ) -> B::Tokens {
+    fn step(&self, backend: &B, memory: &mut Memory<B>, relative: &B::Tokens, _: &B::Tokens, _: &B::Seen) -> B::Tokens {
         if memory.tokens.len() < OBSERVED {
             memory.tokens.push(relative.clone());
         }

@@ -29,16 +29,13 @@ impl Star {
         };
         let width = sizes.width;
         let spatial = [1, 2].map(|encoder| {
-            let layer = |index: usize| {
-                format!("spatial_encoder_{encoder}.transformer_encoder.layers.{index}")
-            };
+            let layer = |index: usize| format!("spatial_encoder_{encoder}.transformer_encoder.layers.{index}");
             (0..config.spatial_layers)
                 .map(|index| layout.encoder_layer(&layer(index), sizes, config.spatial_dropout))
                 .collect()
         });
-        let temporal = [1, 2].map(|encoder| {
-            layout.encoder_layer(&format!("temporal_encoder_{encoder}.layers.0"), sizes, 0.0)
-        });
+        let temporal =
+            [1, 2].map(|encoder| layout.encoder_layer(&format!("temporal_encoder_{encoder}.layers.0"), sizes, 0.0));
         let inputs = config.temporal_inputs() as usize;
         // The order decides which random numbers become the initial weights of a layer.
         let temporal_embedding = layout.linear("input_embedding_layer_temporal", inputs, width);
@@ -57,15 +54,10 @@ impl Star {
     }
 }
 
-fn spatial_encoder<B: Backend>(
-    backend: &B,
-    layers: &[EncoderLayer],
-    x: &B::Tokens,
-    seen: &B::Seen,
-) -> B::Tokens {
-    layers.iter().fold(x.clone(), |x, &layer| {
-        backend.spatial_attention(layer, &x, seen)
-    })
+fn spatial_encoder<B: Backend>(backend: &B, layers: &[EncoderLayer], x: &B::Tokens, seen: &B::Seen) -> B::Tokens {
+    layers
+        .iter()
+        .fold(x.clone(), |x, &layer| backend.spatial_attention(layer, &x, seen))
 }
 
 impl<B: Backend> Backbone<B> for Star {

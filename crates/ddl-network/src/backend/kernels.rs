@@ -25,8 +25,7 @@ impl Kernels {
     /// # Panics
     /// If the count of `numbers` differs from the layout's.
     pub fn new(layout: &Arc<Layout>, numbers: &[f32], precision: Precision) -> Self {
-        let linear =
-            |layer: &Linear| Arc::new(kernel::LinearKernel::zeros(layer.inputs, layer.outputs));
+        let linear = |layer: &Linear| Arc::new(kernel::LinearKernel::zeros(layer.inputs, layer.outputs));
         let encoder = |layer: &EncoderLayer| Arc::new(kernel::EncoderKernel::zeros(layer.sizes));
         let mut kernels = Self {
             layout: Arc::clone(layout),
@@ -258,12 +257,7 @@ impl Backend for KernelBackend {
         })
     }
 
-    fn spatial_attention(
-        &self,
-        layer: EncoderLayer,
-        x: &Rc<Rows>,
-        seen: &VisibleScenes,
-    ) -> Rc<Rows> {
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Rows>, seen: &VisibleScenes) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
         let frames = seen.scenes.during(seen.steps.clone());
         let (y, kept) = kernel.among_pedestrians(x, frames, dropouts);
@@ -276,12 +270,7 @@ impl Backend for KernelBackend {
         })
     }
 
-    fn temporal_attention(
-        &self,
-        layer: EncoderLayer,
-        newest: &Rc<Rows>,
-        cache: &[Rc<RowKeyValues>],
-    ) -> Rc<Rows> {
+    fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Rows>, cache: &[Rc<RowKeyValues>]) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
         let (y, kept) = kernel.over_memory(newest, &rows(cache), dropouts);
         if self.tape.is_none() {

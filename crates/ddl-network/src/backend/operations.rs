@@ -39,20 +39,11 @@ pub trait Backend: Debug + Sized + 'static {
     fn repeated(&self, x: &Self::Tokens, batch: usize) -> Self::Tokens;
 
     /// An encoder layer in which each pedestrian attends to the visible pedestrians of its scene.
-    fn spatial_attention(
-        &self,
-        layer: EncoderLayer,
-        x: &Self::Tokens,
-        seen: &Self::Seen,
-    ) -> Self::Tokens;
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Self::Tokens, seen: &Self::Seen) -> Self::Tokens;
 
     /// An encoder layer in which each newest token attends to the cached tokens of its pedestrian and to itself.
-    fn temporal_attention(
-        &self,
-        layer: EncoderLayer,
-        newest: &Self::Tokens,
-        cache: &[Self::KeyValues],
-    ) -> Self::Tokens;
+    fn temporal_attention(&self, layer: EncoderLayer, newest: &Self::Tokens, cache: &[Self::KeyValues])
+    -> Self::Tokens;
 
     /// Keys and values of tokens in an encoder layer, to be cached.
     fn key_values(&self, layer: EncoderLayer, x: &Self::Tokens) -> Self::KeyValues;
@@ -85,17 +76,11 @@ impl<B: Backend> Memory<B> {
     pub fn repeated(&self, backend: &B, batch: usize) -> Self {
         let of_cache = |cache: &Vec<B::KeyValues>| {
             let cached = cache.iter();
-            cached
-                .map(|one| backend.repeat_key_values(one, batch))
-                .collect()
+            cached.map(|one| backend.repeat_key_values(one, batch)).collect()
         };
         Self {
             caches: self.caches.iter().map(of_cache).collect(),
-            tokens: self
-                .tokens
-                .iter()
-                .map(|x| backend.repeated(x, batch))
-                .collect(),
+            tokens: self.tokens.iter().map(|x| backend.repeated(x, batch)).collect(),
         }
     }
 }

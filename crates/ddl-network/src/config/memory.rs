@@ -57,12 +57,7 @@ impl MemoryConfig {
             require((1..=most).contains(&value), field, &value, rule)?;
         }
         let divides = self.width % self.heads == 0;
-        require(
-            divides,
-            "memory.heads",
-            &self.heads,
-            "a divisor of memory.width",
-        )?;
+        require(divides, "memory.heads", &self.heads, "a divisor of memory.width")?;
         positive("memory.fade", self.fade)?;
         positive("memory.half", self.half)
     }
@@ -71,9 +66,7 @@ impl MemoryConfig {
     /// `fade`) over the earlier pedestrians attended to, d the squared distance of each. 0 without earlier pedestrians.
     pub fn share(&self, remembered: &[Remembered]) -> f64 {
         let looked_at = remembered.iter().take(self.remembered);
-        let alike: f64 = looked_at
-            .map(|other| (-other.distance / self.fade).exp())
-            .sum();
+        let alike: f64 = looked_at.map(|other| (-other.distance / self.fade).exp()).sum();
         alike / (alike + self.half)
     }
 }

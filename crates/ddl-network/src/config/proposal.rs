@@ -64,8 +64,7 @@ impl ProposalConfig {
             let layers = width * hidden + (layers as u64 - 1) * hidden * hidden;
             layers + near * (3 * near + width) + 3 * hidden * ends
         };
-        let of_memory =
-            |memory: &MemoryConfig| part(memory.layers, memory.hidden as u64, memory.width as u64);
+        let of_memory = |memory: &MemoryConfig| part(memory.layers, memory.hidden as u64, memory.width as u64);
         members * (part(self.layers, width, near) + self.memory.as_ref().map_or(0, of_memory))
     }
 
@@ -87,12 +86,7 @@ impl ProposalConfig {
             require((1..=most).contains(&value), field, &value, rule)?;
         }
         let divides = self.neighbour_width % self.heads == 0;
-        require(
-            divides,
-            "heads",
-            &self.heads,
-            "a divisor of neighbour_width",
-        )?;
+        require(divides, "heads", &self.heads, "a divisor of neighbour_width")?;
         not_negative("neighbour_range", self.neighbour_range)?;
         positive("time_step", self.time_step)?;
         self.memory.as_ref().map_or(Ok(()), MemoryConfig::check)

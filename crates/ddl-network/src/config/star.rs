@@ -48,10 +48,7 @@ pub struct StarConfig {
 }
 
 /// STAR is not written, because configurations of earlier versions have no field `backbone`.
-#[expect(
-    clippy::trivially_copy_pass_by_ref,
-    reason = "serde passes a reference"
-)]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_star(backbone: &BackboneKind) -> bool {
     *backbone == BackboneKind::Star
 }

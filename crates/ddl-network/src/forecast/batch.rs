@@ -73,9 +73,7 @@ pub(super) fn batches<'a>(
     while first < windows.len() {
         let mut last = first;
         let mut pedestrians = 0;
-        while last < windows.len()
-            && (pedestrians == 0 || pedestrians + windows[last].len() <= PEDESTRIANS_AT_ONCE)
-        {
+        while last < windows.len() && (pedestrians == 0 || pedestrians + windows[last].len() <= PEDESTRIANS_AT_ONCE) {
             pedestrians += windows[last].len();
             last += 1;
         }
@@ -84,10 +82,8 @@ pub(super) fn batches<'a>(
         let orders: Vec<Vec<usize>> = originals.iter().map(order).collect();
         let of_goal = |k: usize| {
             let each = goals[first..last].iter().zip(&origins).zip(&orders);
-            each.flat_map(|((goals, &origin), order)| {
-                order.iter().map(move |&i| relative(goals[i][k], origin))
-            })
-            .collect()
+            each.flat_map(|((goals, &origin), order)| order.iter().map(move |&i| relative(goals[i][k], origin)))
+                .collect()
         };
         // The pedestrians' ids stay in the original order; nothing here reads them.
         let ordered = |((window, &origin), order): ((&Window, &Position), &Vec<usize>)| {
@@ -99,12 +95,7 @@ pub(super) fn batches<'a>(
                 .collect()
         };
         batches.push(ForecastBatch {
-            windows: originals
-                .iter()
-                .zip(&origins)
-                .zip(&orders)
-                .map(ordered)
-                .collect(),
+            windows: originals.iter().zip(&origins).zip(&orders).map(ordered).collect(),
             goals: (0..goal_count).map(of_goal).collect(),
             shares: shares.map(of_shares),
             noise: noise.clone(),
@@ -144,9 +135,8 @@ impl ForecastBatch<'_> {
                 }
                 first += order.len();
                 let places = || {
-                    own.iter().flat_map(move |&i| {
-                        (0..hypotheses).flat_map(move |h| (0..HORIZON).map(move |t| at(t, h, i)))
-                    })
+                    own.iter()
+                        .flat_map(move |&i| (0..hypotheses).flat_map(move |h| (0..HORIZON).map(move |t| at(t, h, i))))
                 };
                 WindowRollout {
                     pedestrians: window.len(),
@@ -207,38 +197,21 @@ fn check_shares(windows: &[Window], shares: Option<&[Vec<f64>]>) -> Result<(), N
     }
 }
 
-fn check_goals(
-    windows: &[Window],
-    goals: &[Vec<Vec<Position>>],
-    noise: Noise,
-) -> Result<usize, NetworkError> {
+fn check_goals(windows: &[Window], goals: &[Vec<Vec<Position>>], noise: Noise) -> Result<usize, NetworkError> {
     let fault = |expected: String, got: String| Err(NetworkError::shape("forecast", expected, got));
     if goals.len() != windows.len() {
-        return fault(
-            format!("goals of {} windows", windows.len()),
-            goals.len().to_string(),
-        );
+        return fault(format!("goals of {} windows", windows.len()), goals.len().to_string());
     }
     let count = goals.iter().flatten().map(Vec::len).next().unwrap_or(1);
     for (window, goals) in windows.iter().zip(goals) {
         if goals.len() != window.len() {
             return fault(
-                format!(
-                    "goals of {} pedestrians in {}",
-                    window.len(),
-                    window.recording()
-                ),
+                format!("goals of {} pedestrians in {}", window.len(), window.recording()),
                 goals.len().to_string(),
             );
         }
-        if let Some(other) = goals
-            .iter()
-            .find(|goals| goals.len() != count || goals.is_empty())
-        {
-            return fault(
-                format!("{count} goals for every pedestrian"),
-                other.len().to_string(),
-            );
+        if let Some(other) = goals.iter().find(|goals| goals.len() != count || goals.is_empty()) {
+            return fault(format!("{count} goals for every pedestrian"), other.len().to_string());
         }
     }
     match noise {

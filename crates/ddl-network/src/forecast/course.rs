@@ -11,8 +11,8 @@ use crate::backend::{Buffer, Rows, Scenes, VisibleScenes};
 use crate::config::NetworkFrame;
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow,
-    StableEuler, StepTime, rollout_into,
+    Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime,
+    rollout_into,
 };
 use nalgebra::Vector2;
 use std::ops::Range;
@@ -138,18 +138,10 @@ impl<'a> Observation<'a> {
 
 impl<'a> Course<'a> {
     /// The state before the first forecast step, for some hypotheses. A single goal is used for all hypotheses.
-    pub(super) fn new(
-        observation: &'a Observation<'_>,
-        batch: &ForecastBatch<'_>,
-        hypotheses: Range<usize>,
-    ) -> Self {
+    pub(super) fn new(observation: &'a Observation<'_>, batch: &ForecastBatch<'_>, hypotheses: Range<usize>) -> Self {
         let config = observation.config;
         let count = hypotheses.len();
-        let used = if batch.goals.len() == 1 {
-            0..1
-        } else {
-            hypotheses
-        };
+        let used = if batch.goals.len() == 1 { 0..1 } else { hypotheses };
         let goals = &batch.goals[used];
         let frames = (config.frame == NetworkFrame::Goal).then(|| {
             let frames = goals.iter().flat_map(|goals| {

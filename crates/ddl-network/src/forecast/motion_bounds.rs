@@ -27,11 +27,7 @@ pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> Motio
     let mean = recent.iter().sum::<Vector2<f64>>() / recent.len() as f64;
     let even = (-(tremble / JITTER).powi(2)).exp();
     let velocity = (mean + (last - mean) * even) / time_step;
-    let share = if share.is_nan() {
-        0.0
-    } else {
-        share.clamp(0.0, 1.0)
-    };
+    let share = if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) };
     MotionBounds::new(MotionBounds::top_speed_after(fastest), velocity, share).unwrap_or_default()
 }
 
@@ -55,14 +51,8 @@ mod tests {
         // A share out of range does not change the top speed of a runner.
         let runner: Vec<Position> = (0..8).map(|t| [2.4 * f64::from(t), 0.0]).collect();
         for (share, kept) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
-            assert_eq!(
-                motion_bounds(&runner, 0.4, share),
-                motion_bounds(&runner, 0.4, kept)
-            );
+            assert_eq!(motion_bounds(&runner, 0.4, share), motion_bounds(&runner, 0.4, kept));
         }
-        assert_eq!(
-            motion_bounds(&[[1.0, 2.0]], 0.4, 1.0),
-            MotionBounds::default()
-        );
+        assert_eq!(motion_bounds(&[[1.0, 2.0]], 0.4, 1.0), MotionBounds::default());
     }
 }

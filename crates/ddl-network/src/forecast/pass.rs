@@ -91,11 +91,7 @@ impl<'a> Pass<'a> {
 
 /// The hypotheses of all parts, in their order.
 fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
-    fn each<T: Copy>(
-        parts: &[BatchRollout],
-        pedestrians: usize,
-        numbers: impl Fn(&BatchRollout) -> &[T],
-    ) -> Vec<T> {
+    fn each<T: Copy>(parts: &[BatchRollout], pedestrians: usize, numbers: impl Fn(&BatchRollout) -> &[T]) -> Vec<T> {
         let steps = (0..HORIZON).flat_map(|t| parts.iter().map(move |part| (t, part)));
         steps
             .flat_map(|(t, part)| {
@@ -108,19 +104,13 @@ fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
     BatchRollout {
         hypotheses: parts.iter().map(|part| part.hypotheses).sum(),
         positions: each(parts, pedestrians, |part| &part.positions),
-        factors: with_factors.then(|| {
-            each(parts, pedestrians, |part| {
-                part.factors.as_deref().unwrap_or(&[])
-            })
-        }),
+        factors: with_factors.then(|| each(parts, pedestrians, |part| part.factors.as_deref().unwrap_or(&[]))),
     }
 }
 
 impl Part<'_> {
     fn roll_out(&self) -> BatchRollout {
-        let Pass {
-            observation, batch, ..
-        } = self.pass;
+        let Pass { observation, batch, .. } = self.pass;
         // Without goals among the inputs the observed time steps are the same for all hypotheses.
         let count = self.hypotheses.len();
         let shared = observation.entries() == 1 && count > 1;
@@ -161,9 +151,7 @@ impl Part<'_> {
             batch,
             ..
         } = self.pass;
-        let PassLayers {
-            backbone, spread, ..
-        } = *layers;
+        let PassLayers { backbone, spread, .. } = *layers;
         let hypotheses = self.hypotheses.len();
         let size = HORIZON * hypotheses * batch.pedestrians();
         let mut positions = Vec::with_capacity(size);

@@ -20,8 +20,5 @@ pub fn visibility(windows: &[&Window], steps: usize, half_box: f64) -> Scenes {
         lists.collect()
     };
     let frames = (0..steps).flat_map(|step| windows.iter().map(move |window| (window, step)));
-    Scenes::new(
-        &sizes,
-        frames.flat_map(|(window, step)| of_window(window, step)),
-    )
+    Scenes::new(&sizes, frames.flat_map(|(window, step)| of_window(window, step)))
 }

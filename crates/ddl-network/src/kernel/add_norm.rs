@@ -96,9 +96,7 @@ impl AddNorm {
                     let at = v * LANES;
                     let term = load(simd, t, at);
                     let term = match decisions {
-                        Some((decisions, start)) => {
-                            decisions.apply(simd, term, start + first + r, at)
-                        }
+                        Some((decisions, start)) => decisions.apply(simd, term, start + first + r, at),
                         None => term,
                     };
                     four.set(simd, r, v, simd.add(load(simd, x, at), term));
@@ -187,12 +185,7 @@ impl AddNorm {
                     normal.set(simd, r, v, number);
                     gradient.set(simd, r, v, simd.mul(of_y, simd.load(&self.weight[v].0)));
                     let [weight, bias] = &mut sums;
-                    weight.set(
-                        simd,
-                        0,
-                        v,
-                        simd.mul_add(of_y, number, weight.get(simd, 0, v)),
-                    );
+                    weight.set(simd, 0, v, simd.mul_add(of_y, number, weight.get(simd, 0, v)));
                     bias.set(simd, 0, v, simd.add(of_y, bias.get(simd, 0, v)));
                 }
             }
@@ -210,9 +203,7 @@ impl AddNorm {
                     let of_sum = simd.mul(simd.sub(centred, along), scale);
                     store(simd, of_sum, gx, at);
                     let of_term = match decisions {
-                        Some((decisions, start)) => {
-                            decisions.apply(simd, of_sum, start + first + r, at)
-                        }
+                        Some((decisions, start)) => decisions.apply(simd, of_sum, start + first + r, at),
                         None => of_sum,
                     };
                     store(simd, of_term, gt, at);

@@ -68,13 +68,7 @@ impl AmongPedestrians {
     /// Mixes the values of the visible pedestrians.
     /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames` -> `attended`, whose
     /// buffers are reused.
-    pub(crate) fn forward(
-        &self,
-        qkv: &[f32],
-        frames: Frames<'_>,
-        dropout: Option<Dropout>,
-        attended: &mut Attended,
-    ) {
+    pub(crate) fn forward(&self, qkv: &[f32], frames: Frames<'_>, dropout: Option<Dropout>, attended: &mut Attended) {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
@@ -88,9 +82,7 @@ impl AmongPedestrians {
             jobs.extend(task.blocks().map(|task| {
                 SceneForward {
                     qkv,
-                    mixed: mixed
-                        .split_off_mut(..task.queries().len() * row)
-                        .unwrap_or_default(),
+                    mixed: mixed.split_off_mut(..task.queries().len() * row).unwrap_or_default(),
                     normalisers: normalisers
                         .split_off_mut(..task.twos.len() * groups)
                         .unwrap_or_default(),
@@ -133,9 +125,7 @@ impl AmongPedestrians {
                 normalisers: normalisers
                     .split_off(..task.twos.len() * self.heads.groups())
                     .unwrap_or_default(),
-                mixed_gradient: mixed_gradient
-                    .split_off(..pedestrians * row)
-                    .unwrap_or_default(),
+                mixed_gradient: mixed_gradient.split_off(..pedestrians * row).unwrap_or_default(),
                 qkv_gradient: qkv_gradient.split_off_mut(..qkv.len()).unwrap_or_default(),
                 task,
             });
@@ -156,11 +146,7 @@ impl AmongPedestrians {
     fn check(&self, qkv: &[f32], frames: Frames<'_>) -> usize {
         let entry = frames.scenes().pedestrians() * 3 * self.heads.row();
         let whole = !qkv.is_empty() && qkv.len().is_multiple_of(entry);
-        assert!(
-            whole,
-            "qkv has {} numbers, not entries of {entry}",
-            qkv.len()
-        );
+        assert!(whole, "qkv has {} numbers, not entries of {entry}", qkv.len());
         let entries = qkv.len() / entry;
         frames.check(entries);
         entries

@@ -62,11 +62,7 @@ impl Buffer {
         let numbers = SPARES.with_borrow_mut(|spares| spares.take(count + LANES));
         let aligned = numbers.as_ptr().align_offset(LANES * size_of::<f32>());
         let first = if aligned < LANES { aligned } else { 0 };
-        Self {
-            numbers,
-            first,
-            count,
-        }
+        Self { numbers, first, count }
     }
 
     /// `count` zeros.

@@ -21,17 +21,11 @@ pub(crate) use layer::{Dropouts, EncoderKernel};
 impl EncoderKernel {
     /// The layer with spatial attention.
     /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`.
-    pub(crate) fn among_pedestrians(
-        &self,
-        x: &[f32],
-        frames: Frames<'_>,
-        dropouts: Dropouts,
-    ) -> (Buffer, Kept) {
+    pub(crate) fn among_pedestrians(&self, x: &[f32], frames: Frames<'_>, dropouts: Dropouts) -> (Buffer, Kept) {
         let mut qkv = Buffer::any(3 * x.len());
         self.project(0, x, Targets::Together(&mut qkv));
         let mut attended = Attended::default();
-        self.among
-            .forward(&qkv, frames, dropouts.weights, &mut attended);
+        self.among.forward(&qkv, frames, dropouts.weights, &mut attended);
         let attention = KeptAttention::Among { qkv, attended };
         self.after_attention(x, attention, dropouts)
     }
@@ -53,14 +47,8 @@ impl EncoderKernel {
         };
         let (mut gx, of_mixed) = self.before_attention(kept, dropouts, gy, of_weights);
         let mut of_qkv = Buffer::any(qkv.len());
-        self.among.backward(
-            qkv,
-            frames,
-            dropouts.weights,
-            attended,
-            &of_mixed,
-            &mut of_qkv,
-        );
+        self.among
+            .backward(qkv, frames, dropouts.weights, attended, &of_mixed, &mut of_qkv);
         let parts = Parts::Together(&of_qkv);
         self.project_backward(0, x, &parts, &mut gx, of_weights);
         gx
@@ -69,18 +57,12 @@ impl EncoderKernel {
     /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
     /// `x` `[rows, width]`; tokens in `memory` have as many rows, or a divisor, as in [`OverMemory::forward`]
     /// -> y `[rows, width]`.
-    pub(crate) fn over_memory(
-        &self,
-        x: &[f32],
-        memory: &[&Remembered],
-        dropouts: Dropouts,
-    ) -> (Buffer, Kept) {
+    pub(crate) fn over_memory(&self, x: &[f32], memory: &[&Remembered], dropouts: Dropouts) -> (Buffer, Kept) {
         let [mut query, mut key, mut value] = [0; 3].map(|_| Buffer::any(x.len()));
         self.project(0, x, Targets::Apart(vec![&mut query, &mut key, &mut value]));
         let own = Remembered { key, value };
         let mut mixed = Buffer::any(x.len());
-        self.over
-            .forward(&query, &views(memory), own.view(), &mut mixed);
+        self.over.forward(&query, &views(memory), own.view(), &mut mixed);
         let attention = KeptAttention::Over { query, own, mixed };
         self.after_attention(x, attention, dropouts)
     }
@@ -88,10 +70,7 @@ impl EncoderKernel {
     /// The gradients of [`over_memory`](Self::over_memory). `gy` like `x` -> the gradient of x. The gradients of the
     /// memory are added to `of_memory`, those of the weights to `of_weights`, `[Sizes::count]`. The tokens of `memory`
     /// and `of_memory` must have as many rows as `x`. The other arguments must be those of the forward pass.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "all of the forward pass, and its gradients"
-    )]
+    #[expect(clippy::too_many_arguments, reason = "all of the forward pass, and its gradients")]
     pub(crate) fn over_memory_backward(
         &self,
         x: &[f32],
@@ -130,12 +109,7 @@ impl EncoderKernel {
     }
 
     /// The gradient of x through [`remember`](Self::remember). The gradients of the weights are added to `of_weights`.
-    pub(crate) fn remember_backward(
-        &self,
-        x: &[f32],
-        gradient: &Remembered,
-        of_weights: &mut [f32],
-    ) -> Buffer {
+    pub(crate) fn remember_backward(&self, x: &[f32], gradient: &Remembered, of_weights: &mut [f32]) -> Buffer {
         let mut gx = Buffer::zeros(x.len());
         let parts = Parts::Apart(vec![&gradient.key, &gradient.value]);
         self.project_backward(1, x, &parts, &mut gx, of_weights);

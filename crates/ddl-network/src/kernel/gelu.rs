@@ -4,13 +4,7 @@ use ddl_simd::{Dispatch, Kernel, LANES, Simd};
 
 /// erfc(z) = t (a₁ + t (a₂ + …)) exp(−z²) for z ≥ 0, t = 1 / (1 + p z), within 1.5e-7 (Abramowitz and Stegun 7.1.26).
 const P: f32 = 0.327_591_1;
-const A: [f32; 5] = [
-    0.254_829_6,
-    -0.284_496_74,
-    1.421_413_7,
-    -1.453_152_1,
-    1.061_405_4,
-];
+const A: [f32; 5] = [0.254_829_6, -0.284_496_74, 1.421_413_7, -1.453_152_1, 1.061_405_4];
 
 /// Replaces every number x by x Φ(x).
 /// The error is below 1e-6 for |x| up to 6, and below the rounding of x beyond. NaN stays NaN.

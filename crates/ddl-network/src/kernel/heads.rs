@@ -58,12 +58,7 @@ impl HeadPart {
     /// Lane l holds head l / 4 + 4 (l mod 2) of row (l mod 4) / 2. In this order, transposing pieces of four lanes is
     /// enough.
     #[inline(always)]
-    pub(super) fn load<S: Simd>(
-        self,
-        simd: S,
-        first: &[f32],
-        second: Option<&[f32]>,
-    ) -> Vectors<S> {
+    pub(super) fn load<S: Simd>(self, simd: S, first: &[f32], second: Option<&[f32]>) -> Vectors<S> {
         let [a, b] = self.row(simd, first);
         let [c, d] = match second {
             Some(second) => self.row(simd, second),
@@ -73,13 +68,7 @@ impl HeadPart {
     }
 
     #[inline(always)]
-    pub(super) fn store<S: Simd>(
-        self,
-        simd: S,
-        vectors: Vectors<S>,
-        first: &mut [f32],
-        second: Option<&mut [f32]>,
-    ) {
+    pub(super) fn store<S: Simd>(self, simd: S, vectors: Vectors<S>, first: &mut [f32], second: Option<&mut [f32]>) {
         let [a, b, c, d] = simd.transpose(vectors);
         self.store_row(simd, [a, b], first);
         if let Some(second) = second {

@@ -58,15 +58,13 @@ impl LinearKernel {
         let inputs = x.chunks(ROWS * self.inputs);
         let inputs = inputs.zip(gy.chunks(ROWS * self.outputs));
         let outputs = gx.chunks_mut(ROWS * self.inputs).zip(&mut sums);
-        let jobs = inputs
-            .zip(outputs)
-            .map(|((x, gy), (gx, sums))| LinearBackward {
-                map: &self.map,
-                x: MatrixColumns::whole(x, self.inputs),
-                gy: MatrixColumns::whole(gy, self.outputs),
-                gx: MatrixColumnsMut::whole(gx, self.inputs),
-                of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
-            });
+        let jobs = inputs.zip(outputs).map(|((x, gy), (gx, sums))| LinearBackward {
+            map: &self.map,
+            x: MatrixColumns::whole(x, self.inputs),
+            gy: MatrixColumns::whole(gy, self.outputs),
+            gx: MatrixColumnsMut::whole(gx, self.inputs),
+            of_weights: sums.split_at_mut(self.outputs * self.inputs).into(),
+        });
         let work = 2 * x.len() * self.outputs;
         run_each(self.dispatch, jobs, work);
         for sums in &sums {
@@ -102,8 +100,7 @@ struct LinearBackward<'a> {
 impl TiledKernel for LinearBackward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
-        self.map
-            .backward::<S, R, V>(simd, self.gy, &mut self.gx, false);
+        self.map.backward::<S, R, V>(simd, self.gy, &mut self.gx, false);
         self.map
             .add_gradients::<S, R, V>(simd, self.x, self.gy, self.of_weights);
     }

@@ -60,13 +60,7 @@ impl OverMemory {
     ///
     /// The rows of a token with fewer rows are repeated: row r of the query reads its row r mod its number of rows. So
     /// many hypotheses can share one memory.
-    pub(crate) fn forward(
-        &self,
-        query: &[f32],
-        memory: &[KeyValue<'_>],
-        own: KeyValue<'_>,
-        mixed: &mut [f32],
-    ) {
+    pub(crate) fn forward(&self, query: &[f32], memory: &[KeyValue<'_>], own: KeyValue<'_>, mixed: &mut [f32]) {
         self.check(query, own, mixed);
         for token in memory {
             let whole = !token.key.is_empty()
@@ -114,10 +108,7 @@ impl OverMemory {
             memory: token_gradients,
             own: own_gradient,
         } = gradients;
-        let mut token_gradients: Vec<KeyValueMut<'_>> = token_gradients
-            .iter_mut()
-            .map(KeyValueMut::reborrow)
-            .collect();
+        let mut token_gradients: Vec<KeyValueMut<'_>> = token_gradients.iter_mut().map(KeyValueMut::reborrow).collect();
         token_gradients.push(own_gradient);
         let mut jobs = Vec::new();
         for first in (0..query.len()).step_by(chunk) {

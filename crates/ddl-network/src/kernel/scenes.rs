@@ -97,9 +97,8 @@ impl Scenes {
                 for first in (0..size).step_by(2) {
                     let mut list = |query: usize| {
                         let list = lists.next();
-                        let list = list.unwrap_or_else(|| {
-                            panic!("visibility is not of a number of frames of {pedestrians}")
-                        });
+                        let list =
+                            list.unwrap_or_else(|| panic!("visibility is not of a number of frames of {pedestrians}"));
                         check(&list, query, size);
                         list
                     };
@@ -112,10 +111,7 @@ impl Scenes {
             }
             scenes.frames += 1;
         }
-        assert!(
-            scenes.frames > 0,
-            "visibility of at least one frame is needed"
-        );
+        assert!(scenes.frames > 0, "visibility of at least one frame is needed");
         scenes
     }
 
@@ -259,11 +255,7 @@ mod tests {
             let codes = twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code())));
             codes.map(Iterator::collect).collect()
         };
-        let first = [
-            vec![(0, 3)],
-            vec![(0, 1), (1, 3), (2, 2)],
-            vec![(0, 3), (2, 3)],
-        ];
+        let first = [vec![(0, 3)], vec![(0, 1), (1, 3), (2, 2)], vec![(0, 3), (2, 3)]];
         let all = [(0, 3), (1, 3), (2, 3)];
         let all = [all[..1].to_vec(), all.to_vec(), all.to_vec()];
         assert_eq!(of(scenes.throughout(), 0), first);
@@ -285,16 +277,8 @@ mod tests {
         refused("not of a number of frames of 2", &[2], &[&[0], &[1], &[0]]);
         refused("at least one frame", &[2], &[]);
         refused("at least one pedestrian", &[2, 0], &[&[0], &[1]]);
-        refused(
-            "ascending indices of its scene of 2",
-            &[2],
-            &[&[0, 2], &[1]],
-        );
-        refused(
-            "ascending indices of its scene of 2",
-            &[2],
-            &[&[1, 0], &[1]],
-        );
+        refused("ascending indices of its scene of 2", &[2], &[&[0, 2], &[1]]);
+        refused("ascending indices of its scene of 2", &[2], &[&[1, 0], &[1]]);
         assert_refused("frames 1..3 of 2", || {
             let _ = Scenes::new(&[1], [vec![0], vec![0]]).during(1..3);
         });

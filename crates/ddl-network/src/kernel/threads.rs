@@ -13,11 +13,7 @@ pub(super) struct Buffered<'b, J, B> {
 }
 
 /// Does all jobs, of `work` multiplications together. A job must not depend on the thread that does it.
-pub(super) fn each<J: Send, B: Default>(
-    jobs: Vec<J>,
-    work: usize,
-    run: impl Fn(J, &mut B) + Sync + Send,
-) {
+pub(super) fn each<J: Send, B: Default>(jobs: Vec<J>, work: usize, run: impl Fn(J, &mut B) + Sync + Send) {
     if jobs.len() < 2 || work < WORTH_WAKING || rayon::current_num_threads() == 1 {
         let mut buffers = B::default();
         for job in jobs {
@@ -30,11 +26,7 @@ pub(super) fn each<J: Send, B: Default>(
 }
 
 /// Does all jobs, each of which is a kernel.
-pub(super) fn run_each<K: Kernel + Send>(
-    dispatch: Dispatch,
-    jobs: impl Iterator<Item = K>,
-    work: usize,
-) {
+pub(super) fn run_each<K: Kernel + Send>(dispatch: Dispatch, jobs: impl Iterator<Item = K>, work: usize) {
     each(jobs.collect(), work, |job: K, (): &mut ()| {
         dispatch.run(job);
     });

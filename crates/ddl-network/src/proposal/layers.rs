@@ -22,13 +22,7 @@ pub struct MemberAffine {
 
 impl MemberAffine {
     /// Declares the map. Initial weights are uniform with the variance `gain`² · 2 / inputs (He et al. 2015), biases 0.
-    fn new(
-        layout: &mut Layout,
-        name: &str,
-        members: usize,
-        [inputs, outputs]: [usize; 2],
-        gain: f64,
-    ) -> Self {
+    fn new(layout: &mut Layout, name: &str, members: usize, [inputs, outputs]: [usize; 2], gain: f64) -> Self {
         let first = layout.count();
         let bound = gain * (6.0 / inputs as f64).sqrt();
         let tensor = layout.uniform(format!("{name}.weight"), &[members, inputs, outputs], bound);
@@ -129,12 +123,7 @@ impl Declaring<'_> {
     }
 
     /// `gains`: for endpoints and waypoints, and for logits.
-    fn readout(
-        &mut self,
-        name: &str,
-        (layers, width, near): (usize, usize, usize),
-        gains: [f64; 2],
-    ) -> ReadoutLayers {
+    fn readout(&mut self, name: &str, (layers, width, near): (usize, usize, usize), gains: [f64; 2]) -> ReadoutLayers {
         let ends = self.ends;
         let first = self.width + near + 1;
         let hidden = (0..layers)
@@ -162,13 +151,8 @@ impl Declaring<'_> {
 impl ProposalLayers {
     /// Declares the layers.
     pub fn new(layout: &mut Layout, config: &ProposalConfig) -> Self {
-        let [members, ends, width, near] = [
-            config.members,
-            config.ends,
-            config.width,
-            config.neighbour_width,
-        ]
-        .map(|n| n as usize);
+        let [members, ends, width, near] =
+            [config.members, config.ends, config.width, config.neighbour_width].map(|n| n as usize);
         let mut declaring = Declaring {
             layout,
             members,

@@ -38,12 +38,7 @@ struct ReadoutKernels {
 }
 
 impl MemberKernels {
-    pub(super) fn new(
-        config: &ProposalConfig,
-        layers: &ProposalLayers,
-        weights: &Weights,
-        member: usize,
-    ) -> Self {
+    pub(super) fn new(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights, member: usize) -> Self {
         let of = |layer: MemberAffine| kernel(layer, member, weights);
         let attention = |layers: &AttentionLayers, heads: i64| AttentionKernels {
             code: layers.code.map(of),
@@ -74,11 +69,7 @@ impl MemberKernels {
 
     /// Endpoints from the observation alone and, for the pedestrians with `remembered` ones, those of the memory
     /// branch.
-    pub(super) fn read(
-        &self,
-        seen: &SeenRows,
-        remembered: &RememberedRows,
-    ) -> (Readings, Option<Readings>) {
+    pub(super) fn read(&self, seen: &SeenRows, remembered: &RememberedRows) -> (Readings, Option<Readings>) {
         let mut code = self.own.forward(&seen.own);
         gelu(&mut code);
         let context = self.neighbours.attend(&code, &seen.neighbours);
@@ -109,12 +100,7 @@ impl MemberKernels {
 impl ReadoutKernels {
     /// The last hidden layer `[B, width]`, from the pedestrians' codes `[B, width]`, their attention `[B, ..]`, and the
     /// amount of other pedestrians attended to `[B]`.
-    fn hidden_layer(
-        &self,
-        code: Buffer,
-        context: &Buffer,
-        amounts: impl ExactSizeIterator<Item = f32>,
-    ) -> Buffer {
+    fn hidden_layer(&self, code: Buffer, context: &Buffer, amounts: impl ExactSizeIterator<Item = f32>) -> Buffer {
         let pedestrians = amounts.len();
         let [width, near] = [&code, context].map(|rows| rows.len() / pedestrians);
         let mut hidden = Buffer::any(pedestrians * (width + near + 1));
@@ -176,10 +162,7 @@ impl AttentionKernels {
                     let pairs = query[part.clone()].iter().zip(&key[part.clone()]);
                     pairs.map(|(q, k)| q * k).sum()
                 };
-                let scores: Vec<f32> = keys
-                    .chunks_exact(near)
-                    .map(|key| dot(key) * scale)
-                    .collect();
+                let scores: Vec<f32> = keys.chunks_exact(near).map(|key| dot(key) * scale).collect();
                 let largest = scores.iter().copied().fold(0.0, f32::max);
                 let powers: Vec<f32> = scores.iter().map(|score| (score - largest).exp()).collect();
                 let sum = (-largest).exp() + powers.iter().sum::<f32>();

@@ -127,10 +127,7 @@ impl ProposalNetwork {
 
     fn each<'a>(&self, readings: &'a Readings) -> impl Iterator<Item = (&'a [f32], &'a [f32])> {
         let k = self.config.ends as usize;
-        readings
-            .ends
-            .chunks_exact(2 * k)
-            .zip(readings.logits.chunks_exact(k))
+        readings.ends.chunks_exact(2 * k).zip(readings.logits.chunks_exact(k))
     }
 }
 
@@ -145,17 +142,11 @@ impl ProposeEndpoints for ProposalNetwork {
 
     fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, NetworkError> {
         let chunks = views.par_chunks(CHUNK);
-        Ok(chunks
-            .flat_map_iter(|views| self.propose_chunk(views))
-            .collect())
+        Ok(chunks.flat_map_iter(|views| self.propose_chunk(views)).collect())
     }
 }
 
-fn members(
-    config: &ProposalConfig,
-    layers: &ProposalLayers,
-    weights: &Weights,
-) -> Vec<MemberKernels> {
+fn members(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights) -> Vec<MemberKernels> {
     (0..config.members as usize)
         .map(|member| MemberKernels::new(config, layers, weights, member))
         .collect()

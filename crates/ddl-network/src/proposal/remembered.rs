@@ -46,8 +46,7 @@ impl RememberedRows {
             let mut support = 0.0;
             for other in remembered {
                 let track = &other.track;
-                let [now, halfway, end] =
-                    [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|t| track[t]);
+                let [now, halfway, end] = [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|t| track[t]);
                 let its_late = velocity(track, OBSERVED - 1, time_step);
                 let its_early = velocity(track, RECENT, time_step);
                 let features = [0, 1].map(|axis| {

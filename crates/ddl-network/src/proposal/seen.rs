@@ -39,13 +39,11 @@ impl SeenRows {
             let halves = own.as_flattened().iter().map(|x| (x * 0.5) as f32);
             seen.own.extend(halves);
             for pair in own.windows(2) {
-                let velocity =
-                    [0, 1].map(|axis| ((pair[1][axis] - pair[0][axis]) / time_step) as f32);
+                let velocity = [0, 1].map(|axis| ((pair[1][axis] - pair[0][axis]) / time_step) as f32);
                 seen.own.extend(velocity);
             }
             let own_velocity = recent(own);
-            seen.onward
-                .push(own_velocity.map(|v| v * HORIZON as f64 * time_step));
+            seen.onward.push(own_velocity.map(|v| v * HORIZON as f64 * time_step));
             let here = own[OBSERVED - 1];
             let neighbours = &mut seen.neighbours;
             let before = neighbours.features.len();

@@ -44,14 +44,6 @@ pub fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<()
         return Ok(());
     };
     let tensors = file.tensors();
-    let found = tensors_digest(
-        tensors
-            .iter()
-            .map(|(name, view)| (name.as_str(), view.clone())),
-    );
-    if found == expected {
-        Ok(())
-    } else {
-        Err(DigestMismatch)
-    }
+    let found = tensors_digest(tensors.iter().map(|(name, view)| (name.as_str(), view.clone())));
+    if found == expected { Ok(()) } else { Err(DigestMismatch) }
 }

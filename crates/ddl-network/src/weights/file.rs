@@ -111,17 +111,12 @@ pub fn save_weights(weights: &Weights, origin: &Origin, path: &Path) -> Result<(
 /// # Errors
 /// [`NetworkError::Checkpoint`] if the file is truncated, too large, of another origin, or holds tensors of other
 /// names, shapes or types than the network needs.
-pub fn load_weights(
-    layout: &Arc<Layout>,
-    origin: &Origin,
-    path: &Path,
-) -> Result<Weights, NetworkError> {
+pub fn load_weights(layout: &Arc<Layout>, origin: &Origin, path: &Path) -> Result<Weights, NetworkError> {
     let stored = read_tensors(path, layout.count() as u64 * 8, origin)?;
     let (found, wanted) = (stored.len(), layout.tensors().len());
     if found != wanted {
-        let problem = format!(
-            "holds {found} tensors, but this network has {wanted}; it was written for another configuration"
-        );
+        let problem =
+            format!("holds {found} tensors, but this network has {wanted}; it was written for another configuration");
         return Err(NetworkError::checkpoint(path, problem));
     }
     let mut numbers = Vec::with_capacity(layout.count());
@@ -136,11 +131,7 @@ pub fn load_weights(
 ///
 /// # Errors
 /// [`NetworkError::Checkpoint`], naming `path`, if there is no tensor of that name.
-pub fn find_tensor<'a>(
-    tensors: &'a [StoredTensor],
-    name: &str,
-    path: &Path,
-) -> Result<&'a StoredTensor, NetworkError> {
+pub fn find_tensor<'a>(tensors: &'a [StoredTensor], name: &str, path: &Path) -> Result<&'a StoredTensor, NetworkError> {
     let mut tensors = tensors.iter();
     tensors
         .find(|tensor| tensor.name == name)
@@ -151,14 +142,9 @@ pub fn find_tensor<'a>(
 ///
 /// # Errors
 /// [`NetworkError::Io`] if the file cannot be written. An existing file then stays unchanged.
-pub fn write_tensors(
-    tensors: &[StoredTensor],
-    origin: &Origin,
-    path: &Path,
-) -> Result<(), NetworkError> {
+pub fn write_tensors(tensors: &[StoredTensor], origin: &Origin, path: &Path) -> Result<(), NetworkError> {
     let parts: Vec<_> = tensors.iter().map(StoredTensor::bytes).collect();
-    let broken =
-        |error: safetensors::SafeTensorError| NetworkError::checkpoint(path, error.to_string());
+    let broken = |error: safetensors::SafeTensorError| NetworkError::checkpoint(path, error.to_string());
     let views = tensors
         .iter()
         .zip(&parts)
@@ -178,11 +164,7 @@ pub fn write_tensors(
 /// # Errors
 /// [`NetworkError::Checkpoint`] if the file is truncated, too large, damaged, of another origin, or holds other types
 /// than 32- and 64-bit floats.
-pub fn read_tensors(
-    path: &Path,
-    most_bytes: u64,
-    origin: &Origin,
-) -> Result<Vec<StoredTensor>, NetworkError> {
+pub fn read_tensors(path: &Path, most_bytes: u64, origin: &Origin) -> Result<Vec<StoredTensor>, NetworkError> {
     let io = NetworkError::io(path);
     let bad = |problem: String| NetworkError::checkpoint(path, problem);
     // A file that is too large is refused before it is read and before memory is allocated.

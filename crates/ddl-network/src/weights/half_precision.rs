@@ -57,18 +57,10 @@ impl Weights {
     /// [`NetworkError::Weights`] if names, shapes or counts of the tensors differ from the layout's, or if a tensor
     /// holds NaN or infinity.
     pub fn from_half(layout: &Arc<Layout>, tensors: &[HalfTensor]) -> Result<Self, NetworkError> {
-        let needed = || {
-            layout
-                .tensors()
-                .iter()
-                .filter(|tensor| !tensor.is_training_only())
-        };
+        let needed = || layout.tensors().iter().filter(|tensor| !tensor.is_training_only());
         let known = |name: &str| needed().any(|tensor| tensor.name() == name);
         if let Some(other) = tensors.iter().find(|tensor| !known(&tensor.name)) {
-            return Err(NetworkError::weights(
-                &other.name,
-                "does not belong to this network",
-            ));
+            return Err(NetworkError::weights(&other.name, "does not belong to this network"));
         }
         let mut numbers = vec![0.0; layout.count()];
         for wanted in needed() {
@@ -78,11 +70,7 @@ impl Weights {
                 return Err(NetworkError::weights(name, "is missing or duplicate"));
             };
             if tensor.shape != wanted.shape() {
-                let problem = format!(
-                    "has shape {:?}, expected {:?}",
-                    tensor.shape,
-                    wanted.shape()
-                );
+                let problem = format!("has shape {:?}, expected {:?}", tensor.shape, wanted.shape());
                 return Err(NetworkError::weights(name, problem));
             }
             let expected = wanted.span().len() * size_of::<f16>();

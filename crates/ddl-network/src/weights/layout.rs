@@ -200,11 +200,7 @@ impl Layout {
         let (first, tensor) = (self.count, self.tensors.len());
         // The same order as in `Sizes`.
         let bound = (6.0 / (4 * width) as f64).sqrt();
-        self.uniform(
-            format!("{name}.self_attn.in_proj_weight"),
-            &[3 * width, width],
-            bound,
-        );
+        self.uniform(format!("{name}.self_attn.in_proj_weight"), &[3 * width, width], bound);
         self.constant(format!("{name}.self_attn.in_proj_bias"), &[3 * width], 0.0);
         let mut affine = |name: String, inputs: usize, outputs: usize, zero_bias: bool| {
             let bound = 1.0 / (inputs as f64).sqrt();

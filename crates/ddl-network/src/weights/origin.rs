@@ -11,11 +11,7 @@ pub struct Origin(BTreeMap<String, String>);
 impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Origin {
     fn from_iter<I: IntoIterator<Item = (N, V)>>(facts: I) -> Self {
         let facts = facts.into_iter();
-        Self(
-            facts
-                .map(|(name, value)| (name.into(), value.into()))
-                .collect(),
-        )
+        Self(facts.map(|(name, value)| (name.into(), value.into())).collect())
     }
 }
 
@@ -24,26 +20,17 @@ impl Origin {
     /// are equal.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let names = self.0.keys().chain(other.0.keys());
-        let name = names
-            .filter(|&name| self.0.get(name) != other.0.get(name))
-            .min()?;
+        let name = names.filter(|&name| self.0.get(name) != other.0.get(name)).min()?;
         let in_words = |origin: &Self| {
             let value = origin.0.get(name);
             value.map_or_else(|| "missing".to_owned(), String::clone)
         };
-        Some(format!(
-            "{name} is {}, not {}",
-            in_words(self),
-            in_words(other)
-        ))
+        Some(format!("{name} is {}, not {}", in_words(self), in_words(other)))
     }
 
     /// The header of a safetensors file: one entry with the origin and the SHA-256 of the file's numbers.
     pub fn to_header(&self, digest: &str) -> HashMap<String, String> {
-        let facts = self
-            .0
-            .iter()
-            .map(|(name, value)| (name.as_str(), value.as_str()));
+        let facts = self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()));
         let facts = facts.chain([(DIGEST, digest)]);
         let facts = facts.map(|(name, value)| (name.to_owned(), value.into()));
         let facts = serde_json::Value::Object(facts.collect());

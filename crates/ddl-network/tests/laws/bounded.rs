@@ -2,12 +2,9 @@
 
 use super::scenes::{Question, WINDOWS, configs, distance, goals};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
-use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout,
-};
+use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, StepTime, rollout};
 use ddl_network::{
-    ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, Variant,
-    motion_bounds,
+    ForecastWindows as _, MotionNetwork, NetworkFrame, Noise, StarConfig, StepRule, Variant, motion_bounds,
 };
 use nalgebra::Vector2;
 use proptest::prelude::*;

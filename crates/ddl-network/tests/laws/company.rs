@@ -16,13 +16,10 @@ fn furthest(backbone: BackboneKind) -> [f64; 2] {
             .map(|i| window.keeping(|other| other == i).unwrap())
             .collect();
         let alone: Vec<&Window> = alone.iter().collect();
-        let of_pedestrian = |rollout: &WindowRollout, i: usize| {
-            rollout.positions[2 * HORIZON * i..][..2 * HORIZON].to_vec()
-        };
+        let of_pedestrian =
+            |rollout: &WindowRollout, i: usize| rollout.positions[2 * HORIZON * i..][..2 * HORIZON].to_vec();
         for (i, alone) in question.ask(&network, &alone).iter().enumerate() {
-            let pairs = of_pedestrian(alone, 0)
-                .into_iter()
-                .zip(of_pedestrian(together, i));
+            let pairs = of_pedestrian(alone, 0).into_iter().zip(of_pedestrian(together, i));
             let apart = pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max);
             any = any.max(apart);
             if i == 0 {

@@ -20,16 +20,11 @@ fn half_precision_changes_forecasts_slightly_and_no_weights() {
     let found = [Precision::F32, Precision::Bf16, Precision::F32].map(|precision| {
         let rounded = MotionNetwork::new(network.config().clone(), 3).unwrap();
         network = rounded.with_precision(precision);
-        assert_eq!(
-            (network.precision(), network.weights()),
-            (precision, &weights)
-        );
+        assert_eq!((network.precision(), network.weights()), (precision, &weights));
         let found = forecasts(&network);
         // `with_weights` keeps the precision.
         let again = MotionNetwork::new(network.config().clone(), 4).unwrap();
-        let again = again
-            .with_precision(precision)
-            .with_weights(weights.clone());
+        let again = again.with_precision(precision).with_weights(weights.clone());
         assert_eq!(forecasts(&again.unwrap()), found);
         found
     });

@@ -2,9 +2,7 @@
 
 use super::scenes::{WINDOWS, distance, with_threads};
 use ddl_data::{OBSERVED, Position, Remembered, WINDOW, Window};
-use ddl_network::{
-    PedestrianView, ProposalConfig, ProposalNetwork, ProposeEndpoints as _, ProposedEndpoints,
-};
+use ddl_network::{PedestrianView, ProposalConfig, ProposalNetwork, ProposeEndpoints as _, ProposedEndpoints};
 use proptest::prelude::*;
 use proptest::sample::Index;
 use std::sync::LazyLock;
@@ -55,9 +53,7 @@ static VIEWS: LazyLock<Vec<PedestrianView>> = LazyLock::new(|| {
 
 /// A view of a pedestrian at constant velocity, `speed` (m/s), with `neighbours` ahead.
 fn view(speed: f64, neighbours: usize) -> PedestrianView {
-    let walk = |speed: f64, x: f64, y: f64| {
-        std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y])
-    };
+    let walk = |speed: f64, x: f64, y: f64| std::array::from_fn(|t| [x + speed * 0.4 * (t as f64 - 7.0), y]);
     PedestrianView {
         own: walk(speed, 0.0, 0.0),
         neighbours: (0..neighbours)
@@ -115,10 +111,7 @@ fn the_memory_branch_adds_endpoints_and_keeps_the_others() {
     let mut remembering = view(1.2, 2);
     let alone = network.propose(&[remembering.clone()]).unwrap().remove(0);
     remembering.remembered = (1..5).map(|j| earlier(0.2 * f64::from(j))).collect();
-    let alike: f64 = [0.04, 0.16, 0.36, 0.64]
-        .map(|d: f64| (-d / 8.0).exp())
-        .iter()
-        .sum();
+    let alike: f64 = [0.04, 0.16, 0.36, 0.64].map(|d: f64| (-d / 8.0).exp()).iter().sum();
     let share = alike / (alike + 0.5);
     let both = network.propose(&[remembering.clone()]).unwrap().remove(0);
     assert_eq!(both.ends[..12], alone.ends);
@@ -131,13 +124,7 @@ fn the_memory_branch_adds_endpoints_and_keeps_the_others() {
     remembering.remembered = (0..20).map(|j| earlier(0.1 * f64::from(j))).collect();
     let mut looked_at = remembering.clone();
     looked_at.remembered.truncate(memory.remembered);
-    let ends = |view: &PedestrianView| {
-        network
-            .propose(std::slice::from_ref(view))
-            .unwrap()
-            .remove(0)
-            .ends
-    };
+    let ends = |view: &PedestrianView| network.propose(std::slice::from_ref(view)).unwrap().remove(0).ends;
     assert_eq!(ends(&remembering), ends(&looked_at));
     let forwards = ends(&looked_at);
     looked_at.remembered.reverse();
@@ -223,9 +210,7 @@ fn proposals_are_those_of_libtorch() {
                 [3.978_4, -0.869_034],
                 [5.007_796, -2.088_827],
             ],
-            [
-                0.246_558, 0.132_021, 0.121_421, 0.101_904, 0.211_42, 0.186_676,
-            ],
+            [0.246_558, 0.132_021, 0.121_421, 0.101_904, 0.211_42, 0.186_676],
         ),
         (
             [
@@ -236,19 +221,13 @@ fn proposals_are_those_of_libtorch() {
                 [5.870_481, -0.691_674],
                 [5.512_021, -0.994_553],
             ],
-            [
-                0.244_301, 0.129_251, 0.126_448, 0.148_92, 0.179_421, 0.171_659,
-            ],
+            [0.244_301, 0.129_251, 0.126_448, 0.148_92, 0.179_421, 0.171_659],
         ),
     ];
     for (found, (ends, weights)) in proposed.iter().zip(expected) {
         let off = found.ends.iter().zip(ends).map(|(&a, b)| distance(a, b));
         assert!(off.fold(0.0, f64::max) < 3e-6, "{:?}", found.ends);
-        let off = found
-            .weights
-            .iter()
-            .zip(weights)
-            .map(|(a, b)| (a - b).abs());
+        let off = found.weights.iter().zip(weights).map(|(a, b)| (a - b).abs());
         assert!(off.fold(0.0, f64::max) < 2e-6, "{:?}", found.weights);
     }
 }

@@ -3,8 +3,8 @@
 use super::scenes::{WINDOWS, goals};
 use ddl_data::{Position, Window};
 use ddl_network::{
-    ForecastWindows as _, MotionNetwork, NetworkError, NetworkFrame, Noise, ProposalConfig,
-    ProposalNetwork, ProposalTraining, StarConfig, StepRule, TrainingConfig, Variant,
+    ForecastWindows as _, MotionNetwork, NetworkError, NetworkFrame, Noise, ProposalConfig, ProposalNetwork,
+    ProposalTraining, StarConfig, StepRule, TrainingConfig, Variant,
 };
 
 type Goals = Vec<Vec<Position>>;
@@ -38,22 +38,13 @@ fn goals_noise_and_shares_that_do_not_fit_the_windows_are_refused() {
         refuse(&goals, Noise::Expected, None, expected);
     };
     bad_goals(&|goals| drop(goals.remove(0)), "goals of 6 windows, got 5");
-    bad_goals(
-        &|goals| goals[2][0].truncate(2),
-        "3 goals for every pedestrian, got 2",
-    );
+    bad_goals(&|goals| goals[2][0].truncate(2), "3 goals for every pedestrian, got 2");
     bad_goals(&|goals| drop(goals[1].pop()), "pedestrians in");
     let none = "goals for every pedestrian, got 0";
-    bad_goals(
-        &|goals| goals.iter_mut().flatten().for_each(Vec::clear),
-        none,
-    );
+    bad_goals(&|goals| goals.iter_mut().flatten().for_each(Vec::clear), none);
 
     let bad_shares = |change: &dyn Fn(&mut Vec<Vec<f64>>), expected: &str| {
-        let mut shares: Vec<_> = windows
-            .iter()
-            .map(|window| vec![1.0; window.len()])
-            .collect();
+        let mut shares: Vec<_> = windows.iter().map(|window| vec![1.0; window.len()]).collect();
         change(&mut shares);
         refuse(&goals, Noise::Expected, Some(&shares), expected);
     };
@@ -115,10 +106,7 @@ fn configurations_out_of_range_are_refused() {
         ProposalTraining::check,
         &[(|c| c.turn = f64::NAN, "turn")],
     );
-    let headless = StarConfig {
-        heads: 0,
-        ..published
-    };
+    let headless = StarConfig { heads: 0, ..published };
     MotionNetwork::new(headless, 1).unwrap_err();
 }
 

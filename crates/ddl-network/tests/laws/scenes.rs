@@ -2,8 +2,7 @@
 
 use ddl_data::{Dataset, PedestrianId, Position, Window, WindowRule};
 use ddl_network::{
-    BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant,
-    WindowRollout,
+    BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
 };
 use std::sync::LazyLock;
 
@@ -12,12 +11,7 @@ pub(crate) static WINDOWS: LazyLock<Vec<Window>> = LazyLock::new(|| {
     let dataset = Dataset::simulated(1);
     let recordings = dataset.recordings().iter();
     let mut windows: Vec<Window> = recordings
-        .flat_map(|recording| {
-            recording
-                .windows(WindowRule::Complete)
-                .into_iter()
-                .step_by(23)
-        })
+        .flat_map(|recording| recording.windows(WindowRule::Complete).into_iter().step_by(23))
         .take(30)
         .collect();
     let tracks = windows
@@ -37,11 +31,7 @@ pub(crate) fn goals(window: &Window, count: usize) -> Vec<Vec<Position>> {
         [x + 1.5 * k as f64 * cos, y + 1.5 * k as f64 * sin]
     };
     (0..window.len())
-        .map(|i| {
-            (0..count)
-                .map(|k| around(window.end(i).unwrap(), k))
-                .collect()
-        })
+        .map(|i| (0..count).map(|k| around(window.end(i).unwrap(), k)).collect())
         .collect()
 }
 
@@ -69,14 +59,8 @@ impl Question {
     }
 
     pub(crate) fn ask(self, network: &MotionNetwork, windows: &[&Window]) -> Vec<WindowRollout> {
-        let observed: Vec<Window> = windows
-            .iter()
-            .map(|window| window.without_future())
-            .collect();
-        let goals: Vec<_> = windows
-            .iter()
-            .map(|window| goals(window, self.goals))
-            .collect();
+        let observed: Vec<Window> = windows.iter().map(|window| window.without_future()).collect();
+        let goals: Vec<_> = windows.iter().map(|window| goals(window, self.goals)).collect();
         let shares: Vec<_> = windows.iter().map(|window| shares(window)).collect();
         let shares = self.shared.then_some(&shares[..]);
         network
@@ -89,10 +73,7 @@ pub(crate) fn configs() -> Vec<StarConfig> {
     let mut configs = Vec::new();
     for backbone in BackboneKind::ALL {
         for variant in Variant::ALL {
-            for config in [
-                StarConfig::published(variant),
-                StarConfig::recommended(variant),
-            ] {
+            for config in [StarConfig::published(variant), StarConfig::recommended(variant)] {
                 configs.push(StarConfig {
                     backbone,
                     feed_forward_width: 64,

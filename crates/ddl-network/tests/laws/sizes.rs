@@ -1,8 +1,6 @@
 //! Numbers of weights.
 
-use ddl_network::{
-    BackboneKind, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, Variant,
-};
+use ddl_network::{BackboneKind, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, Variant};
 
 fn check(least: u64, count: usize) {
     let all = least..=20 * least + 1000;
@@ -14,12 +12,9 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
     let published = StarConfig::published(Variant::Full);
     let network = MotionNetwork::new(published.clone(), 1).unwrap();
     assert_eq!(network.weights().count(), 827_443);
-    for [model_width, heads, feed_forward_width, layers] in [
-        [32, 8, 128, 2],
-        [1, 1, 1, 1],
-        [16, 4, 512, 5],
-        [64, 2, 1, 1],
-    ] {
+    for [model_width, heads, feed_forward_width, layers] in
+        [[32, 8, 128, 2], [1, 1, 1, 1], [16, 4, 512, 5], [64, 2, 1, 1]]
+    {
         for backbone in BackboneKind::ALL {
             let config = StarConfig {
                 backbone,
@@ -33,12 +28,9 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
             check(config.min_weight_count(), network.weights().count());
         }
     }
-    for [members, ends, width, layers, neighbour_width] in [
-        [4, 20, 192, 2, 64],
-        [1, 1, 1, 1, 4],
-        [2, 3, 8, 5, 32],
-        [1, 64, 2, 1, 4],
-    ] {
+    for [members, ends, width, layers, neighbour_width] in
+        [[4, 20, 192, 2, 64], [1, 1, 1, 1, 4], [2, 3, 8, 5, 32], [1, 64, 2, 1, 4]]
+    {
         let config = ProposalConfig {
             members,
             ends,

@@ -1,12 +1,10 @@
 //! Weights are read from files as they were written, and broken files are refused.
 
 use ddl_network::weights::{
-    Origin, StoredTensor, TensorData, Weights, load_weights, read_tensors, save_weights,
-    tensors_digest, write_tensors,
+    Origin, StoredTensor, TensorData, Weights, load_weights, read_tensors, save_weights, tensors_digest, write_tensors,
 };
 use ddl_network::{
-    ForecastWindows as _, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, StarConfig,
-    Variant,
+    ForecastWindows as _, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, StarConfig, Variant,
 };
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
@@ -38,12 +36,9 @@ fn forged(whole: &[u8], change: impl Fn(&mut String, &mut Dtype, &mut Vec<u8>)) 
         .collect();
     tensors.sort_by(|a, b| a.0.cmp(&b.0));
     let views = || {
-        tensors.iter().map(|(name, kind, shape, bytes)| {
-            (
-                name.as_str(),
-                TensorView::new(*kind, shape.clone(), bytes).unwrap(),
-            )
-        })
+        tensors
+            .iter()
+            .map(|(name, kind, shape, bytes)| (name.as_str(), TensorView::new(*kind, shape.clone(), bytes).unwrap()))
     };
     let header = origin().to_header(&tensors_digest(views()));
     safetensors::serialize(views(), Some(header)).unwrap()
@@ -79,16 +74,10 @@ fn weights_survive_the_file() {
     for variant in Variant::ALL {
         check(network(variant, 1).weights());
     }
-    check(
-        ProposalNetwork::new(ProposalConfig::default(), 1)
-            .unwrap()
-            .weights(),
-    );
+    check(ProposalNetwork::new(ProposalConfig::default(), 1).unwrap().weights());
     let one = network(Variant::Full, 1);
     assert_ne!(one.weights(), network(Variant::Full, 2).weights());
-    let again = network(Variant::Full, 2)
-        .with_weights(one.weights().clone())
-        .unwrap();
+    let again = network(Variant::Full, 2).with_weights(one.weights().clone()).unwrap();
     assert_eq!(again.weights(), one.weights());
 }
 
@@ -156,10 +145,7 @@ fn tensors_of_either_precision_are_kept_as_they_are() {
     write_tensors(std::slice::from_ref(&moments), &origin(), &path).unwrap();
     let read = read_tensors(&path, 24, &origin()).unwrap();
     assert_eq!(read, [moments]);
-    assert_eq!(
-        read[0].double(&[3], &path).unwrap()[2].to_bits(),
-        1e300_f64.to_bits()
-    );
+    assert_eq!(read[0].double(&[3], &path).unwrap()[2].to_bits(), 1e300_f64.to_bits());
     // 1e300 is infinite in single precision.
     let error = read[0].single(&[3], &path).unwrap_err().to_string();
     assert!(error.contains("NaN or infinite"), "{error}");
@@ -184,12 +170,7 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
         let error = save_weights(network.weights(), &origin(), path).unwrap_err();
         assert!(matches!(error, NetworkError::Io { .. }), "{error}");
     };
-    nowhere(
-        &folder
-            .path()
-            .join("no such folder")
-            .join("model.safetensors"),
-    );
+    nowhere(&folder.path().join("no such folder").join("model.safetensors"));
     // A file cannot replace a folder.
     let taken = folder.path().join("taken");
     std::fs::create_dir_all(taken.join("kept")).unwrap();

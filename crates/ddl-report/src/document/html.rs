@@ -31,26 +31,16 @@ impl Document {
         for (at, part) in self.parts.iter().enumerate() {
             let rendered = match part {
                 Part::Heading { level: 1, text } => {
-                    let end = if contents.is_empty() {
-                        ""
-                    } else {
-                        "</section>\n"
-                    };
+                    let end = if contents.is_empty() { "" } else { "</section>\n" };
                     let (id, heading) = (unused(identifier(text), &mut used), inline(text));
                     let warned = warns(&self.parts[at + 1..]);
                     let class = if warned { " class=\"warned\"" } else { "" };
-                    let section =
-                        format!("{end}<section id=\"{id}\"{class}>\n<h2>{heading}</h2>\n");
-                    contents.push(ContentsEntry {
-                        id,
-                        heading,
-                        warned,
-                    });
+                    let section = format!("{end}<section id=\"{id}\"{class}>\n<h2>{heading}</h2>\n");
+                    contents.push(ContentsEntry { id, heading, warned });
                     section
                 }
                 Part::Details { summary, parts } => {
-                    let parts: Vec<String> =
-                        parts.iter().map(|part| plain(part, &mut used)).collect();
+                    let parts: Vec<String> = parts.iter().map(|part| plain(part, &mut used)).collect();
                     format!(
                         "<details>\n<summary>{}</summary>\n{}</details>\n",
                         inline(summary),
@@ -103,11 +93,7 @@ fn render(table: &Table) -> String {
         format!("<caption>{}</caption>\n", inline(caption))
     });
     let class = |column: usize| {
-        if table.is_text(column) {
-            " class=\"text\""
-        } else {
-            ""
-        }
+        if table.is_text(column) { " class=\"text\"" } else { "" }
     };
     let header: Vec<String> = table
         .header()

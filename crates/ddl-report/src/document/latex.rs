@@ -47,13 +47,7 @@ impl Document {
     }
 }
 
-fn float(
-    table: &Table,
-    caption: &str,
-    warning: Option<&str>,
-    notes: &str,
-    number: usize,
-) -> String {
+fn float(table: &Table, caption: &str, warning: Option<&str>, notes: &str, number: usize) -> String {
     let columns: String = (0..table.header().len())
         .map(|column| if table.is_text(column) { 'l' } else { 'r' })
         .collect();
@@ -137,16 +131,12 @@ mod tests {
         };
         let text = document.to_latex();
         let (first, second) = text.split_once("% Protocol `fair`").unwrap();
-        assert!(first.contains(
-            "\\caption{In metres, \\texttt{star}. \\textbf{Warning.} The TRUE end is used.}"
-        ));
+        assert!(first.contains("\\caption{In metres, \\texttt{star}. \\textbf{Warning.} The TRUE end is used.}"));
         assert!(first.contains("\\footnotesize DDL: seed 1. Others: none.\n"));
         assert!(first.contains("\\label{tab:ddl-1}") && second.contains("\\label{tab:ddl-2}"));
         assert!(first.contains("\\begin{tabular}{lr}"));
         assert!(first.contains("    forecaster & a\\_b \\% \\\\\n"));
         assert!(first.contains("    DDL \\& co & 0.1$\\pm$0.2 \\\\\n"));
-        assert!(
-            second.contains("\\caption{Protocol \\texttt{fair}.}") && !second.contains("Warning")
-        );
+        assert!(second.contains("\\caption{Protocol \\texttt{fair}.}") && !second.contains("Warning"));
     }
 }

@@ -27,12 +27,7 @@ impl Table {
     /// Marks the columns of this name as text.
     #[must_use]
     pub fn text_column(mut self, name: &str) -> Self {
-        for (text, _) in self
-            .text
-            .iter_mut()
-            .zip(&self.header)
-            .filter(|(_, cell)| *cell == name)
-        {
+        for (text, _) in self.text.iter_mut().zip(&self.header).filter(|(_, cell)| *cell == name) {
             *text = true;
         }
         self
@@ -91,11 +86,7 @@ impl std::fmt::Display for Table {
         table
             .load_style(ASCII_MARKDOWN)
             .set_header(self.header.iter().map(|cell| escape(cell)))
-            .add_rows(
-                self.rows
-                    .iter()
-                    .map(|row| row.iter().map(|cell| escape(cell))),
-            );
+            .add_rows(self.rows.iter().map(|row| row.iter().map(|cell| escape(cell))));
         for (column, text) in table.column_iter_mut().zip(&self.text) {
             let side = if *text {
                 CellAlignment::Left
@@ -123,10 +114,7 @@ impl Table {
             let cells = cells.iter().map(|cell| format!(" {} |", escape(cell)));
             format!("|{}", cells.collect::<String>())
         };
-        let rule = self
-            .text
-            .iter()
-            .map(|&text| if text { "---|" } else { "--:|" });
+        let rule = self.text.iter().map(|&text| if text { "---|" } else { "--:|" });
         writeln!(f, "{}", line(&self.header))?;
         writeln!(f, "|{}", rule.collect::<String>())?;
         for row in &self.rows {
@@ -138,11 +126,9 @@ impl Table {
 
 fn align_numbers(rule: &str, text: &[bool]) -> String {
     let columns = rule.trim_matches('|').split('|').zip(text);
-    columns.fold("|".to_owned(), |rule, (dashes, text)| {
-        match dashes.strip_suffix('-') {
-            Some(shorter) if !text => rule + shorter + ":|",
-            _ => rule + dashes + "|",
-        }
+    columns.fold("|".to_owned(), |rule, (dashes, text)| match dashes.strip_suffix('-') {
+        Some(shorter) if !text => rule + shorter + ":|",
+        _ => rule + dashes + "|",
     })
 }
 

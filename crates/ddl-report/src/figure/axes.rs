@@ -96,8 +96,7 @@ impl Axes {
     /// Size of plot and lettering together, pixels.
     pub(super) fn size(&self) -> [f64; 2] {
         let [from, to] = self.frame();
-        [0, 1]
-            .map(|axis| self.layout.before[axis] + to[axis] - from[axis] + self.layout.after[axis])
+        [0, 1].map(|axis| self.layout.before[axis] + to[axis] - from[axis] + self.layout.after[axis])
     }
 
     pub(super) fn plan(&self) -> &PlanView {

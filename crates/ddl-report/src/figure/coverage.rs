@@ -27,11 +27,7 @@ pub struct CoveragePanel {
 ///
 /// # Errors
 /// There are no panels, or more than 9.
-pub fn coverage(
-    title: &str,
-    probability: f64,
-    panels: &[CoveragePanel],
-) -> Result<String, FigureError> {
+pub fn coverage(title: &str, probability: f64, panels: &[CoveragePanel]) -> Result<String, FigureError> {
     if !(1..=MOST_PANELS).contains(&panels.len()) {
         let (found, most) = (panels.len(), MOST_PANELS);
         return Err(FigureError::Recordings { found, most });

@@ -102,11 +102,7 @@ impl Drawing {
         self.add(text(class, at, words).set("transform", turn));
     }
 
-    pub(crate) fn within(
-        &mut self,
-        [[left, top], [right, bottom]]: [[f64; 2]; 2],
-        draw: impl FnOnce(&mut Self),
-    ) {
+    pub(crate) fn within(&mut self, [[left, top], [right, bottom]]: [[f64; 2]; 2], draw: impl FnOnce(&mut Self)) {
         let around = std::mem::take(&mut self.shapes);
         draw(self);
         let inside = std::mem::replace(&mut self.shapes, around);
@@ -192,9 +188,7 @@ fn on_white(rules: &str) -> String {
     while let Some((before, after)) = rest.split_once("var(") {
         resolved.push_str(before);
         let (variable, after) = after.split_once(')').unwrap_or((after, ""));
-        let colour = variable
-            .split_once(',')
-            .map_or(variable, |(_, colour)| colour);
+        let colour = variable.split_once(',').map_or(variable, |(_, colour)| colour);
         resolved.push_str(colour.trim());
         rest = after;
     }

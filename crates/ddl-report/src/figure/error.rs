@@ -9,9 +9,7 @@ pub enum FigureError {
     Pedestrians { expected: usize, found: usize },
     #[error("a picture of goals holds 1 to {most} cases, found {found}; draw several pictures")]
     Cases { found: usize, most: usize },
-    #[error(
-        "a picture of shares holds 1 to {most} recordings, found {found}; draw several pictures"
-    )]
+    #[error("a picture of shares holds 1 to {most} recordings, found {found}; draw several pictures")]
     Recordings { found: usize, most: usize },
     #[error("case `{case}`: {problem}")]
     GoalCase { case: String, problem: String },

@@ -27,11 +27,7 @@ impl GoalCase {
     /// # Errors
     /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed
     /// position; weights outside [0, 1], or that do not sum to 1.
-    pub fn new(
-        title: impl Into<String>,
-        track: &[Position],
-        goals: WeightedGoals,
-    ) -> Result<Self, FigureError> {
+    pub fn new(title: impl Into<String>, track: &[Position], goals: WeightedGoals) -> Result<Self, FigureError> {
         let title = title.into();
         let nearest = check(track, &goals).map_err(|problem| FigureError::GoalCase {
             case: title.clone(),
@@ -61,10 +57,7 @@ impl GoalCase {
                 let found = expert.len();
                 return Some(GoalCaseProblem::ExpertLength { index, found });
             }
-            check_near(here, expert, |at| {
-                format!("position {at} of expert {index}")
-            })
-            .err()
+            check_near(here, expert, |at| format!("position {at} of expert {index}")).err()
         });
         if let Some(problem) = faulty {
             let (case, problem) = (self.title, problem.to_string());
@@ -137,11 +130,7 @@ fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, GoalCasePro
     Ok(nearest.map_or(0, |(index, _)| index))
 }
 
-fn check_near(
-    here: Position,
-    places: &[Position],
-    name: impl Fn(usize) -> String,
-) -> Result<(), GoalCaseProblem> {
+fn check_near(here: Position, places: &[Position], name: impl Fn(usize) -> String) -> Result<(), GoalCaseProblem> {
     // NaN is not near.
     let near = |place: &Position| distance(*place, here) <= FARTHEST;
     match places.iter().position(|place| !near(place)) {
@@ -172,16 +161,8 @@ mod tests {
     #[test]
     fn the_nearest_goal_by_hand() {
         for (places, weights, expected) in [
-            (
-                [[4.0, 1.0], [9.5, 1.5], [9.5, 3.0]],
-                [0.6, 0.1, 0.3],
-                (1, 0.5),
-            ),
-            (
-                [[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]],
-                [0.0, 0.4, 0.6],
-                (2, 1.0),
-            ),
+            ([[4.0, 1.0], [9.5, 1.5], [9.5, 3.0]], [0.6, 0.1, 0.3], (1, 0.5)),
+            ([[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]], [0.0, 0.4, 0.6], (2, 1.0)),
         ] {
             let case = GoalCase::new("a", &track(), goals(&places, &weights)).unwrap();
             assert_eq!(case.nearest_goal(), expected.0);
@@ -202,11 +183,7 @@ mod tests {
         refused(&track()[..19], good, 0.5, short);
         for (at, place, said) in [
             (7, [f64::NAN, 0.0], "position 0 of the track"),
-            (
-                13,
-                [6.5, f64::INFINITY],
-                "position 13 of the track is [6.5, inf]",
-            ),
+            (13, [6.5, f64::INFINITY], "position 13 of the track is [6.5, inf]"),
         ] {
             let mut broken = track();
             broken[at] = place;

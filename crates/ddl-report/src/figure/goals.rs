@@ -54,11 +54,7 @@ pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, FigureError> {
 
     let mut drawing = Drawing::new(2.0 * EDGE + inner, top + height * rows + EDGE, title);
     for (row, line) in (1..).zip(lines) {
-        drawing.text(
-            "heading",
-            [left, EDGE + TITLE_LINE * f64::from(row) - 5.0],
-            line,
-        );
+        drawing.text("heading", [left, EDGE + TITLE_LINE * f64::from(row) - 5.0], line);
     }
     legend.draw(&mut drawing, [left, below_title]);
     for (index, panel) in panels.into_iter().enumerate() {
@@ -77,10 +73,7 @@ fn columns(cases: usize) -> usize {
 
 fn entries(cases: &[GoalCase]) -> Vec<LegendEntry> {
     let mut entries = vec![LegendEntry::Observed, LegendEntry::Truth];
-    if cases
-        .iter()
-        .any(|case| case.expert_paths().next().is_some())
-    {
+    if cases.iter().any(|case| case.expert_paths().next().is_some()) {
         entries.push(LegendEntry::Experts);
     }
     let axes = LegendEntry::Note("Axes: metres from the last observed position");

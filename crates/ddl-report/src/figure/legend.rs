@@ -145,12 +145,7 @@ mod tests {
     #[test]
     fn rows_keep_to_the_width_and_do_not_overlap() {
         let note = LegendEntry::Note("a note");
-        let entries = [
-            LegendEntry::Observed,
-            LegendEntry::Truth,
-            LegendEntry::Experts,
-            note,
-        ];
+        let entries = [LegendEntry::Observed, LegendEntry::Truth, LegendEntry::Experts, note];
         for width in [60.0, 300.0, 520.0, 1800.0] {
             let rows = LegendRows::new(&entries, width);
             let mut end = [0.0, -1.0];

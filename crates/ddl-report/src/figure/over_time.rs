@@ -104,9 +104,7 @@ impl TimePanel {
         let largest = points().fold(0.0, |largest, point| point[1].max(largest));
         let metres = Scale::from_zero(largest, [bottom, top]);
         let up = |value: f64| match values {
-            Values::Shares { lowest, .. } => {
-                bottom - (value - lowest) / (1.0 - lowest) * (bottom - top)
-            }
+            Values::Shares { lowest, .. } => bottom - (value - lowest) / (1.0 - lowest) * (bottom - top),
             Values::Metres => metres.at(value),
         };
         if let Values::Shares { lowest, aim } = values {

@@ -13,10 +13,7 @@ const ARROW_EVERY: usize = 3;
 /// Time of the displacement that an arrow of velocity shows, s.
 const ARROW_SECONDS: f64 = 0.8;
 
-fn from_last<'a>(
-    observed: &'a [Position],
-    path: &'a [Position],
-) -> impl Iterator<Item = &'a Position> {
+fn from_last<'a>(observed: &'a [Position], path: &'a [Position]) -> impl Iterator<Item = &'a Position> {
     observed[OBSERVED - 1..].iter().chain(path)
 }
 
@@ -24,19 +21,11 @@ pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &Mom
     drawing.path("bystander", &plan.path(&pedestrian.observed));
     let ahead = plan.path(from_last(&pedestrian.observed, &pedestrian.truth));
     drawing.path("bystander-ahead", &ahead);
-    drawing.circle(
-        "bystander-dot",
-        plan.px(pedestrian.observed[OBSERVED - 1]),
-        2.6,
-    );
+    drawing.circle("bystander-dot", plan.px(pedestrian.observed[OBSERVED - 1]), 2.6);
 }
 
 /// All hypotheses except the representative one; a larger weight gives a darker line.
-pub(crate) fn other_hypotheses(
-    drawing: &mut Drawing,
-    plan: &PlanView,
-    pedestrian: &MomentPedestrian,
-) {
+pub(crate) fn other_hypotheses(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
     let representative = pedestrian.representative();
     let weights = pedestrian.hypotheses.iter().map(|h| h.weight);
     let heaviest = weights.fold(1e-9, f64::max);
@@ -59,11 +48,7 @@ pub(super) fn hypothesis_style(share: f64) -> String {
     format!("opacity:{opacity:.2};stroke-width:{width:.1}")
 }
 
-pub(crate) fn representative_goal(
-    drawing: &mut Drawing,
-    plan: &PlanView,
-    pedestrian: &MomentPedestrian,
-) {
+pub(crate) fn representative_goal(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
     if let Some(goal) = pedestrian.hypotheses[pedestrian.representative()].goal {
         drawing.circle("goal representative", plan.px(goal), 8.0);
     }
@@ -94,12 +79,7 @@ pub(crate) fn representative(
 }
 
 /// Dots at the observed positions, and a line along the true future to a full dot.
-pub(crate) fn track(
-    drawing: &mut Drawing,
-    plan: &PlanView,
-    observed: &[Position],
-    truth: &[Position],
-) {
+pub(crate) fn track(drawing: &mut Drawing, plan: &PlanView, observed: &[Position], truth: &[Position]) {
     if let Some(end) = truth.last() {
         drawing.path("truth", &plan.path(from_last(observed, truth)));
         drawing.circle("truth-end", plan.px(*end), 3.6);

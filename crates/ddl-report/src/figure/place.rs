@@ -32,11 +32,7 @@ const SAMPLE: f64 = 28.0;
 pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     let axes = Axes::around(&tracks.concat(), &PLACE);
     let smallest = SMALLEST / axes.plan().scale;
-    let side = if smallest <= SIDE {
-        SIDE
-    } else {
-        round_step(smallest)
-    };
+    let side = if smallest <= SIDE { SIDE } else { round_step(smallest) };
     let traffic = Traffic::of(tracks, side);
     let [width, height] = axes.size();
     let mut drawing = Drawing::new(width, height, title);
@@ -48,10 +44,7 @@ pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     drawing.text("key", [left, top - 14.0], numbers);
     let shades = shades(traffic.crossed.values().copied().max().unwrap_or(0));
     let most = traffic.ends.values();
-    let most = most
-        .map(|ends| ends.begun.max(ends.ended))
-        .max()
-        .unwrap_or(0);
+    let most = most.map(|ends| ends.begun.max(ends.ended)).max().unwrap_or(0);
     axes.draw(&mut drawing);
     axes.draw_names(&mut drawing);
     drawing.within(axes.frame(), |drawing| {
@@ -83,9 +76,7 @@ fn shade_class(shade: usize, shades: &[usize]) -> String {
 
 fn draw_squares(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, shades: &[usize]) {
     for (square, &count) in &traffic.crossed {
-        let shade = shades
-            .partition_point(|&least| least <= count)
-            .saturating_sub(1);
+        let shade = shades.partition_point(|&least| least <= count).saturating_sub(1);
         let corner = |by: i64| square.map(|number| (number + by) as f64 * traffic.side);
         let [[left, bottom], [right, top]] = [corner(0), corner(1)].map(|at| axes.plan().px(at));
         drawing.rectangle(&shade_class(shade, shades), [[left, top], [right, bottom]]);
@@ -178,12 +169,7 @@ mod tests {
 
     #[test]
     fn every_number_of_tracks_has_one_shade() {
-        for (most, expected) in [
-            (0, vec![1]),
-            (1, vec![1]),
-            (3, vec![1, 2]),
-            (50, vec![1, 2, 8, 18, 32]),
-        ] {
+        for (most, expected) in [(0, vec![1]), (1, vec![1]), (3, vec![1, 2]), (50, vec![1, 2, 8, 18, 32])] {
             assert_eq!(shades(most), expected, "{most}");
         }
         assert!((1..2_000).all(|most| shades(most).len() <= SHADES));

@@ -30,21 +30,13 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError
     let drawn = &moment.pedestrians;
     let axes = Axes::around(&extent(drawn), &SCENE);
     let [width, height] = axes.size();
-    let heading = format!(
-        "{}, from frame {}",
-        window.recording(),
-        window.start_frame()
-    );
+    let heading = format!("{}, from frame {}", window.recording(), window.start_frame());
     let mut drawing = Drawing::new(width, height, &heading);
     axes.draw(&mut drawing);
     axes.draw_names(&mut drawing);
     let [[left, top], [right, _]] = axes.frame();
     drawing.text("heading", [left, top - 18.0], heading);
-    legend::draw_column(
-        &mut drawing,
-        [right + 20.0, top],
-        &entries(window, forecast),
-    );
+    legend::draw_column(&mut drawing, [right + 20.0, top], &entries(window, forecast));
     drawing.within(axes.frame(), |drawing| {
         for disc in regions(forecast) {
             let radius = axes.plan().scale * disc.radius;
@@ -82,11 +74,7 @@ fn entries(window: &Window, forecast: &Forecast) -> Vec<LegendEntry> {
     }
     if several {
         let paler = LegendEntry::Note("(the paler, the less likely)");
-        entries.extend([
-            LegendEntry::Representative,
-            LegendEntry::OtherHypotheses,
-            paler,
-        ]);
+        entries.extend([LegendEntry::Representative, LegendEntry::OtherHypotheses, paler]);
     } else {
         entries.push(LegendEntry::Forecast);
     }

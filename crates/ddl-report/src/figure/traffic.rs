@@ -50,11 +50,7 @@ impl Traffic {
                 ends.entry(square(*last, 2.0 * side)).or_default().ended += 1;
             }
         }
-        Self {
-            side,
-            crossed,
-            ends,
-        }
+        Self { side, crossed, ends }
     }
 }
 
@@ -89,10 +85,7 @@ mod tests {
         let tracks = [[there.clone(), back].concat(), stands, with_hole];
         let traffic = Traffic::of(&tracks, 0.5);
         let crossed = |x| traffic.crossed.get(&[x, 0]).copied();
-        assert_eq!(
-            (crossed(0), crossed(6), crossed(3)),
-            (Some(3), Some(2), Some(1))
-        );
+        assert_eq!((crossed(0), crossed(6), crossed(3)), (Some(3), Some(2), Some(1)));
         assert_eq!(traffic.crossed.len(), 20);
         let [begun, ended] = [3, 2];
         assert_eq!(traffic.ends[&[0, 0]], Ends { begun, ended });

@@ -60,14 +60,8 @@ mod tests {
     fn long_titles_break_after_a_comma_or_colon() {
         for (lines, width) in [
             ("eth, frame 1234", 300.0),
-            (
-                "students003, frame 10510, pedestrian 204:|straight on",
-                300.0,
-            ),
-            (
-                "pedestrians of the test scene whose goal is|the median one",
-                300.0,
-            ),
+            ("students003, frame 10510, pedestrian 204:|straight on", 300.0),
+            ("pedestrians of the test scene whose goal is|the median one", 300.0),
             ("1,000 goals,|and one more", 112.0),
             ("many hypotheses,|so few goals", 112.0),
             ("all, of them as|it happens", 112.0),

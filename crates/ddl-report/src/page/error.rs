@@ -50,9 +50,7 @@ pub(super) enum MomentProblem {
         field: &'static str,
         value: f64,
     },
-    #[error(
-        "hypothesis {hypothesis} of pedestrian {pedestrian} has the weight {weight}, which is not between 0 and 1"
-    )]
+    #[error("hypothesis {hypothesis} of pedestrian {pedestrian} has the weight {weight}, which is not between 0 and 1")]
     Weight {
         pedestrian: usize,
         hypothesis: usize,

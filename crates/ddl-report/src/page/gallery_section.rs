@@ -26,19 +26,12 @@ const STRIPS: [f64; 2] = [30.0, 44.0];
 
 /// The pedestrians of the pick, and the others in grey; `alone` adds a title and a key, for a file.
 fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
-    let title = format!(
-        "{}: {}, frame {}",
-        pick.show, moment.recording, moment.frame
-    );
+    let title = format!("{}: {}, frame {}", pick.show, moment.recording, moment.frame);
     let above = if alone { STRIPS[0] } else { 0.0 };
     let below = if alone { STRIPS[1] } else { 0.0 };
     let height = SCENE[1] + above + below;
     let mut drawing = Drawing::new(SCENE[0], height, &title);
-    let chosen: Vec<&MomentPedestrian> = pick
-        .pedestrians
-        .iter()
-        .map(|&at| &moment.pedestrians[at])
-        .collect();
+    let chosen: Vec<&MomentPedestrian> = pick.pedestrians.iter().map(|&at| &moment.pedestrians[at]).collect();
     let plan = fitting(&chosen, above);
     for (at, pedestrian) in moment.pedestrians.iter().enumerate() {
         let mut all = pedestrian.observed.iter().chain(&pedestrian.truth);
@@ -73,10 +66,7 @@ fn fitting(chosen: &[&MomentPedestrian], above: f64) -> PlanView {
     let seen = chosen.iter().flat_map(|pedestrian| {
         let shown = &pedestrian.hypotheses[pedestrian.representative()];
         let paths = pedestrian.observed.iter().chain(&pedestrian.truth);
-        let ends = pedestrian
-            .hypotheses
-            .iter()
-            .filter_map(|h| h.positions.last());
+        let ends = pedestrian.hypotheses.iter().filter_map(|h| h.positions.last());
         let paths = paths.chain(&shown.positions).chain(ends);
         paths.copied().chain(shown.goal)
     });
@@ -92,13 +82,11 @@ fn fitting(chosen: &[&MomentPedestrian], above: f64) -> PlanView {
 fn is_seen(plan: &PlanView, place: Position, above: f64) -> bool {
     let [x, y] = plan.px(place);
     let slack = 30.0;
-    (-slack..=SCENE[0] + slack).contains(&x)
-        && (above - slack..=above + SCENE[1] + slack).contains(&y)
+    (-slack..=SCENE[0] + slack).contains(&x) && (above - slack..=above + SCENE[1] + slack).contains(&y)
 }
 
 fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian, above: f64) {
-    let [first, last] =
-        [pedestrian.observed[0], pedestrian.observed[OBSERVED - 1]].map(|p| plan.px(p));
+    let [first, last] = [pedestrian.observed[0], pedestrian.observed[OBSERVED - 1]].map(|p| plan.px(p));
     let ahead = last[0] - first[0];
     let words = pedestrian.pedestrian.to_string();
     let width = 7.0 * words.len() as f64;
@@ -124,11 +112,7 @@ fn scale_bar(drawing: &mut Drawing, plan: &PlanView, bottom: f64) {
     let (x, y, length) = (12.0, bottom - 10.0, metres * plan.scale);
     let ends = [[x, y - 3.0], [x, y], [x + length, y], [x + length, y - 3.0]];
     drawing.path("scale-bar", &ends);
-    drawing.text(
-        "small halo",
-        [x + length + 6.0, y + 2.0],
-        format!("{metres} m"),
-    );
+    drawing.text("small halo", [x + length + 6.0, y + 2.0], format!("{metres} m"));
 }
 
 fn key(drawing: &mut Drawing, y: f64) {
@@ -166,9 +150,7 @@ fn meaning(show: Show) -> &'static str {
     match show {
         Show::Convergence => "A pedestrian who reaches the goal of the representative hypothesis.",
         Show::Group => "Pedestrians who walk together.",
-        Show::SlowingDown => {
-            "A pedestrian who slows down; where the forecast does too, its arrows grow shorter."
-        }
+        Show::SlowingDown => "A pedestrian who slows down; where the forecast does too, its arrows grow shorter.",
         Show::KeepingDistance => "Pedestrians who pass each other and keep their distance.",
         Show::Turning => "A pedestrian who turns.",
     }
@@ -193,11 +175,7 @@ pub(super) fn html(moments: &[Moment]) -> String {
         } else {
             format!(" (fold <code>{}</code>)", escape(&moment.fold))
         };
-        let plural = if who.len() == 1 {
-            "pedestrian"
-        } else {
-            "pedestrians"
-        };
+        let plural = if who.len() == 1 { "pedestrian" } else { "pedestrians" };
         let _ = write!(
             html,
             "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code>{}, \
@@ -229,7 +207,7 @@ pub(super) fn figures(moments: &[Moment]) -> Vec<(String, Drawing)> {
 
 fn capitalised(words: &str) -> String {
     let mut characters = words.chars();
-    characters.next().map_or(String::new(), |first| {
-        first.to_uppercase().chain(characters).collect()
-    })
+    characters
+        .next()
+        .map_or(String::new(), |first| first.to_uppercase().chain(characters).collect())
 }

@@ -54,16 +54,10 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> String {
     let first = measured.find_map(|(fold, pair)| Some((fold, (*pair)?)));
     let ([ade, fde], over) = match (subject.mean, standing.folds.as_slice(), first) {
         (Some(mean), [one], _) => (mean, format!("on `{one}`")),
-        (Some(mean), all, _) if standing.all_folds => {
-            (mean, format!("plain mean of the {} folds", all.len()))
-        }
+        (Some(mean), all, _) if standing.all_folds => (mean, format!("plain mean of the {} folds", all.len())),
         (Some(mean), some, _) => (
             mean,
-            format!(
-                "plain mean of the {} folds measured: {}",
-                some.len(),
-                some.join(", ")
-            ),
+            format!("plain mean of the {} folds measured: {}", some.len(), some.join(", ")),
         ),
         (None, _, Some((fold, pair))) => (
             pair,
@@ -129,22 +123,14 @@ fn facts(standing: &Standing, subject: &StandingLine) -> String {
             format!(
                 "{pedestrians} pedestrians in {windows} test windows of {}; scored: {}",
                 standing.folds.join(", "),
-                standing
-                    .shared
-                    .test_subset
-                    .as_deref()
-                    .unwrap_or("all test windows")
+                standing.shared.test_subset.as_deref().unwrap_or("all test windows")
             ),
         ),
         ("Conditions", subject.settings.clone()),
     ];
     let mut html = "<dl class=\"facts\">\n".to_owned();
     for (name, words) in facts {
-        let _ = writeln!(
-            html,
-            "<div><dt>{name}</dt><dd>{}</dd></div>",
-            inline(&words)
-        );
+        let _ = writeln!(html, "<div><dt>{name}</dt><dd>{}</dd></div>", inline(&words));
     }
     html + "</dl>\n"
 }

@@ -97,13 +97,7 @@ fn wide(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
         axis(&mut drawing, &scale, [top, bottom]);
         for (row, line) in lines.iter().enumerate() {
             let y = top + LINE * (row as f64 + 0.5);
-            dumbbell(
-                &mut drawing,
-                &scale,
-                columns(line)[at],
-                chart.is_subject(line),
-                y,
-            );
+            dumbbell(&mut drawing, &scale, columns(line)[at], chart.is_subject(line), y);
         }
     }
     chart.key(&mut drawing, [left + gap, bottom + 38.0]);
@@ -117,13 +111,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
     chart.key(&mut drawing, [0.0, 12.0]);
     // The mean comes first, because the folds may need scrolling.
-    for (place, name) in names
-        .iter()
-        .cycle()
-        .skip(names.len() - 1)
-        .take(names.len())
-        .enumerate()
-    {
+    for (place, name) in names.iter().cycle().skip(names.len() - 1).take(names.len()).enumerate() {
         let at = (place + names.len() - 1) % names.len();
         let top = 28.0 + block * place as f64;
         let scale = Scale::of(&chart.values, [6.0, width - NUMBER]);
@@ -136,13 +124,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
                 [0.0, y - 4.0],
                 format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
             );
-            dumbbell(
-                &mut drawing,
-                &scale,
-                columns(line)[at],
-                chart.is_subject(line),
-                y + 8.0,
-            );
+            dumbbell(&mut drawing, &scale, columns(line)[at], chart.is_subject(line), y + 8.0);
         }
     }
     drawing
@@ -176,11 +158,7 @@ fn dumbbell(drawing: &mut Drawing, scale: &Scale, pair: Option<[f64; 2]>, subjec
     drawing.line(&format!("stem{first}"), [a, y], [b, y]);
     drawing.circle(&format!("fde{first}"), [b, y], 3.6);
     drawing.circle(&format!("ade{first}"), [a, y], 4.4);
-    let class = if subject {
-        "small halo subject"
-    } else {
-        "small halo"
-    };
+    let class = if subject { "small halo subject" } else { "small halo" };
     drawing.text(class, [b + 9.0, y + 4.0], format!("{ade:.3}"));
 }
 

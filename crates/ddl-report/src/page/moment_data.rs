@@ -177,8 +177,7 @@ impl<'a> PedestrianData<'a> {
     fn of(pedestrian: &'a MomentPedestrian) -> Self {
         let last = pedestrian.observed[OBSERVED - 1];
         let all = &pedestrian.hypotheses;
-        let letters =
-            |of: fn(&MomentHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
+        let letters = |of: fn(&MomentHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
         Self {
             pedestrian: &pedestrian.pedestrian,
             observed: steps([0.0, 0.0], &pedestrian.observed),
@@ -186,15 +185,11 @@ impl<'a> PedestrianData<'a> {
             paths: all.iter().map(|h| steps(last, &h.positions)).collect(),
             goals: all
                 .iter()
-                .map(|h| {
-                    h.goal
-                        .map(|goal| [0, 1].map(|axis| mm(goal[axis]) - mm(last[axis])))
-                })
+                .map(|h| h.goal.map(|goal| [0, 1].map(|axis| mm(goal[axis]) - mm(last[axis]))))
                 .collect(),
             weights: all.iter().map(|h| mm(h.weight)).collect(),
             radii: if all.iter().all(|h| h.radii.len() == HORIZON) {
-                let in_mm =
-                    |h: &MomentHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
+                let in_mm = |h: &MomentHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
                 all.iter().map(in_mm).collect()
             } else {
                 Vec::new()

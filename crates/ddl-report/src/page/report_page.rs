@@ -18,10 +18,7 @@ use crate::{
 
 const TEMPLATE: &str = include_str!("page.html");
 /// Scripts of the rest of this page, run after those of the player.
-const REPORT_SCRIPTS: [&str; 2] = [
-    include_str!("script/curves.js"),
-    include_str!("script/report_file.js"),
-];
+const REPORT_SCRIPTS: [&str; 2] = [include_str!("script/curves.js"), include_str!("script/report_file.js")];
 
 /// Content of a page: the report, moments and training curves.
 #[derive(Debug, Clone, Copy)]
@@ -87,10 +84,7 @@ impl<'a> Page<'a> {
         self.check()?;
         let mut figures: Vec<(String, Drawing)> = Vec::new();
         if let Some(standing) = standing::standing(self.report) {
-            figures.push((
-                "comparison".to_owned(),
-                headline_chart(&standing, Shape::Wide),
-            ));
+            figures.push(("comparison".to_owned(), headline_chart(&standing, Shape::Wide)));
         }
         figures.extend(gallery_section::figures(self.moments));
         figures.extend(training_section::figures(self.curves));
@@ -99,12 +93,7 @@ impl<'a> Page<'a> {
             .into_iter()
             .map(|(name, drawing)| (name, drawing.to_file("")))
             .chain(self.report.watching_figures());
-        let named = |(name, text): (String, String)| {
-            (
-                format!("{}.svg", unused(identifier(&name), &mut used)),
-                text,
-            )
-        };
+        let named = |(name, text): (String, String)| (format!("{}.svg", unused(identifier(&name), &mut used)), text);
         Ok(figures.map(named).collect())
     }
 
@@ -115,13 +104,6 @@ impl<'a> Page<'a> {
 }
 
 fn item(entry: &ContentsEntry) -> String {
-    let class = if entry.warned {
-        " class=\"warned\""
-    } else {
-        ""
-    };
-    format!(
-        "<li{class}><a href=\"#{}\">{}</a></li>\n",
-        entry.id, entry.heading
-    )
+    let class = if entry.warned { " class=\"warned\"" } else { "" };
+    format!("<li{class}><a href=\"#{}\">{}</a></li>\n", entry.id, entry.heading)
 }

@@ -52,8 +52,7 @@ impl Standing {
     /// The lines that can be ranked against `line`: equally many hypotheses, and every fold measured; the best first.
     pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
         let hypotheses = to.hypotheses;
-        let is_comparable =
-            move |line: &&StandingLine| line.mean.is_some() && line.hypotheses == hypotheses;
+        let is_comparable = move |line: &&StandingLine| line.mean.is_some() && line.hypotheses == hypotheses;
         self.lines.iter().filter(is_comparable)
     }
 }
@@ -93,9 +92,7 @@ fn all_folds(group: &ResultGroup<'_>, measured: &[&str]) -> bool {
 
 impl StandingLine {
     fn of(line: &TableLine<'_>, label: String, folds: &[&str]) -> Self {
-        let both = |of: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| {
-            Some([of(|s| s.min_ade)?, of(|s| s.min_fde)?])
-        };
+        let both = |of: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| Some([of(|s| s.min_ade)?, of(|s| s.min_fde)?]);
         let on_fold = |fold: &&str| both(&|of| Some(line.on_fold(fold, of)?.mean()));
         let count = |of: fn(&Scores) -> usize| -> usize {
             let first = folds.iter().filter_map(|fold| line.on(fold).next());

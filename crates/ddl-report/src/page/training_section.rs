@@ -54,10 +54,7 @@ fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
     panels
 }
 
-fn values<'a>(
-    curves: impl Iterator<Item = &'a TrainingCurve>,
-    of: fn(&EpochPoint) -> Option<f64>,
-) -> Vec<f64> {
+fn values<'a>(curves: impl Iterator<Item = &'a TrainingCurve>, of: fn(&EpochPoint) -> Option<f64>) -> Vec<f64> {
     let points = curves.flat_map(|curve| &curve.epochs).filter_map(of);
     points.filter(|value| value.is_finite()).collect()
 }
@@ -80,25 +77,14 @@ fn series<'a>(
     let one = |curve: &'a TrainingCurve| {
         let finite = |point: &EpochPoint| Some((point.epoch, of(point).filter(|v| v.is_finite())?));
         let points: Vec<(usize, f64)> = curve.epochs.iter().filter_map(finite).collect();
-        let colour = variants
-            .iter()
-            .position(|variant| *variant == curve.variant)?
-            % COLOURS;
-        (!points.is_empty()).then_some(Series {
-            curve,
-            colour,
-            points,
-        })
+        let colour = variants.iter().position(|variant| *variant == curve.variant)? % COLOURS;
+        (!points.is_empty()).then_some(Series { curve, colour, points })
     };
     curves.filter_map(one).collect()
 }
 
 fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Option<TrainingPanel> {
-    let epochs = || {
-        series
-            .iter()
-            .flat_map(|s| s.points.iter().map(|(epoch, _)| *epoch))
-    };
+    let epochs = || series.iter().flat_map(|s| s.points.iter().map(|(epoch, _)| *epoch));
     let (first, last) = (epochs().min()?, epochs().max()?);
     let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
     let up = Scale::of(all, [bottom, TOP]);
@@ -107,14 +93,7 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Opti
 
     let mut drawing = Drawing::new(SIZE[0], SIZE[1], format!("{fold}: {quantity} by epoch"));
     drawing.data("fold", fold);
-    drawing.data(
-        "quantity",
-        if quantity == VALIDATION {
-            "validation"
-        } else {
-            "loss"
-        },
-    );
+    drawing.data("quantity", if quantity == VALIDATION { "validation" } else { "loss" });
     drawing.data("loss", quantity);
     drawing.data("left", LEFT.to_string());
     drawing.data("right", right.to_string());
@@ -128,23 +107,11 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Opti
     }
     drawing.line("axis", [LEFT, bottom], [right, bottom]);
     for epoch in epoch_ticks(first, last) {
-        drawing.text(
-            "small middle",
-            [across(epoch), bottom + 15.0],
-            epoch.to_string(),
-        );
+        drawing.text("small middle", [across(epoch), bottom + 15.0], epoch.to_string());
     }
-    drawing.text(
-        "small middle",
-        [f64::midpoint(LEFT, right), bottom + 31.0],
-        "epoch",
-    );
+    drawing.text("small middle", [f64::midpoint(LEFT, right), bottom + 31.0], "epoch");
     for s in series {
-        let points: Vec<[f64; 2]> = s
-            .points
-            .iter()
-            .map(|(e, v)| [across(*e), up.at(*v)])
-            .collect();
+        let points: Vec<[f64; 2]> = s.points.iter().map(|(e, v)| [across(*e), up.at(*v)]).collect();
         drawing.path(&format!("curve c{}", s.colour), &points);
         if let [only] = points.as_slice() {
             drawing.circle(&format!("c{}", s.colour), *only, 2.0);
@@ -164,10 +131,7 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Opti
 fn labels(series: &[Series<'_>], up: &Scale, [top, bottom]: [f64; 2]) -> Vec<(usize, f64, String)> {
     let mut labels: Vec<(usize, f64, String)> = Vec::new();
     for variant in distinct(series.iter().map(|s| s.curve.variant.as_str())) {
-        let of_it: Vec<&Series<'_>> = series
-            .iter()
-            .filter(|s| s.curve.variant == variant)
-            .collect();
+        let of_it: Vec<&Series<'_>> = series.iter().filter(|s| s.curve.variant == variant).collect();
         let ends = of_it.iter().filter_map(|s| s.points.last());
         let y = ends.map(|(_, value)| up.at(*value)).sum::<f64>() / of_it.len() as f64;
         let words: String = variant.chars().take(17).collect();
@@ -222,7 +186,8 @@ pub(super) fn check(curves: &[TrainingCurve]) -> Result<(), PageError> {
 pub(super) fn html(curves: &[TrainingCurve]) -> String {
     let panels = training_panels(curves);
     if panels.is_empty() {
-        return "<p class=\"nothing\">Nothing in this report was trained, or no training was recorded.</p>\n".to_owned();
+        return "<p class=\"nothing\">Nothing in this report was trained, or no training was recorded.</p>\n"
+            .to_owned();
     }
     let mut quantities: Vec<&str> = Vec::new();
     for panel in &panels {
@@ -232,11 +197,7 @@ pub(super) fn html(curves: &[TrainingCurve]) -> String {
     }
     let mut html = String::new();
     for quantity in quantities {
-        let _ = write!(
-            html,
-            "<h3>{}</h3>\n<div class=\"panels\">\n",
-            escape(quantity)
-        );
+        let _ = write!(html, "<h3>{}</h3>\n<div class=\"panels\">\n", escape(quantity));
         for panel in panels.iter().filter(|panel| panel.quantity == quantity) {
             let _ = write!(
                 html,
@@ -250,12 +211,7 @@ pub(super) fn html(curves: &[TrainingCurve]) -> String {
 }
 
 pub(super) fn figures(curves: &[TrainingCurve]) -> Vec<(String, Drawing)> {
-    let named = |panel: TrainingPanel| {
-        (
-            format!("training {} {}", panel.fold, panel.quantity),
-            panel.drawing,
-        )
-    };
+    let named = |panel: TrainingPanel| (format!("training {} {}", panel.fold, panel.quantity), panel.drawing);
     training_panels(curves).into_iter().map(named).collect()
 }
 

@@ -41,12 +41,9 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
         ))));
     }
     parts.extend([
-        Part::subheading(
-            "Table II of the DDL paper (ablation; convention `star`, protocol `published`)",
-        ),
+        Part::subheading("Table II of the DDL paper (ablation; convention `star`, protocol `published`)"),
         Part::Paragraph(
-            "As printed. Compare with results under `published` in the `star` convention alone."
-                .to_owned(),
+            "As printed. Compare with results under `published` in the `star` convention alone.".to_owned(),
         ),
         Part::Table(ablation_table()),
     ]);

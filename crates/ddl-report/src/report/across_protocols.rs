@@ -79,10 +79,6 @@ fn table(groups: &[&ResultGroup<'_>]) -> Table {
 
 fn heads_for_goals(line: &TableLine<'_>) -> bool {
     line.conditions().epochs.is_some()
-        || line.rows[0].scores.goal_fde.is_some()
-            && !line.conditions().forecaster.contains("the TRUE end")
-        || line
-            .conditions()
-            .forecaster
-            .contains("nearest the TRUE end")
+        || line.rows[0].scores.goal_fde.is_some() && !line.conditions().forecaster.contains("the TRUE end")
+        || line.conditions().forecaster.contains("nearest the TRUE end")
 }

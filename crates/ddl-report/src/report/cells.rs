@@ -14,12 +14,7 @@ pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> Stri
 
 /// minADE/minFDE of a line on each fold, then their mean.
 pub(super) fn errors(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
-    let of_fold = |fold: &&str| {
-        pair(
-            line.on_fold(fold, |s| s.min_ade),
-            line.on_fold(fold, |s| s.min_fde),
-        )
-    };
+    let of_fold = |fold: &&str| pair(line.on_fold(fold, |s| s.min_ade), line.on_fold(fold, |s| s.min_fde));
     let mean = pair(
         line.over_folds(folds, |s| s.min_ade),
         line.over_folds(folds, |s| s.min_fde),

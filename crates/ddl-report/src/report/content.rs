@@ -61,9 +61,7 @@ fn describe_convention(convention: Convention) -> &'static str {
     match convention {
         Convention::Star => "ETH/UCY as in SR-LSTM, STAR and DDL: ETH every 6 frames",
         Convention::SocialGan => "ETH/UCY as in Social-GAN: ETH every 10 frames",
-        Convention::Simulated => {
-            "simulated crowds, NOT real recordings: comparable with no published number"
-        }
+        Convention::Simulated => "simulated crowds, NOT real recordings: comparable with no published number",
         Convention::Own => "own recordings, comparable with no published number",
     }
 }

@@ -25,19 +25,16 @@ pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     let mut groups: Vec<ResultGroup<'_>> = Vec::new();
     for row in rows {
         let c = &row.conditions;
-        let at = groups
-            .iter()
-            .position(|group| group.admits(c))
-            .unwrap_or_else(|| {
-                groups.push(ResultGroup {
-                    convention: c.convention,
-                    window_rule: c.window_rule,
-                    protocol: c.protocol,
-                    test_subset: c.test_subset.as_deref(),
-                    lines: Vec::new(),
-                });
-                groups.len() - 1
+        let at = groups.iter().position(|group| group.admits(c)).unwrap_or_else(|| {
+            groups.push(ResultGroup {
+                convention: c.convention,
+                window_rule: c.window_rule,
+                protocol: c.protocol,
+                test_subset: c.test_subset.as_deref(),
+                lines: Vec::new(),
             });
+            groups.len() - 1
+        });
         let group = &mut groups[at];
         match group.lines.iter_mut().find(|line| line.admits(c)) {
             Some(line) => line.rows.push(row),
@@ -68,17 +65,8 @@ pub(crate) fn order(protocol: Protocol) -> usize {
 
 impl ResultGroup<'_> {
     fn admits(&self, c: &Conditions) -> bool {
-        (
-            self.convention,
-            self.window_rule,
-            self.protocol,
-            self.test_subset,
-        ) == (
-            c.convention,
-            c.window_rule,
-            c.protocol,
-            c.test_subset.as_deref(),
-        )
+        (self.convention, self.window_rule, self.protocol, self.test_subset)
+            == (c.convention, c.window_rule, c.protocol, c.test_subset.as_deref())
     }
 
     /// Whether both groups score the same windows of the same data, under any protocols.
@@ -162,10 +150,7 @@ impl<'a> TableLine<'a> {
     }
 
     pub(crate) fn on<'b>(&'b self, fold: &'b str) -> impl Iterator<Item = &'a ResultRow> + 'b {
-        self.rows
-            .iter()
-            .copied()
-            .filter(move |row| row.conditions.fold == fold)
+        self.rows.iter().copied().filter(move |row| row.conditions.fold == fold)
     }
 
     /// The errors by block on one fold, mean over the seeds; `None` unless all seeds have the same windows.
@@ -205,11 +190,7 @@ impl<'a> TableLine<'a> {
     }
 
     /// The plain mean over the folds, over the seeds; `None` unless every seed has every fold.
-    pub(crate) fn over_folds(
-        &self,
-        folds: &[&str],
-        of: impl Fn(&Scores) -> f64,
-    ) -> Option<SeedSpread> {
+    pub(crate) fn over_folds(&self, folds: &[&str], of: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
         let mean_of_seed = |seed: Option<u64>| {
             let on_fold = |fold: &&str| {
                 let row = self.on(fold).find(|row| row.conditions.seed == seed)?;
@@ -249,15 +230,9 @@ impl<'a> TableLine<'a> {
         match c.epochs {
             None => parts.push("not trained".to_owned()),
             Some(epochs) => {
-                let selection = c
-                    .selection
-                    .as_deref()
-                    .map_or(String::new(), |s| format!(" ({s})"));
+                let selection = c.selection.as_deref().map_or(String::new(), |s| format!(" ({s})"));
                 parts.push(format!("{epochs} epochs{selection}"));
-                let subset = c
-                    .training_subset
-                    .as_deref()
-                    .unwrap_or("all training windows");
+                let subset = c.training_subset.as_deref().unwrap_or("all training windows");
                 parts.push(format!("trained on {subset}"));
                 parts.extend(c.recipe.clone());
             }

@@ -27,17 +27,11 @@ const FURTHER: [MetricColumn; 13] = [
     ("collide %", 1, |s| Some(100.0 * s.collision_rate)),
     ("(true %)", 1, |s| Some(100.0 * s.true_collision_rate)),
     ("goal FDE m", 3, |s| s.goal_fde),
-    ("Phi falls %", 1, |s| {
-        s.stability.map(|st| 100.0 * st.decreasing)
-    }),
-    ("certified %", 1, |s| {
-        s.stability?.certified.map(|share| 100.0 * share)
-    }),
+    ("Phi falls %", 1, |s| s.stability.map(|st| 100.0 * st.decreasing)),
+    ("certified %", 1, |s| s.stability?.certified.map(|share| 100.0 * share)),
     ("to goal m", 3, |s| s.stability.map(|st| st.end_distance)),
     ("turn deg", 1, |s| s.stability.map(|st| st.largest_turn)),
-    ("reverse %", 1, |s| {
-        s.stability.map(|st| 100.0 * st.reversing)
-    }),
+    ("reverse %", 1, |s| s.stability.map(|st| 100.0 * st.reversing)),
     ("K", 0, |s| Some(s.hypotheses as f64)),
 ];
 
@@ -57,12 +51,8 @@ const WHOLE: [MetricColumn; 13] = [
     ("expected FDE m", 3, |s| s.expected_fde),
     ("likely ADE m", 3, |s| s.most_likely_ade),
     ("likely FDE m", 3, |s| s.most_likely_fde),
-    ("missed 1 m %", 1, |s| {
-        s.miss_rate_1m.map(|rate| 100.0 * rate)
-    }),
-    ("missed 2 m %", 1, |s| {
-        s.miss_rate_2m.map(|rate| 100.0 * rate)
-    }),
+    ("missed 1 m %", 1, |s| s.miss_rate_1m.map(|rate| 100.0 * rate)),
+    ("missed 2 m %", 1, |s| s.miss_rate_2m.map(|rate| 100.0 * rate)),
     ("runs into %", 1, |s| {
         s.true_neighbour_collision_rate.map(|rate| 100.0 * rate)
     }),
@@ -74,10 +64,7 @@ const WHOLE: [MetricColumn; 13] = [
 ];
 
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
-    let both = [
-        ("Further metrics", &FURTHER[..]),
-        ("The forecast as a whole", &WHOLE),
-    ];
+    let both = [("Further metrics", &FURTHER[..]), ("The forecast as a whole", &WHOLE)];
     let part = |(name, columns): (&str, &[MetricColumn])| {
         let caption = format!("{name}. {}", group.conditions_in_words());
         let table = table(group, columns).captioned(caption);
@@ -117,11 +104,7 @@ pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
 }
 
 /// `None` where a fold lacks the metric.
-fn over_folds(
-    line: &TableLine<'_>,
-    folds: &[&str],
-    of: fn(&Scores) -> Option<f64>,
-) -> Option<SeedSpread> {
+fn over_folds(line: &TableLine<'_>, folds: &[&str], of: fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
     let spread = line.over_folds(folds, |s| of(s).unwrap_or(f64::NAN));
     spread.filter(|spread| !spread.mean().is_nan())
 }

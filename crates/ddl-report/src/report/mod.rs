@@ -44,10 +44,7 @@ impl Report {
     ///
     /// # Errors
     /// Two rows name the same conditions and hold different scores.
-    pub fn new(
-        title: impl Into<String>,
-        rows: impl IntoIterator<Item = ResultRow>,
-    ) -> Result<Self, ReportError> {
+    pub fn new(title: impl Into<String>, rows: impl IntoIterator<Item = ResultRow>) -> Result<Self, ReportError> {
         let mut report = Self {
             format: FORMAT,
             title: title.into(),
@@ -63,11 +60,7 @@ impl Report {
     /// As [`Report::new`]; the rows before the conflict are kept.
     pub fn extend(&mut self, rows: impl IntoIterator<Item = ResultRow>) -> Result<(), ReportError> {
         for row in rows {
-            match self
-                .rows
-                .iter()
-                .find(|known| known.conditions == row.conditions)
-            {
+            match self.rows.iter().find(|known| known.conditions == row.conditions) {
                 None => self.rows.push(row),
                 Some(known) if known.scores == row.scores => {}
                 Some(known) => {
@@ -118,11 +111,7 @@ impl Report {
     /// # Errors
     /// None in practice: scores are finite.
     pub fn to_json(&self) -> Result<String, ReportError> {
-        let rows: Vec<String> = self
-            .rows
-            .iter()
-            .map(serde_json::to_string)
-            .collect::<Result<_, _>>()?;
+        let rows: Vec<String> = self.rows.iter().map(serde_json::to_string).collect::<Result<_, _>>()?;
         let title = serde_json::to_string(&self.title)?;
         Ok(format!(
             "{{\"format\":{},\"title\":{title},\"rows\":[\n{}\n]}}\n",

@@ -6,9 +6,7 @@ use crate::{document::Part, literature};
 use ddl_eval::ResultRow;
 
 pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
-    let star = rows
-        .iter()
-        .any(|row| row.conditions.convention == Convention::Star);
+    let star = rows.iter().any(|row| row.conditions.convention == Convention::Star);
     let other = if star || rows.is_empty() {
         ""
     } else {

@@ -19,10 +19,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     if tables.is_empty() {
         return Vec::new();
     }
-    [Part::subheading("By recording")]
-        .into_iter()
-        .chain(tables)
-        .collect()
+    [Part::subheading("By recording")].into_iter().chain(tables).collect()
 }
 
 /// `None` for a single recording.
@@ -44,20 +41,15 @@ fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
     let mut table = Table::new(columns.into_iter().chain(forecasters));
     for of in recordings {
         let errors = measured.iter().map(|(.., recordings)| {
-            let same = recordings
-                .iter()
-                .find(|same| same.recording == of.recording);
-            pair(
-                same.map(|of| rounded(of.min_ade)),
-                same.map(|of| rounded(of.min_fde)),
-            )
+            let same = recordings.iter().find(|same| same.recording == of.recording);
+            pair(same.map(|of| rounded(of.min_ade)), same.map(|of| rounded(of.min_fde)))
         });
         let start = [of.recording.clone(), of.pedestrians.to_string()];
         table.row(start.into_iter().chain(errors));
     }
-    let errors = measured.iter().map(|(_, ResultRow { scores, .. }, _)| {
-        pair(Some(rounded(scores.min_ade)), Some(rounded(scores.min_fde)))
-    });
+    let errors = measured
+        .iter()
+        .map(|(_, ResultRow { scores, .. }, _)| pair(Some(rounded(scores.min_ade)), Some(rounded(scores.min_fde))));
     let start = ["all".to_owned(), first.scores.pedestrians.to_string()];
     table.row(start.into_iter().chain(errors));
     Some(table.captioned(format!(

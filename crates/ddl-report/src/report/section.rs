@@ -16,11 +16,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let mut parts = vec![
         Part::heading(group.title()),
         Part::List(vec![
-            format!(
-                "Protocol `{}`: {}.",
-                group.protocol,
-                group.protocol.description()
-            ),
+            format!("Protocol `{}`: {}.", group.protocol, group.protocol.description()),
             format!("Window rule `{}`: {rule}.", group.window_rule),
             format!("Scored: {subset}."),
             "Cells: minADE/minFDE in metres over the hypotheses of each pedestrian, mean over \
@@ -37,10 +33,9 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     more.extend(significance::parts(group));
     more.extend(categories::parts(group));
     parts.push(Part::Details {
-        summary:
-            "Further metrics, the forecast as a whole, how sure the means are, by category of \
+        summary: "Further metrics, the forecast as a whole, how sure the means are, by category of \
             pedestrian"
-                .to_owned(),
+            .to_owned(),
         parts: more,
     });
     parts
@@ -63,17 +58,10 @@ fn describe_rule(rule: WindowRule) -> String {
 
 fn headline(group: &ResultGroup<'_>) -> Table {
     let folds = group.folds();
-    let columns = ["forecaster"]
-        .into_iter()
-        .chain(folds.iter().copied())
-        .chain(["mean"]);
+    let columns = ["forecaster"].into_iter().chain(folds.iter().copied()).chain(["mean"]);
     let mut table = Table::new(columns);
     let pedestrians = folds.iter().map(|fold| counts(group.pedestrians(fold)));
-    table.row(
-        ["pedestrians scored".to_owned()]
-            .into_iter()
-            .chain(pedestrians),
-    );
+    table.row(["pedestrians scored".to_owned()].into_iter().chain(pedestrians));
     for (line, label) in group.labelled() {
         table.row([label].into_iter().chain(errors(line, &folds)));
     }

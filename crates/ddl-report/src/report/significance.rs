@@ -7,9 +7,7 @@ use super::{
     group::{ResultGroup, TableLine},
 };
 use crate::document::{Part, Table};
-use ddl_eval::significance::{
-    BlockErrors, BlockMetric, Interval, mean_interval, paired_difference,
-};
+use ddl_eval::significance::{BlockErrors, BlockMetric, Interval, mean_interval, paired_difference};
 
 pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 95 % interval over 10,000 resamples of \
     20 s of recording (windows overlap and are not independent samples). p is the probability that chance alone makes \
@@ -109,11 +107,7 @@ impl<'a> MeasuredLine<'a> {
 }
 
 /// The difference and its p-value as two cells; `-` where folds or windows differ, or the lines are the same.
-fn difference(
-    measured: &MeasuredLine<'_>,
-    reference: &MeasuredLine<'_>,
-    metric: BlockMetric,
-) -> [String; 2] {
+fn difference(measured: &MeasuredLine<'_>, reference: &MeasuredLine<'_>, metric: BlockMetric) -> [String; 2] {
     let nothing = || [NOTHING.to_owned(), NOTHING.to_owned()];
     if std::ptr::eq(measured.line, reference.line) || measured.names() != reference.names() {
         return nothing();

@@ -53,11 +53,7 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
     let folds = shown.first()?.folds();
     let columns = [&["forecaster", "protocol"], &folds[..], &["mean"]].concat();
     let mut errors = Table::new(columns).text_column("protocol");
-    let columns = [
-        &["forecaster", "protocol", "minADE m", "minFDE m"][..],
-        &METRICS,
-    ]
-    .concat();
+    let columns = [&["forecaster", "protocol", "minADE m", "minFDE m"][..], &METRICS].concat();
     let mut others = Table::new(columns).text_column("protocol");
 
     let pedestrians = folds.iter().map(|fold| counts(shown[0].pedestrians(fold)));
@@ -82,10 +78,7 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
         }
     }
     if let Some(best) = literature::best(convention) {
-        let start = [
-            format!("{}, the best published", best.method),
-            "best of 20".to_owned(),
-        ];
+        let start = [format!("{}, the best published", best.method), "best of 20".to_owned()];
         let published = |fold: &&str| {
             let at = convention.fold_names().position(|name| name == *fold);
             at.and_then(|at| best.folds.get(at))

@@ -84,8 +84,7 @@ pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<
         return Vec::new();
     }
     let columns = ["first quarter", "second", "third", "last"];
-    let mut table =
-        Table::new(["forecaster", "recording"].into_iter().chain(columns)).text_column("recording");
+    let mut table = Table::new(["forecaster", "recording"].into_iter().chain(columns)).text_column("recording");
     for watched in &all {
         let cells = by_quarter(&watched.watching).into_iter();
         let cells = cells.zip(by_quarter(&watched.alone)).map(cell);
@@ -125,21 +124,14 @@ pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
             values: Values::Metres,
             panels: of_first.map(Watched::panel).collect(),
         };
-        let name = format!(
-            "watching {} {} {}",
-            group.protocol, group.convention, group.window_rule
-        );
+        let name = format!("watching {} {} {}", group.protocol, group.convention, group.window_rule);
         Some((name, drawn.to_file()))
     };
     groups.iter().filter_map(figure).collect()
 }
 
 fn error(protocol: Protocol) -> &'static str {
-    if protocol.hypotheses() == 1 {
-        "FDE"
-    } else {
-        "minFDE"
-    }
+    if protocol.hypotheses() == 1 { "FDE" } else { "minFDE" }
 }
 
 fn is_same_model(line: &TableLine<'_>, other: &TableLine<'_>) -> bool {
@@ -153,14 +145,9 @@ fn is_same_model(line: &TableLine<'_>, other: &TableLine<'_>) -> bool {
 fn by_quarter(blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
     let first = blocks.iter().map(|block| block.block).min().unwrap_or(0);
     let last = blocks.iter().map(|block| block.block).max().unwrap_or(0);
-    let quarter =
-        |block: &BlockErrors| (block.block - first) * QUARTERS as i64 / (last - first + 1);
+    let quarter = |block: &BlockErrors| (block.block - first) * QUARTERS as i64 / (last - first + 1);
     std::array::from_fn(|wanted| {
-        let of_quarter = || {
-            blocks
-                .iter()
-                .filter(|block| quarter(block) == wanted as i64)
-        };
+        let of_quarter = || blocks.iter().filter(|block| quarter(block) == wanted as i64);
         of_quarter().next().map(|_| mean(of_quarter()))
     })
 }

@@ -25,9 +25,7 @@ fn walk(from: Position, step: Position) -> Vec<Position> {
 fn case(title: &str, from: Position, step: Position, k: usize, experts: usize) -> GoalCase {
     let track = walk(from, step);
     let end = track[WINDOW - 1];
-    let goals = (1..=k)
-        .map(|g| [end[0] + 0.25 * g as f64, end[1]])
-        .collect();
+    let goals = (1..=k).map(|g| [end[0] + 0.25 * g as f64, end[1]]).collect();
     let goals = WeightedGoals::new(goals, vec![1.0 / k as f64; k]).unwrap();
     let expert = |e: usize| walk(from, [step[0], step[1] + 0.01 * e as f64]);
     GoalCase::new(title, &track, goals)
@@ -78,12 +76,8 @@ fn a_goal_of_four_times_the_weight_has_twice_the_radius() {
     let svg = figure::goals("", &[case]).unwrap();
     // 24 px for a certain goal: 9.6 and 19.2; the legend has rings of 2.4, 5.4 and 10.7.
     let rings = |class: &str, radius: &str| {
-        let lines = svg
-            .lines()
-            .filter(|line| line.contains(&format!("class=\"{class}\"")));
-        lines
-            .filter(|line| line.contains(&format!("r=\"{radius}\"")))
-            .count()
+        let lines = svg.lines().filter(|line| line.contains(&format!("class=\"{class}\"")));
+        lines.filter(|line| line.contains(&format!("r=\"{radius}\""))).count()
     };
     for radius in ["9.6", "19.2", "2.4", "5.4"] {
         assert_eq!(rings("goal weighted", radius), 1, "{radius}");
@@ -117,10 +111,7 @@ fn experts_that_lead_far_away_are_cut_and_do_not_shrink_the_pedestrian() {
     let mut stray = vec![here; WINDOW];
     stray[WINDOW - 1] = [7e5, 7e5];
     let with = sane.clone().with_experts(vec![stray]).unwrap();
-    let (svg, bare) = (
-        figure::goals("", &[with]).unwrap(),
-        figure::goals("", &[sane]).unwrap(),
-    );
+    let (svg, bare) = (figure::goals("", &[with]).unwrap(), figure::goals("", &[sane]).unwrap());
     let circles = |svg: &str| -> Vec<String> {
         let lines = svg.lines().filter(|line| line.starts_with("<circle"));
         let across = |line: &str| line.split(" cy=").next().map(str::to_owned);
@@ -128,10 +119,7 @@ fn experts_that_lead_far_away_are_cut_and_do_not_shrink_the_pedestrian() {
     };
     assert!(!bare.contains("similar pedestrians") && !bare.contains("class=\"expert\""));
     // The panel is unchanged: only the legend, whose shapes come first, is different.
-    assert_eq!(
-        circles(&svg)[LEGEND_CIRCLES..],
-        circles(&bare)[LEGEND_CIRCLES..]
-    );
+    assert_eq!(circles(&svg)[LEGEND_CIRCLES..], circles(&bare)[LEGEND_CIRCLES..]);
     // The part of the expert's line beyond the frame is cut off.
     let (_, plot) = svg.split_once("viewBox=\"60 ").unwrap();
     let (plot, after) = plot.split_once("</svg>").unwrap();
@@ -173,14 +161,7 @@ fn every_role_of_a_scene_is_drawn_and_named() {
     let forecast = StraightLine::to(TrueEndpoint).forecast(&window).unwrap();
     let svg = figure::scene(&window, &forecast).unwrap();
     assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
-    for text in [
-        "observed, 3.2 s",
-        "truth, 4.8 s",
-        "forecast",
-        "goal",
-        "x (m)",
-        "y (m)",
-    ] {
+    for text in ["observed, 3.2 s", "truth, 4.8 s", "forecast", "goal", "x (m)", "y (m)"] {
         assert!(svg.contains(text), "no `{text}`");
     }
     // Text from the user's files must be escaped.

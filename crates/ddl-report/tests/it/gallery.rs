@@ -13,10 +13,7 @@ use ddl_report::{
 
 fn windows() -> Vec<Window> {
     let dataset = Dataset::simulated(1);
-    dataset
-        .fold("corridor")
-        .unwrap()
-        .test_windows(WindowRule::Complete)
+    dataset.fold("corridor").unwrap().test_windows(WindowRule::Complete)
 }
 
 fn oracle(windows: &[Window]) -> Vec<Forecast> {
@@ -26,11 +23,7 @@ fn oracle(windows: &[Window]) -> Vec<Forecast> {
 }
 
 fn shown(moments: &[Moment]) -> Vec<Show> {
-    let mut shown: Vec<Show> = moments
-        .iter()
-        .flat_map(|m| &m.picks)
-        .map(|pick| pick.show)
-        .collect();
+    let mut shown: Vec<Show> = moments.iter().flat_map(|m| &m.picks).map(|pick| pick.show).collect();
     shown.sort();
     shown
 }
@@ -54,11 +47,7 @@ fn each_kind_of_case_is_picked_once_and_time_is_covered() {
     assert!(frames[0] <= first && frames[frames.len() - 1] >= last);
     for moment in &moments {
         for pick in &moment.picks {
-            assert!(
-                pick.pedestrians
-                    .iter()
-                    .all(|&i| i < moment.pedestrians.len())
-            );
+            assert!(pick.pedestrians.iter().all(|&i| i < moment.pedestrians.len()));
             assert!(pick.rule.contains("minADE"), "{}", pick.rule);
         }
     }
@@ -73,11 +62,7 @@ fn the_case_shown_is_the_median_one() {
         .iter()
         .find(|m| m.picks.iter().any(|p| p.show == Show::Convergence))
         .unwrap();
-    let pick = moment
-        .picks
-        .iter()
-        .find(|p| p.show == Show::Convergence)
-        .unwrap();
+    let pick = moment.picks.iter().find(|p| p.show == Show::Convergence).unwrap();
     let error = |window: &Window, i: usize, forecast: &Forecast| {
         average_displacement(forecast.hypothesis(i, 0), window.future(i))
     };
@@ -98,10 +83,7 @@ fn the_case_shown_is_the_median_one() {
     }
     errors.sort_by(f64::total_cmp);
     assert_eq!(shown, Some(errors[(errors.len() - 1) / 2]));
-    assert!(
-        pick.rule
-            .starts_with(&format!("of {} such pedestrians", errors.len()))
-    );
+    assert!(pick.rule.starts_with(&format!("of {} such pedestrians", errors.len())));
 }
 
 #[test]

@@ -11,15 +11,7 @@ use ddl_report::literature;
 fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {
     let star = Convention::Star;
     let windows = |dataset: Dataset| {
-        let of = |fold: &&'static str| {
-            (
-                *fold,
-                dataset
-                    .fold(fold)
-                    .unwrap()
-                    .test_windows(WindowRule::Published),
-            )
-        };
+        let of = |fold: &&'static str| (*fold, dataset.fold(fold).unwrap().test_windows(WindowRule::Published));
         literature::FOLDS.iter().map(of).collect()
     };
     match locate(star, None).and_then(|folder| Dataset::load(star, &folder)) {
@@ -64,9 +56,7 @@ fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
         for (name, forecaster, tolerance) in &all {
             let (star, rule) = (Convention::Star, WindowRule::Published);
             let conditions = Conditions::new(star, rule, Protocol::Published, *fold, "baseline");
-            let scores = ResultRow::measure(conditions, forecaster, windows)
-                .unwrap()
-                .scores;
+            let scores = ResultRow::measure(conditions, forecaster, windows).unwrap().scores;
             let expected = measured(name);
             assert_eq!(scores.pedestrians, pedestrians[f], "{fold}");
             let errors = [

@@ -14,12 +14,7 @@ use serde_json::Value;
 fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (Window, Forecast) {
     let track = |i: usize| -> Vec<Position> {
         (0..20)
-            .map(|t| {
-                [
-                    0.437 * f64::from(t),
-                    1.3 * i as f64 + 0.05 * f64::from(t * t % 7),
-                ]
-            })
+            .map(|t| [0.437 * f64::from(t), 1.3 * i as f64 + 0.05 * f64::from(t * t % 7)])
             .collect()
     };
     let tracks: Vec<_> = (0..pedestrians).map(track).collect();
@@ -36,13 +31,7 @@ fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (W
         }
     }
     let weights = vec![1.0 / hypotheses as f64; pedestrians * hypotheses];
-    let forecast = Forecast::new(
-        pedestrians,
-        hypotheses,
-        positions,
-        weights,
-        goals.then_some(ends),
-    );
+    let forecast = Forecast::new(pedestrians, hypotheses, positions, weights, goals.then_some(ends));
     let window = Window::new("scene", 0, 10, ids, tracks).unwrap();
     (window, forecast.unwrap())
 }
@@ -55,8 +44,7 @@ fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> Moment {
 fn report() -> Report {
     let (window, _) = window_and_forecast(3, 1, false);
     let row = |protocol| {
-        let conditions =
-            Conditions::new(Convention::Star, WindowRule::Published, protocol, "eth", "");
+        let conditions = Conditions::new(Convention::Star, WindowRule::Published, protocol, "eth", "");
         baseline::measure(&conditions, std::slice::from_ref(&window), 1).unwrap()
     };
     Report::new("A & B", Protocol::ALL.into_iter().flat_map(row)).unwrap()
@@ -106,9 +94,9 @@ fn the_report_is_embedded_bit_for_bit_and_its_tables_are_there() {
         let (id, _) = link.split_once('"').unwrap();
         assert_eq!(html.matches(&format!("id=\"{id}\"")).count(), 1, "{id}");
     }
-    assert!(html.contains(
-        "<section id=\"protocol-published-window-rule-published-convention-star\" class=\"warned\">"
-    ));
+    assert!(
+        html.contains("<section id=\"protocol-published-window-rule-published-convention-star\" class=\"warned\">")
+    );
     assert!(html.contains("<section id=\"protocol-fair-window-rule-published-convention-star\">"));
 }
 
@@ -118,10 +106,7 @@ fn the_head_takes_fair_results_and_the_published_ones_bring_their_warning() {
     let head = |report: &Report| {
         let html = Page::new(report).to_html().unwrap();
         let (_, rest) = html.split_once("class=\"headline\">").unwrap();
-        rest.split_once("<section id=\"player\"")
-            .unwrap()
-            .0
-            .to_owned()
+        rest.split_once("<section id=\"player\"").unwrap().0.to_owned()
     };
     let fair = head(&all);
     assert!(fair.contains("protocol <code>fair</code>") && !fair.contains("class=\"warning\""));
@@ -131,10 +116,7 @@ fn the_head_takes_fair_results_and_the_published_ones_bring_their_warning() {
         .iter()
         .filter(|row| row.conditions.protocol == Protocol::Published);
     let published = head(&Report::new("Published", published.cloned()).unwrap());
-    assert!(
-        published.contains("protocol <code>published</code>")
-            && published.contains("class=\"warning\"")
-    );
+    assert!(published.contains("protocol <code>published</code>") && published.contains("class=\"warning\""));
     assert!(head(&Report::new("Nothing", []).unwrap()).contains("This report holds no results."));
 }
 
@@ -159,9 +141,7 @@ fn the_head_is_about_the_model_as_it_is() {
         row("DDL", &forecast),
         row("another", &forecast),
     ];
-    let html = Page::new(&Report::new("Heads", rows).unwrap())
-        .to_html()
-        .unwrap();
+    let html = Page::new(&Report::new("Heads", rows).unwrap()).to_html().unwrap();
     let (_, verdict) = html.split_once("class=\"verdict\">").unwrap();
     assert!(verdict.starts_with("<strong>DDL</strong>"));
 }
@@ -169,21 +149,11 @@ fn the_head_is_about_the_model_as_it_is() {
 #[test]
 fn a_page_loads_nothing() {
     let html = with_moments(&[moment(2, 3, true)]);
-    for loading in [
-        " src=",
-        "@import",
-        "url(",
-        "fetch(",
-        "XMLHttpRequest",
-        "<iframe",
-    ] {
+    for loading in [" src=", "@import", "url(", "fetch(", "XMLHttpRequest", "<iframe"] {
         assert!(!html.contains(loading), "{loading}");
     }
     let namespace = "http://www.w3.org/2000/svg";
-    assert_eq!(
-        html.matches("http").count(),
-        html.matches(namespace).count()
-    );
+    assert_eq!(html.matches("http").count(), html.matches(namespace).count());
 }
 
 #[test]
@@ -211,21 +181,14 @@ fn names_cannot_become_markup() {
     assert_eq!(moments[0]["recording"], hostile);
     for (name, svg) in page.figures().unwrap() {
         assert!(!svg.contains("<script"), "{name}");
-        assert!(
-            name.chars()
-                .all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.')
-        );
+        assert!(name.chars().all(|c| c.is_ascii_alphanumeric() || c == '-' || c == '.'));
     }
 }
 
 #[test]
 fn figures_are_files_of_their_own() {
     let pick = |show| Pick::new(show, vec![0, 1], "by hand");
-    let picked = moment(3, 20, true).picked(vec![
-        pick(Show::Group),
-        pick(Show::Group),
-        pick(Show::Turning),
-    ]);
+    let picked = moment(3, 20, true).picked(vec![pick(Show::Group), pick(Show::Group), pick(Show::Turning)]);
     let report = report();
     let page = Page {
         report: &report,
@@ -325,12 +288,7 @@ fn forty_crowded_moments_stay_below_six_megabytes() {
 }
 
 fn walked(mut at: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
-    let steps: Vec<i64> = steps
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|n| n.as_i64().unwrap())
-        .collect();
+    let steps: Vec<i64> = steps.as_array().unwrap().iter().map(|n| n.as_i64().unwrap()).collect();
     let mut path = Vec::new();
     for step in steps.chunks_exact(2) {
         at = [at[0] + step[0], at[1] + step[1]];

@@ -52,10 +52,6 @@ impl Windows {
 
 fn windows(recording: &Recording, steps: usize) -> Vec<Walk> {
     let windows = recording.windows(WindowRule::Complete);
-    let tracks = windows
-        .iter()
-        .flat_map(|w| (0..w.len()).map(|i| w.track(i)));
-    tracks
-        .map(|track| recorded::differences(&track[..=steps]))
-        .collect()
+    let tracks = windows.iter().flat_map(|w| (0..w.len()).map(|i| w.track(i)));
+    tracks.map(|track| recorded::differences(&track[..=steps])).collect()
 }

@@ -72,12 +72,7 @@ impl<const D: usize> RegisterKernel for ForwardBackward<'_, D> {
 
 impl<const D: usize> ForwardBackward<'_, D> {
     #[inline(always)]
-    fn parts<S: Register, const G: usize>(
-        &mut self,
-        simd: S,
-        block: &[Step<D>],
-        row: &mut [S::Floats],
-    ) {
+    fn parts<S: Register, const G: usize>(&mut self, simd: S, block: &[Step<D>], row: &mut [S::Floats]) {
         for part in 0..S::PARTS {
             let score = self.forward::<S, G>(simd, block, part, row);
             simd.store(score, &mut self.working.scores, part);
@@ -132,9 +127,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
         let (one, negligible) = (simd.splat(1.0), simd.splat(NEGLIGIBLE));
         let inverse = simd.div(one, score);
         let unit = simd.splat(1.0 / self.seed);
-        let Working {
-            k, alpha, gradient, ..
-        } = &mut *self.working;
+        let Working { k, alpha, gradient, .. } = &mut *self.working;
         let m = block.len();
         // row[j] holds K β of cell (i + 1, j).
         row.fill(zero);

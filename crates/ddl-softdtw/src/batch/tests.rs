@@ -29,9 +29,7 @@ fn worst_errors(dtw: &SoftDtw, xs: &[Vec<[f64; 2]>], ys: &[Vec<[f64; 2]>]) -> (f
                 let found = results.gradient(k).unwrap();
                 assert_eq!(found.len(), x.len());
                 let pairs = found.as_flattened().iter().zip(gradient.as_flattened());
-                in_gradient = pairs
-                    .map(|(a, b)| (a - b).abs())
-                    .fold(in_gradient, f64::max);
+                in_gradient = pairs.map(|(a, b)| (a - b).abs()).fold(in_gradient, f64::max);
             }
         }
     }
@@ -55,10 +53,7 @@ fn what_leaves_the_range_is_evaluated_in_f64() {
     // Some pairs within the range, some beyond it, where f32 alone would be wrong by more than 1.
     let far = walks(60, &[8], 4.0);
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
-    let values: Vec<f64> = far
-        .iter()
-        .map(|y| dtw.value(&far[37], y).unwrap())
-        .collect();
+    let values: Vec<f64> = far.iter().map(|y| dtw.value(&far[37], y).unwrap()).collect();
     assert!(values.iter().any(|&v| v < 40.0) && values.iter().any(|&v| v > 60.0));
     let (value, gradient) = worst_errors(&dtw, &far[30..40], &far);
     // The sequences are four times as long as a pedestrian's, and so are their errors.
@@ -112,27 +107,12 @@ fn bad_input_is_refused_by_name() {
     assert!(sum(&[0.5, -2.0]).is_ok());
     for (error, message) in [
         (build(&none).err(), "no candidates"),
-        (
-            build(&[vec![[0.0]], vec![[f64::NAN]]]).err(),
-            "candidate 1: ",
-        ),
-        (
-            sum(&[1.0]).err(),
-            "1 weights for 2 sequences: give one for each",
-        ),
-        (
-            sum(&[1.0, f64::NAN]).err(),
-            "weight 1 is NaN: must be finite",
-        ),
+        (build(&[vec![[0.0]], vec![[f64::NAN]]]).err(), "candidate 1: "),
+        (sum(&[1.0]).err(), "1 weights for 2 sequences: give one for each"),
+        (sum(&[1.0, f64::NAN]).err(), "weight 1 is NaN: must be finite"),
         (sum(&[1e308, 1e308]).err(), "query: the soft-DTW value"),
-        (
-            batch.values_and_gradients(&[]).err(),
-            "query: sequence x is empty",
-        ),
-        (
-            batch.values_and_gradients(&[[0.5]]).err(),
-            "candidate 1: the soft-DTW",
-        ),
+        (batch.values_and_gradients(&[]).err(), "query: sequence x is empty"),
+        (batch.values_and_gradients(&[[0.5]]).err(), "candidate 1: the soft-DTW"),
     ] {
         let error = error.expect("refused").to_string();
         assert!(error.starts_with(message), "{error}");
@@ -152,10 +132,7 @@ fn cells_far_from_every_path_leave_nothing_in_a_gradient() {
             let (value, gradient) = dtw.value_and_gradient(&x, &y).unwrap();
             assert!((found.values()[0] - value).abs() < 1e-9, "{set}, {huge:e}");
             for (found, expected) in found.gradient(0).unwrap().iter().zip(&gradient) {
-                assert!(
-                    (found[0] - expected[0]).abs() < 1e-9,
-                    "{set}, {huge:e}: {found:?}"
-                );
+                assert!((found[0] - expected[0]).abs() < 1e-9, "{set}, {huge:e}: {found:?}");
             }
         }
     }

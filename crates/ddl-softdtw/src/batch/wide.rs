@@ -137,9 +137,7 @@ impl<const D: usize> WideForwardBackward<'_, D> {
     fn forward<S: Register>(&mut self, simd: S, part: usize, scores: &mut WideLanes) {
         let (zero, scale) = (simd.wide_splat(0.0), simd.wide_splat(self.scale));
         let floor = simd.wide_splat(WIDE_FLOOR);
-        let WidePairs {
-            y, k, alpha, row, ..
-        } = &mut *self.working;
+        let WidePairs { y, k, alpha, row, .. } = &mut *self.working;
         row.fill([0.0; WIDE_LANES]);
         let m = y.len();
         let mut corner = simd.wide_splat(self.start);
@@ -206,8 +204,7 @@ impl<const D: usize> WideForwardBackward<'_, D> {
                 let share = simd.wide_mul(simd.wide_load(&alpha[j], part), inverse);
                 let expected = simd.wide_mul(share, beta);
                 for d in 0..D {
-                    let difference =
-                        simd.wide_sub(simd.wide_splat(x[d]), simd.wide_load(&y[j][d], part));
+                    let difference = simd.wide_sub(simd.wide_splat(x[d]), simd.wide_load(&y[j][d], part));
                     sums[d] = simd.wide_add(sums[d], simd.wide_mul(expected, difference));
                 }
                 right = simd.wide_mul(simd.wide_load(&k[j], part), simd.wide_add(beta, floor));

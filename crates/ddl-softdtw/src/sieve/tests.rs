@@ -24,17 +24,11 @@ fn sieve(gamma: f64, walks: &[Vec<[f64; 2]>]) -> (SoftDtw, Vec<f64>, Option<Cand
 }
 
 fn each_set() -> impl Iterator<Item = Dispatch> {
-    InstructionSet::available()
-        .into_iter()
-        .filter_map(Dispatch::new)
+    InstructionSet::available().into_iter().filter_map(Dispatch::new)
 }
 
 /// Scores of all candidates: with nothing to select among, everything is kept.
-fn scores(
-    sieve: &CandidateSieve<2>,
-    dispatch: Dispatch,
-    query: &[[f64; 2]],
-) -> (Search<2>, Vec<f32>) {
+fn scores(sieve: &CandidateSieve<2>, dispatch: Dispatch, query: &[[f64; 2]]) -> (Search<2>, Vec<f32>) {
     let count = sieve.blocks.members.as_flattened().len();
     let mut search = sieve.search(dispatch, query, count).expect("in range");
     for run in &sieve.blocks.runs {

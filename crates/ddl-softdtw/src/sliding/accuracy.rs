@@ -41,16 +41,11 @@ impl Accuracy {
                 let (paths_below, sums_below) = match (length - 1 - above).checked_sub(1) {
                     None => (1.0, 0.0),
                     Some(row) => {
-                        let beside = if right == 0 {
-                            0.0
-                        } else {
-                            table.paths[row][right - 1]
-                        };
+                        let beside = if right == 0 { 0.0 } else { table.paths[row][right - 1] };
                         (table.paths[row][right] + beside, table.sums[row][right])
                     }
                 };
-                raised +=
-                    sums * (paths_below * back + sums_below * floor) + paths * front * sums_below;
+                raised += sums * (paths_below * back + sums_below * floor) + paths * front * sums_below;
             }
             worst = worst.max(raised * floor);
         }
@@ -86,12 +81,7 @@ impl Accuracy {
     }
 
     /// Width of the band below the n-th score that may hold members of the true n best, as [`Range::margin_log2`].
-    pub(super) fn margin_log2(
-        &self,
-        score_log2: f64,
-        largest: f64,
-        dimension: usize,
-    ) -> Option<f64> {
+    pub(super) fn margin_log2(&self, score_log2: f64, largest: f64, dimension: usize) -> Option<f64> {
         let margin = self.range.margin_log2(score_log2, largest, dimension)?;
         Some(margin + 2.0 * self.extra_log2)
     }
@@ -118,9 +108,7 @@ impl PathTable {
             }
         }
         let sum = |r: usize, c: usize| paths[..=r].iter().flat_map(|row| &row[..=c]).sum();
-        let sums = (0..length)
-            .map(|r| (0..length).map(|c| sum(r, c)).collect())
-            .collect();
+        let sums = (0..length).map(|r| (0..length).map(|c| sum(r, c)).collect()).collect();
         Self { paths, sums }
     }
 }

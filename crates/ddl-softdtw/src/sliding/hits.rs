@@ -41,13 +41,7 @@ impl<'a> Hits<'a> {
 
     /// Takes the scores of one window of each piece, for each k those that `reached` has a bit for.
     #[inline(never)]
-    pub(super) fn offer(
-        &mut self,
-        reached: &[u32],
-        scores: &[[f32; LANES]],
-        first_lane: usize,
-        window: usize,
-    ) {
+    pub(super) fn offer(&mut self, reached: &[u32], scores: &[[f32; LANES]], first_lane: usize, window: usize) {
         let last = self.first + self.thresholds.len() - 1;
         for (k, (&reached, scores)) in reached.iter().zip(scores).enumerate() {
             if reached == 0 {

@@ -48,9 +48,7 @@ struct SweepMemory<S: Register, const M: usize> {
     sums: Vec<Column<S, M>>,
 }
 
-impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel
-    for WindowSweep<'_, D, M, EXACT>
-{
+impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel for WindowSweep<'_, D, M, EXACT> {
     type Output = ();
 
     #[inline(always)]
@@ -182,15 +180,8 @@ fn add_products<S: Register, const M: usize>(
 }
 
 #[inline(always)]
-fn compare<S: Register, const M: usize>(
-    setting: Setting<S>,
-    window: usize,
-    sum: &Column<S, M>,
-    hits: &mut Hits<'_>,
-) {
-    let Setting {
-        simd, rows, part, ..
-    } = setting;
+fn compare<S: Register, const M: usize>(setting: Setting<S>, window: usize, sum: &Column<S, M>, hits: &mut Hits<'_>) {
+    let Setting { simd, rows, part, .. } = setting;
     let weight = simd.load(&hits.weights[window].0, part);
     let thresholds = &hits.thresholds[..rows];
     let mut reached = [0; M];
@@ -212,11 +203,7 @@ fn compare<S: Register, const M: usize>(
 
 /// Scores of the window that consists of the rows of `memory.above`, by the plain recursion.
 #[inline(always)]
-fn last_window<S: Register, const M: usize>(
-    setting: Setting<S>,
-    memory: &SweepMemory<S, M>,
-    hits: &mut Hits<'_>,
-) {
+fn last_window<S: Register, const M: usize>(setting: Setting<S>, memory: &SweepMemory<S, M>, hits: &mut Hits<'_>) {
     let Setting { simd, rows, .. } = setting;
     let windows = hits.weights.len();
     for window in (0..windows).step_by(2) {

@@ -20,31 +20,20 @@ impl<const D: usize> WindowSieve<D> {
     /// The sieve of a layout, or `None` when `f32` cannot hold its windows whatever the query.
     pub(super) fn new(layout: WindowLayout<D>) -> Option<Self> {
         let accuracy = Accuracy::of(layout.length())?;
-        accuracy.margin_log2(
-            accuracy.smallest_accurate_log2(),
-            layout.largest_with(&[]),
-            D,
-        )?;
+        accuracy.margin_log2(accuracy.smallest_accurate_log2(), layout.largest_with(&[]), D)?;
         Some(Self { layout, accuracy })
     }
 
     /// For each window of `query` the windows that may be among its `wanted` nearest, or `None` when `f32` cannot tell.
     /// `query` has at least the steps of a window.
-    pub(super) fn survivors(
-        &self,
-        dispatch: Dispatch,
-        query: &[[f64; D]],
-        wanted: usize,
-    ) -> Vec<Option<Vec<usize>>> {
+    pub(super) fn survivors(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Vec<Option<Vec<usize>>> {
         let windows = query.len() + 1 - self.layout.length();
         let largest = self.layout.largest_with(query);
         let smallest = self.accuracy.smallest_accurate_log2();
         let Some(widest) = self.accuracy.margin_log2(smallest, largest, D) else {
             return vec![None; windows];
         };
-        let mut selections: Vec<_> = (0..windows)
-            .map(|_| Selection::new(wanted, widest))
-            .collect();
+        let mut selections: Vec<_> = (0..windows).map(|_| Selection::new(wanted, widest)).collect();
         self.sweep(dispatch, query, &mut selections);
         let margin = |nth_log2| self.accuracy.margin_log2(nth_log2, largest, D);
         let finish = |selection: Selection| selection.survivors(smallest, margin);
@@ -98,22 +87,12 @@ mod tests {
         (0..count).map(walk).collect()
     }
 
-    fn sieve(
-        dtw: SoftDtw,
-        tracks: &[Track],
-        length: usize,
-    ) -> (Option<WindowSieve<2>>, Vec<Track>, Vec<f64>) {
+    fn sieve(dtw: SoftDtw, tracks: &[Track], length: usize) -> (Option<WindowSieve<2>>, Vec<Track>, Vec<f64>) {
         let slices: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
-        let counts: Vec<usize> = tracks
-            .iter()
-            .map(|track| track.len() + 1 - length)
-            .collect();
+        let counts: Vec<usize> = tracks.iter().map(|track| track.len() + 1 - length).collect();
         let windows = tracks.iter().flat_map(|track| track.windows(length));
         let windows: Vec<Track> = windows.map(<[_]>::to_vec).collect();
-        let own: Vec<f64> = windows
-            .iter()
-            .map(|window| dtw.self_value(window))
-            .collect();
+        let own: Vec<f64> = windows.iter().map(|window| dtw.self_value(window)).collect();
         let layout = WindowLayout::new(dtw.gamma(), &slices, &counts, length, &own);
         (WindowSieve::new(layout), windows, own)
     }

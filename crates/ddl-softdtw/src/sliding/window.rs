@@ -17,9 +17,7 @@ pub(super) struct WindowPlace {
     pub(super) offset: usize,
 }
 
-pub(super) fn places_of(
-    (track, &windows): (usize, &usize),
-) -> impl Iterator<Item = WindowPlace> + use<> {
+pub(super) fn places_of((track, &windows): (usize, &usize)) -> impl Iterator<Item = WindowPlace> + use<> {
     (0..windows).map(move |offset| WindowPlace { track, offset })
 }
 

@@ -56,8 +56,7 @@ fn batches_and_searches_keep_to_the_band() {
                 assert!((a - b).abs() < 1e-5, "{cost:?}, {i}: {a} {b}");
             }
         }
-        let apart =
-            |y: &Sequence| (dtw.value(&query, y).unwrap() - whole.value(&query, y).unwrap()).abs();
+        let apart = |y: &Sequence| (dtw.value(&query, y).unwrap() - whole.value(&query, y).unwrap()).abs();
         assert!(
             windows.iter().map(apart).fold(0.0, f64::max) > 1e-3,
             "the band changes nothing"
@@ -65,10 +64,7 @@ fn batches_and_searches_keep_to_the_band() {
 
         let sliding = SlidingIndex::build(&dtw, std::slice::from_ref(&track), 8, 0).unwrap();
         let plain = SearchIndex::build(&dtw, &windows).unwrap();
-        let mut nearest: Vec<f64> = windows
-            .iter()
-            .map(|y| dtw.normalised(&query, y).unwrap())
-            .collect();
+        let mut nearest: Vec<f64> = windows.iter().map(|y| dtw.normalised(&query, y).unwrap()).collect();
         nearest.sort_by(f64::total_cmp);
         for n in [1, 5, 53] {
             let expected = plain.nearest(&query, n).unwrap();

@@ -73,9 +73,7 @@ fn a_path_of_thousands_of_cells_along_one_row_and_one_column_is_not_lost() {
     // Each cell of the cheap path takes half a power of two, 2299 in the first row and as many in the last column.
     let (gamma, steps) = (1.0, 2300);
     let off = (0.49 * std::f64::consts::LN_2).sqrt();
-    let x: Vec<_> = (0..steps)
-        .map(|i| [if i == 0 { 0.0 } else { 10.0 }])
-        .collect();
+    let x: Vec<_> = (0..steps).map(|i| [if i == 0 { 0.0 } else { 10.0 }]).collect();
     let y: Vec<_> = (0..steps)
         .map(|j| [if j + 1 == steps { 10.0 + off } else { off }])
         .collect();
@@ -99,19 +97,10 @@ fn bad_input_is_refused_by_name() {
     assert!(dtw.value(empty, &[[0.0]]).is_err());
     let expected = "sequence x, step 1, component 0 is NaN: must be finite";
     assert_eq!(message(dtw.value(&[[0.0], [f64::NAN]], &[[0.0]])), expected);
-    assert!(
-        dtw.value_and_gradient(&[[0.0]], &[[f64::INFINITY]])
-            .is_err()
-    );
-    assert_eq!(
-        dtw.value(&[[1e200]], &[[-1e200]]),
-        Err(SoftDtwError::Overflow)
-    );
+    assert!(dtw.value_and_gradient(&[[0.0]], &[[f64::INFINITY]]).is_err());
+    assert_eq!(dtw.value(&[[1e200]], &[[-1e200]]), Err(SoftDtwError::Overflow));
     // In f64 this is a number, in f32 it is not.
-    assert_eq!(
-        dtw.value(&[[3e38_f32]], &[[0.0]]),
-        Err(SoftDtwError::Overflow)
-    );
+    assert_eq!(dtw.value(&[[3e38_f32]], &[[0.0]]), Err(SoftDtwError::Overflow));
     let straight = SoftDtw::new(1.0, Cost::Euclidean).unwrap();
     assert_eq!(straight.value(&[[3e38_f32]], &[[0.0]]), Ok(3e38));
 }

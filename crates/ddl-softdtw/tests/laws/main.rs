@@ -169,9 +169,7 @@ proptest! {
 #[test]
 fn hard_dtw_has_the_gradient_of_its_cheapest_path() {
     let (x, y) = ([[0.0], [0.0], [1.0]], [[0.0], [1.0], [3.0]]);
-    let (value, of_x, of_y) = dtw(0.0, Cost::SquaredEuclidean)
-        .value_and_gradients(&x, &y)
-        .unwrap();
+    let (value, of_x, of_y) = dtw(0.0, Cost::SquaredEuclidean).value_and_gradients(&x, &y).unwrap();
     assert_eq!((value, of_x), (4.0, vec![[0.0], [0.0], [-4.0]]));
     assert_eq!(of_y, [[0.0], [0.0], [4.0]]);
 }

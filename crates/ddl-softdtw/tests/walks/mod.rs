@@ -39,11 +39,7 @@ impl Numbers {
         (0..steps).map(velocity).collect()
     }
 
-    pub(crate) fn pedestrians<const D: usize>(
-        &mut self,
-        count: usize,
-        longest: usize,
-    ) -> Vec<Track<D>> {
+    pub(crate) fn pedestrians<const D: usize>(&mut self, count: usize, longest: usize) -> Vec<Track<D>> {
         let mut pedestrian = || {
             let steps = (self.next() * (longest + 1) as f64) as usize;
             self.pedestrian(steps)

@@ -20,10 +20,7 @@
 //! $ OPERATIONS=operations-3 LD_PRELOAD=./operations.so ../../../../target/debug/examples/training_steps 3 0
 //! $ tail -qn 1 operations-1 operations-3
 //! ```
-#![allow(
-    clippy::print_stdout,
-    reason = "a command-line program answers on standard output"
-)]
+#![allow(clippy::print_stdout, reason = "a command-line program answers on standard output")]
 
 use ddl_data::{Dataset, WindowRule};
 use ddl_network::{DeviceChoice, StarConfig, TrainingConfig, Variant};

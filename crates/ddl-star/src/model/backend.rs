@@ -48,11 +48,7 @@ impl TorchBackend {
     }
 
     /// The gradient of `loss` with respect to all learned parameters, as one vector.
-    pub(crate) fn gradient(
-        &self,
-        loss: &Tensor,
-        parameters: &Parameters,
-    ) -> Result<Tensor, TchError> {
+    pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
         match &self.shared {
             Some(shared) => shared.gradient(loss, parameters),
             None => parameters.gradient_of(loss),
@@ -105,12 +101,7 @@ impl Backend for TorchBackend {
         }
     }
 
-    fn spatial_attention(
-        &self,
-        layer: EncoderLayer,
-        x: &Rc<Tensor>,
-        seen: &SeenNeighbours,
-    ) -> Rc<Tensor> {
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &SeenNeighbours) -> Rc<Tensor> {
         let p = match self.mode {
             Mode::Train => layer.dropout,
             Mode::Evaluate => 0.0,
@@ -120,12 +111,7 @@ impl Backend for TorchBackend {
         self.after_attention(layer, x, &mixed)
     }
 
-    fn temporal_attention(
-        &self,
-        layer: EncoderLayer,
-        newest: &Rc<Tensor>,
-        cache: &[Rc<Tensor>],
-    ) -> Rc<Tensor> {
+    fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Tensor>, cache: &[Rc<Tensor>]) -> Rc<Tensor> {
         let qkv = self.affine(newest, layer.tensor);
         let mixed = over_cache(&qkv, layer.sizes.heads as i64, cache);
         self.after_attention(layer, newest, &mixed)

@@ -40,12 +40,7 @@ enum Prepared<'a> {
 }
 
 impl<'a> Emission<'a> {
-    pub(crate) fn new(
-        weight: &'a Tensor,
-        bias: &'a Tensor,
-        noise: &'a NoiseInput,
-        config: &StarConfig,
-    ) -> Self {
+    pub(crate) fn new(weight: &'a Tensor, bias: &'a Tensor, noise: &'a NoiseInput, config: &StarConfig) -> Self {
         let (width, count) = (config.output_inputs(), config.noise_width);
         let noise = match noise {
             NoiseInput::Draws(draws) => Prepared::Draws(draws),
@@ -58,11 +53,7 @@ impl<'a> Emission<'a> {
                 }
             }
         };
-        Self {
-            weight,
-            bias,
-            noise,
-        }
+        Self { weight, bias, noise }
     }
 
     /// The output for each pedestrian: (a, b, c), or (x, y). All pedestrians share the noise.

@@ -40,12 +40,7 @@ pub struct StepBounds {
 /// # Numerics
 /// P is never formed: P u = L (L^T u) + sigma u, so that sigma is not lost in f32. At the goal u and its derivative are
 /// 0: the pedestrian stays, and no value is NaN.
-pub fn natural_gradient_step(
-    positions: &Tensor,
-    goals: &Tensor,
-    factors: &Tensor,
-    constants: FlowConstants,
-) -> Tensor {
+pub fn natural_gradient_step(positions: &Tensor, goals: &Tensor, factors: &Tensor, constants: FlowConstants) -> Tensor {
     let (_, u) = away(positions, goals);
     let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));
     let [a, b, c] = entries(factors);
@@ -122,19 +117,12 @@ fn neutral(
 ) -> SymmetricTensors {
     let g = MotionBounds::momentum(time);
     let (cos, sin) = (-u.narrow(-1, 0, 1), -u.narrow(-1, 1, 1));
-    let (vx, vy) = (
-        bounds.velocity.narrow(-1, 0, 1),
-        bounds.velocity.narrow(-1, 1, 1),
-    );
+    let (vx, vy) = (bounds.velocity.narrow(-1, 0, 1), bounds.velocity.narrow(-1, 1, 1));
     let along = arriving * (1.0 - g) + (&vx * &cos + &vy * &sin) * g;
     // At the goal all of these are 0, and the pedestrian stays.
-    let a = along
-        .maximum(smallest)
-        .clamp_min(f64::from(f32::MIN_POSITIVE));
+    let a = along.maximum(smallest).clamp_min(f64::from(f32::MIN_POSITIVE));
     let most = &a * MotionBounds::<f64>::STEEPEST;
-    let b = ((vy * &cos - vx * &sin) * g)
-        .maximum(&-&most)
-        .minimum(&most);
+    let b = ((vy * &cos - vx * &sin) * g).maximum(&-&most).minimum(&most);
     let r = &a + (&b / &a) * &b * 2.0;
     let (both, difference) = (&cos * &sin, cos.square() - sin.square());
     SymmetricTensors {
@@ -155,13 +143,7 @@ impl SymmetricTensors {
     /// The matrix times `u` `[.., 2]`.
     fn times(&self, u: &Tensor) -> Tensor {
         let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));
-        Tensor::cat(
-            &[
-                &self.xx * &u1 + &self.xy * &u2,
-                &self.xy * u1 + &self.yy * u2,
-            ],
-            -1,
-        )
+        Tensor::cat(&[&self.xx * &u1 + &self.xy * &u2, &self.xy * u1 + &self.yy * u2], -1)
     }
 
     /// The matrix with transformed eigenvalues.

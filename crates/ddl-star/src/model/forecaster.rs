@@ -11,9 +11,7 @@ use crate::StarError;
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
-use ddl_network::{
-    BatchRollout, ForecastBatch, ForecastWindows, NetworkError, Precision, StarConfig,
-};
+use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, Precision, StarConfig};
 use std::sync::{Mutex, PoisonError};
 use tch::Tensor;
 
@@ -50,8 +48,7 @@ impl TorchNetwork {
         };
         let pass = Pass::Torch(TorchBackend::new(self.parameters(), Mode::Evaluate));
         let steps = (HORIZON, batch.rule);
-        let Rollout { positions, factors } =
-            self.roll_out_in(&scenes, &goals, &noise, steps, &pass);
+        let Rollout { positions, factors } = self.roll_out_in(&scenes, &goals, &noise, steps, &pass);
         Ok(BatchRollout {
             hypotheses: positions.size()[1] as usize,
             positions: arrays(&positions)?,

@@ -25,9 +25,7 @@ impl GoalFrame {
         let towards = goals - observed.narrow(0, OBSERVED as i64 - 1, 1);
         let distance = towards.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
         let near = distance.lt(SMALLEST_DISTANCE);
-        let along = |axis: i64, near_goal: f64| {
-            (towards.narrow(-1, axis, 1) / &distance).masked_fill(&near, near_goal)
-        };
+        let along = |axis: i64, near_goal: f64| (towards.narrow(-1, axis, 1) / &distance).masked_fill(&near, near_goal);
         Self {
             cos: along(0, 1.0),
             sin: along(1, 0.0),

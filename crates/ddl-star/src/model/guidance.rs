@@ -28,10 +28,7 @@ impl Guidance {
             Some(frame) => {
                 let velocity = frame.of_world(&((positions - before) / self.constants.time_step));
                 let place = frame.of_world(&relative);
-                Tensor::cat(
-                    &[place.expand_as(&velocity), velocity.expand_as(&place)],
-                    -1,
-                )
+                Tensor::cat(&[place.expand_as(&velocity), velocity.expand_as(&place)], -1)
             }
         }
     }

@@ -55,8 +55,7 @@ impl Neighbours {
                     row[place % length] = 0.0;
                 }
                 for (pedestrian, seen) in scenes.pairs(frame) {
-                    let [pedestrian, seen] =
-                        [pedestrian, seen].map(|pedestrian| packing.places()[pedestrian]);
+                    let [pedestrian, seen] = [pedestrian, seen].map(|pedestrian| packing.places()[pedestrian]);
                     mask[pedestrian * length + seen % length] = 0.0;
                 }
             }
@@ -99,8 +98,7 @@ impl SeenNeighbours {
     pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
         let rows = self.neighbours.rows();
         let length = rows.mask.size()[3];
-        x.index_select(1, &rows.pedestrians)
-            .view([-1, length, x.size()[2]])
+        x.index_select(1, &rows.pedestrians).view([-1, length, x.size()[2]])
     }
 
     /// The inverse of [`in_rows`](Self::in_rows). Shapes: `x` `[B * R, L, n]` -> `[B, P, n]`.

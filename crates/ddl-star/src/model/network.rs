@@ -38,12 +38,7 @@ impl TorchNetwork {
     ///
     /// # Errors
     /// [`StarError::Network`] when the configuration is out of range.
-    pub fn with_precision(
-        config: StarConfig,
-        seed: u64,
-        device: ComputeDevice,
-        kind: Kind,
-    ) -> Result<Self, StarError> {
+    pub fn with_precision(config: StarConfig, seed: u64, device: ComputeDevice, kind: Kind) -> Result<Self, StarError> {
         let seeded = (seed, device, kind);
         match config.backbone {
             BackboneKind::Star => Self::with_backbone(config, seeded, Star::new),

@@ -4,11 +4,7 @@ use crate::StarError;
 use tch::{Device, Kind, Tensor};
 
 /// A tensor of numbers in row-major order, in that precision on that device.
-pub(crate) fn tensor(
-    numbers: &[f64],
-    shape: &[i64],
-    (kind, device): (Kind, Device),
-) -> Result<Tensor, StarError> {
+pub(crate) fn tensor(numbers: &[f64], shape: &[i64], (kind, device): (Kind, Device)) -> Result<Tensor, StarError> {
     let tensor = Tensor::f_from_slice(numbers)?.f_reshape(shape)?;
     Ok(tensor.f_to_kind(kind)?.f_to_device(device)?)
 }

@@ -16,9 +16,7 @@ pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
     let steps = step_lengths(observed);
     let relative = steps.mean_dim([0i64].as_slice(), true, None::<Kind>) / (time_step * FAST_WALK);
     let larger = relative.clamp_min(1.0);
-    &larger
-        * (larger.pow_tensor_scalar(-4) + (relative / &larger).pow_tensor_scalar(4))
-            .pow_tensor_scalar(0.25)
+    &larger * (larger.pow_tensor_scalar(-4) + (relative / &larger).pow_tensor_scalar(4)).pow_tensor_scalar(0.25)
 }
 
 /// Lengths of the steps between positions, metres.

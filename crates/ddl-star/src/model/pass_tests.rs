@@ -6,8 +6,7 @@ use crate::device::ComputeDevice;
 use crate::model::{NoiseInput, TorchNetwork};
 use ddl_data::{Dataset, WINDOW, Window, WindowRule};
 use ddl_network::{
-    BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule,
-    Variant, WindowRollout,
+    BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
 };
 use tch::Kind;
 
@@ -67,11 +66,7 @@ enum By {
 }
 
 /// A loss and its gradient, in double precision.
-fn gradient(
-    config: &StarConfig,
-    by: By,
-    loss: impl FnOnce(&TorchNetwork, &Pass) -> Tensor,
-) -> (f64, Tensor) {
+fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, &Pass) -> Tensor) -> (f64, Tensor) {
     let kind = match by {
         By::Kernels => Kind::Float,
         By::SharedWeights | By::Torch => Kind::Double,
@@ -85,11 +80,7 @@ fn gradient(
             Pass::training(Mode::Evaluate, 0, parameters, kernels.as_ref())
         }
     };
-    assert_eq!(
-        matches!(pass, Pass::Kernels(_)),
-        matches!(by, By::Kernels),
-        "{by:?}"
-    );
+    assert_eq!(matches!(pass, Pass::Kernels(_)), matches!(by, By::Kernels), "{by:?}");
     let loss = loss(&network, &pass);
     let gradient = pass.gradient(&loss, parameters).unwrap();
     (loss.double_value(&[]), gradient.to_kind(Kind::Double))
@@ -167,8 +158,7 @@ fn questions(rule: StepRule) -> Vec<Question> {
     let [_, many, alone] = scenes();
     let mut questions = Vec::new();
     // In map coordinates f32 resolves half a metre: positions must be taken relative to the scene first.
-    let on_a_map =
-        |window: &Window| window.map_positions(|_, _, [x, y]| [x + 691_608.0, y + 5_334_763.0]);
+    let on_a_map = |window: &Window| window.map_positions(|_, _, [x, y]| [x + 691_608.0, y + 5_334_763.0]);
     for windows in [many.iter().map(on_a_map).collect(), alone] {
         let draws = Noise::Draws { count: 3, seed: 5 };
         for (count, noise) in [(3_u8, Noise::Expected), (1, draws)] {
@@ -179,13 +169,10 @@ fn questions(rule: StepRule) -> Vec<Question> {
                     .map(|k| [x + beyond + wave(2 * k), y - wave(2 * k + 1)])
                     .collect()
             };
-            let of_window = |window: &Window| -> Vec<Vec<[f64; 2]>> {
-                (0..window.len()).map(|i| goals(window, i)).collect()
-            };
+            let of_window =
+                |window: &Window| -> Vec<Vec<[f64; 2]>> { (0..window.len()).map(|i| goals(window, i)).collect() };
             let goals: Vec<_> = windows.iter().map(of_window).collect();
-            let of_window = |window: &Window| -> Vec<f64> {
-                (0..window.len()).map(|i| (i % 4) as f64 / 3.0).collect()
-            };
+            let of_window = |window: &Window| -> Vec<f64> { (0..window.len()).map(|i| (i % 4) as f64 / 3.0).collect() };
             let shares: Vec<_> = windows.iter().map(of_window).collect();
             for shares in [None, Some(shares)] {
                 questions.push((windows.clone(), goals.clone(), noise, rule, shares));

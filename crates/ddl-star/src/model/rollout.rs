@@ -34,13 +34,7 @@ impl TorchNetwork {
     /// `batch` of T frames with neighbours of at least T - 1, where T is at least 8 in the pedestrians' own frames and
     /// without goal shift; `goals` `[P, 2]`; `noise` one vector or none -> `[T - 1, P, 2]`, the forecasts of frames
     /// 1..T.
-    pub fn teacher_forced(
-        &self,
-        batch: &SceneBatch,
-        goals: &Tensor,
-        noise: &NoiseInput,
-        mode: Mode,
-    ) -> Tensor {
+    pub fn teacher_forced(&self, batch: &SceneBatch, goals: &Tensor, noise: &NoiseInput, mode: Mode) -> Tensor {
         let pass = Pass::Torch(TorchBackend::new(self.parameters(), mode));
         self.teacher_forced_in(batch, goals, noise, &pass)
     }
@@ -54,12 +48,8 @@ impl TorchNetwork {
         pass: &Pass,
     ) -> Tensor {
         match pass {
-            Pass::Torch(backend) => {
-                self.teacher_forced_by(batch, goals, noise, (backend, self.on_tensors()))
-            }
-            Pass::Kernels(backend) => {
-                self.teacher_forced_by(batch, goals, noise, (backend, self.on_rows()))
-            }
+            Pass::Torch(backend) => self.teacher_forced_by(batch, goals, noise, (backend, self.on_tensors())),
+            Pass::Kernels(backend) => self.teacher_forced_by(batch, goals, noise, (backend, self.on_rows())),
         }
     }
 
@@ -78,10 +68,7 @@ impl TorchNetwork {
         let scenes = backend.each_entry(&scenes);
         let course = self.course(batch, goals, StepRule::Euler);
         let before = Tensor::cat(
-            &[
-                positions.narrow(0, 0, 1),
-                positions.narrow(0, 0, steps as i64 - 1),
-            ],
+            &[positions.narrow(0, 0, 1), positions.narrow(0, 0, steps as i64 - 1)],
             0,
         );
         let relative = backend.each_entry(&backend.given(&course.seen(&positions, &before)));
@@ -168,9 +155,7 @@ impl TorchNetwork {
         }
         let seen = backend.seen(batch, OBSERVED - 1..OBSERVED);
         let emission = self.emission(noise);
-        let mut position = observed
-            .narrow(0, last, 1)
-            .expand([hypotheses, -1, -1], false);
+        let mut position = observed.narrow(0, last, 1).expand([hypotheses, -1, -1], false);
         let mut sum = observed
             .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
             .expand([hypotheses, -1, -1], false);
@@ -217,11 +202,7 @@ impl TorchNetwork {
             NetworkFrame::Goal => Some(GoalFrame::new(&observed(), &goals, time_step)),
         };
         Guidance {
-            reference: if config.variant.goal_shift() {
-                goals
-            } else {
-                last()
-            },
+            reference: if config.variant.goal_shift() { goals } else { last() },
             frame,
             dynamics: config.variant.dynamics(),
             constants: FlowConstants {
@@ -245,10 +226,6 @@ impl TorchNetwork {
 /// Shapes: `positions` `[T, P, 2]` -> the same.
 fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
     let frames = positions.size()[0];
-    let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device()))
-        .view([frames, 1, 1]);
-    positions
-        - batch
-            .scene_means
-            .of(&(positions.cumsum(0, positions.kind()) / count))
+    let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device())).view([frames, 1, 1]);
+    positions - batch.scene_means.of(&(positions.cumsum(0, positions.kind()) / count))
 }

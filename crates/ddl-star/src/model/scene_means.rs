@@ -20,8 +20,7 @@ impl SceneMeans {
     pub(crate) fn new(scenes: &[Range<usize>], device: Device, kind: Kind) -> Self {
         let largest = scenes.iter().map(Range::len).max().unwrap_or(0);
         let places = scenes.len() * largest;
-        let (mut pedestrians, mut shares) =
-            (Vec::with_capacity(places), Vec::with_capacity(places));
+        let (mut pedestrians, mut shares) = (Vec::with_capacity(places), Vec::with_capacity(places));
         let mut scene_of = Vec::new();
         for (index, scene) in scenes.iter().enumerate() {
             for place in 0..largest {
@@ -47,9 +46,9 @@ impl SceneMeans {
     /// For every pedestrian, the mean of `x` over its scene. Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn of(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
-        let side_by_side =
-            x.index_select(1, &self.pedestrians)
-                .view([batch, self.scenes, self.largest, width]);
+        let side_by_side = x
+            .index_select(1, &self.pedestrians)
+            .view([batch, self.scenes, self.largest, width]);
         (side_by_side * &self.shares)
             .sum_dim_intlist([2i64].as_slice(), false, None::<Kind>)
             .index_select(1, &self.scene_of)

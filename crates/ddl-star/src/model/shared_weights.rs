@@ -51,11 +51,7 @@ impl SharedWeights {
     }
 
     /// The gradient of `loss` with respect to all learned parameters, as one vector; clears the uses.
-    pub(crate) fn gradient(
-        &self,
-        loss: &Tensor,
-        parameters: &Parameters,
-    ) -> Result<Tensor, TchError> {
+    pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
         let uses = self.uses.take();
         let tensors: Vec<&Tensor> = parameters.tensors().iter().collect();
         let outputs = uses.iter().map(|of| &of.output);
@@ -89,13 +85,11 @@ fn shares(uses: &[Use], of_outputs: Vec<Tensor>) -> Result<BTreeMap<usize, Tenso
             continue;
         }
         let (outputs, inputs) = of.weight.size2()?;
-        let rows = by_weight
-            .entry(place(&of.weight))
-            .or_insert_with(|| UsedRows {
-                bias: place(&of.bias),
-                inputs: Vec::new(),
-                gradients: Vec::new(),
-            });
+        let rows = by_weight.entry(place(&of.weight)).or_insert_with(|| UsedRows {
+            bias: place(&of.bias),
+            inputs: Vec::new(),
+            gradients: Vec::new(),
+        });
         rows.inputs.push(of.input.f_reshape([-1, inputs])?);
         rows.gradients.push(gradient.f_reshape([-1, outputs])?);
     }

@@ -111,26 +111,15 @@ pub(crate) enum Pass {
 
 impl Pass {
     /// A training pass: dropout by this seed in the kernels, gradients by [`gradient`](Self::gradient).
-    pub(crate) fn training(
-        mode: Mode,
-        seed: u64,
-        parameters: &Parameters,
-        kernels: Option<&Arc<Kernels>>,
-    ) -> Self {
+    pub(crate) fn training(mode: Mode, seed: u64, parameters: &Parameters, kernels: Option<&Arc<Kernels>>) -> Self {
         match kernels {
-            Some(kernels) => {
-                Self::Kernels(KernelBackend::training(Arc::clone(kernels), mode, seed))
-            }
+            Some(kernels) => Self::Kernels(KernelBackend::training(Arc::clone(kernels), mode, seed)),
             None => Self::Torch(TorchBackend::training(parameters, mode)),
         }
     }
 
     /// The gradient of `loss` with respect to all learned parameters, as one vector.
-    pub(crate) fn gradient(
-        &self,
-        loss: &Tensor,
-        parameters: &Parameters,
-    ) -> Result<Tensor, TchError> {
+    pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
         let kernels = match self {
             Self::Torch(torch) => return torch.gradient(loss, parameters),
             Self::Kernels(kernels) => kernels,

@@ -10,11 +10,7 @@ const NEIGHBOUR_NOISE: f64 = 0.02;
 
 /// Augments a batch with numbers from libtorch's generator. Shapes: `views` `[M, B, ..]`, `future` `[M, B, 12, 2]`; the
 /// result has the same shapes.
-pub(crate) fn augment(
-    views: &Views,
-    future: &Tensor,
-    training: &ProposalTraining,
-) -> (Views, Tensor) {
+pub(crate) fn augment(views: &Views, future: &Tensor, training: &ProposalTraining) -> (Views, Tensor) {
     let size = future.size();
     let per_pedestrian = [size[0], size[1]];
     let options = (future.kind(), future.device());
@@ -35,9 +31,7 @@ pub(crate) fn augment(
     let noise = |tensor: &Tensor, deviation: f64| tensor.randn_like() * deviation;
     let neighbours = views.neighbours.matmul(&matrix.unsqueeze(2));
     let whole_track = neighbours.narrow(3, 0, 1);
-    let neighbours = &neighbours
-        + noise(&whole_track, training.neighbour_jitter)
-        + noise(&neighbours, NEIGHBOUR_NOISE);
+    let neighbours = &neighbours + noise(&whole_track, training.neighbour_jitter) + noise(&neighbours, NEIGHBOUR_NOISE);
     let seeing = Tensor::rand(per_pedestrian, options)
         .ge(training.blindness)
         .to_kind(Kind::Float)
@@ -57,11 +51,7 @@ pub(crate) fn augment(
 
 /// The memory transformed by `matrix`, with each track shifted by some centimetres, and dropped in part for some
 /// pedestrians. Shapes: `matrix` `[M, B, 2, 2]`.
-fn remembering(
-    remembered: &RememberedViews,
-    matrix: &Tensor,
-    training: &ProposalTraining,
-) -> RememberedViews {
+fn remembering(remembered: &RememberedViews, matrix: &Tensor, training: &ProposalTraining) -> RememberedViews {
     let (memory, size) = (&training.memory, remembered.present.size());
     let options = (matrix.kind(), matrix.device());
     let uniform = |others: i64| Tensor::rand([size[0], size[1], others], options);

@@ -125,7 +125,5 @@ impl Views {
 pub(crate) fn rows_of(tensor: &Tensor, rows: &Tensor) -> Tensor {
     let mut shape = rows.size();
     shape.extend_from_slice(&tensor.size()[1..]);
-    tensor
-        .index_select(0, &rows.reshape([-1]))
-        .reshape(shape.as_slice())
+    tensor.index_select(0, &rows.reshape([-1])).reshape(shape.as_slice())
 }

@@ -17,11 +17,7 @@ pub(crate) struct LossWeights {
 /// Mean over pedestrians of the (relaxed) distance of the nearest proposal, plus the cross-entropy of its probability.
 /// It is summed over members, which are trained independently. Shapes: `future` `[M, B, 12, 2]` -> the loss to
 /// minimise, and its distance part as the mean over members (metres), both scalar.
-pub(crate) fn winner_takes_all(
-    proposals: &Proposals,
-    future: &Tensor,
-    weights: LossWeights,
-) -> (Tensor, Tensor) {
+pub(crate) fn winner_takes_all(proposals: &Proposals, future: &Tensor, weights: LossWeights) -> (Tensor, Tensor) {
     let end = future.select(2, HORIZON as i64 - 1).unsqueeze(2);
     let length = |offset: Tensor| {
         let squared = offset.square();
@@ -86,9 +82,7 @@ mod tests {
                 waypoints: 0.0,
                 probability: 0.0,
             };
-            winner_takes_all(&proposals, &future, weights)
-                .0
-                .double_value(&[])
+            winner_takes_all(&proposals, &future, weights).0.double_value(&[])
         };
         assert!((loss(1.0) - 1.0).abs() < 1e-6);
         assert!((loss(2.0) - 1.5).abs() < 1e-6);

@@ -6,14 +6,11 @@ use crate::device::ComputeDevice;
 use crate::model::{Parameters, numbers};
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
 use ddl_network::proposal::{
-    AttentionLayers, ENDPOINT_UNIT, MemberAffine, ProposalLayers, RECENT, ReadoutLayers,
-    SIMILARITY_SCALES, WAYPOINTS,
+    AttentionLayers, ENDPOINT_UNIT, MemberAffine, ProposalLayers, RECENT, ReadoutLayers, SIMILARITY_SCALES, WAYPOINTS,
 };
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::{Layout, Weights};
-use ddl_network::{
-    NetworkError, PedestrianView, ProposalConfig, ProposeEndpoints, ProposedEndpoints,
-};
+use ddl_network::{NetworkError, PedestrianView, ProposalConfig, ProposeEndpoints, ProposedEndpoints};
 use std::sync::{Mutex, PoisonError};
 use tch::{Kind, Tensor};
 
@@ -43,11 +40,7 @@ impl TorchProposals {
     ///
     /// # Errors
     /// [`StarError::Network`] for a bad configuration.
-    pub fn new(
-        config: ProposalConfig,
-        seed: u64,
-        device: ComputeDevice,
-    ) -> Result<Self, StarError> {
+    pub fn new(config: ProposalConfig, seed: u64, device: ComputeDevice) -> Result<Self, StarError> {
         config.check()?;
         let kind = Kind::Float;
         let mut layout = Layout::default();
@@ -132,18 +125,14 @@ impl TorchProposals {
             if let Some((memory, proposals)) = branch.zip(self.forward_remembering(&views)) {
                 let (ends, weights) = listed(&proposals)?;
                 let others = ends.chunks_exact(each).zip(weights.chunks_exact(each));
-                for ((view, proposed), (ends, weights)) in
-                    chunk.iter().zip(&mut of_chunk).zip(others)
-                {
+                for ((view, proposed), (ends, weights)) in chunk.iter().zip(&mut of_chunk).zip(others) {
                     if !view.remembered.is_empty() {
                         let share = memory.share(&view.remembered);
                         for weight in &mut proposed.weights {
                             *weight *= 1.0 - share;
                         }
                         proposed.ends.extend(ends);
-                        proposed
-                            .weights
-                            .extend(weights.iter().map(|weight| weight * share));
+                        proposed.weights.extend(weights.iter().map(|weight| weight * share));
                     }
                 }
             }
@@ -169,15 +158,8 @@ impl TorchProposals {
         });
         let remembered = &views.remembered;
         let features = self.remembered_features(views);
-        let context = self.attend(
-            attention,
-            &code,
-            &features,
-            &remembered.present,
-            memory.heads,
-        );
-        let alike =
-            (&remembered.distances * (-1.0 / SIMILARITY_SCALES[0])).exp() * &remembered.present;
+        let context = self.attend(attention, &code, &features, &remembered.present, memory.heads);
+        let alike = (&remembered.distances * (-1.0 / SIMILARITY_SCALES[0])).exp() * &remembered.present;
         let support = sum(&alike).log1p();
         let hidden = self.through(&readout.hidden, code, context, support);
         let more = self.read(readout, &hidden);
@@ -195,10 +177,7 @@ impl TorchProposals {
         let (m, b) = (size[0], size[1]);
         let own_velocity = self.velocities(&views.own);
         let features = Tensor::cat(
-            &[
-                views.own.reshape([m, b, -1]) * 0.5,
-                own_velocity.reshape([m, b, -1]),
-            ],
+            &[views.own.reshape([m, b, -1]) * 0.5, own_velocity.reshape([m, b, -1])],
             -1,
         );
         let code = self.affine(self.layers.own, &features).gelu("none");
@@ -212,13 +191,7 @@ impl TorchProposals {
 
     /// Hidden layers, with residual connections between layers of equal width. Shapes: `code` `[M, B, width]`,
     /// `context` `[M, B, ..]`, `amount` `[M, B, 1]` -> `[M, B, width]`.
-    fn through(
-        &self,
-        layers: &[MemberAffine],
-        code: Tensor,
-        context: Tensor,
-        amount: Tensor,
-    ) -> Tensor {
+    fn through(&self, layers: &[MemberAffine], code: Tensor, context: Tensor, amount: Tensor) -> Tensor {
         let mut hidden = Tensor::cat(&[code.shallow_clone(), context, amount], -1);
         let mut short_cut = code;
         for &layer in layers {
@@ -280,8 +253,8 @@ impl TorchProposals {
         let query = per_head(self.affine(layers.query, code), 1);
         let key = per_head(self.affine(layers.key, &codes), slots);
         let value = per_head(self.affine(layers.value, &codes), slots);
-        let scores = (query * key).sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
-            / ((near / heads) as f64).sqrt();
+        let scores =
+            (query * key).sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>) / ((near / heads) as f64).sqrt();
         let hidden = present.eq(0.0).unsqueeze(-1);
         let scores = scores.masked_fill(&hidden, f64::NEG_INFINITY);
         // The additional entry of score 0.
@@ -300,8 +273,7 @@ impl TorchProposals {
         let own = views.own.unsqueeze(2);
         let at = |track: &Tensor, step: usize| track.select(-2, step as i64);
         let here = at(&own, OBSERVED - 1);
-        let [now, halfway, end] =
-            [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|step| at(tracks, step));
+        let [now, halfway, end] = [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|step| at(tracks, step));
         let seconds = HORIZON as f64 * self.config.time_step;
         let late = self.velocity(&own, OBSERVED - 1);
         let its_late = self.velocity(tracks, OBSERVED - 1);

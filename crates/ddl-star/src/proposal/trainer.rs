@@ -69,12 +69,7 @@ impl ProposalTrainer {
         }
         let (device, kind) = (network.device().torch(), network.kind());
         let all: Vec<&ProposalExample> = examples.iter().chain(reversed).collect();
-        let views = Views::new(
-            all.iter().map(|example| &example.view),
-            network.config(),
-            device,
-            kind,
-        )?;
+        let views = Views::new(all.iter().map(|example| &example.view), network.config(), device, kind)?;
         let future: Vec<f64> = all
             .iter()
             .flat_map(|example| example.future.as_flattened())
@@ -177,24 +172,17 @@ impl ProposalTrainer {
             probability: training.probability_weight,
         };
         let branch = remembering.then(|| self.network.forward_remembering(&views));
-        let proposals = branch
-            .flatten()
-            .unwrap_or_else(|| self.network.forward(&views));
+        let proposals = branch.flatten().unwrap_or_else(|| self.network.forward(&views));
         let (loss, distance) = winner_takes_all(&proposals, &future, weights);
         let parameters = self.network.parameters();
         let gradient = parameters.gradient_of(&loss)?;
         let norm = gradient.norm();
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
-        self.ensure_finite(
-            step,
-            &rows,
-            [("loss", distance), ("gradient norm", norm_value)],
-        )?;
+        self.ensure_finite(step, &rows, [("loss", distance), ("gradient norm", norm_value)])?;
         let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, all);
         // Members are trained independently: the norm of all their gradients grows with the root of their number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
-        self.adam
-            .step(parameters, &gradient, &norm, clip, rate, &self.gate);
+        self.adam.step(parameters, &gradient, &norm, clip, rate, &self.gate);
         let _guard = tch::no_grad_guard();
         // The decay is smaller at first, so that the initial weights are soon forgotten.
         let kept = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));
@@ -218,14 +206,8 @@ impl ProposalTrainer {
         Ok(())
     }
 
-    fn ensure_finite(
-        &self,
-        step: u64,
-        rows: &Tensor,
-        quantities: [(&'static str, f64); 2],
-    ) -> Result<(), StarError> {
-        let Some((quantity, value)) = quantities.into_iter().find(|(_, value)| !value.is_finite())
-        else {
+    fn ensure_finite(&self, step: u64, rows: &Tensor, quantities: [(&'static str, f64); 2]) -> Result<(), StarError> {
+        let Some((quantity, value)) = quantities.into_iter().find(|(_, value)| !value.is_finite()) else {
             return Ok(());
         };
         let row = rows.int64_value(&[0, 0]) as usize;
@@ -246,11 +228,7 @@ impl ProposalTrainer {
         let mut rng = stream(self.training.seed, Stage::ProposalStep, step);
         let (members, batch) = (self.network.config().members, self.training.batch);
         let (onward, all) = (self.onward as i64, self.future.size()[0]);
-        let reversed = if all > onward {
-            self.training.reversed
-        } else {
-            0.0
-        };
+        let reversed = if all > onward { self.training.reversed } else { 0.0 };
         let rows: Vec<i64> = (0..members * batch)
             .map(|_| {
                 let backwards = rng.random::<f64>() < reversed;

@@ -4,9 +4,7 @@ use super::optimizer::Adam;
 use crate::StarError;
 use crate::model::Parameters;
 use ddl_network::NetworkError;
-use ddl_network::weights::{
-    Origin, StoredTensor, TensorData, find_tensor, read_tensors, write_tensors,
-};
+use ddl_network::weights::{Origin, StoredTensor, TensorData, find_tensor, read_tensors, write_tensors};
 use std::path::Path;
 use tch::{Device, Kind, Tensor};
 
@@ -81,14 +79,10 @@ pub(crate) fn load(
     };
     let (weights, first, second) = (find(WEIGHTS)?, find(FIRST_MOMENT)?, find(SECOND_MOMENT)?);
     let names = extra.vectors.iter();
-    let others = names
-        .map(|(name, _)| find(name))
-        .collect::<Result<Vec<_>, _>>()?;
+    let others = names.map(|(name, _)| find(name)).collect::<Result<Vec<_>, _>>()?;
     // Adam divides by the root of its second moment: a negative one would give NaN.
     if second.lt(0.0).any().int64_value(&[]) != 0 {
-        let problem = format!(
-            "{SECOND_MOMENT} holds negative numbers; delete it and run the same training again"
-        );
+        let problem = format!("{SECOND_MOMENT} holds negative numbers; delete it and run the same training again");
         return Err(NetworkError::checkpoint(path, problem).into());
     }
     let progress = find_tensor(&tensors, PROGRESS, path)?.double(&[extra.progress.len()], path)?;

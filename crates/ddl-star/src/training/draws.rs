@@ -64,11 +64,7 @@ impl StepDraws {
                 } else {
                     Rotation::new(0.0)
                 };
-                let side = if mirrored && rng.random::<bool>() {
-                    -1.0
-                } else {
-                    1.0
-                };
+                let side = if mirrored && rng.random::<bool>() { -1.0 } else { 1.0 };
                 turns.extend(rotation.apply([1.0, 0.0]));
                 turns.extend(rotation.apply([0.0, side]));
             }

@@ -55,9 +55,7 @@ impl Adam {
         let correction_1 = 1.0 - BETA_1.powi(power);
         let correction_2 = (1.0 - BETA_2.powi(power)).sqrt();
         let open = gate.open();
-        let _ = self
-            .first_moment
-            .lerp_tensor_(&gradient, &(open * (1.0 - BETA_1)));
+        let _ = self.first_moment.lerp_tensor_(&gradient, &(open * (1.0 - BETA_1)));
         let _ = self
             .second_moment
             .lerp_tensor_(&gradient.square(), &(open * (1.0 - BETA_2)));
@@ -96,9 +94,7 @@ mod tests {
         let mut known: Vec<f64> = Vec::try_from(parameters.flat()).unwrap();
         let (mut m, mut v) = ([0.0; 12], [0.0; 12]);
         for step in 1..=5_i32 {
-            let gradient: Vec<f64> = (0..12)
-                .map(|i| f64::from(i - 5) * 0.3 * f64::from(step))
-                .collect();
+            let gradient: Vec<f64> = (0..12).map(|i| f64::from(i - 5) * 0.3 * f64::from(step)).collect();
             let norm = gradient.iter().map(|g| g * g).sum::<f64>().sqrt();
             let factor = (2.0 / (norm + 1e-6)).min(1.0);
             for (i, g) in gradient.iter().map(|g| g * factor).enumerate() {
@@ -122,9 +118,7 @@ mod tests {
         let mut gate = FiniteGate::new(Device::Cpu, Kind::Double);
         let gradient = Tensor::linspace(-1.0, 2.0, 12, (Kind::Double, Device::Cpu));
         adam.step(&parameters, &gradient, &gradient.norm(), 1.0, 0.01, &gate);
-        let state = |adam: &Adam| {
-            [parameters.flat(), &adam.first_moment, &adam.second_moment].map(Tensor::copy)
-        };
+        let state = |adam: &Adam| [parameters.flat(), &adam.first_moment, &adam.second_moment].map(Tensor::copy);
         let before = state(&adam);
         gate.watch(&Tensor::from_slice(&[0.0, 1e308]));
         assert_eq!(gate.shut().int64_value(&[]), 0);

@@ -46,10 +46,7 @@ impl TrainingBatch {
         let observed = &observed + observed.randn_like() * deviations;
         let positions = Tensor::cat(&[observed, future], 0);
         Self {
-            scenes: SceneBatch {
-                positions,
-                ..scenes
-            },
+            scenes: SceneBatch { positions, ..scenes },
             goals,
         }
     }
@@ -88,24 +85,13 @@ impl PreparedBatches {
 
     /// The batch of that index, which consists of `windows`, the same at every call. Shapes: all 20 frames, with
     /// neighbours of the first 19.
-    pub(crate) fn batch(
-        &self,
-        index: usize,
-        windows: &[usize],
-    ) -> Result<&TrainingBatch, StarError> {
+    pub(crate) fn batch(&self, index: usize, windows: &[usize]) -> Result<&TrainingBatch, StarError> {
         let place = &self.made[index];
         if let Some(batch) = place.get() {
             return Ok(batch);
         }
         let scenes: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
-        let scenes = SceneBatch::new(
-            &scenes,
-            WINDOW,
-            WINDOW - 1,
-            self.neighbour_box,
-            self.device,
-            self.kind,
-        )?;
+        let scenes = SceneBatch::new(&scenes, WINDOW, WINDOW - 1, self.neighbour_box, self.device, self.kind)?;
         let goals = match &self.goals {
             None => scenes.positions.f_get(WINDOW as i64 - 1)?,
             Some(goals) => {
@@ -145,13 +131,8 @@ mod tests {
         let all = squares.mean(Kind::Double).double_value(&[]).sqrt();
         assert!((all - 0.05 / 3_f64.sqrt()).abs() < 0.004, "{all}");
         assert!(observed.abs().min().double_value(&[]) > 0.0);
-        let each = squares
-            .mean_dim([0i64, 2].as_slice(), false, Kind::Double)
-            .sqrt();
+        let each = squares.mean_dim([0i64, 2].as_slice(), false, Kind::Double).sqrt();
         let (least, most) = (each.min().double_value(&[]), each.max().double_value(&[]));
-        assert!(
-            least < 0.01 && most > 0.04 && most < 0.1,
-            "{least} to {most}"
-        );
+        assert!(least < 0.01 && most > 0.04 && most < 0.1, "{least} to {most}");
     }
 }

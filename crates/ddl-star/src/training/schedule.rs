@@ -36,13 +36,11 @@ impl Schedule {
         if batches.is_empty() && !batch.is_empty() {
             batches.push(batch);
         }
-        let steps_per_epoch = config
-            .pedestrians_per_epoch
-            .map_or(batches.len(), |pedestrians| {
-                pedestrians
-                    .div_ceil(config.batch_pedestrians)
-                    .clamp(1, batches.len().max(1))
-            });
+        let steps_per_epoch = config.pedestrians_per_epoch.map_or(batches.len(), |pedestrians| {
+            pedestrians
+                .div_ceil(config.batch_pedestrians)
+                .clamp(1, batches.len().max(1))
+        });
         Self {
             batches,
             steps_per_epoch,

@@ -47,11 +47,7 @@ impl Trainer {
     /// # Errors
     /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] when no
     /// window has a future.
-    pub fn new(
-        network: TorchNetwork,
-        windows: Vec<Window>,
-        config: TrainingConfig,
-    ) -> Result<Self, StarError> {
+    pub fn new(network: TorchNetwork, windows: Vec<Window>, config: TrainingConfig) -> Result<Self, StarError> {
         let with_future = windows.into_iter().filter(Window::has_future).collect();
         Self::of(network, with_future, None, config)
     }
@@ -75,10 +71,7 @@ impl Trainer {
             let first = pedestrians.iter().zip(&given).position(|(a, b)| a != b);
             let (expected, got) = match first {
                 Some(w) => (
-                    format!(
-                        "{} goals for window {w}, one for each pedestrian",
-                        pedestrians[w]
-                    ),
+                    format!("{} goals for window {w}, one for each pedestrian", pedestrians[w]),
                     format!("{}", given[w]),
                 ),
                 None => (
@@ -319,13 +312,8 @@ impl Trainer {
             Objective::Walk => {
                 let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::Bounded));
                 let noise = NoiseInput::Expected;
-                let walk = self
-                    .network
-                    .roll_out_in(scenes, &goals, &noise, steps, pass);
-                Ok(mean_distance(
-                    &walk.positions.squeeze_dim(1),
-                    &after(OBSERVED)?,
-                ))
+                let walk = self.network.roll_out_in(scenes, &goals, &noise, steps, pass);
+                Ok(mean_distance(&walk.positions.squeeze_dim(1), &after(OBSERVED)?))
             }
         }
     }
@@ -360,18 +348,10 @@ impl Trainer {
 
     fn non_finite(&self, quantity: &'static str, value: f64) -> StarError {
         let batch = self.schedule.batch_index(self.progress.steps);
-        let windows = self
-            .schedule
-            .batch(batch)
-            .first()
-            .map_or_else(String::new, |&index| {
-                let window = self.batches.window(index);
-                format!(
-                    "{}@{} and following",
-                    window.recording(),
-                    window.start_frame()
-                )
-            });
+        let windows = self.schedule.batch(batch).first().map_or_else(String::new, |&index| {
+            let window = self.batches.window(index);
+            format!("{}@{} and following", window.recording(), window.start_frame())
+        });
         let epoch = self.completed_epochs() + 1;
         StarError::NonFinite {
             epoch,

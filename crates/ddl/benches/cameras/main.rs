@@ -41,11 +41,7 @@ fn main() -> Result<()> {
 fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
     let mut out = std::io::stdout().lock();
     let model = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
-    let sizes: &[usize] = if is_measured {
-        &[1, 2, 4, 8, 16]
-    } else {
-        &[1, 2]
-    };
+    let sizes: &[usize] = if is_measured { &[1, 2, 4, 8, 16] } else { &[1, 2] };
     writeln!(out, "| cameras in a batch | ms a camera |\n|---:|---:|")?;
     let mut alone = 0.0;
     for &size in sizes {
@@ -94,11 +90,7 @@ fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
     )?;
     let (cameras, seconds) = if is_measured { (60, 8.0) } else { (2, 0.5) };
     let figures = queue::by_the_clock(&model, cameras, seconds)?;
-    writeln!(
-        out,
-        "by the clock, {seconds} s: {}",
-        told(cameras, &figures)
-    )?;
+    writeln!(out, "by the clock, {seconds} s: {}", told(cameras, &figures))?;
     let [tracks, waiting] = queue::memory(if is_measured { 1_000 } else { 2 })?;
     writeln!(
         out,

@@ -66,9 +66,7 @@ fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
 /// Cameras that have been watched long enough for all their pedestrians to be forecast from the next frame.
 fn watched(cameras: usize) -> Result<(Vec<Camera>, LiveScenes)> {
     let mut cameras: Vec<Camera> = (0..cameras).map(Camera::new).collect::<Result<_>>()?;
-    let mut scenes = LiveScenes::new()
-        .with_completion(Completion::USUAL)
-        .latest_only();
+    let mut scenes = LiveScenes::new().with_completion(Completion::USUAL).latest_only();
     for camera in &mut cameras {
         for frame in 0..OBSERVED as i64 - 1 {
             let seen = camera.frame(frame);
@@ -102,12 +100,7 @@ pub(crate) fn service(model: &Ddl, batch: usize, frames: usize) -> Result<f64> {
 }
 
 /// Work takes its processor time, and waiting takes none.
-pub(crate) fn simulated(
-    model: &Ddl,
-    cameras: usize,
-    frames: usize,
-    phases: Phases,
-) -> Result<Figures> {
+pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phases) -> Result<Figures> {
     let (mut cameras, mut scenes) = watched(cameras)?;
     let dropped_before = scenes.dropped();
     let mut due: Vec<(f64, usize, i64)> = Vec::new();

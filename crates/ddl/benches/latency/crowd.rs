@@ -28,9 +28,7 @@ pub(crate) fn measure(sizes: &[usize]) -> Result<()> {
     for &pedestrians in sizes {
         let window = crowd(pedestrians)?;
         let of_hypotheses = seconds(pedestrians, || Ok(model.forecast(&window).map(drop)?))?;
-        let of_one = seconds(pedestrians, || {
-            Ok(One(&model).forecast(&window).map(drop)?)
-        })?;
+        let of_one = seconds(pedestrians, || Ok(One(&model).forecast(&window).map(drop)?))?;
         let frame = live_frame(&model, &window)?;
         writeln!(
             out,
@@ -119,8 +117,5 @@ fn most_memory() -> Result<usize> {
     let kib = line.and_then(|line| line.split_whitespace().next());
     // Writing 5 resets `VmHWM`.
     fs::write("/proc/self/clear_refs", "5")?;
-    Ok(kib
-        .ok_or("no VmHWM in /proc/self/status")?
-        .parse::<usize>()?
-        / 1024)
+    Ok(kib.ok_or("no VmHWM in /proc/self/status")?.parse::<usize>()? / 1024)
 }

@@ -18,9 +18,7 @@ mod step;
 use clock::{Clock, side_by_side};
 use ddl::data::{Dataset, Position, Window};
 use ddl::memory::SceneMemory;
-use ddl::network::{
-    BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule,
-};
+use ddl::network::{BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource};
 use std::error::Error;
 use std::io::Write as _;
@@ -83,10 +81,7 @@ fn memory_of(dataset: &Dataset, stretches: usize) -> Result<SceneMemory> {
 
 /// The time of a whole forecast and of its parts.
 fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<String> {
-    let model = Ddl::open(
-        &ModelSource::Builtin(BuiltinModel::Hotel),
-        DeviceChoice::Cpu,
-    )?;
+    let model = Ddl::open(&ModelSource::Builtin(BuiltinModel::Hotel), DeviceChoice::Cpu)?;
     let windows = std::slice::from_ref(window);
     let sets = model.goal_model().goals(windows)?.remove(0);
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();
@@ -102,9 +97,8 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
     };
     let [transformer, perceptron] = [BackboneKind::Star, BackboneKind::Perceptron].map(network);
     let (transformer, perceptron) = (transformer?, perceptron?);
-    let roll_out = |network: &MotionNetwork| {
-        network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None)
-    };
+    let roll_out =
+        |network: &MotionNetwork| network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None);
     let count = model.goal_model().recalled_per_pedestrian()?;
     let remembering = || memory.recalling(window.clone(), count);
     let parts: [&mut dyn FnMut() -> Result<()>; 5] = [

@@ -13,9 +13,7 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     let windows = one_batch(dataset, training.batch_pedestrians)?;
     let scenes: Vec<usize> = windows.iter().map(Window::len).collect();
     let star = StarConfig::published(Variant::Full);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let (clock, time) = if threads == 1 {
         (Clock::Processor, "processor time")
     } else {
@@ -37,9 +35,7 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
 /// One batch of training windows with few pedestrians each, as in most recordings; together they hold more than
 /// `pedestrians`.
 fn one_batch(dataset: &Dataset, pedestrians: usize) -> Result<Vec<Window>> {
-    let windows = dataset
-        .fold("corridor")?
-        .training_windows(WindowRule::Complete);
+    let windows = dataset.fold("corridor")?.training_windows(WindowRule::Complete);
     let mut batch = Vec::new();
     let mut count = 0;
     for window in windows.into_iter().step_by(40) {

@@ -8,9 +8,7 @@ const END: &str = "<!-- figures: end -->";
 
 /// Puts the table in the place of the earlier one in `docs/NAME`.
 pub(crate) fn publish(name: &str, table: &str) -> Result<(), Box<dyn Error>> {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../docs")
-        .join(name);
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
     let page = std::fs::read_to_string(&file)?;
     let marks = page.split_once(BEGIN).zip(page.split_once(END));
     let ((before, _), (_, after)) = marks.ok_or("the page has no marks for its figures")?;

@@ -46,11 +46,7 @@ pub(crate) fn recordings(place: &str) -> Result<Vec<Recording>, Box<dyn Error>> 
 impl Place {
     /// Evenly spread windows of `FOLDER=FPS` that hold about `pedestrians`, from csv files in metres, in steps of 0.4
     /// s.
-    pub(crate) fn read(
-        place: &str,
-        part: Part,
-        pedestrians: usize,
-    ) -> Result<Self, Box<dyn Error>> {
+    pub(crate) fn read(place: &str, part: Part, pedestrians: usize) -> Result<Self, Box<dyn Error>> {
         let all = recordings(place)?;
         let (alone, rest) = (all.len() == 1, part == Part::Rest);
         let of_part = all

@@ -34,11 +34,7 @@ pub fn measure_baselines(
                     test_subset: test.subset.clone(),
                     ..Conditions::new(convention, *rule, protocol, name, "")
                 };
-                rows.extend(baseline::measure(
-                    &conditions,
-                    &windows,
-                    baseline::NOISE_SEED,
-                )?);
+                rows.extend(baseline::measure(&conditions, &windows, baseline::NOISE_SEED)?);
             }
         }
     }

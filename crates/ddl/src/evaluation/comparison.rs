@@ -3,9 +3,7 @@ use crate::evaluation::test_set::TestSet;
 use crate::model::ddl::Ddl;
 use ddl_data::{Dataset, Window};
 use ddl_eval::Protocol;
-use ddl_eval::significance::{
-    BlockErrors, BlockMetric, PairedDifference, block_errors, paired_difference,
-};
+use ddl_eval::significance::{BlockErrors, BlockMetric, PairedDifference, block_errors, paired_difference};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -23,9 +21,7 @@ pub struct BestOf20Errors {
 impl BestOf20Errors {
     fn of(blocks: &[BlockErrors]) -> Self {
         let pedestrians: usize = blocks.iter().map(|block| block.pedestrians).sum();
-        let mean = |metric| {
-            blocks.iter().map(|block| block.sum(metric)).sum::<f64>() / pedestrians.max(1) as f64
-        };
+        let mean = |metric| blocks.iter().map(|block| block.sum(metric)).sum::<f64>() / pedestrians.max(1) as f64;
         Self {
             min_ade: mean(BlockMetric::MinAde),
             min_fde: mean(BlockMetric::MinFde),

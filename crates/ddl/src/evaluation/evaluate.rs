@@ -148,11 +148,7 @@ struct Measuring<'a, O> {
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     /// Evaluates protocols that show the same input: they share one set of forecasts.
-    fn without_future(
-        &mut self,
-        of: &[Protocol],
-        windows: &[Window],
-    ) -> Result<Evaluation, DdlError> {
+    fn without_future(&mut self, of: &[Protocol], windows: &[Window]) -> Result<Evaluation, DdlError> {
         let protocols: Vec<Protocol> = of.iter().copied().filter(|p| self.asked(*p)).collect();
         let Some(&first) = protocols.first() else {
             return Ok(Evaluation::default());
@@ -166,11 +162,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         // The estimator copies the expert library, so make it only when it is needed.
         let given = |manner: &Manner| manner.goals == GivenGoals::Published;
         let published = if manners.iter().any(given) {
-            Some(
-                model
-                    .goal_model()
-                    .published_estimator(QuerySpan::Observed)?,
-            )
+            Some(model.goal_model().published_estimator(QuerySpan::Observed)?)
         } else {
             None
         };
@@ -197,8 +189,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         })?;
         let mut rows = Vec::new();
         for &protocol in &protocols {
-            let admit =
-                |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
+            let admit = |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
             let mut forecasted = Vec::new();
             for (manner, forecasts) in manners.iter().zip(&forecasts.model) {
                 if manner.protocol == protocol {
@@ -267,12 +258,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             let goals = sets::nearest_true_end(&estimator, windows)?;
             let certain: Vec<Vec<WeightedGoals>> = goals
                 .iter()
-                .map(|goals| {
-                    goals
-                        .iter()
-                        .map(|&goal| WeightedGoals::certain(goal))
-                        .collect()
-                })
+                .map(|goals| goals.iter().map(|&goal| WeightedGoals::certain(goal)).collect())
                 .collect();
             let lines = straight_lines(goal, windows, &certain)?;
             Ok(Forecasts {
@@ -281,15 +267,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             })
         })?;
         let words = model.goal_model().words();
-        let selection =
-            format!("best kept epoch on up to {SELECTION_PEDESTRIANS} TEST pedestrians");
+        let selection = format!("best kept epoch on up to {SELECTION_PEDESTRIANS} TEST pedestrians");
         self.rows(protocol, &selection).of(&[
             Forecasted::model(&model.name(), forecasts.model.remove(0), None, words),
-            Forecasted::lines_to(
-                goal,
-                "goals of the published estimator".to_owned(),
-                forecasts.lines,
-            ),
+            Forecasted::lines_to(goal, "goals of the published estimator".to_owned(), forecasts.lines),
         ])
     }
 

@@ -20,27 +20,17 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
         .windows
         .iter()
         .zip(&measured.sets)
-        .flat_map(|(window, sets)| {
-            (0..)
-                .zip(sets)
-                .filter_map(|(i, set)| Pedestrian::new(window, i, set))
-        })
+        .flat_map(|(window, sets)| (0..).zip(sets).filter_map(|(i, set)| Pedestrian::new(window, i, set)))
         .collect();
     let mut shown: Vec<&Pedestrian<'_>> = Vec::new();
     for kind in MotionKind::ALL {
         // each pedestrian once
         let candidates: Vec<&Pedestrian<'_>> = pedestrians
             .iter()
-            .filter(|pedestrian| {
-                pedestrian.kind == kind && !shown.iter().any(|other| other.is(pedestrian))
-            })
+            .filter(|pedestrian| pedestrian.kind == kind && !shown.iter().any(|other| other.is(pedestrian)))
             .collect();
         let errors: Vec<_> = candidates.iter().map(|w| (kind, w.error)).collect();
-        shown.extend(
-            figure::typical_pedestrians(&errors)
-                .into_iter()
-                .map(|i| candidates[i]),
-        );
+        shown.extend(figure::typical_pedestrians(&errors).into_iter().map(|i| candidates[i]));
     }
     let cases = shown
         .into_iter()
@@ -99,8 +89,8 @@ impl<'a> Pedestrian<'a> {
                 .map(|expert| estimator.carry_over(expert, observed))
                 .collect::<Result<Vec<_>, _>>()?,
         };
-        let goals = WeightedGoals::new(self.set.goals().to_vec(), self.set.weights().to_vec())
-            .map_err(ForecastError::from)?;
+        let goals =
+            WeightedGoals::new(self.set.goals().to_vec(), self.set.weights().to_vec()).map_err(ForecastError::from)?;
         let track = self.window.track(self.index);
         Ok(GoalCase::new(title, track, goals)?.with_experts(experts)?)
     }

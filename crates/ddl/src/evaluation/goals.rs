@@ -117,9 +117,7 @@ pub fn evaluate_goals(
             recordings.insert(name.to_owned(), errors(Some(name)));
         }
     }
-    let likelihoods = pairs
-        .iter()
-        .map(|(_, set, end)| (set.weights(), set.nearest(*end)));
+    let likelihoods = pairs.iter().map(|(_, set, end)| (set.weights(), set.nearest(*end)));
     let rule = rule.map_or(String::new(), |rule| format!("{rule} rule"));
     let words = test.subset.map_or_else(
         || format!("all test windows, {rule}"),

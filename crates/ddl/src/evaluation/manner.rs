@@ -39,10 +39,7 @@ pub(crate) enum Way {
 pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
     let convention = model.config().data.convention;
     let folds: Vec<&str> = convention.folds_with_place_memory().collect();
-    let of_place = format!(
-        "training recordings of the same place (folds {})",
-        folds.join(", ")
-    );
+    let of_place = format!("training recordings of the same place (folds {})", folds.join(", "));
     match (protocol.gives_recording_memory(), folds.is_empty()) {
         _ if model.goal_model().memory().is_none() => String::new(),
         (false, true) => String::new(),
@@ -57,10 +54,7 @@ impl Manner {
         let goals = model.goal_model();
         let words = match self.goals {
             // The name of the row already tells of the published goals.
-            GivenGoals::Own
-            | GivenGoals::Central
-            | GivenGoals::Published
-            | GivenGoals::WithoutMemory => goals.words(),
+            GivenGoals::Own | GivenGoals::Central | GivenGoals::Published | GivenGoals::WithoutMemory => goals.words(),
             GivenGoals::WithoutLibrary => goals.recipe().description_without_library(),
         };
         match self.goals {

@@ -68,8 +68,7 @@ impl Published {
                 best = Some((error, candidate));
             }
         }
-        let (_, best) =
-            best.ok_or_else(|| DdlError::run(run.path(), "has no saved epochs; train it again"))?;
+        let (_, best) = best.ok_or_else(|| DdlError::run(run.path(), "has no saved epochs; train it again"))?;
         Ok(best)
     }
 

@@ -20,12 +20,7 @@ pub(crate) struct Forecasted {
 
 impl Forecasted {
     /// Forecasts of the model of that name, unchanged or with a change; `goals` names the origin of its goals.
-    pub(crate) fn model(
-        name: &str,
-        forecasts: Vec<Forecast>,
-        change: Option<&str>,
-        goals: String,
-    ) -> Self {
+    pub(crate) fn model(name: &str, forecasts: Vec<Forecast>, change: Option<&str>, goals: String) -> Self {
         Self {
             forecaster: match change {
                 None => name.to_owned(),
@@ -69,14 +64,10 @@ impl ResultRows<'_> {
             if indices.is_empty() {
                 continue;
             }
-            let windows: Vec<Window> = indices
-                .iter()
-                .map(|&index| self.test.windows[index].clone())
-                .collect();
+            let windows: Vec<Window> = indices.iter().map(|&index| self.test.windows[index].clone()).collect();
             let plain = self.conditions(*rule);
             for one in forecasted {
-                let of_rule: Vec<Forecast> =
-                    indices.iter().map(|&i| one.forecasts[i].clone()).collect();
+                let of_rule: Vec<Forecast> = indices.iter().map(|&i| one.forecasts[i].clone()).collect();
                 let mut conditions = plain.clone();
                 if one.by_model {
                     conditions = self.of_the_model(conditions, &one.goals);
@@ -97,13 +88,7 @@ impl ResultRows<'_> {
             device: "cpu".to_owned(),
             commit: self.commit.to_owned(),
             test_subset: self.test.subset.clone(),
-            ..Conditions::new(
-                self.test.convention,
-                rule,
-                self.protocol,
-                &*self.test.fold,
-                "",
-            )
+            ..Conditions::new(self.test.convention, rule, self.protocol, &*self.test.fold, "")
         }
     }
 

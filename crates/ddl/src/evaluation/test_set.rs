@@ -75,19 +75,14 @@ impl TestSet {
     }
 
     /// The validation part of the run, which may hold no window.
-    pub(crate) fn kept_by(
-        goals: &GoalModel,
-        dataset: &Dataset,
-        pedestrians: Option<usize>,
-    ) -> Result<Self, DdlError> {
+    pub(crate) fn kept_by(goals: &GoalModel, dataset: &Dataset, pedestrians: Option<usize>) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         if data.validation <= 0.0 && data.validation_recordings.is_empty() {
-            return Err(goals.source().wrong(
-                "kept no validation part; train it with --validation 0.2 or --validation-recordings",
-            ));
+            return Err(goals
+                .source()
+                .wrong("kept no validation part; train it with --validation 0.2 or --validation-recordings"));
         }
-        let fold = fold_by_name(dataset, &data.fold)?
-            .with_validation_recordings(&data.validation_recordings)?;
+        let fold = fold_by_name(dataset, &data.fold)?.with_validation_recordings(&data.validation_recordings)?;
         let (rule, fraction) = (data.window_rule, data.validation);
         if digest(&fold.training_split(rule, fraction).training) != data.sha256 {
             return Err(goals.source().wrong(
@@ -114,9 +109,7 @@ impl TestSet {
                 recordings: whole.to_vec(),
             }
         };
-        let fold = dataset
-            .whole()
-            .with_validation_recordings(&part.recordings)?;
+        let fold = dataset.whole().with_validation_recordings(&part.recordings)?;
         let kept = (dataset.convention().headline_rule(), part.share);
         let set = Self::validation(&fold, dataset.convention(), kept, pedestrians);
         if set.windows.is_empty() {
@@ -130,11 +123,7 @@ impl TestSet {
     }
 
     /// Own recordings: the one that the model was trained without, if present, else all of them.
-    fn of_own(
-        goals: &GoalModel,
-        dataset: &Dataset,
-        pedestrians: Option<usize>,
-    ) -> Result<Self, DdlError> {
+    fn of_own(goals: &GoalModel, dataset: &Dataset, pedestrians: Option<usize>) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let all = dataset.recordings();
         let left_out = all
@@ -253,9 +242,7 @@ impl TestSet {
             parts.push(format!("{} whole", names.join(", ")));
         }
         let name = format!("validation: {}", parts.join(", and "));
-        let subset = part
-            .subset
-            .map_or(name.clone(), |subset| format!("{name}; {subset}"));
+        let subset = part.subset.map_or(name.clone(), |subset| format!("{name}; {subset}"));
         Self {
             subset: Some(subset),
             ..part
@@ -267,9 +254,7 @@ impl TestSet {
             return self;
         };
         // The same words for every fold, cut or not, because the folds of a benchmark share a table.
-        let subset = format!(
-            "where a fold has more than {pedestrians} pedestrians, a seeded part of its windows"
-        );
+        let subset = format!("where a fold has more than {pedestrians} pedestrians, a seeded part of its windows");
         let part = if self.pedestrians() > pedestrians {
             self.part(pedestrians)
         } else {
@@ -311,16 +296,12 @@ impl TestSet {
         taken.sort_unstable();
         let of_part = |indices: Vec<usize>| {
             let places = indices.into_iter();
-            places
-                .filter_map(|i| taken.binary_search(&i).ok())
-                .collect()
+            places.filter_map(|i| taken.binary_search(&i).ok()).collect()
         };
         let rules = self.rules.into_iter();
         Self {
             windows: taken.iter().map(|&i| self.windows[i].clone()).collect(),
-            rules: rules
-                .map(|(rule, indices)| (rule, of_part(indices)))
-                .collect(),
+            rules: rules.map(|(rule, indices)| (rule, of_part(indices))).collect(),
             subset: None,
             ..self
         }
@@ -331,9 +312,10 @@ impl TestSet {
 fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
     let learned = &goals.config().data.recordings;
     let digests: BTreeSet<&String> = learned.values().collect();
-    dataset.recordings().iter().any(|recording| {
-        learned.contains_key(recording.name()) || digests.contains(&digest_of_recording(recording))
-    })
+    dataset
+        .recordings()
+        .iter()
+        .any(|recording| learned.contains_key(recording.name()) || digests.contains(&digest_of_recording(recording)))
 }
 
 /// A short name in the results for recordings that are tested together.
@@ -342,12 +324,7 @@ pub fn test_set_name(tested: &[&Recording]) -> String {
     match tested {
         [] => String::new(),
         [only] => only.name().to_owned(),
-        [first, .., last] => format!(
-            "{} recordings, {} to {}",
-            tested.len(),
-            first.name(),
-            last.name()
-        ),
+        [first, .., last] => format!("{} recordings, {} to {}", tested.len(), first.name(), last.name()),
     }
 }
 

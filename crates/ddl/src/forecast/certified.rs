@@ -42,13 +42,10 @@ impl CertifiedForecast {
     #[must_use]
     pub fn first_violation(&self) -> Option<(usize, usize, Violation)> {
         let hypotheses = self.forecast.hypotheses();
-        self.certificates
-            .iter()
-            .enumerate()
-            .find_map(|(pair, certificate)| {
-                let violation = certificate.holds().err()?;
-                Some((pair / hypotheses, pair % hypotheses, violation))
-            })
+        self.certificates.iter().enumerate().find_map(|(pair, certificate)| {
+            let violation = certificate.holds().err()?;
+            Some((pair / hypotheses, pair % hypotheses, violation))
+        })
     }
 }
 
@@ -122,9 +119,7 @@ impl Walked<'_> {
         let goals = self.goals.chunks_exact(hypotheses);
         let pairs = goals.zip(self.weights.chunks_exact(hypotheses)).enumerate();
         let spread = pairs
-            .flat_map(|(i, goals)| {
-                calibration.spread(self.window.observed(i), goals, self.config.time_step)
-            })
+            .flat_map(|(i, goals)| calibration.spread(self.window.observed(i), goals, self.config.time_step))
             .collect();
         Ok(forecast.with_spread(spread, Calibration::shared_regions())?)
     }
@@ -136,10 +131,7 @@ impl Walked<'_> {
             .map(|certificate| certificate.holds().is_ok())
             .collect();
         let forecast = self.at(positions)?.with_certified(held)?;
-        Ok(CertifiedForecast {
-            forecast,
-            certificates,
-        })
+        Ok(CertifiedForecast { forecast, certificates })
     }
 
     /// The positions of every hypothesis, `[N][K][12]`, and the result of `of` for its certificate, `[N][K]`. With
@@ -160,9 +152,7 @@ impl Walked<'_> {
                 })?;
                 return Ok((self.rolled_out.clone(), certificates));
             }
-            Gait::Stable(None) => self.each(factors, |_, course, factors| {
-                course.walk(factors).map(judged)
-            })?,
+            Gait::Stable(None) => self.each(factors, |_, course, factors| course.walk(factors).map(judged))?,
             Gait::Stable(Some(clearance)) => {
                 let others = self.others(factors, clearance)?;
                 self.each(factors, |pair, course, factors| {

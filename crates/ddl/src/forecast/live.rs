@@ -168,9 +168,7 @@ impl<M> LiveForecaster<M> {
     ) -> Result<Option<LiveForecast<F>>, DdlError> {
         let people = people.into_iter().collect();
         let model = &self.model;
-        let made = self
-            .watch
-            .push(frame, people, |window| forecast(model, window))?;
+        let made = self.watch.push(frame, people, |window| forecast(model, window))?;
         Ok(made.map(|(window, forecast)| LiveForecast { window, forecast }))
     }
 
@@ -237,10 +235,7 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
         Ok(now.map(|LiveForecast { window, forecast }| {
             let certified = forecast;
             let forecast = self.adapted(&window, certified.forecast);
-            let forecast = CertifiedForecast {
-                forecast,
-                ..certified
-            };
+            let forecast = CertifiedForecast { forecast, ..certified };
             LiveForecast { window, forecast }
         }))
     }

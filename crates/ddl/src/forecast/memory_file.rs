@@ -105,9 +105,7 @@ fn resolved(path: &Path) -> PathBuf {
         |_| path.to_owned(),
         |target| path.parent().unwrap_or(Path::new("")).join(target),
     );
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new(".")).canonicalize();
     match (folder, path.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
@@ -124,9 +122,7 @@ fn ensure_writable(path: &Path) -> std::io::Result<()> {
         }
         File::options().write(true).open(path)?;
     }
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     tempfile::tempfile_in(folder.unwrap_or(Path::new(".")))?;
     Ok(())
 }

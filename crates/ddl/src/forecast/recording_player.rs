@@ -17,12 +17,7 @@ pub struct RecordingPlayer<'a> {
 
 impl<'a> RecordingPlayer<'a> {
     /// A player of at most `most` of the recording's observed windows, evenly spread.
-    pub fn new(
-        model: &'a Ddl,
-        recording: &'a Recording,
-        windows: &'a [Window],
-        most: usize,
-    ) -> Self {
+    pub fn new(model: &'a Ddl, recording: &'a Recording, windows: &'a [Window], most: usize) -> Self {
         Self {
             model,
             recording,
@@ -87,10 +82,7 @@ fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
     let all = forecasts
         .iter()
         .flat_map(|of| (0..of.pedestrians()).filter_map(move |i| of.familiarity(i)));
-    let unlike = all
-        .clone()
-        .filter(|&familiarity| familiarity < UNFAMILIAR)
-        .count();
+    let unlike = all.clone().filter(|&familiarity| familiarity < UNFAMILIAR).count();
     (unlike > 0).then(|| {
         format!(
         "{unlike} of {} motions are unlike the training motions (familiarity below {}): their forecasts use little of \

@@ -3,9 +3,7 @@
 use crate::error::DdlError;
 use crate::forecast::watch::Watch;
 use crate::forecast::watched_place::WatchedPlace;
-use ddl_data::{
-    Completion, Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window,
-};
+use ddl_data::{Completion, Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -242,11 +240,7 @@ impl LiveScenes {
     ///
     /// # Errors
     /// When the memory has another number of raw frames in a step; [`DdlError::TooManyScenes`] beyond that limit.
-    pub fn remember(
-        &mut self,
-        scene: Option<&SceneName>,
-        place: WatchedPlace,
-    ) -> Result<(), DdlError> {
+    pub fn remember(&mut self, scene: Option<&SceneName>, place: WatchedPlace) -> Result<(), DdlError> {
         self.scene(&scene.cloned())?.watch.remember(place)
     }
 
@@ -334,10 +328,7 @@ impl LiveScenes {
         let forecasts: Vec<_> = match model.forecast_all(&windows) {
             Ok(forecasts) => forecasts.into_iter().map(Ok).collect(),
             // Of which window, it does not say.
-            Err(_) => windows
-                .iter()
-                .map(|window| model.forecast(window))
-                .collect(),
+            Err(_) => windows.iter().map(|window| model.forecast(window)).collect(),
         };
         let each = scenes.into_iter().zip(windows).zip(forecasts);
         each.map(|((scene, window), forecast)| SceneForecast {

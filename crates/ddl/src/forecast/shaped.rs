@@ -52,8 +52,9 @@ pub(crate) fn walked<'a>(
         .map_err(|error| ForecastError::model(NAME, error))?;
     let shaped = rollouts.into_iter().zip(windows).zip(sets);
     let trusted = shares.into_iter().zip(familiarity);
-    Ok(shaped.zip(trusted).map(
-        move |(((rollout, window), sets), (shares, familiarity))| Walked {
+    Ok(shaped
+        .zip(trusted)
+        .map(move |(((rollout, window), sets), (shares, familiarity))| Walked {
             shares,
             familiarity: Some(familiarity),
             config: network.config(),
@@ -64,8 +65,7 @@ pub(crate) fn walked<'a>(
             factors: rollout.factors,
             weights: sets.iter().flat_map(GoalSet::weights).copied().collect(),
             goals: sets.iter().flat_map(GoalSet::goals).copied().collect(),
-        },
-    ))
+        }))
 }
 
 /// Plain STAR: equally likely noise samples.

@@ -5,9 +5,8 @@
 use crate::forecast::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow,
-    LyapunovCertificate, MetricSource, MotionBounds, NaturalGradientFlow, ObstacleSchedule,
-    StableEuler, State, rollout_into,
+    ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow, LyapunovCertificate, MetricSource,
+    MotionBounds, NaturalGradientFlow, ObstacleSchedule, StableEuler, State, rollout_into,
 };
 use ddl_network::StepRule;
 use nalgebra::Vector2;
@@ -170,13 +169,9 @@ mod tests {
         }
         assert_eq!(walk.certificate.holds(), Ok(()));
         let motion = walk.certificate.motion().unwrap();
-        assert!(
-            (motion.speed.largest - 0.5).abs() < 1e-6 && (motion.speed.bound - 2.15).abs() < 1e-6
-        );
+        assert!((motion.speed.largest - 0.5).abs() < 1e-6 && (motion.speed.bound - 2.15).abs() < 1e-6);
         assert!(motion.distance_left.unwrap().largest < 1e-9);
-        let certified = course
-            .certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON])
-            .unwrap();
+        let certified = course.certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
         assert_eq!(certified.holds(), Ok(()));
         assert_eq!(certified.motion(), None);
     }
@@ -229,14 +224,9 @@ mod tests {
         factors[7][1] = f64::NAN;
         for error in [
             course().walk(&factors).unwrap_err(),
-            course()
-                .certify(&[[0.0, 0.0]; HORIZON], &factors)
-                .unwrap_err(),
+            course().certify(&[[0.0, 0.0]; HORIZON], &factors).unwrap_err(),
         ] {
-            assert!(
-                matches!(error, DynamicsError::Step { step: 7, .. }),
-                "{error}"
-            );
+            assert!(matches!(error, DynamicsError::Step { step: 7, .. }), "{error}");
             assert!(error.to_string().contains("(1, 0)"), "{error}");
         }
     }

@@ -56,9 +56,8 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         return Err(DdlError::run(path, problem));
     }
     let broken = |error: safetensors::SafeTensorError| {
-        let problem = format!(
-            "is not a complete safetensors file ({error}); delete it and run the same training again"
-        );
+        let problem =
+            format!("is not a complete safetensors file ({error}); delete it and run the same training again");
         DdlError::run(path, problem)
     };
     let (_, header) = SafeTensors::read_metadata(&bytes).map_err(broken)?;
@@ -73,8 +72,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         ));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_digest(&file, digest.as_deref())
-        .map_err(|error| DdlError::run(path, error.to_string()))?;
+    check_digest(&file, digest.as_deref()).map_err(|error| DdlError::run(path, error.to_string()))?;
     let view = file
         .tensor(TRACKS)
         .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {REMEDY}")))?;
@@ -110,21 +108,14 @@ mod tests {
         let view = TensorView::new(Dtype::F64, vec![2, WINDOW, 2], &bytes).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("experts.safetensors");
-        std::fs::write(
-            &path,
-            safetensors::serialize([(TRACKS, view)], None).unwrap(),
-        )
-        .unwrap();
+        std::fs::write(&path, safetensors::serialize([(TRACKS, view)], None).unwrap()).unwrap();
         load(&Origin::default(), 2, &path)
     }
 
     #[test]
     fn a_library_of_impossible_tracks_is_refused() {
         assert_eq!(read(|_| ()).unwrap().len(), 2);
-        for (number, part) in [
-            (f64::NAN, "position 3 is (NaN"),
-            (f64::INFINITY, "must be finite"),
-        ] {
+        for (number, part) in [(f64::NAN, "position 3 is (NaN"), (f64::INFINITY, "must be finite")] {
             let error = read(|numbers| numbers[6] = number).unwrap_err().to_string();
             assert!(error.contains("experts.safetensors"), "{error}");
             assert!(error.contains(part) && error.contains(REMEDY), "{error}");

@@ -19,9 +19,7 @@ use ddl_eval::ForecastError;
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use ddl_memory::Playback;
 use ddl_network::weights::load_weights;
-use ddl_network::{
-    DeviceChoice, ForecastWindows, MemoryConfig, ProposeEndpoints, ProposedEndpoints,
-};
+use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEndpoints, ProposedEndpoints};
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -74,11 +72,7 @@ impl GoalModel {
         Self::of_run(run.clone(), config, Device::open(device)?)
     }
 
-    pub(crate) fn of_run(
-        run: RunDirectory,
-        config: RunConfig,
-        device: Device,
-    ) -> Result<Self, DdlError> {
+    pub(crate) fn of_run(run: RunDirectory, config: RunConfig, device: Device) -> Result<Self, DdlError> {
         let network = match &config.goals.proposal {
             None => None,
             Some(recipe) => {
@@ -99,20 +93,14 @@ impl GoalModel {
         config: RunConfig,
         network: Option<Box<dyn ProposeEndpoints>>,
     ) -> Result<Self, DdlError> {
-        let library = experts::load(
-            &config.goals_origin(),
-            config.data.pedestrians,
-            &run.experts(),
-        )?;
+        let library = experts::load(&config.goals_origin(), config.data.pedestrians, &run.experts())?;
         let clusters = config.goals.retrieval.clone().check()?.clusters;
         let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
-        let estimator = GoalEstimator::new(params.check()?, library)
-            .map_err(|error| experts::unusable(&error, &run.experts()))?;
+        let estimator =
+            GoalEstimator::new(params.check()?, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
         let motions = TrainingMotions::learn(estimator.library().tracks(), config.star.time_step);
         let origin = match (&config.goals.proposal, network) {
-            (Some(recipe), Some(network)) => {
-                GoalOrigin::Both(network, estimator, recipe.retrieved_share)
-            }
+            (Some(recipe), Some(network)) => GoalOrigin::Both(network, estimator, recipe.retrieved_share),
             _ => GoalOrigin::Retrieved(estimator),
         };
         Ok(Self {
@@ -216,12 +204,10 @@ impl GoalModel {
         let count = self.recalled_per_pedestrian()?;
         let fold = self.fold_with_places(dataset)?;
         let of_place = |recording: &str| -> Vec<&Recording> {
-            let known = fold.as_ref().filter(|fold| {
-                what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty()
-            });
-            known.map_or_else(Vec::new, |fold| {
-                fold.training_recordings_of_place(recording)
-            })
+            let known = fold
+                .as_ref()
+                .filter(|fold| what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty());
+            known.map_or_else(Vec::new, |fold| fold.training_recordings_of_place(recording))
         };
         let playback = match what {
             Remembering::Place => None,
@@ -238,7 +224,7 @@ impl GoalModel {
     pub fn recalled_per_pedestrian(&self) -> Result<usize, DdlError> {
         let memory = self.memory().ok_or_else(|| {
             self.source.wrong(
-            "has no memory branch, so it cannot use a memory of the place; train a model with proposed goals, with \
+                "has no memory branch, so it cannot use a memory of the place; train a model with proposed goals, with \
              this version of the program",
             )
         })?;
@@ -252,9 +238,7 @@ impl GoalModel {
             return Ok(None);
         }
         let fold = fold_by_name(dataset, &data.fold)?;
-        Ok(Some(
-            fold.with_validation_recordings(&data.validation_recordings)?,
-        ))
+        Ok(Some(fold.with_validation_recordings(&data.validation_recordings)?))
     }
 
     /// Whether `fair` and `single` forecasts remember training recordings from the place of the test recordings.
@@ -310,10 +294,7 @@ impl GoalModel {
     }
 
     /// The goals of the model without its expert library; unchanged where none of them are proposed.
-    pub(crate) fn goals_without_library(
-        &self,
-        windows: &[Window],
-    ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+    pub(crate) fn goals_without_library(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         match self.proposal_network() {
             None => self.goals(windows),
             Some(network) => {
@@ -332,12 +313,8 @@ impl GoalModel {
     ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         let mut seen = Vec::new();
         for window in windows {
-            let pedestrians = views::of_window(
-                window,
-                network.config().neighbours,
-                network.config().time_step,
-            )
-            .map_err(failed)?;
+            let pedestrians =
+                views::of_window(window, network.config().neighbours, network.config().time_step).map_err(failed)?;
             seen.extend(pedestrians);
         }
         let mut views = Vec::with_capacity(seen.len());
@@ -384,10 +361,7 @@ impl GoalModel {
     /// The goals of pedestrians in training: the proposed goal nearest the true endpoint, or the true endpoint without
     /// a proposal network. Retrieved goals are left out, because the library holds the training pedestrians themselves
     /// (`docs/method.md`, training).
-    pub(crate) fn training_goals(
-        &self,
-        windows: &[Window],
-    ) -> Result<Vec<Vec<Position>>, ForecastError> {
+    pub(crate) fn training_goals(&self, windows: &[Window]) -> Result<Vec<Vec<Position>>, ForecastError> {
         let end = |window: &Window, i: usize| window.track(i)[WINDOW - 1];
         if self.proposal_network().is_none() {
             let ends = |window: &Window| (0..window.len()).map(|i| end(window, i)).collect();
@@ -404,9 +378,7 @@ impl GoalModel {
             .zip(windows)
             .map(|(sets, window)| {
                 let pedestrians = sets.into_iter().enumerate();
-                pedestrians
-                    .map(|pedestrian| nearest(pedestrian, window))
-                    .collect()
+                pedestrians.map(|pedestrian| nearest(pedestrian, window)).collect()
             })
             .collect())
     }

@@ -39,9 +39,7 @@ impl Default for ProposalRecipe {
 
 impl ProposalRecipe {
     fn words(&self) -> String {
-        let Self {
-            network, training, ..
-        } = self;
+        let Self { network, training, .. } = self;
         let (members, steps) = (network.members, training.steps);
         let memory = match network.memory {
             Some(_) => format!(" and {} more for the memory branch", training.memory.steps),
@@ -92,9 +90,7 @@ impl GoalRecipe {
     #[must_use]
     pub fn description_without_library(&self) -> String {
         match &self.proposal {
-            None => {
-                "none: goals are retrieved from the expert library, which is missing".to_owned()
-            }
+            None => "none: goals are retrieved from the expert library, which is missing".to_owned(),
             Some(proposal) => format!("{}, no expert library", proposal.words()),
         }
     }

@@ -8,10 +8,7 @@ use ddl_goal::{GoalEstimator, GoalSet};
 /// The retrieved goal sets of every pedestrian of every window.
 ///
 /// The estimator reads the observed positions only. The published one also reads one future position.
-pub(crate) fn retrieved(
-    estimator: &GoalEstimator,
-    windows: &[Window],
-) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
+pub(crate) fn retrieved(estimator: &GoalEstimator, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
     let needed = estimator.params().query.positions();
     let mut tracks: Vec<&[Position]> = Vec::new();
     for window in windows {

@@ -15,11 +15,7 @@ pub(crate) struct Seen {
 
 /// Views of every pedestrian of a window with its `neighbours` nearest others, from the observed frames (`time_step` in
 /// seconds).
-pub(crate) fn of_window(
-    window: &Window,
-    neighbours: usize,
-    time_step: f64,
-) -> Result<Vec<Seen>, TrackError> {
+pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<Seen>, TrackError> {
     let last = window.hypotheses_at(OBSERVED - 1);
     let places = Places::new(&last);
     (0..window.len())
@@ -55,10 +51,7 @@ pub(crate) fn examples(
 ) -> Result<Vec<ProposalExample>, TrackError> {
     let mut examples = Vec::new();
     for window in windows.iter().filter(|window| window.has_future()) {
-        for (i, seen) in of_window(window, neighbours, time_step)?
-            .into_iter()
-            .enumerate()
-        {
+        for (i, seen) in of_window(window, neighbours, time_step)?.into_iter().enumerate() {
             let future = in_frame((&seen.frame, seen.unit), &window.track(i)[OBSERVED..]);
             let view = seen.view;
             examples.push(ProposalExample { view, future });
@@ -67,9 +60,6 @@ pub(crate) fn examples(
     Ok(examples)
 }
 
-fn in_frame<const T: usize>(
-    (frame, unit): (&HeadingFrame, f64),
-    track: &[Position],
-) -> [Position; T] {
+fn in_frame<const T: usize>((frame, unit): (&HeadingFrame, f64), track: &[Position]) -> [Position; T] {
     std::array::from_fn(|t| frame.to_frame(track[t]).map(|coordinate| coordinate / unit))
 }

@@ -99,10 +99,7 @@ mod tests {
             assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);
         }
         let error = "corridor".parse::<BuiltinModel>().unwrap_err().to_string();
-        assert!(
-            error.contains("corridor") && error.contains("zara2"),
-            "{error}"
-        );
+        assert!(error.contains("corridor") && error.contains("zara2"), "{error}");
     }
 
     #[test]

@@ -149,10 +149,7 @@ impl Ddl {
     /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow) for the variants without dynamics, `star` and
     /// `no-dynamics`; [`CertificateError::Walk`](crate::CertificateError::Walk) where the output of the network does
     /// not shape a flow.
-    pub fn forecast_certified(
-        &self,
-        windows: &[Window],
-    ) -> Result<Vec<CertifiedForecast>, ForecastError> {
+    pub fn forecast_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
         let led = (goals, self.familiarities(windows));
@@ -180,10 +177,7 @@ impl Ddl {
     /// # Errors
     /// As [`forecast_central`](Self::forecast_central); for the variant without goals
     /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow).
-    pub fn forecast_central_certified(
-        &self,
-        windows: &[Window],
-    ) -> Result<Vec<CertifiedForecast>, ForecastError> {
+    pub fn forecast_central_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
         let variant = self.config().star.variant;
         if !variant.uses_goal() {
             certified::ensure_flow(variant)?;
@@ -206,9 +200,7 @@ impl Ddl {
             let seed = self.config().training.seed;
             return shaped::without_goals(&*self.network, seed, windows);
         }
-        self.neutral(windows, sets, clearance)
-            .map(Walked::forecast)
-            .collect()
+        self.neutral(windows, sets, clearance).map(Walked::forecast).collect()
     }
 
     fn neutral<'a>(

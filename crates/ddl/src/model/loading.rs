@@ -66,11 +66,7 @@ impl Ddl {
         Self::with(goals, device, network)
     }
 
-    fn with(
-        goals: GoalModel,
-        device: Device,
-        network: Box<dyn ForecastWindows>,
-    ) -> Result<Self, DdlError> {
+    fn with(goals: GoalModel, device: Device, network: Box<dyn ForecastWindows>) -> Result<Self, DdlError> {
         Ok(Self {
             goals,
             device,
@@ -118,11 +114,7 @@ impl Ddl {
     }
 }
 
-fn load_network(
-    config: &RunConfig,
-    device: Device,
-    weights: &Path,
-) -> Result<Box<dyn ForecastWindows>, DdlError> {
+fn load_network(config: &RunConfig, device: Device, weights: &Path) -> Result<Box<dyn ForecastWindows>, DdlError> {
     enough_weights::require(weights, config.star.min_weight_count())?;
     device.forecasting(&config.star, |layout| {
         load_weights(layout, &config.network_origin(), weights)

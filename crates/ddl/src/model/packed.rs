@@ -59,9 +59,7 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
     let io = |error| DdlError::io(path, error);
     let file = std::fs::File::open(path).map_err(io)?;
     let mut bytes = Vec::new();
-    file.take(MOST_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(io)?;
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
     if bytes.len() as u64 > MOST_BYTES {
         let problem = format!("is longer than {MOST_BYTES} bytes, the limit of a packed model");
         return Err(ModelSource::Packed(path.to_owned()).wrong(problem));
@@ -113,9 +111,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     // Check the digest before using the configuration.
     let parts = [config.as_str(), motions.as_deref().unwrap_or_default()];
     if digest(parts, &tensors) != sha256 {
-        return Err(damaged(
-            &"its SHA-256 does not match its configuration and weights",
-        ));
+        return Err(damaged(&"its SHA-256 does not match its configuration and weights"));
     }
     let other = |error: &dyn std::fmt::Display| {
         source.wrong(format!(
@@ -129,14 +125,10 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
         )));
     }
     let config = serde_json::from_str(&config).map_err(|error| other(&error))?;
-    let motions = motions
-        .map(|motions| serde_json::from_str(&motions))
-        .transpose();
+    let motions = motions.map(|motions| serde_json::from_str(&motions)).transpose();
     let motions: Option<TrainingMotions> = motions.map_err(|error| other(&error))?;
     if motions.as_ref().is_some_and(|motions| !motions.is_valid()) {
-        return Err(
-            source.wrong("has training motions with impossible numbers; pack its run again")
-        );
+        return Err(source.wrong("has training motions with impossible numbers; pack its run again"));
     }
     Ok((config, motions, tensors))
 }
@@ -146,18 +138,11 @@ pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, Dd
 }
 
 /// The configuration and the training motions, without making the networks.
-pub(crate) fn motions(
-    bytes: &[u8],
-    source: &ModelSource,
-) -> Result<(RunConfig, Option<TrainingMotions>), DdlError> {
+pub(crate) fn motions(bytes: &[u8], source: &ModelSource) -> Result<(RunConfig, Option<TrainingMotions>), DdlError> {
     contents(bytes, source).map(|(config, motions, _)| (config, motions))
 }
 
-pub(crate) fn unpack(
-    bytes: &[u8],
-    source: &ModelSource,
-    device: Device,
-) -> Result<Unpacked, DdlError> {
+pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Result<Unpacked, DdlError> {
     let (config, motions, tensors) = contents(bytes, source)?;
     source.check(&config)?;
     let Some(recipe) = &config.goals.proposal else {
@@ -199,14 +184,10 @@ pub(crate) fn unpack(
         }
     }
     let network = device
-        .forecasting(&config.star, |layout| {
-            Weights::from_half(layout, &of_network)
-        })
+        .forecasting(&config.star, |layout| Weights::from_half(layout, &of_network))
         .map_err(unfit)?;
     let proposal = device
-        .proposing(&recipe.network, |layout| {
-            Weights::from_half(layout, &of_proposal)
-        })
+        .proposing(&recipe.network, |layout| Weights::from_half(layout, &of_proposal))
         .map_err(unfit)?;
     Ok(Unpacked {
         config,

@@ -15,10 +15,7 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
         ));
     };
     let mut tensors = Vec::new();
-    for (prefix, weights) in [
-        (NETWORK, network.copy_weights()?),
-        (PROPOSAL, proposal.copy_weights()?),
-    ] {
+    for (prefix, weights) in [(NETWORK, network.copy_weights()?), (PROPOSAL, proposal.copy_weights()?)] {
         for tensor in weights.to_half()? {
             let name = format!("{prefix}{}", tensor.name);
             tensors.push(HalfTensor { name, ..tensor });

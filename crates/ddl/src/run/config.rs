@@ -56,13 +56,9 @@ impl RunConfig {
     #[must_use]
     pub fn network_origin(&self) -> Origin {
         match self.training.objective {
-            Objective::NextStep => {
-                self.origin_of(&["format", "star", "training", "data", "patience", "from"])
-            }
+            Objective::NextStep => self.origin_of(&["format", "star", "training", "data", "patience", "from"]),
             // Training on whole paths leads to the proposed goals, and so depends on these.
-            Objective::Walk => self.origin_of(&[
-                "format", "star", "training", "data", "goals", "patience", "from",
-            ]),
+            Objective::Walk => self.origin_of(&["format", "star", "training", "data", "goals", "patience", "from"]),
         }
     }
 

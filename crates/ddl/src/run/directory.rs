@@ -81,10 +81,7 @@ impl RunDirectory {
     /// # Errors
     /// When a file cannot be read or written.
     pub fn copy_goals_from(&self, other: &Self) -> Result<(), DdlError> {
-        for (from, to) in [
-            (other.experts(), self.experts()),
-            (other.proposal(), self.proposal()),
-        ] {
+        for (from, to) in [(other.experts(), self.experts()), (other.proposal(), self.proposal())] {
             if from.is_file() && !to.exists() {
                 std::fs::create_dir_all(&self.0).map_err(|error| DdlError::io(&self.0, error))?;
                 let bytes = std::fs::read(&from).map_err(|error| DdlError::io(&from, error))?;
@@ -106,9 +103,7 @@ impl RunDirectory {
 
     /// Weights after an epoch.
     pub fn epoch(&self, epoch: usize) -> PathBuf {
-        self.0
-            .join("epochs")
-            .join(format!("{epoch:03}.safetensors"))
+        self.0.join("epochs").join(format!("{epoch:03}.safetensors"))
     }
 
     fn config_file(&self) -> PathBuf {
@@ -162,9 +157,7 @@ impl RunDirectory {
         for entry in entries {
             let entry = entry.map_err(|error| DdlError::io(&folder, error))?;
             let name = entry.file_name();
-            let number = name
-                .to_str()
-                .and_then(|name| name.strip_suffix(".safetensors"));
+            let number = name.to_str().and_then(|name| name.strip_suffix(".safetensors"));
             epochs.extend(number.and_then(|number| number.parse::<usize>().ok()));
         }
         epochs.sort_unstable();
@@ -199,8 +192,7 @@ impl RunDirectory {
         std::fs::create_dir_all(&epochs).map_err(|error| DdlError::io(&epochs, error))?;
         let lock = RunLock::take(&self.0)?;
         let has_config = self.config_file().exists();
-        if has_config && let Some(difference) = self.config()?.origin().difference(&config.origin())
-        {
+        if has_config && let Some(difference) = self.config()?.origin().difference(&config.origin()) {
             let hint = if difference.starts_with("data.") {
                 " (other recordings, or the same recordings with another rate or homography)"
             } else {
@@ -240,23 +232,19 @@ impl RunDirectory {
                     inside.display()
                 )
             } else {
-                "has no config.json, so it is not the directory of a run (`ddl train --out` makes one)"
-                    .to_owned()
+                "has no config.json, so it is not the directory of a run (`ddl train --out` makes one)".to_owned()
             };
             return Err(DdlError::run(&self.0, problem));
         }
         let damaged = |error: serde_json::Error| {
-            let problem = format!(
-                "is damaged ({error}); restore the file, or remove the directory and train again"
-            );
+            let problem = format!("is damaged ({error}); restore the file, or remove the directory and train again");
             DdlError::run(&path, problem)
         };
         // Check the layout first: the rest may differ in another version.
         let text = read_text(&path)?;
         let ConfigFormat { format } = serde_json::from_str(&text).map_err(damaged)?;
         if format != FORMAT {
-            let problem =
-                format!("has layout {format}, this program reads {FORMAT}; train it again");
+            let problem = format!("has layout {format}, this program reads {FORMAT}; train it again");
             return Err(DdlError::run(&self.0, problem));
         }
         serde_json::from_str(&text).map_err(damaged)
@@ -275,15 +263,14 @@ impl RunDirectory {
             .lines()
             .enumerate()
             .map(|(index, line)| {
-                serde_json::from_str(line)
-                    .map_err(|error| {
-                        let problem = format!(
-                            "line {} is damaged ({error}); restore the file. Without it, train a run with --patience \
+                serde_json::from_str(line).map_err(|error| {
+                    let problem = format!(
+                        "line {} is damaged ({error}); restore the file. Without it, train a run with --patience \
                              again; any other run can be continued",
-                            index + 1
-                        );
-                        DdlError::run(&path, problem)
-                    })
+                        index + 1
+                    );
+                    DdlError::run(&path, problem)
+                })
             })
             .collect()
     }
@@ -303,9 +290,7 @@ fn read_text(path: &Path) -> Result<String, DdlError> {
     let io = |error| DdlError::io(path, error);
     let file = std::fs::File::open(path).map_err(io)?;
     let mut text = String::new();
-    file.take(MOST_JSON_BYTES + 1)
-        .read_to_string(&mut text)
-        .map_err(io)?;
+    file.take(MOST_JSON_BYTES + 1).read_to_string(&mut text).map_err(io)?;
     if text.len() as u64 > MOST_JSON_BYTES {
         let problem = format!("is longer than {MOST_JSON_BYTES} bytes, the limit of this file");
         return Err(DdlError::run(path, problem));

@@ -54,11 +54,7 @@ impl RunLock {
 }
 
 fn open(path: &Path) -> Result<Option<File>, DdlError> {
-    let file = OpenOptions::new()
-        .create(true)
-        .truncate(false)
-        .write(true)
-        .open(path);
+    let file = OpenOptions::new().create(true).truncate(false).write(true).open(path);
     match file {
         Ok(file) => Ok(Some(file)),
         // A finished run in a read-only directory is still usable.

@@ -26,19 +26,14 @@ impl ValidationPart {
             recordings: Vec::new(),
         };
         let rule = Convention::Own.headline_rule();
-        let pedestrians =
-            |windows: &[Window]| windows.iter().map(Window::len).sum::<usize>() as f64;
+        let pedestrians = |windows: &[Window]| windows.iter().map(Window::len).sum::<usize>() as f64;
         let at_the_ends = pedestrians(&fold.training_split(rule, SHARE).validation);
         let in_all = pedestrians(&fold.training_windows(rule));
         if at_the_ends > LEAST_AT_THE_ENDS * in_all {
             return ends;
         }
         let with_windows = |recording: &&&Recording| !recording.windows(rule).is_empty();
-        let recordings: Vec<&&Recording> = fold
-            .training_recordings()
-            .iter()
-            .filter(with_windows)
-            .collect();
+        let recordings: Vec<&&Recording> = fold.training_recordings().iter().filter(with_windows).collect();
         // A single recording cannot be kept whole: none would be left for training.
         if recordings.len() < 2 {
             return ends;

@@ -42,10 +42,7 @@ impl EarlyStopping {
         Ok(Some(Self {
             patience,
             goals: goals.goals(&windows)?,
-            familiarity: windows
-                .iter()
-                .map(|window| goals.familiarity(window))
-                .collect(),
+            familiarity: windows.iter().map(|window| goals.familiarity(window)).collect(),
             windows,
             seed: config.training.seed,
             starts_trained: config.from.is_some(),
@@ -54,10 +51,7 @@ impl EarlyStopping {
 
     /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
-        let (windows, led) = (
-            &self.windows,
-            (self.goals.clone(), self.familiarity.clone()),
-        );
+        let (windows, led) = (&self.windows, (self.goals.clone(), self.familiarity.clone()));
         let forecasts = shaped::towards(network, self.seed, windows, led, Gait::Stable(None))?;
         let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {

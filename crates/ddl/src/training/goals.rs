@@ -19,10 +19,7 @@ use std::time::Instant;
 /// weights of `start` if given; `choose` then selects the network to keep.
 pub(crate) fn train(
     recipe: Option<&ProposalRecipe>,
-    (start, choose): (
-        Option<Weights>,
-        impl FnOnce(Weights) -> Result<Weights, DdlError>,
-    ),
+    (start, choose): (Option<Weights>, impl FnOnce(Weights) -> Result<Weights, DdlError>),
     (windows, recordings): (&[Window], &[&Recording]),
     (run, origin): (&RunDirectory, &Origin),
     device: ComputeDevice,

@@ -11,9 +11,7 @@ use crate::model::ddl::Ddl;
 use crate::run::config::{FORMAT, RunConfig, TrainingData};
 use crate::run::directory::{RunDirectory, SAVE_EVERY};
 use crate::run::starting_model::InitialModel;
-use crate::run::training_data::{
-    digest, digest_of_recording, fold_by_name, learned_from, training_rule,
-};
+use crate::run::training_data::{digest, digest_of_recording, fold_by_name, learned_from, training_rule};
 use crate::training::best_epoch::best_epoch;
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
@@ -41,12 +39,10 @@ pub(super) fn train(
         return Err(DdlError::Validation(request.validation));
     }
     let device = Device::open(request.device)?;
-    let fold = fold_by_name(dataset, &request.fold)?
-        .with_validation_recordings(&request.validation_recordings)?;
+    let fold = fold_by_name(dataset, &request.fold)?.with_validation_recordings(&request.validation_recordings)?;
     let window_rule = training_rule(dataset.convention());
     let windows = if request.validation > 0.0 {
-        fold.training_split(window_rule, request.validation)
-            .training
+        fold.training_split(window_rule, request.validation).training
     } else {
         fold.training_windows(window_rule)
     };
@@ -64,15 +60,9 @@ pub(super) fn train(
     let start = starting_weights()?;
     let run = &request.out;
     let began_with = start.as_ref().map(|start| start.record.clone());
-    let config = config_of(
-        request,
-        dataset,
-        (&fold, window_rule, &windows),
-        (began_with, device),
-    );
+    let config = config_of(request, dataset, (&fold, window_rule, &windows), (began_with, device));
     let _claimed = run.claim(&config)?;
-    let (network, proposal) =
-        start.map_or((None, None), |start| (Some(start.network), start.proposal));
+    let (network, proposal) = start.map_or((None, None), |start| (Some(start.network), start.proposal));
     let better = |trained| match starting_weights()? {
         None => Ok(trained),
         Some(start) => better_goals(start, trained, (run, &config, device), &fold),
@@ -159,20 +149,13 @@ fn config_of(
 }
 
 /// Early stopping needs a validation part.
-fn ensure_patience(
-    request: &TrainingRequest,
-    fold: &Fold<'_>,
-    rule: WindowRule,
-) -> Result<(), DdlError> {
+fn ensure_patience(request: &TrainingRequest, fold: &Fold<'_>, rule: WindowRule) -> Result<(), DdlError> {
     let (validation, Some(patience)) = (request.validation, request.patience) else {
         return Ok(());
     };
     let measured = validation > 0.0 || !request.validation_recordings.is_empty();
     if patience == 0 || !measured {
-        return Err(DdlError::Patience {
-            patience,
-            validation,
-        });
+        return Err(DdlError::Patience { patience, validation });
     }
     if fold.training_split(rule, validation).validation.is_empty() {
         return Err(DdlError::NothingToValidateOn {
@@ -272,8 +255,7 @@ fn run_epochs(
         ensure_every_epoch_is_recorded(&epochs, measured, run)?;
     }
     let mut saved = Instant::now();
-    let is_over =
-        |epochs: &[EpochReport]| early_stopping.is_some_and(|stopping| stopping.is_over(epochs));
+    let is_over = |epochs: &[EpochReport]| early_stopping.is_some_and(|stopping| stopping.is_over(epochs));
     while !trainer.is_finished() && !is_over(&epochs) {
         let mut step = trainer.step()?;
         if let Some(epoch) = &mut step.finished_epoch {

@@ -6,9 +6,7 @@ use ddl_network::TrainingConfig;
 pub(crate) fn recipe(training: &TrainingConfig, goals: &str) -> String {
     let (pedestrians, rate) = (training.batch_pedestrians, training.learning_rate);
     let schedule = training.learning_rate_schedule;
-    format!(
-        "batches of more than {pedestrians} pedestrians, Adam with step size {rate} ({schedule}); goals {goals}"
-    )
+    format!("batches of more than {pedestrians} pedestrians, Adam with step size {rate} ({schedule}); goals {goals}")
 }
 
 /// How the epoch of the model was chosen.
@@ -21,7 +19,7 @@ pub(crate) fn selection(patience: Option<usize>) -> &'static str {
 
 /// The part of the training set that an epoch sees; `None` for all of it.
 pub(crate) fn subset(training: &TrainingConfig) -> Option<String> {
-    training.pedestrians_per_epoch.map(|pedestrians| {
-        format!("about {pedestrians} pedestrians an epoch, going round a seeded order of all")
-    })
+    training
+        .pedestrians_per_epoch
+        .map(|pedestrians| format!("about {pedestrians} pedestrians an epoch, going round a seeded order of all"))
 }

@@ -36,8 +36,7 @@ pub struct Calibration {
 
 const FILE: &str = include_str!("calibration.json");
 static FITTED: LazyLock<Option<Calibration>> = LazyLock::new(|| serde_json::from_str(FILE).ok());
-static REGIONS: LazyLock<Arc<RegionTable>> =
-    LazyLock::new(|| Arc::new(Calibration::fitted().regions.clone()));
+static REGIONS: LazyLock<Arc<RegionTable>> = LazyLock::new(|| Arc::new(Calibration::fitted().regions.clone()));
 
 impl Calibration {
     /// The constants that come with the program.
@@ -46,13 +45,8 @@ impl Calibration {
     /// Never: a test reads the file.
     #[must_use]
     pub fn fitted() -> &'static Self {
-        #[expect(
-            clippy::expect_used,
-            reason = "the file is part of the program, and a test reads it"
-        )]
-        FITTED
-            .as_ref()
-            .expect("calibration.json holds the constants")
+        #[expect(clippy::expect_used, reason = "the file is part of the program, and a test reads it")]
+        FITTED.as_ref().expect("calibration.json holds the constants")
     }
 
     /// SHA-256 of the constants that come with the program.
@@ -84,21 +78,13 @@ impl Calibration {
 
     /// Standard deviations around the positions of the hypotheses, one for each step (m). The pedestrian was observed
     /// at these positions (m), `time_step` seconds apart, and has these goals.
-    pub(crate) fn spread(
-        &self,
-        observed: &[Position],
-        goals: (&[Position], &[f64]),
-        time_step: f64,
-    ) -> [f64; HORIZON] {
-        let steps = observed
-            .array_windows()
-            .map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
+    pub(crate) fn spread(&self, observed: &[Position], goals: (&[Position], &[f64]), time_step: f64) -> [f64; HORIZON] {
+        let steps = observed.array_windows().map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
         let speed = steps.clone().sum::<f64>() / (steps.len().max(1) as f64 * time_step);
         let at_end = self.spread_of_speed * speed + self.spread_of_goals * deviation(goals);
         std::array::from_fn(|t| {
             let share = (t + 1) as f64 / HORIZON as f64;
-            self.least_spread
-                .hypot(at_end * share.powf(self.spread_growth))
+            self.least_spread.hypot(at_end * share.powf(self.spread_growth))
         })
     }
 }

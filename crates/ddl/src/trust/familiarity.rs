@@ -47,8 +47,7 @@ impl TrainingMotions {
     /// tracks.
     pub(crate) fn learn(tracks: &[Vec<Position>], time_step: f64) -> Option<Self> {
         let features = |track: &Vec<Position>| features(track.get(..OBSERVED)?, time_step);
-        let all: Vec<SVector<f64, FEATURES>> =
-            tracks.iter().map(features).collect::<Option<_>>()?;
+        let all: Vec<SVector<f64, FEATURES>> = tracks.iter().map(features).collect::<Option<_>>()?;
         if all.is_empty() {
             return None;
         }
@@ -80,9 +79,7 @@ impl TrainingMotions {
         let mut distances: Vec<f64> = apart.iter().map(|x| motions.distance(x)).collect();
         distances.sort_by(f64::total_cmp);
         let last = distances.len().checked_sub(1)?;
-        motions.distances = (0..=PARTS)
-            .map(|part| distances[part * last / PARTS])
-            .collect();
+        motions.distances = (0..=PARTS).map(|part| distances[part * last / PARTS]).collect();
         motions.is_valid().then_some(motions)
     }
 

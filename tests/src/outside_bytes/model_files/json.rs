@@ -27,13 +27,8 @@ pub fn read_run_config(bytes: &[u8]) {
         match with_file(&path, &text, |_| run.config()) {
             Err(error) => names_file(&error, &folder.path().display().to_string()),
             Ok(config) => {
-                let _ = (
-                    config.star.check(),
-                    config.goals.check(),
-                    config.training.check(),
-                );
-                let written =
-                    serde_json::to_string(&config).expect("a valid configuration can be written");
+                let _ = (config.star.check(), config.goals.check(), config.training.check());
+                let written = serde_json::to_string(&config).expect("a valid configuration can be written");
                 let again = with_file(&path, written.as_bytes(), |_| run.config());
                 assert_eq!(again.ok(), Some(config));
             }

@@ -21,10 +21,7 @@ impl PackedFile {
         let config = smallest::config();
         let (network, proposal) = (smallest::network(&config), smallest::proposal(&config));
         let mut tensors = Vec::new();
-        for (head, weights) in [
-            ("network.", network.weights()),
-            ("proposal.", proposal.weights()),
-        ] {
+        for (head, weights) in [("network.", network.weights()), ("proposal.", proposal.weights())] {
             for tensor in weights.to_half().expect("new weights are small") {
                 let name = format!("{head}{}", tensor.name);
                 tensors.push(HalfTensor { name, ..tensor });
@@ -116,15 +113,11 @@ fn packed(config: &str, tensors: &[HalfTensor]) -> Vec<u8> {
     for tensor in by_name {
         part(tensor.name.as_bytes());
         let sizes = tensor.shape.iter();
-        let shape: Vec<u8> = sizes
-            .flat_map(|&size| (size as u64).to_le_bytes())
-            .collect();
+        let shape: Vec<u8> = sizes.flat_map(|&size| (size as u64).to_le_bytes()).collect();
         part(&shape);
         part(&tensor.bytes);
     }
-    let digits = |byte: &u8| {
-        [byte >> 4, byte & 15].map(|digit| char::from(b"0123456789abcdef"[usize::from(digit)]))
-    };
+    let digits = |byte: &u8| [byte >> 4, byte & 15].map(|digit| char::from(b"0123456789abcdef"[usize::from(digit)]));
     let sha256: String = hasher.finalize().iter().flat_map(digits).collect();
     let entry = serde_json::json!({ "layout": 3, "config": config, "sha256": sha256 });
     let header = HashMap::from([("ddl".to_owned(), entry.to_string())]);

@@ -58,9 +58,7 @@ fn read_config(sound: &Sound, bytes: &[u8]) {
 
 fn read_whole(sound: &Sound, bytes: &[u8]) {
     let (file, is_sound) = sound.whole.edited(bytes);
-    match with_file(&sound.path, &file, |path| {
-        Ddl::load(path, DeviceChoice::Cpu)
-    }) {
+    match with_file(&sound.path, &file, |path| Ddl::load(path, DeviceChoice::Cpu)) {
         Ok(model) => {
             let config = model.config();
             assert!(config.star.check().is_ok() && config.goals.check().is_ok());

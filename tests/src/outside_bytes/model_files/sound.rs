@@ -61,10 +61,7 @@ fn without_digest(file: &[u8]) -> Vec<u8> {
     let facts = origin.as_str().map(serde_json::from_str::<Value>);
     let mut facts = facts.expect("a valid origin").expect("a valid origin");
     let all = facts.as_object_mut().expect("a valid origin");
-    assert!(
-        all.remove("numbers.sha256").is_some(),
-        "the file has a digest"
-    );
+    assert!(all.remove("numbers.sha256").is_some(), "the file has a digest");
     *origin = facts.to_string().into();
     safetensors_file::join(&header, numbers)
 }

@@ -69,10 +69,7 @@ fn stop(child: &mut Child, at_once: bool) {
     if !at_once {
         use rustix::process::{Pid, Signal, kill_process};
         if kill_process(Pid::from_child(child), Signal::TERM).is_err() {
-            tell(format_args!(
-                "warning: cannot send SIGTERM to process {}",
-                child.id()
-            ));
+            tell(format_args!("warning: cannot send SIGTERM to process {}", child.id()));
         }
         return;
     }

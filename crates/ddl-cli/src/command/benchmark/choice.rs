@@ -28,12 +28,7 @@ pub(super) struct Choice {
     folds: Vec<String>,
     /// Variants to train: full, no-goal-shift, no-dynamics, star, perceptron (the full method on a network without
     /// attention), or all
-    #[arg(
-        long,
-        value_delimiter = ',',
-        value_name = "NAMES",
-        default_value = "full"
-    )]
+    #[arg(long, value_delimiter = ',', value_name = "NAMES", default_value = "full")]
     variants: Vec<String>,
     /// Protocols to score under: published, fair, single, online, online-single; with published the models are trained
     /// by the paper's recipe, otherwise by the recommended one, which keeps only the last epoch
@@ -45,12 +40,7 @@ pub(super) struct Choice {
     )]
     protocols: Vec<Protocol>,
     /// Seeds of the trainings; the report gives means and standard deviations over them
-    #[arg(
-        long,
-        value_delimiter = ',',
-        value_name = "NUMBERS",
-        default_value = "1"
-    )]
+    #[arg(long, value_delimiter = ',', value_name = "NUMBERS", default_value = "1")]
     seeds: Vec<u64>,
     /// auto, cpu or cuda
     #[arg(long, default_value = "cpu")]
@@ -113,11 +103,7 @@ impl Choice {
         } else {
             Recipe::Recommended
         };
-        if name == Recipe::Published
-            && protocols
-                .iter()
-                .any(|protocol| protocol.gives_recording_memory())
-        {
+        if name == Recipe::Published && protocols.iter().any(|protocol| protocol.gives_recording_memory()) {
             bail!(
                 "the protocol published needs the paper's recipe, whose models have no memory of a place: leave out \
                  published, or online and online-single"

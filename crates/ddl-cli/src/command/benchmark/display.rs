@@ -65,18 +65,13 @@ impl Display {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         let line = match event {
             Event::Started => self.started(&mut state, &task.id),
-            Event::Advanced(fraction, message) => {
-                self.advanced(&mut state, &task.id, fraction, message)
-            }
+            Event::Advanced(fraction, message) => self.advanced(&mut state, &task.id, fraction, message),
             Event::Ended(end) => state.ended(&task.id, end),
         };
         let left = state.left_in_words();
         self.overall.set_position(steps(state.fraction()));
-        self.overall.set_message(format!(
-            "{} of {} tasks, {left}",
-            state.ended,
-            state.tasks.len()
-        ));
+        self.overall
+            .set_message(format!("{} of {} tasks, {left}", state.ended, state.tasks.len()));
         let has_failed = matches!(event, Event::Ended(End::Failed { .. }));
         if let Some(line) = line {
             self.say(&line, has_failed);
@@ -100,19 +95,12 @@ impl Display {
             return Some(format!("{id}: started"));
         };
         task.bar = bars.insert_before(&self.overall, ProgressBar::new(STEPS));
-        task.bar
-            .set_style(style("{bar:30} {percent:>3} %  {prefix}  {msg}"));
+        task.bar.set_style(style("{bar:30} {percent:>3} %  {prefix}  {msg}"));
         task.bar.set_prefix(id.to_owned());
         None
     }
 
-    fn advanced(
-        &self,
-        state: &mut State,
-        id: &str,
-        fraction: f64,
-        message: &str,
-    ) -> Option<String> {
+    fn advanced(&self, state: &mut State, id: &str, fraction: f64, message: &str) -> Option<String> {
         let task = state.tasks.get_mut(id)?;
         task.done = fraction.clamp(0.0, 1.0);
         task.bar.set_position(steps(fraction));
@@ -149,9 +137,7 @@ impl State {
         };
         Self {
             start,
-            tasks: costs
-                .map(|(id, cost)| (id.to_owned(), task(cost)))
-                .collect(),
+            tasks: costs.map(|(id, cost)| (id.to_owned(), task(cost))).collect(),
             ended: 0,
         }
     }

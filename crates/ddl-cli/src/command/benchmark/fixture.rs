@@ -27,12 +27,7 @@ pub(super) fn settings(name: Recipe) -> Settings {
     }
 }
 
-pub(super) fn plan(
-    settings: Settings,
-    folds: &[&str],
-    methods: &[Method],
-    seeds: &[u64],
-) -> anyhow::Result<Plan> {
+pub(super) fn plan(settings: Settings, folds: &[&str], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Plan> {
     let folds: Vec<String> = folds.iter().map(|&fold| fold.to_owned()).collect();
     Plan::new(settings, &folds, methods, seeds)
 }

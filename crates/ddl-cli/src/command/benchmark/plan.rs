@@ -106,12 +106,7 @@ impl Words {
 }
 
 impl Plan {
-    pub(crate) fn new(
-        settings: Settings,
-        folds: &[String],
-        methods: &[Method],
-        seeds: &[u64],
-    ) -> anyhow::Result<Self> {
+    pub(crate) fn new(settings: Settings, folds: &[String], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Self> {
         ensure!(settings.epochs > 0, "training needs at least one epoch");
         let mut tasks: Vec<Task> = Vec::new();
         for fold in folds {
@@ -127,10 +122,7 @@ impl Plan {
                 .flat_map(|variant| seeds.iter().map(move |seed| (variant, seed)))
             {
                 let id = format!("{fold}-{}-{seed}", variant.name());
-                ensure!(
-                    tasks.iter().all(|task| task.id != id),
-                    "the options ask for {id} twice"
-                );
+                ensure!(tasks.iter().all(|task| task.id != id), "the options ask for {id} twice");
                 tasks.push(Task {
                     id,
                     fold: fold.clone(),
@@ -175,10 +167,7 @@ impl Plan {
             .option("--train-pedestrians", settings.train_pedestrians)
             .option("--proposal-steps", settings.proposal_steps)
             .option("--recipe", Some(settings.recipe.name))
-            .option(
-                "--batch-pedestrians",
-                optimiser.map(|of| of.batch_pedestrians),
-            )
+            .option("--batch-pedestrians", optimiser.map(|of| of.batch_pedestrians))
             .option("--learning-rate", optimiser.map(|of| of.learning_rate))
             .option("--learning-rate-schedule", optimiser.map(|of| of.schedule))
             .path("--out", &task.run_folder(out));
@@ -190,24 +179,15 @@ impl Plan {
             .0
     }
 
-    pub(super) fn evaluate_arguments(
-        &self,
-        task: &Task,
-        out: &Path,
-        threads: usize,
-    ) -> Vec<String> {
+    pub(super) fn evaluate_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
         let words = Words::of("evaluate")
             .path("--model", &task.run_folder(out))
             .option("--data", data);
         let protocols = self.settings.protocols.iter();
-        let words = protocols.fold(words, |words, protocol| {
-            words.option("--protocol", Some(protocol))
-        });
+        let words = protocols.fold(words, |words, protocol| words.option("--protocol", Some(protocol)));
         let words = words.option("--test-pedestrians", self.settings.test_pedestrians);
-        self.on_machine(words, threads)
-            .option("--progress", Some("json"))
-            .0
+        self.on_machine(words, threads).option("--progress", Some("json")).0
     }
 
     pub(super) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
@@ -236,12 +216,7 @@ impl Plan {
         let file = out.join("plan.json");
         match fs::read(&file) {
             Ok(text) => {
-                let damaged = || {
-                    format!(
-                        "{} is damaged: delete it or choose another --out",
-                        file.display()
-                    )
-                };
+                let damaged = || format!("{} is damaged: delete it or choose another --out", file.display());
                 let Layout { format } = serde_json::from_slice(&text).with_context(damaged)?;
                 ensure!(
                     format == FORMAT,

@@ -22,20 +22,10 @@ fn every_combination_is_there_once_and_the_longest_comes_first() {
         assert!(pairs.all(|pair| pair[0].cost() >= pair[1].cost()));
     }
     let same_goals = |task: &Task| plan.with_same_goals(task).map(|other| other.id.as_str());
-    assert!(
-        plan.tasks[..6]
-            .iter()
-            .all(|task| same_goals(task).is_none())
-    );
+    assert!(plan.tasks[..6].iter().all(|task| same_goals(task).is_none()));
     assert_eq!(same_goals(&plan.tasks[6]), Some("univ-full-1"));
-    let ids: Vec<&str> = plan.tasks[..4]
-        .iter()
-        .map(|task| task.id.as_str())
-        .collect();
-    assert_eq!(
-        ids,
-        ["univ-full-1", "univ-full-2", "zara2-full-1", "zara2-full-2"]
-    );
+    let ids: Vec<&str> = plan.tasks[..4].iter().map(|task| task.id.as_str()).collect();
+    assert_eq!(ids, ["univ-full-1", "univ-full-2", "zara2-full-1", "zara2-full-2"]);
     let twice = published(&["eth", "eth"], &[Method::FULL], &[1]);
     let message = twice.unwrap_err().to_string();
     assert_eq!(message, "the options ask for eth-full-1 twice");
@@ -79,10 +69,7 @@ fn a_task_becomes_arguments_of_the_program() {
          --output runs/x/eth-full-7/goals.json --device cpu --threads 2"
     );
     let words = train(&published(&["eth"], &[Method::PERCEPTRON], &[7]).unwrap());
-    assert!(
-        words.contains("--fold eth --backbone perceptron --seed"),
-        "{words}"
-    );
+    assert!(words.contains("--fold eth --backbone perceptron --seed"), "{words}");
 }
 
 #[test]
@@ -94,9 +81,7 @@ fn a_plan_survives_its_file_and_may_gain_tasks() {
     let mut two = published(&["eth", "hotel"], &[Method::FULL], &[1]).unwrap();
     two.settings.data = Some(PathBuf::from("/moved"));
     two.write(folder.path()).unwrap();
-    let message = Plan::read(&folder.path().join("none"))
-        .unwrap_err()
-        .to_string();
+    let message = Plan::read(&folder.path().join("none")).unwrap_err().to_string();
     assert!(message.contains("that `ddl benchmark` made"), "{message}");
 }
 

@@ -61,19 +61,13 @@ pub(super) fn check(checkout: &Path, plan: &Plan) -> anyhow::Result<()> {
 }
 
 /// Writes the section of the plan's convention into the results page of the `checkout`.
-pub(super) fn publish(
-    checkout: &Path,
-    plan: &Plan,
-    report: &Report,
-    making: &Making,
-) -> anyhow::Result<()> {
+pub(super) fn publish(checkout: &Path, plan: &Plan, report: &Report, making: &Making) -> anyhow::Result<()> {
     let convention = plan.settings.convention;
     let summary = report
         .summary(convention)
         .context("the report has no results that the page shows")?;
     let page = with_section(checkout, convention, &text(plan, &summary, making))?;
-    write_whole(&checkout.join(PAGE), page.as_bytes())
-        .with_context(|| format!("cannot write {PAGE}"))
+    write_whole(&checkout.join(PAGE), page.as_bytes()).with_context(|| format!("cannot write {PAGE}"))
 }
 
 fn with_section(checkout: &Path, convention: Convention, text: &str) -> anyhow::Result<String> {

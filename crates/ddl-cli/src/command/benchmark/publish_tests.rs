@@ -32,13 +32,7 @@ fn report(convention: Convention, min_ade: f64) -> Report {
     let row = |fold: &str, forecaster: &str, epochs| ResultRow {
         conditions: Conditions {
             epochs,
-            ..Conditions::new(
-                convention,
-                convention.headline_rule(),
-                Protocol::Fair,
-                fold,
-                forecaster,
-            )
+            ..Conditions::new(convention, convention.headline_rule(), Protocol::Fair, fold, forecaster)
         },
         scores: Scores {
             min_ade,
@@ -146,10 +140,7 @@ fn a_section_says_what_made_it_and_names_no_folder_of_this_machine() {
 #[test]
 fn what_cannot_be_published_is_refused_before_the_work() {
     for (settings, words) in [
-        (
-            whole(Convention::Simulated),
-            "no section for results in simulated",
-        ),
+        (whole(Convention::Simulated), "no section for results in simulated"),
         (settings(Recipe::Published), "leave out --publish"),
     ] {
         let plan = plan(settings, &["one"], &[Method::FULL], &[1]).unwrap();

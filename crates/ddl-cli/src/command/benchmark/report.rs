@@ -10,12 +10,7 @@ use ddl::report::Report;
 use ddl::{Protocol, Results};
 use std::path::{Path, PathBuf};
 
-pub(super) fn write(
-    plan: &Plan,
-    runs: Vec<PathBuf>,
-    out: &Path,
-    reporting: &Reporting,
-) -> anyhow::Result<Report> {
+pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Reporting) -> anyhow::Result<Report> {
     let settings = &plan.settings;
     let title = format!(
         "Benchmark: {}, {}, recipe {}",
@@ -48,11 +43,7 @@ pub(super) fn write(
 
 /// The baselines in the other recorded convention, if its recordings are there: rows without training show best how far
 /// the two conventions differ.
-fn baselines_elsewhere(
-    settings: &Settings,
-    out: &Path,
-    commit: &str,
-) -> anyhow::Result<Option<PathBuf>> {
+fn baselines_elsewhere(settings: &Settings, out: &Path, commit: &str) -> anyhow::Result<Option<PathBuf>> {
     let other = match settings.convention {
         Convention::Star => Convention::SocialGan,
         Convention::SocialGan => Convention::Star,

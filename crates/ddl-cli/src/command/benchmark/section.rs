@@ -32,10 +32,7 @@ mod tests {
         let other = marks(" in social-gan").concat();
         let page = format!("before\n{begin}old\n{end}between\n{other}after\n");
         let new = replaced(&page, " in star", "new\n").unwrap();
-        assert_eq!(
-            new,
-            format!("before\n{begin}new\n{end}between\n{other}after\n")
-        );
+        assert_eq!(new, format!("before\n{begin}new\n{end}between\n{other}after\n"));
         assert_eq!(replaced(&new, " in star", "new\n").unwrap(), new);
     }
 

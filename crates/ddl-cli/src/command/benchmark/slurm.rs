@@ -65,12 +65,7 @@ impl Slurm {
     }
 
     /// Submits the unfinished tasks, `jobs` of them at a time, and a job that makes the report after them.
-    pub(super) fn submit(
-        &self,
-        plan: &Plan,
-        jobs: Option<usize>,
-        threads: usize,
-    ) -> anyhow::Result<()> {
+    pub(super) fn submit(&self, plan: &Plan, jobs: Option<usize>, threads: usize) -> anyhow::Result<()> {
         let unfinished: Vec<usize> = (0..plan.tasks.len())
             .filter(|&index| Record::of(&plan.tasks[index], &self.out).is_none())
             .collect();
@@ -99,7 +94,11 @@ impl Slurm {
                 let some = format!(
                     "only some tasks are submitted, as jobs {before}; run the same command again later for the rest"
                 );
-                if submitted.is_empty() { "no task is submitted".to_owned() } else { some }
+                if submitted.is_empty() {
+                    "no task is submitted".to_owned()
+                } else {
+                    some
+                }
             })?;
             submitted.push(id);
         }
@@ -131,12 +130,7 @@ impl Slurm {
     }
 
     /// The job's number.
-    fn sbatch(
-        &self,
-        options: &[String],
-        (name, script): (&str, &str),
-        first: &[OsString],
-    ) -> anyhow::Result<String> {
+    fn sbatch(&self, options: &[String], (name, script): (&str, &str), first: &[OsString]) -> anyhow::Result<String> {
         let file = self.out.join("slurm").join(name);
         let unwritable = || format!("cannot write {}", file.display());
         write_whole(&file, script.as_bytes()).with_context(unwritable)?;
@@ -162,12 +156,7 @@ impl Slurm {
     ///
     /// # Errors
     /// [`DdlError::Interrupted`] after a wish to stop, which does not stop the jobs.
-    pub(super) fn watch(
-        &self,
-        plan: &Plan,
-        display: &Display,
-        interrupt: &Interrupt,
-    ) -> anyhow::Result<()> {
+    pub(super) fn watch(&self, plan: &Plan, display: &Display, interrupt: &Interrupt) -> anyhow::Result<()> {
         let mut told: BTreeMap<usize, String> = BTreeMap::new();
         let mut open: Vec<usize> = (0..plan.tasks.len()).collect();
         let mut is_first = true;
@@ -216,9 +205,9 @@ impl Slurm {
 /// The output of a program of Slurm.
 fn answer(command: &mut Command) -> anyhow::Result<String> {
     let name = command.get_program().display().to_string();
-    let output = command.output().with_context(|| {
-        format!("cannot start `{name}`: `--executor slurm` needs Slurm's programs on this machine")
-    })?;
+    let output = command
+        .output()
+        .with_context(|| format!("cannot start `{name}`: `--executor slurm` needs Slurm's programs on this machine"))?;
     ensure!(
         output.status.success(),
         "`{}` failed ({}): {}",

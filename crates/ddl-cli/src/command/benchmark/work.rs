@@ -60,12 +60,7 @@ pub(super) type Watch<'a> = &'a (dyn Fn(&Task, Event<'_>) + Sync);
 
 /// The number of parallel processes and the threads of each. Default: on the CPU one process for each core; on CUDA all
 /// tasks up to five, since a training mostly waits for its next kernel launch.
-pub(super) fn side_by_side(
-    asked: Option<usize>,
-    device: DeviceChoice,
-    cores: usize,
-    tasks: usize,
-) -> (usize, usize) {
+pub(super) fn side_by_side(asked: Option<usize>, device: DeviceChoice, cores: usize, tasks: usize) -> (usize, usize) {
     let jobs = asked.unwrap_or(match device {
         DeviceChoice::Cuda => tasks.clamp(1, ON_ONE_CARD),
         DeviceChoice::Cpu | DeviceChoice::Auto => cores,
@@ -76,13 +71,7 @@ pub(super) fn side_by_side(
 impl Workers {
     /// The end of each task, in the plan's order. After a wish to stop no task starts, and running ones save their
     /// state.
-    pub(super) fn run(
-        &self,
-        plan: &Plan,
-        out: &Path,
-        watch: Watch<'_>,
-        interrupt: &Interrupt,
-    ) -> Vec<End> {
+    pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watch<'_>, interrupt: &Interrupt) -> Vec<End> {
         let next = AtomicUsize::new(0);
         let ends = Mutex::new(vec![End::Interrupted; plan.tasks.len()]);
         let work = || {
@@ -153,10 +142,7 @@ impl Workers {
         ];
         for (arguments, from, to) in steps {
             let tell = |fraction: f64, message: &str| {
-                watch(
-                    task,
-                    Event::Advanced(from + (to - from) * fraction, message),
-                );
+                watch(task, Event::Advanced(from + (to - from) * fraction, message));
             };
             match self.run_step(&mut log, &arguments, interrupt, &tell) {
                 Ok(status) if status.success() => {}

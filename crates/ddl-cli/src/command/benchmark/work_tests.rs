@@ -77,8 +77,7 @@ impl Bench {
 
     fn run(&self, plan: &Plan) -> Vec<End> {
         let ignore = |_: &Task, _: Event<'_>| {};
-        self.workers
-            .run(plan, &self.out(), &ignore, &Interrupt::default())
+        self.workers.run(plan, &self.out(), &ignore, &Interrupt::default())
     }
 }
 
@@ -108,9 +107,7 @@ fn every_task_is_trained_scored_and_kept_the_second_time() {
         Event::Ended(_) => drop(ended.fetch_add(1, Ordering::SeqCst)),
         _ => {}
     };
-    let ends = bench
-        .workers
-        .run(&plan, &bench.out(), &watch, &Interrupt::default());
+    let ends = bench.workers.run(&plan, &bench.out(), &watch, &Interrupt::default());
     assert_eq!((finished(&ends), ended.into_inner()), (3, 3), "{ends:?}");
     let of_a = of_a.into_inner().unwrap();
     assert_eq!(of_a.len(), 21);
@@ -129,13 +126,8 @@ fn a_failed_task_shows_its_log_and_lets_the_others_run() {
     let [End::Failed { reason }, End::Finished { .. }] = &ends[..] else {
         panic!("{ends:?}")
     };
-    assert!(
-        reason.contains("`ddl train` ended with exit status: 1"),
-        "{reason}"
-    );
-    assert!(
-        reason.contains("the loss is not a number") && reason.contains("broken-full-1/log.txt")
-    );
+    assert!(reason.contains("`ddl train` ended with exit status: 1"), "{reason}");
+    assert!(reason.contains("the loss is not a number") && reason.contains("broken-full-1/log.txt"));
     bench.workers.program = vec!["/no/such/program".into()];
     let ends = bench.run(&plan(&["a"]));
     let [End::Failed { reason }] = &ends[..] else {

@@ -83,11 +83,7 @@ impl OtherProgram {
                 commit: commit.to_owned(),
                 ..Conditions::new(convention, rule, protocol, &*fold, name)
             };
-            rows.extend(external::measure(
-                &conditions,
-                &matched,
-                baseline::NOISE_SEED,
-            )?);
+            rows.extend(external::measure(&conditions, &matched, baseline::NOISE_SEED)?);
         }
         let report = Report::new(format!("{name} on {fold}"), rows)?;
         if let Some(folder) = &self.out {

@@ -108,20 +108,13 @@ impl KeptMemory {
                 continue;
             };
             if let Err(error) = kept.file.write(place) {
-                tell(format_args!(
-                    "warning: {}; it is tried again",
-                    words(&error.into())
-                ));
+                tell(format_args!("warning: {}; it is tried again", words(&error.into())));
             }
         }
     }
 
     /// Writes the file of a scene that has ended, and lets go of it.
-    pub(super) fn end(
-        &mut self,
-        scene: Option<&SceneName>,
-        scenes: &mut LiveScenes,
-    ) -> anyhow::Result<()> {
+    pub(super) fn end(&mut self, scene: Option<&SceneName>, scenes: &mut LiveScenes) -> anyhow::Result<()> {
         let Some(Some(mut kept)) = self.kept.remove(&scene.cloned()) else {
             return Ok(());
         };
@@ -147,10 +140,7 @@ impl KeptMemory {
     /// Writes all files at the end of the stream; the error is the first.
     pub(super) fn end_all(&mut self, scenes: &mut LiveScenes) -> anyhow::Result<()> {
         let names: Vec<_> = self.kept.keys().cloned().collect();
-        let ends: Vec<_> = names
-            .iter()
-            .map(|scene| self.end(scene.as_ref(), scenes))
-            .collect();
+        let ends: Vec<_> = names.iter().map(|scene| self.end(scene.as_ref(), scenes)).collect();
         let mut failed = ends.into_iter().filter_map(Result::err);
         let Some(first) = failed.next() else {
             return Ok(());
@@ -172,12 +162,7 @@ impl Kept {
         })
     }
 
-    fn begin(
-        &mut self,
-        scene: Option<&SceneName>,
-        scenes: &mut LiveScenes,
-        model: &Ddl,
-    ) -> anyhow::Result<()> {
+    fn begin(&mut self, scene: Option<&SceneName>, scenes: &mut LiveScenes, model: &Ddl) -> anyhow::Result<()> {
         let camera = scenes.frame_step();
         let memory = match self.read.take() {
             Some(memory) => memory,

@@ -67,8 +67,7 @@ impl LeftOut {
         let dropped = scenes.map_or(0, LiveScenes::dropped);
         if dropped > 0 {
             let most = scenes.and_then(LiveScenes::most_dropped);
-            let most =
-                most.map(|(scene, count)| format!(", most of them of scene {scene} ({count})"));
+            let most = most.map(|(scene, count)| format!(", most of them of scene {scene} ({count})"));
             tell(format_args!(
                 "note: {} forecast, and {dropped} dropped, because a later one came first{}",
                 frames(forecast),
@@ -77,9 +76,7 @@ impl LeftOut {
         }
         match self.wrong.count {
             0 => Ok(()),
-            1 => Err(anyhow!(
-                "standard input: one line or frame was wrong, and was left out"
-            )),
+            1 => Err(anyhow!("standard input: one line or frame was wrong, and was left out")),
             count => Err(anyhow!(
                 "standard input: {count} lines or frames were wrong, and were left out"
             )),

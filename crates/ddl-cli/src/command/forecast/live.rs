@@ -10,10 +10,7 @@ use crate::recordings;
 use crate::telling::{tell, words};
 use crate::units::{Units, live_step};
 use anyhow::{Context as _, bail};
-use ddl::data::{
-    CompletionCounts, Frame, Homography, Observation, PlausibilityWarning, Recording, SceneName,
-    Window,
-};
+use ddl::data::{CompletionCounts, Frame, Homography, Observation, PlausibilityWarning, Recording, SceneName, Window};
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
 use std::io::{Write as _, stdout};
@@ -34,9 +31,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     let memory = forecast.memory.as_deref();
     let watching = Watching {
         scenes: None,
-        memory: memory
-            .map(|path| KeptMemory::open(path, &model))
-            .transpose()?,
+        memory: memory.map(|path| KeptMemory::open(path, &model)).transpose()?,
     };
     let watching = Arc::new(Mutex::new(watching));
     if memory.is_some() {
@@ -82,9 +77,7 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
         answered: 0,
     };
     stream.follow(&Frames::of_standard_input()?, &units)?;
-    stream
-        .left_out
-        .end(stream.answered, lock(watching).scenes.as_ref())?;
+    stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
         bail!(
             "standard input holds no tracks: the first line must be frame,pedestrian,x,y, followed by a row for each \
@@ -101,19 +94,10 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
 }
 
 /// Begins to watch, as soon as it is known how many frames make a step.
-fn begin(
-    forecast: &Forecast,
-    model: &Ddl,
-    watching: &Mutex<Watching>,
-    step: i64,
-) -> anyhow::Result<()> {
+fn begin(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>, step: i64) -> anyhow::Result<()> {
     let scenes = LiveScenes::with_frame_step(step)?;
     let scenes = scenes.with_completion(forecast.tracks.completion());
-    let scenes = if forecast.latest {
-        scenes.latest_only()
-    } else {
-        scenes
-    };
+    let scenes = if forecast.latest { scenes.latest_only() } else { scenes };
     let mut watching = lock(watching);
     let Watching { scenes: to, memory } = &mut *watching;
     let scenes = to.insert(scenes);
@@ -323,8 +307,7 @@ impl Stream<'_> {
 
     fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
         let onward = &mut self.onward;
-        self.forecast
-            .text(self.model, (windows, scenes), Clock::WHOLE, onward)
+        self.forecast.text(self.model, (windows, scenes), Clock::WHOLE, onward)
     }
 
     /// A forecast that fails is left out where there are other scenes; the first of all says what is wrong with the
@@ -339,16 +322,14 @@ impl Stream<'_> {
 
     fn write(&mut self, text: &str, frames: usize) -> anyhow::Result<()> {
         self.answered += frames as u64;
-        self.output
-            .write(text)
-            .with_context(|| match &self.forecast.output {
-                Some(path) => format!(
-                    "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces \
+        self.output.write(text).with_context(|| match &self.forecast.output {
+            Some(path) => format!(
+                "cannot write on to {0}, which holds the forecasts so far (another run with --output {0} replaces \
                      them)",
-                    path.display()
-                ),
-                None => "cannot write to standard output".to_owned(),
-            })
+                path.display()
+            ),
+            None => "cannot write to standard output".to_owned(),
+        })
     }
 }
 
@@ -417,9 +398,7 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
     };
     for (pedestrian, position) in &mut frame.people {
         let seen = Observation::new(frame.number, *pedestrian, *position);
-        *position = homography
-            .place(&seen, &frame.names)
-            .context("standard input")?;
+        *position = homography.place(&seen, &frame.names).context("standard input")?;
     }
     Ok(frame)
 }

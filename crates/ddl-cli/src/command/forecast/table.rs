@@ -46,9 +46,7 @@ const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
 /// The table of these moments, with a column of radii for each requested region.
 pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
-    let mut writer = csv::WriterBuilder::new()
-        .has_headers(false)
-        .from_writer(Vec::new());
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
         let certified = moments.iter().any(|moment| moment.certified.is_some());
         let columns = COLUMNS

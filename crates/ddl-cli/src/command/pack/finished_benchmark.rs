@@ -28,11 +28,7 @@ struct Reported {
     commit: String,
 }
 
-pub(super) fn pack(
-    benchmark: &Path,
-    seed: Option<u64>,
-    out: &Path,
-) -> anyhow::Result<Vec<(PathBuf, usize)>> {
+pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::Result<Vec<(PathBuf, usize)>> {
     let plan = Plan::read(benchmark)?;
     let tasks = tasks(&plan, seed)?;
     let mut reached = BTreeMap::new();
@@ -89,11 +85,9 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
          {}, recipe {}{}",
         settings.profile,
         settings.recipe.name,
-        settings
-            .train_pedestrians
-            .map_or(String::new(), |pedestrians| format!(
-                ", {pedestrians} pedestrians per epoch"
-            )),
+        settings.train_pedestrians.map_or(String::new(), |pedestrians| format!(
+            ", {pedestrians} pedestrians per epoch"
+        )),
     );
     let full = || {
         let tasks = plan.tasks.iter();
@@ -112,11 +106,7 @@ fn tasks(plan: &Plan, seed: Option<u64>) -> anyhow::Result<Vec<&Task>> {
         .collect()
 }
 
-fn reported(
-    report: &Report,
-    task: &Task,
-    test_pedestrians: Option<usize>,
-) -> anyhow::Result<Reported> {
+fn reported(report: &Report, task: &Task, test_pedestrians: Option<usize>) -> anyhow::Result<Reported> {
     let (convention, protocol) = (Convention::Star, Protocol::Fair);
     let window_rule = convention.headline_rule();
     let row = report.rows().iter().find(|row| {

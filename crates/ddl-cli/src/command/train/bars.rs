@@ -30,9 +30,7 @@ impl TrainingBars {
             TrainingStep::Goals(step) => {
                 self.stood = format!("after {done} of {total} batches of goals");
                 let message = format!("batches, endpoint error {:.2} m", step.distance);
-                let bar = self
-                    .goals
-                    .get_or_insert_with(|| Progress::new("goals", mode));
+                let bar = self.goals.get_or_insert_with(|| Progress::new("goals", mode));
                 bar.tell(done, total, &message);
             }
             TrainingStep::Network(step) => {
@@ -42,9 +40,7 @@ impl TrainingBars {
                 self.goals = None;
                 self.stood = format!("in epoch {}, after {done} of {total} batches", step.epoch);
                 let message = format!("batches, epoch {}{}", step.epoch, self.loss);
-                let bar = self
-                    .network
-                    .get_or_insert_with(|| Progress::new("train", mode));
+                let bar = self.network.get_or_insert_with(|| Progress::new("train", mode));
                 bar.tell(done, total, &message);
             }
         }

@@ -57,9 +57,7 @@ pub(super) fn print(
         }
     };
     let measured = compared.is_some();
-    let compared = compared.map_or_else(String::new, |compared| {
-        format!("{}\n", compared_words(compared))
-    });
+    let compared = compared.map_or_else(String::new, |compared| format!("{}\n", compared_words(compared)));
     let next = next(request, (only_goals, measured), &recordings.as_options());
     output::print(&format!("{run}: {done}\n{compared}next: {next}\n"))
 }
@@ -146,9 +144,7 @@ fn verdict(compared: &Comparison) -> String {
         let so_far = if share >= LEAST {
             format!("training seems to help: {gain:.3} m less minADE")
         } else if share <= -LEAST {
-            format!(
-                "training did not help: use the built-in model {builtin}, or train on more recordings"
-            )
+            format!("training did not help: use the built-in model {builtin}, or train on more recordings")
         } else {
             format!("training made no clear difference: {gain:.3} m less minADE")
         };

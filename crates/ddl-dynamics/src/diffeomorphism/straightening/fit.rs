@@ -28,11 +28,7 @@ pub(super) struct Fit<const D: usize> {
 impl<const D: usize> Fit<D> {
     /// The translation that reduces the sum of squared distances from images to `targets` most.
     pub(super) fn best(&self, targets: &[SVector<f64, D>]) -> Option<Bump<D>> {
-        let residuals: Vec<_> = targets
-            .iter()
-            .zip(&self.images)
-            .map(|(y, x)| y - x)
-            .collect();
+        let residuals: Vec<_> = targets.iter().zip(&self.images).map(|(y, x)| y - x).collect();
         let steepest = (2.0 / std::f64::consts::E).sqrt();
         let mut most = 0.0;
         let mut best = None;

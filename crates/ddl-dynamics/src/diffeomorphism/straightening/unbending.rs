@@ -25,10 +25,7 @@ impl<const D: usize> Unbending<D> {
     /// # Errors
     /// The index of the first point at which the polygon turns by 180 degrees or repeats a point.
     pub(super) fn new(points: &[SVector<f64, D>]) -> Result<Self, usize> {
-        let sides: Vec<_> = points
-            .windows(2)
-            .map(|pair| polar(&(pair[1] - pair[0])))
-            .collect();
+        let sides: Vec<_> = points.windows(2).map(|pair| polar(&(pair[1] - pair[0]))).collect();
         if let Some(point) = sides.iter().position(|(length, _)| *length == 0.0) {
             return Err(point);
         }
@@ -78,11 +75,7 @@ fn centroid<const D: usize>(points: &[SVector<f64, D>]) -> SVector<f64, D> {
 }
 
 /// The rotation, in the plane of two unit vectors, by `share` of the angle from one to the other.
-fn rotation<const D: usize>(
-    from: &SVector<f64, D>,
-    to: &SVector<f64, D>,
-    share: f64,
-) -> SMatrix<f64, D, D> {
+fn rotation<const D: usize>(from: &SVector<f64, D>, to: &SVector<f64, D>, share: f64) -> SMatrix<f64, D, D> {
     let cosine = from.dot(to);
     let (sine, across) = polar(&(to - from * cosine));
     if sine == 0.0 {
@@ -104,16 +97,8 @@ fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64,
         let entry = matrix[(row, column)];
         if entry.abs() < counts { 0.0 } else { entry }
     });
-    let decomposition = SVD::try_new(
-        general,
-        true,
-        true,
-        f64::EPSILON,
-        ITERATIONS_PER_DIMENSION * D,
-    );
-    let finite = |(u, v_t): &(DMatrix<f64>, DMatrix<f64>)| {
-        u.iter().chain(v_t).all(|entry| entry.is_finite())
-    };
+    let decomposition = SVD::try_new(general, true, true, f64::EPSILON, ITERATIONS_PER_DIMENSION * D);
+    let finite = |(u, v_t): &(DMatrix<f64>, DMatrix<f64>)| u.iter().chain(v_t).all(|entry| entry.is_finite());
     let factors = decomposition.and_then(|svd| svd.u.zip(svd.v_t));
     // Not observed since negligible entries are set to 0. The identity is a valid rotation, only farther from the
     // optimum.

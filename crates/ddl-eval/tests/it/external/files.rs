@@ -21,9 +21,7 @@ pub(crate) fn still(x: f64, y: f64) -> Vec<Position> {
 }
 
 pub(crate) fn line(observed_until: i64, pedestrian: i64, hypotheses: &str) -> String {
-    format!(
-        "{{\"observed_until\":{observed_until},\"pedestrian\":{pedestrian},\"hypotheses\":[{hypotheses}]}}\n"
-    )
+    format!("{{\"observed_until\":{observed_until},\"pedestrian\":{pedestrian},\"hypotheses\":[{hypotheses}]}}\n")
 }
 
 pub(crate) fn hypothesis(x: f64) -> String {
@@ -35,19 +33,11 @@ pub(crate) fn whole() -> String {
     line(70, 3, &hypothesis(1.0)) + &line(70, 5, &hypothesis(2.0)) + &line(80, 5, &hypothesis(3.0))
 }
 
-pub(crate) fn read(
-    text: &str,
-    format: ExternalFormat,
-    coverage: Coverage,
-) -> Result<Matched, ExternalError> {
+pub(crate) fn read(text: &str, format: ExternalFormat, coverage: Coverage) -> Result<Matched, ExternalError> {
     external::read_from(text.as_bytes(), "f", format, &windows(), coverage)
 }
 
-pub(crate) fn of(
-    windows: &[Window],
-    text: &str,
-    coverage: Coverage,
-) -> Result<Matched, ExternalError> {
+pub(crate) fn of(windows: &[Window], text: &str, coverage: Coverage) -> Result<Matched, ExternalError> {
     let format = ExternalFormat::JsonLines;
     external::read_from(text.as_bytes(), "f", format, windows, coverage)
 }
@@ -69,14 +59,7 @@ pub(crate) fn expected() -> Vec<Forecast> {
     vec![one(&[1.0, 2.0]), one(&[3.0])]
 }
 
-pub(crate) fn rows(
-    recording: &str,
-    until: i64,
-    pedestrian: i64,
-    hypothesis: i64,
-    weight: f64,
-    x: f64,
-) -> String {
+pub(crate) fn rows(recording: &str, until: i64, pedestrian: i64, hypothesis: i64, weight: f64, x: f64) -> String {
     (1..=12).fold(String::new(), |mut text, t| {
         let frame = until + 10 * t;
         writeln!(
@@ -88,8 +71,7 @@ pub(crate) fn rows(
     })
 }
 
-pub(crate) const HEADER: &str =
-    "recording,observed_until,pedestrian,hypothesis,weight,frame,x,y,certified\n";
+pub(crate) const HEADER: &str = "recording,observed_until,pedestrian,hypothesis,weight,frame,x,y,certified\n";
 
 pub(crate) fn table() -> String {
     HEADER.to_owned()

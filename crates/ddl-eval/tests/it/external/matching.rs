@@ -8,8 +8,8 @@ use ddl_eval::{Conditions, Forecast, Forecaster as _, Protocol, Scores};
 use std::fmt::Write as _;
 
 use super::files::{
-    HEADER, complaint, conditions, expected, hypothesis, line, ndjson, of, read, rows, scene,
-    still, table, tracks, whole, windows,
+    HEADER, complaint, conditions, expected, hypothesis, line, ndjson, of, read, rows, scene, still, table, tracks,
+    whole, windows,
 };
 
 #[test]
@@ -23,9 +23,7 @@ fn every_format_says_the_same() {
         (table(), ExternalFormat::Table),
         (table().replace('\n', "\r"), ExternalFormat::Table),
         (
-            table()
-                .replace("yard,", "\"yard\" ,")
-                .replace(",3,0,", ",3.0, 0 ,"),
+            table().replace("yard,", "\"yard\" ,").replace(",3,0,", ",3.0, 0 ,"),
             ExternalFormat::Table,
         ),
         (ndjson(), ExternalFormat::TrajNet),
@@ -33,10 +31,7 @@ fn every_format_says_the_same() {
         let matched = read(&text, format, Coverage::Whole).unwrap();
         assert_eq!(matched.forecasts, expected(), "{format}");
         assert_eq!(matched.windows, windows());
-        assert_eq!(
-            (matched.forecast_pedestrians(), matched.pedestrians()),
-            (3, 3)
-        );
+        assert_eq!((matched.forecast_pedestrians(), matched.pedestrians()), (3, 3));
         assert_eq!(matched.test_subset(), None);
     }
 }
@@ -116,10 +111,7 @@ fn what_ddl_forecast_writes_beside_is_passed_over_and_goals_of_null_are_none() {
     let forecast = &matched.forecasts[0];
     assert_eq!(forecast.goal(0, 1), Some([2.0, 0.0]));
     assert!((forecast.weight(0, 0) - 0.75).abs() < f64::EPSILON);
-    let text = whole().replace(
-        "{\"positions\"",
-        "{\"goal\":null,\"weight\":1.0,\"positions\"",
-    );
+    let text = whole().replace("{\"positions\"", "{\"goal\":null,\"weight\":1.0,\"positions\"");
     let matched = read(&text, ExternalFormat::JsonLines, Coverage::Whole).unwrap();
     assert_eq!(matched.forecasts, expected());
 }
@@ -225,11 +217,7 @@ fn the_protocol_published_is_refused_with_the_reason() {
     let matched = read(&whole(), ExternalFormat::JsonLines, Coverage::Whole).unwrap();
     let error = external::measure(&conditions(Protocol::Published), &matched, 1).unwrap_err();
     assert!(matches!(error, ExternalError::Published));
-    assert!(
-        error
-            .to_string()
-            .contains("the forecaster chooses the goal")
-    );
+    assert!(error.to_string().contains("the forecaster chooses the goal"));
 }
 
 #[test]
@@ -291,9 +279,7 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
         read(&text).unwrap_err().to_string(),
         "f, line 1, recording: is missing, but the windows have several recordings: yard, square"
     );
-    let named = |text: &str, name: &str| {
-        text.replace("{\"obs", &format!("{{\"recording\":\"{name}\",\"obs"))
-    };
+    let named = |text: &str, name: &str| text.replace("{\"obs", &format!("{{\"recording\":\"{name}\",\"obs"));
     let both = named(&text, "yard") + &named(&line(70, 3, &hypothesis(4.0)), "square");
     let matched = read(&both).unwrap();
     assert_eq!(matched.forecasts.len(), 3);
@@ -305,9 +291,7 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
 #[test]
 fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
     let at = |[x, y]: [f64; 2]| format!("{{\"positions\":{:?}}}", still(x, y));
-    let file = |first, second, third| {
-        line(70, 3, &at(first)) + &line(70, 5, &at(second)) + &line(80, 5, &at(third))
-    };
+    let file = |first, second, third| line(70, 3, &at(first)) + &line(70, 5, &at(second)) + &line(80, 5, &at(third));
     // The pedestrians were last seen at (3.5, 0), (3.5, 2) and (3.5, 2.5).
     let swapped = file([0.2, 9.5], [2.0, 9.5], [2.5, 9.5]);
     let mut far = windows();

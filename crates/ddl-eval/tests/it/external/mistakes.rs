@@ -2,17 +2,12 @@
 
 use ddl_eval::external::{self, Coverage, ExternalFormat};
 
-use super::files::{
-    HEADER, complaint, hypothesis, line, rows, scene, still, tracks, whole, windows,
-};
+use super::files::{HEADER, complaint, hypothesis, line, rows, scene, still, tracks, whole, windows};
 
 fn check(format: ExternalFormat, text: &str, expected: &str) {
     let complaint = complaint(text, format);
     let expected = format!("f, line {expected}");
-    assert!(
-        complaint.starts_with(&expected),
-        "{text}\n{complaint}\n{expected}"
-    );
+    assert!(complaint.starts_with(&expected), "{text}\n{complaint}\n{expected}");
 }
 
 /// Cases, one on each line: parts of the file, then the expected error, between arrows. A line continues on the next
@@ -142,21 +137,13 @@ as before
     let of = |sequence: &str| {
         let part = |part: &str| {
             let numbers: Vec<f64> = part.split('/').map(|n| n.parse().unwrap()).collect();
-            rows(
-                "yard",
-                70,
-                numbers[0] as i64,
-                numbers[1] as i64,
-                numbers[2],
-                1.0,
-            )
+            rows("yard", 70, numbers[0] as i64, numbers[1] as i64, numbers[2], 1.0)
         };
         HEADER.to_owned() + &sequence.split(' ').map(part).collect::<String>()
     };
     check_all(format, sequences, |parts| of(parts[0]));
     let many: Vec<String> = (0..1000).map(|k| format!("5/{k}/0.001")).collect();
-    let expected =
-        "242, hypothesis: more than 20 hypotheses of `yard` observed until 70 pedestrian 5";
+    let expected = "242, hypothesis: more than 20 hypotheses of `yard` observed until 70 pedestrian 5";
     check(format, &of(&many.join(" ")), expected);
 }
 
@@ -203,8 +190,7 @@ scenes that forecast it differently (line 14)
     let one_more = good + &own.lines().next().unwrap().replace("190", "200");
     check(format, &one_more, "14, prediction_number 0: 13 positions");
     let many = (0..1000).fold(scene(0, 3, 0), |text, k| text + &tracks(0, 3, k, 70, 1.0));
-    let expected =
-        "242, track.prediction_number: more than 20 hypotheses of observed until 70 pedestrian 3";
+    let expected = "242, track.prediction_number: more than 20 hypotheses of observed until 70 pedestrian 3";
     check(format, &many, expected);
 }
 
@@ -237,8 +223,7 @@ fn positions_beyond_every_map_are_named_with_their_place() {
         (ExternalFormat::Table, table, "2, x, y"),
         (trajnet, track, "2, track.x, track.y"),
     ] {
-        let limit =
-            "must lie within 10000000 m of the origin, found 1000000000000000000000000000000";
+        let limit = "must lie within 10000000 m of the origin, found 1000000000000000000000000000000";
         check(format, &text, &format!("{place}: {limit}"));
     }
 }

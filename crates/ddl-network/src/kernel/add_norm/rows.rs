@@ -102,13 +102,7 @@ impl Decisions {
     }
 
     #[inline(always)]
-    pub(super) fn apply<S: Simd>(
-        self,
-        simd: S,
-        numbers: S::Floats,
-        row: usize,
-        at: usize,
-    ) -> S::Floats {
+    pub(super) fn apply<S: Simd>(self, simd: S, numbers: S::Floats, row: usize, at: usize) -> S::Floats {
         let bits = RowKey::new(self.seed, row as u64).bits(simd, at);
         simd.mul(simd.keep(numbers, bits, self.least), simd.splat(self.scale))
     }

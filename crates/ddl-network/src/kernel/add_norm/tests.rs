@@ -99,8 +99,7 @@ impl NormCase {
         let (mut of_weight, mut of_bias) = (vec![0.25; self.width], vec![0.25; self.width]);
         for first in (0..self.x.len()).step_by(self.width) {
             let at = |i: usize| first + i;
-            let sum =
-                |i: usize| f64::from(self.x[at(i)]) + factors[at(i)] * f64::from(self.t[at(i)]);
+            let sum = |i: usize| f64::from(self.x[at(i)]) + factors[at(i)] * f64::from(self.t[at(i)]);
             let sums: Vec<f64> = (0..self.width).map(sum).collect();
             let mean = sums.iter().sum::<f64>() / n;
             let variance = sums.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n;
@@ -168,8 +167,5 @@ fn decisions_are_like_chance_and_the_same_for_every_instruction_set() {
     for set in InstructionSet::available() {
         assert!(dropped(set) == first, "{set:?}");
     }
-    Decided::new(0.1, [rows, width], |row, column| {
-        first[row * width + column]
-    })
-    .assert_like_chance();
+    Decided::new(0.1, [rows, width], |row, column| first[row * width + column]).assert_like_chance();
 }

@@ -121,9 +121,7 @@ fn add_block<S: Simd, const R: usize, const V: usize>(
 ) -> Tile<S, R, V> {
     let mut of_a = [&[0.0; BLOCK]; R];
     for r in 0..R {
-        of_a[r] = a[r][first..]
-            .first_chunk()
-            .expect("as many columns as rows of B");
+        of_a[r] = a[r][first..].first_chunk().expect("as many columns as rows of B");
     }
     for t in 0..BLOCK {
         let mut of_b = [simd.splat(0.0); V];

@@ -19,10 +19,8 @@ impl TiledKernel for All<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
         self.map.forward::<S, R, V>(simd, self.x, &mut self.y);
-        self.map
-            .backward::<S, R, V>(simd, self.gy, &mut self.gx, true);
-        self.map
-            .add_gradients::<S, R, V>(simd, self.x, self.gy, self.gradients);
+        self.map.backward::<S, R, V>(simd, self.gy, &mut self.gx, true);
+        self.map.add_gradients::<S, R, V>(simd, self.x, self.gy, self.gradients);
     }
 }
 

@@ -82,10 +82,7 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
         buffers.mixed_gradients.resize(twos * quads, ZERO_QUAD);
         buffers.query_gradients.clear();
         buffers.query_gradients.resize(twos * quads, ZERO_QUAD);
-        let rows = job
-            .mixed_gradient
-            .chunks(2 * row)
-            .zip(job.mixed.chunks(2 * row));
+        let rows = job.mixed_gradient.chunks(2 * row).zip(job.mixed.chunks(2 * row));
         let normalisers = job.normalisers.chunks_exact(heads.groups());
         let rows = rows.zip(normalisers.map(|groups| &groups[group]));
         let results = buffers.mixed_gradients.chunks_exact_mut(quads);
@@ -161,9 +158,7 @@ fn spread<S: Simd>(
     let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
     let results = buffers.query_gradients.chunks_exact_mut(quads);
     let weights = buffers.weights.iter().zip(&buffers.score_gradients);
-    for (((query, gradient), of_query), (weight, score_gradient)) in
-        queries.zip(results).zip(weights)
-    {
+    for (((query, gradient), of_query), (weight, score_gradient)) in queries.zip(results).zip(weights) {
         let score_gradient = simd.load(&score_gradient.0);
         let (query, gradient) = (simd.read(&query[quad]), simd.read(&gradient[quad]));
         of_key = simd.accumulate(of_key, score_gradient, query);

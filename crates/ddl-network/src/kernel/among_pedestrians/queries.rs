@@ -97,23 +97,14 @@ impl SceneBuffers {
     }
 
     #[inline(always)]
-    pub(super) fn load<S: Simd>(
-        &mut self,
-        simd: S,
-        task: &SceneTask<'_>,
-        qkv: &[f32],
-        group: usize,
-        quads: usize,
-    ) {
+    pub(super) fn load<S: Simd>(&mut self, simd: S, task: &SceneTask<'_>, qkv: &[f32], group: usize, quads: usize) {
         let row = task.heads.row();
         let (asking, keys) = (task.queries(), task.keys.clone());
         let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
         self.queries.resize(task.twos.len() * quads, ZERO_QUAD);
         self.keys.resize(keys.len() * quads, ZERO_QUAD);
         self.values.resize(keys.len() * quads, ZERO_QUAD);
-        let of = |pedestrians: &Range<usize>| {
-            &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end]
-        };
+        let of = |pedestrians: &Range<usize>| &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end];
         let twos = of(&asking).chunks(6 * row);
         for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
             let (first, second) = two.split_at(3 * row);

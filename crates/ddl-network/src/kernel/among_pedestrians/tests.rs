@@ -20,13 +20,7 @@ struct SceneCase {
 }
 
 impl SceneCase {
-    fn new(
-        seed: u64,
-        heads: (usize, usize),
-        sizes: &[usize],
-        (entries, frames): (usize, usize),
-        bound: f32,
-    ) -> Self {
+    fn new(seed: u64, heads: (usize, usize), sizes: &[usize], (entries, frames): (usize, usize), bound: f32) -> Self {
         let mut numbers = Numbers(seed);
         let pedestrians: usize = sizes.iter().sum();
         let rows = entries * pedestrians * heads.0 * heads.1;
@@ -82,8 +76,7 @@ impl SceneCase {
                     let seen = (0..size).filter(|&j| row[j]).map(|j| first + j);
                     let seen: Vec<usize> = seen.collect();
                     for head in 0..heads {
-                        let vector =
-                            |pedestrian, part| &qkv[at(entry, pedestrian, part, head)..][..width];
+                        let vector = |pedestrian, part| &qkv[at(entry, pedestrian, part, head)..][..width];
                         let keys: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 1)).collect();
                         let values: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 2)).collect();
                         let factor = |&j: &usize| match decisions {
@@ -135,16 +128,7 @@ const STAR: (usize, usize) = (8, 4);
 fn heads() -> impl Strategy<Value = (usize, usize)> {
     prop_oneof![
         Just(STAR),
-        prop::sample::select(vec![
-            (1, 1),
-            (3, 4),
-            (8, 5),
-            (12, 4),
-            (16, 4),
-            (2, 16),
-            (9, 3),
-            (8, 8)
-        ]),
+        prop::sample::select(vec![(1, 1), (3, 4), (8, 5), (12, 4), (16, 4), (2, 16), (9, 3), (8, 8)]),
     ]
 }
 

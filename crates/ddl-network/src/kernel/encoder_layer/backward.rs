@@ -28,9 +28,7 @@ impl<'a> Parts<'a> {
                 let all = &all[first * 3 * width..][..rows * 3 * width];
                 MatrixColumns::part(all, 3 * width, index * width, width)
             }
-            Self::Apart(all) => {
-                MatrixColumns::whole(&all[index][first * width..][..rows * width], width)
-            }
+            Self::Apart(all) => MatrixColumns::whole(&all[index][first * width..][..rows * width], width),
         }
     }
 }
@@ -53,12 +51,7 @@ impl EncoderKernel {
             normal: &kept.normal2,
             dropout: dropouts.fed,
         };
-        self.sublayer_backward(
-            &second,
-            gy,
-            [&mut of_z, &mut of_fed],
-            [n2, c2, &mut [], &mut []],
-        );
+        self.sublayer_backward(&second, gy, [&mut of_z, &mut of_fed], [n2, c2, &mut [], &mut []]);
         let mut grads = Gradients { w1, b1, w2, b2 };
         self.feed_forward
             .backward(&kept.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
@@ -89,9 +82,7 @@ impl EncoderKernel {
         let (piece, count) = (ROWS * width, of_weights.iter().map(|part| part.len()).sum());
         let decisions = layer.dropout.and_then(Decisions::new);
         let normals = layer.normal.numbers.chunks(piece);
-        let inputs = normals
-            .zip(layer.normal.scales.chunks(ROWS))
-            .zip(gy.chunks(piece));
+        let inputs = normals.zip(layer.normal.scales.chunks(ROWS)).zip(gy.chunks(piece));
         let outputs = of_x.chunks_mut(piece).zip(of_t.chunks_mut(piece));
         let mut sums = Buffer::many_zeros(gy.len().div_ceil(piece), count);
         let jobs = inputs.zip(outputs).zip(&mut sums).enumerate();
@@ -122,10 +113,7 @@ impl EncoderKernel {
     ) {
         let width = self.sizes.width;
         let [weight, bias, ..] = self.sizes.pieces_mut(of_weights);
-        let (weight, bias) = (
-            &mut weight[first * width * width..],
-            &mut bias[first * width..],
-        );
+        let (weight, bias) = (&mut weight[first * width * width..], &mut bias[first * width..]);
         let count = weight.len() + bias.len();
         let mut sums = Buffer::many_zeros(x.len().div_ceil(ROWS * width), count);
         let rows = x.chunks(ROWS * width).zip(gx.chunks_mut(ROWS * width));
@@ -133,8 +121,7 @@ impl EncoderKernel {
         let jobs = jobs.map(|(i, ((x, gx), sums))| {
             let count = x.len() / width;
             let projections = self.projections[first..].iter().enumerate();
-            let parts = projections
-                .map(|(index, projection)| (projection, parts.rows(index, width, i * ROWS, count)));
+            let parts = projections.map(|(index, projection)| (projection, parts.rows(index, width, i * ROWS, count)));
             ProjectBackward {
                 parts: parts.collect(),
                 width,

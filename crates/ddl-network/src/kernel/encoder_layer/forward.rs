@@ -41,9 +41,7 @@ impl<'a> Targets<'a> {
     #[inline(always)]
     fn columns(&mut self, index: usize, projections: usize, width: usize) -> MatrixColumnsMut<'_> {
         match self {
-            Self::Together(all) => {
-                MatrixColumnsMut::part(all, projections * width, index * width, width)
-            }
+            Self::Together(all) => MatrixColumnsMut::part(all, projections * width, index * width, width),
             Self::Apart(all) => MatrixColumnsMut::whole(all[index], width),
         }
     }
@@ -65,21 +63,10 @@ impl EncoderKernel {
         run_each(self.dispatch, jobs, work);
     }
 
-    pub(super) fn after_attention(
-        &self,
-        x: &[f32],
-        attention: KeptAttention,
-        dropouts: Dropouts,
-    ) -> (Buffer, Kept) {
+    pub(super) fn after_attention(&self, x: &[f32], attention: KeptAttention, dropouts: Dropouts) -> (Buffer, Kept) {
         let [mut z, mut fed, mut y] = [0; 3].map(|_| Buffer::any(x.len()));
         let mixed = attention.mixed();
-        let normal1 = self.add_norm(
-            &self.norm1,
-            Some(&self.out),
-            [x, mixed],
-            dropouts.attended,
-            &mut z,
-        );
+        let normal1 = self.add_norm(&self.norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z);
         self.feed_forward.forward(&z, dropouts.hidden, &mut fed);
         let normal2 = self.add_norm(&self.norm2, None, [&z, &fed], dropouts.fed, &mut y);
         let kept = Kept {

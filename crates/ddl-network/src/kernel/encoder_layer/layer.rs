@@ -39,11 +39,7 @@ pub(crate) struct Dropouts {
 
 impl EncoderKernel {
     pub(crate) fn zeros(sizes: Sizes) -> Self {
-        let Sizes {
-            width,
-            heads,
-            hidden,
-        } = sizes;
+        let Sizes { width, heads, hidden } = sizes;
         assert!(
             heads > 0 && width.is_multiple_of(heads),
             "{heads} heads of a width of {width}"
@@ -145,10 +141,6 @@ impl Sizes {
     }
 
     fn check(self, numbers: &[f32]) {
-        assert_eq!(
-            numbers.len(),
-            self.count(),
-            "learned numbers of an encoder layer"
-        );
+        assert_eq!(numbers.len(), self.count(), "learned numbers of an encoder layer");
     }
 }

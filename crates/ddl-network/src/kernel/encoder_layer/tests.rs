@@ -43,9 +43,7 @@ impl LayerCase {
             weights: numbers.even(sizes.count(), 0.4),
             x: numbers.even(count, 1.0),
             gy: numbers.even(count, 1.0),
-            memory: (0..3)
-                .map(|_| [0; 2].map(|_| numbers.even(count, 1.0)))
-                .collect(),
+            memory: (0..3).map(|_| [0; 2].map(|_| numbers.even(count, 1.0))).collect(),
             dropouts: Dropouts {
                 weights: dropout(seed),
                 attended: dropout(seed ^ 1),
@@ -56,9 +54,7 @@ impl LayerCase {
     }
 
     fn layer(&self, set: InstructionSet) -> EncoderKernel {
-        let mut layer = EncoderKernel::zeros(self.sizes)
-            .with_instructions(set)
-            .unwrap();
+        let mut layer = EncoderKernel::zeros(self.sizes).with_instructions(set).unwrap();
         layer.update(&self.weights, Precision::F32);
         layer
     }
@@ -67,14 +63,7 @@ impl LayerCase {
         let frames = self.scenes.throughout();
         let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts);
         let mut of_weights = vec![0.0; self.weights.len()];
-        let gx = layer.among_pedestrians_backward(
-            &self.x,
-            frames,
-            self.dropouts,
-            &kept,
-            &self.gy,
-            &mut of_weights,
-        );
+        let gx = layer.among_pedestrians_backward(&self.x, frames, self.dropouts, &kept, &self.gy, &mut of_weights);
         [y.to_vec(), gx.to_vec(), of_weights, Vec::new()]
     }
 
@@ -88,10 +77,7 @@ impl LayerCase {
         let memory: Vec<&Remembered> = memory.iter().collect();
         let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts);
         let mut of_weights = vec![0.0; self.weights.len()];
-        let mut of_memory: Vec<_> = memory
-            .iter()
-            .map(|_| Remembered::zeros(self.x.len()))
-            .collect();
+        let mut of_memory: Vec<_> = memory.iter().map(|_| Remembered::zeros(self.x.len())).collect();
         let gx = layer.over_memory_backward(
             &self.x,
             &memory,
@@ -104,9 +90,7 @@ impl LayerCase {
         let through = layer.remember_backward(&self.x, &of_memory[0], &mut of_weights);
         let gx = gx.iter().zip(through.iter()).map(|(a, b)| a + b).collect();
         let given = of_memory[1..].iter();
-        let of_memory = given
-            .flat_map(|token| [&token.key[..], &token.value])
-            .flatten();
+        let of_memory = given.flat_map(|token| [&token.key[..], &token.value]).flatten();
         [y.to_vec(), gx, of_weights, of_memory.copied().collect()]
     }
 }
@@ -134,9 +118,7 @@ fn gradients_are_slopes() {
         let moved = moved.map(|(n, d)| (f64::from(*n) + by * f64::from(*d)) as f32);
         moved.collect()
     };
-    let times = |numbers: &[f32], factor: f32| -> Vec<f32> {
-        numbers.iter().map(|number| number * factor).collect()
-    };
+    let times = |numbers: &[f32], factor: f32| -> Vec<f32> { numbers.iter().map(|number| number * factor).collect() };
     let dot = |a: &[f32], b: &[f32]| -> f64 {
         let products = a.iter().zip(b).map(|(a, b)| f64::from(*a) * f64::from(*b));
         products.sum()
@@ -145,11 +127,7 @@ fn gradients_are_slopes() {
         let case = LayerCase::new(11, star(64), &scenes, p);
         let run = |case: &LayerCase| {
             let layer = case.layer(InstructionSet::detect());
-            if over {
-                case.over(&layer)
-            } else {
-                case.among(&layer)
-            }
+            if over { case.over(&layer) } else { case.among(&layer) }
         };
         let [_, gx, of_weights, _] = run(&case);
         for (of_x, of_weights_too) in [(1.0, 0.0), (0.0, 1.0)] {

@@ -60,9 +60,7 @@ impl FeedForward {
         let group = units.div_ceil(GROUPS);
         let rows = (x.len() / width).min(SPAN).next_multiple_of(ROWS);
         let parts = grads.parts(width, group).into_iter();
-        let mut parts: Vec<_> = parts
-            .map(|part| (part, Scratch::new(rows, columns)))
-            .collect();
+        let mut parts: Vec<_> = parts.map(|part| (part, Scratch::new(rows, columns))).collect();
         let pieces = x.chunks(SPAN * width).zip(gy.chunks(SPAN * width));
         for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
             let x = BlockRows::padded(x, width);
@@ -226,10 +224,7 @@ impl<N: DerefMut<Target = [f32]>> Gradients<N> {
     pub(super) fn check(&self, width: usize, hidden: usize) {
         let found = [&self.w1, &self.b1, &self.w2, &self.b2].map(|part| part.len());
         let expected = [hidden * width, hidden, width * hidden, width];
-        assert_eq!(
-            found, expected,
-            "entries of the gradients of W1, b1, W2, b2"
-        );
+        assert_eq!(found, expected, "entries of the gradients of W1, b1, W2, b2");
     }
 
     /// Parts of `units` blocks of hidden units each.

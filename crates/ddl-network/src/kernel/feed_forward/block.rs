@@ -60,9 +60,7 @@ pub(super) fn tile<const R: usize>(rows: &[Block], first: usize) -> &[Block; R] 
 
 #[inline]
 pub(super) fn tile_mut<const R: usize>(rows: &mut [Block], first: usize) -> &mut [Block; R] {
-    rows[first..]
-        .first_chunk_mut()
-        .expect("rows in whole tiles")
+    rows[first..].first_chunk_mut().expect("rows in whole tiles")
 }
 
 /// The number of rows is padded to a multiple of this, which is a multiple of the rows of each tile of accumulators.

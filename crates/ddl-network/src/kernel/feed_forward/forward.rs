@@ -32,9 +32,7 @@ impl FeedForward {
             return;
         }
         // Each thread gets the same number of tiles. The result of a row does not depend on its tile.
-        let tiles = rows
-            .div_ceil(TILE)
-            .next_multiple_of(rayon::current_num_threads());
+        let tiles = rows.div_ceil(TILE).next_multiple_of(rayon::current_num_threads());
         let size = rows.div_ceil(tiles).next_multiple_of(ROWS);
         let tiles = x.chunks(size * width).zip(y.chunks_mut(size * width));
         let tiles: Vec<_> = tiles.enumerate().collect();

@@ -34,8 +34,7 @@ impl FeedForward {
     /// has no backward pass.
     pub(crate) fn update(&mut self, weights: [&[f32]; 4], precision: Precision) {
         self.weights.update(weights);
-        self.rounded = (precision == Precision::Bf16)
-            .then(|| Squares::round(&self.weights, self.pair_dispatch));
+        self.rounded = (precision == Precision::Bf16).then(|| Squares::round(&self.weights, self.pair_dispatch));
     }
 
     /// The same with this instruction set and bf16 emulated; `None` if the processor does not support it.

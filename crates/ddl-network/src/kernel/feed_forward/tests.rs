@@ -42,8 +42,7 @@ fn check(case: &Case) {
     let (width, hidden, rows) = (case.width, case.hidden, case.x.len() / case.width);
     for layer in layers(case) {
         let (y, gx, grads) = case.run(&layer);
-        let name =
-            |what: &str| format!("{:?}, {what}, {width} x {rows} x {hidden}", layer.dispatch);
+        let name = |what: &str| format!("{:?}, {what}, {width} x {rows} x {hidden}", layer.dispatch);
         let none = vec![0.0; y.len()];
         let bounds = scaled(width + hidden + 8, [&exact.y.sizes, &none]);
         assert_near(&name("y"), &y, &exact.y.values, &bounds);

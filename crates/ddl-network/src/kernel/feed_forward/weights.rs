@@ -62,10 +62,7 @@ impl BlockWeights {
 
     #[inline]
     pub(super) fn unit(&self, unit: usize) -> Unit<'_> {
-        Unit {
-            weights: self,
-            unit,
-        }
+        Unit { weights: self, unit }
     }
 }
 

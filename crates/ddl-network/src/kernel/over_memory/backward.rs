@@ -3,9 +3,7 @@
 //! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
 //! `w_e (g · v_e − Σ_f w_f g · v_f)`.
 
-use super::tokens::{
-    KeyValue, KeyValueMut, MemoryBuffers, SixteenHeads, accumulate, dot, soften, weighted,
-};
+use super::tokens::{KeyValue, KeyValueMut, MemoryBuffers, SixteenHeads, accumulate, dot, soften, weighted};
 use crate::kernel::heads::Heads;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};

@@ -39,10 +39,7 @@ impl MemoryCase {
     fn run(&self, set: InstructionSet) -> MemoryResults<f32> {
         let attention = OverMemory::new(self.heads.0, self.heads.1);
         let attention = attention.with_instructions(set).unwrap();
-        let tokens = self
-            .tokens
-            .iter()
-            .map(|[key, value]| KeyValue { key, value });
+        let tokens = self.tokens.iter().map(|[key, value]| KeyValue { key, value });
         let mut memory: Vec<KeyValue<'_>> = tokens.collect();
         let own = memory.pop().unwrap();
         let mut mixed = vec![f32::NAN; self.query.len()];
@@ -50,9 +47,7 @@ impl MemoryCase {
         let before = vec![BEFORE; self.query.len()];
         let mut query = before.clone();
         let mut tokens = vec![[before.clone(), before]; self.tokens.len()];
-        let gradients = tokens
-            .iter_mut()
-            .map(|[key, value]| KeyValueMut { key, value });
+        let gradients = tokens.iter_mut().map(|[key, value]| KeyValueMut { key, value });
         let mut gradients: Vec<KeyValueMut<'_>> = gradients.collect();
         let own_gradient = gradients.pop().unwrap();
         let gradients = OverMemoryGradients {
@@ -61,11 +56,7 @@ impl MemoryCase {
             own: own_gradient,
         };
         attention.backward(&self.query, &memory, own, &self.gradient, gradients);
-        MemoryResults {
-            mixed,
-            query,
-            tokens,
-        }
+        MemoryResults { mixed, query, tokens }
     }
 
     fn expected(&self) -> MemoryResults<f64> {

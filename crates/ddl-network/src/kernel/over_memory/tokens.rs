@@ -163,12 +163,7 @@ pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: S::Floa
 
 /// `sum` + `weight` of each head · its numbers.
 #[inline(always)]
-pub(super) fn accumulate<S: Simd>(
-    simd: S,
-    sum: Vectors<S>,
-    weight: S::Floats,
-    numbers: Vectors<S>,
-) -> Vectors<S> {
+pub(super) fn accumulate<S: Simd>(simd: S, sum: Vectors<S>, weight: S::Floats, numbers: Vectors<S>) -> Vectors<S> {
     let (mut sum, weights) = (sum, simd.spread_each(weight));
     for part in 0..DEPTH {
         sum[part] = simd.mul_add(weights[part], numbers[part], sum[part]);
@@ -201,12 +196,7 @@ pub(super) fn soften<S: Simd>(
     for (token, power) in memory.iter().chain([&own]).zip(powers.iter_mut()) {
         let mut score = simd.splat(0.0);
         for (quad, query) in query.iter().enumerate() {
-            score = dot(
-                simd,
-                simd.read(query),
-                place.load(simd, token.key, quad),
-                score,
-            );
+            score = dot(simd, simd.read(query), place.load(simd, token.key, quad), score);
         }
         largest = simd.max(largest, score);
         simd.store(score, &mut power.0);

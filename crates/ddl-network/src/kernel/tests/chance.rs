@@ -8,11 +8,7 @@ pub(crate) struct Decided {
 
 impl Decided {
     /// Decisions with the probability `p` of being dropped.
-    pub(crate) fn new(
-        p: f64,
-        [rows, columns]: [usize; 2],
-        dropped: impl Fn(usize, usize) -> bool,
-    ) -> Self {
+    pub(crate) fn new(p: f64, [rows, columns]: [usize; 2], dropped: impl Fn(usize, usize) -> bool) -> Self {
         let deviation = (p * (1.0 - p)).sqrt();
         let places = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
         let value = |(row, column)| (f64::from(u8::from(dropped(row, column))) - p) / deviation;
@@ -32,8 +28,7 @@ impl Decided {
         let all = score(&mut values.iter());
         assert!(all.abs() < 4.5, "{all} standard errors over all");
         let of_rows = values.chunks(columns).map(|row| score(&mut row.iter()));
-        let of_columns =
-            (0..columns).map(|first| score(&mut values[first..].iter().step_by(columns)));
+        let of_columns = (0..columns).map(|first| score(&mut values[first..].iter().step_by(columns)));
         let scores: Vec<f64> = of_rows.chain(of_columns).collect();
         assert!(scores.iter().all(|score| score.abs() < 5.5), "{scores:?}");
         // Their variance is that of independent decisions: the mean square is 1 within 5 standard errors.

@@ -35,10 +35,7 @@ impl Numbers {
 pub(crate) fn lists(sizes: &[usize], mut visible: &[bool]) -> Vec<Vec<u32>> {
     let mut lists = Vec::new();
     while !visible.is_empty() {
-        for &size in sizes
-            .iter()
-            .flat_map(|size| std::iter::repeat_n(size, *size))
-        {
+        for &size in sizes.iter().flat_map(|size| std::iter::repeat_n(size, *size)) {
             let row = visible.split_off(..size).unwrap();
             let seen = (0..).zip(row).filter(|(_, seen)| **seen);
             lists.push(seen.map(|(key, _)| key).collect());
@@ -74,8 +71,5 @@ pub(crate) fn assert_refused(said: &str, run: impl FnOnce()) {
         Some(message) => message,
         None => *panic.downcast_ref::<&str>().unwrap_or(&"no message"),
     };
-    assert!(
-        message.contains(said),
-        "{message:?} says nothing of {said:?}"
-    );
+    assert!(message.contains(said), "{message:?} says nothing of {said:?}");
 }

@@ -5,9 +5,7 @@ mod wording;
 
 use ddl_data::{Convention, WindowRule};
 use ddl_eval::significance::BlockErrors;
-use ddl_eval::{
-    Category, CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores,
-};
+use ddl_eval::{Category, CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores};
 use ddl_report::page::Page;
 use ddl_report::{Report, ReportError};
 
@@ -58,13 +56,7 @@ fn row(protocol: Protocol, fold: &str, seed: u64, min_ade: f64) -> ResultRow {
         device: "cpu".to_owned(),
         commit: "0123abc".to_owned(),
         training_subset: Some("2000 windows drawn with seed 1".to_owned()),
-        ..Conditions::new(
-            Convention::Star,
-            WindowRule::Published,
-            protocol,
-            fold,
-            "DDL",
-        )
+        ..Conditions::new(Convention::Star, WindowRule::Published, protocol, fold, "DDL")
     };
     ResultRow {
         conditions,
@@ -90,10 +82,7 @@ fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
 const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 
 fn five_folds(protocol: Protocol, seed: u64, min_ade: f64) -> Vec<ResultRow> {
-    FOLDS
-        .iter()
-        .map(|fold| row(protocol, fold, seed, min_ade))
-        .collect()
+    FOLDS.iter().map(|fold| row(protocol, fold, seed, min_ade)).collect()
 }
 
 fn markdown(rows: impl IntoIterator<Item = ResultRow>) -> String {
@@ -418,10 +407,7 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
         "0.200 (-50.0 %)",
         "0.200 (-50.0 %)",
     ];
-    assert_eq!(
-        cells(line(section, "| DDL "))[1..],
-        [&["eth"], &expected[..]].concat()
-    );
+    assert_eq!(cells(line(section, "| DDL "))[1..], [&["eth"], &expected[..]].concat());
     // A curve of both is drawn for every recording.
     let report = Report::new("watching", alone.iter().cloned().chain(online.clone())).unwrap();
     let figures = Page::new(&report).figures().unwrap();

@@ -28,14 +28,8 @@ fn a_summary_has_every_forecaster_once_under_each_protocol_with_other_errors() {
     }
     let report = Report::new("Results", rows).unwrap();
     let summary = report.summary(Convention::Star).unwrap();
-    let named = |rows: &[Vec<String>]| -> Vec<String> {
-        rows.iter().map(|row| row[..2].join(", ")).collect()
-    };
-    let shown = [
-        "DDL, fair",
-        "constant velocity (last step), fair",
-        "DDL, single",
-    ];
+    let named = |rows: &[Vec<String>]| -> Vec<String> { rows.iter().map(|row| row[..2].join(", ")).collect() };
+    let shown = ["DDL, fair", "constant velocity (last step), fair", "DDL, single"];
     let of_errors = [&shown[..], &["Resonance, the best published, best of 20"]].concat();
     assert_eq!(named(&summary.errors.rows()[1..]), of_errors);
     assert_eq!(named(summary.metrics.rows()), shown);

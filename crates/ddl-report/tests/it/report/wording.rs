@@ -61,13 +61,7 @@ fn a_report_names_variants_with_different_training() {
         }
         rows
     };
-    let page = |epochs| {
-        markdown(
-            variant("full", 3)
-                .into_iter()
-                .chain(variant("star", epochs)),
-        )
-    };
+    let page = |epochs| markdown(variant("full", 3).into_iter().chain(variant("star", epochs)));
     assert!(page(3).contains("The variants have the same folds"));
     assert!(page(4).contains("were NOT made alike"));
 }

@@ -16,9 +16,10 @@ pub(super) fn longest(config: &str) -> anyhow::Result<usize> {
     let (_, value) = lines
         .find(|(name, _)| name.trim() == "MaxArraySize")
         .context("`scontrol show config` does not print MaxArraySize")?;
-    let longest = value.trim().parse().with_context(|| {
-        format!("`scontrol show config` prints MaxArraySize ={value}, which is not a number")
-    })?;
+    let longest = value
+        .trim()
+        .parse()
+        .with_context(|| format!("`scontrol show config` prints MaxArraySize ={value}, which is not a number"))?;
     ensure!(
         longest > 0,
         "this Slurm allows no arrays of jobs (MaxArraySize = 0): use `--executor none` and run the tasks by other means"
@@ -53,9 +54,7 @@ mod tests {
     fn arrays_are_no_longer_than_allowed_and_hold_every_task_once() {
         let shown = |tasks: &[usize], longest| {
             let arrays = arrays(tasks, longest);
-            let shown = arrays
-                .iter()
-                .map(|of| format!("{}+{}", of.first, of.indices));
+            let shown = arrays.iter().map(|of| format!("{}+{}", of.first, of.indices));
             shown.collect::<Vec<_>>().join(" ")
         };
         assert_eq!(shown(&[0, 1, 2, 3, 4], 1001), "0+0-4");
@@ -67,14 +66,10 @@ mod tests {
 
     #[test]
     fn the_limit_is_read_and_errors_name_it() {
-        let config =
-            "Configuration data as of 2026\nMaxArraySize            = 1001\nMaxBatchRequeue = 5\n";
+        let config = "Configuration data as of 2026\nMaxArraySize            = 1001\nMaxBatchRequeue = 5\n";
         assert_eq!(longest(config).unwrap(), 1001);
         for (config, told) in [
-            (
-                config.replace("1001", "0"),
-                "no arrays of jobs (MaxArraySize = 0)",
-            ),
+            (config.replace("1001", "0"), "no arrays of jobs (MaxArraySize = 0)"),
             (config.replace("1001", "many"), "MaxArraySize = many"),
             (String::new(), "does not print MaxArraySize"),
         ] {

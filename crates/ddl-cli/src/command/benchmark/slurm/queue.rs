@@ -83,23 +83,16 @@ mod tests {
     #[test]
     fn jobs_of_other_folders_are_left_out() {
         let jobs = jobs_in(Path::new("/data/a run"), LINES);
-        let shown: Vec<(Option<usize>, String)> =
-            jobs.iter().map(|job| (job.task, job.state())).collect();
+        let shown: Vec<(Option<usize>, String)> = jobs.iter().map(|job| (job.task, job.state())).collect();
         let expected = [
             (None, "pending (Dependency)"),
             (Some(0), "pending (BeginTime)"),
             (Some(3), "running on n1"),
             (Some(1002), "pending"),
         ];
-        assert_eq!(
-            shown,
-            expected.map(|(task, state)| (task, state.to_owned()))
-        );
+        assert_eq!(shown, expected.map(|(task, state)| (task, state.to_owned())));
         assert_eq!(ids(&jobs), "10 8 9");
         assert_eq!(jobs_in(Path::new("/data"), LINES), []);
-        assert_eq!(
-            jobs_in(Path::new("/data/a run"), "slurm_load_jobs error\n"),
-            []
-        );
+        assert_eq!(jobs_in(Path::new("/data/a run"), "slurm_load_jobs error\n"), []);
     }
 }

@@ -26,20 +26,13 @@ impl Task {
         put("task.sh", include_str!("task.sh"));
         put("program", PROGRAM);
         // A file that another test's process may hold open cannot be executed, so a function stands in for the program.
-        put(
-            "scontrol.sh",
-            "scontrol() { echo \"$*\" > \"$folder/asked\"; }\n",
-        );
+        put("scontrol.sh", "scontrol() { echo \"$*\" > \"$folder/asked\"; }\n");
         let script = "folder=$PWD; . ./scontrol.sh; . ./task.sh";
         let script = Command::new("sh")
             .args(["-c", script])
             .args("task.sh 1000 . sh program benchmark".split(' '))
             .current_dir(folder.path())
-            .envs([
-                ("SLURM_ARRAY_TASK_ID", "7"),
-                ("SLURM_JOB_ID", "42"),
-                ("code", ""),
-            ])
+            .envs([("SLURM_ARRAY_TASK_ID", "7"), ("SLURM_JOB_ID", "42"), ("code", "")])
             .envs(variables.iter().copied())
             .stderr(Stdio::piped())
             .spawn()
@@ -87,11 +80,7 @@ fn a_warned_task_saves_and_is_queued_again_and_a_cancelled_one_is_not() {
     warned.begun();
     signal(warned.script.id().cast_signed(), Signal::INT);
     let (code, asked, told) = warned.end();
-    assert_eq!(
-        (code, asked.as_deref()),
-        (Some(0), Some("requeue 42\n")),
-        "{told}"
-    );
+    assert_eq!((code, asked.as_deref()), (Some(0), Some("requeue 42\n")), "{told}");
     // Slurm sends SIGTERM to every process of a job.
     let cancelled = Task::begin(&[]);
     let (program, _) = cancelled.begun();
@@ -126,8 +115,5 @@ fn an_error_names_the_program_and_repeats_its_message() {
         "{told}"
     );
     let error = answer(&mut Command::new("no-such-squeue")).unwrap_err();
-    assert!(
-        error.to_string().contains("needs Slurm's programs"),
-        "{error:#}"
-    );
+    assert!(error.to_string().contains("needs Slurm's programs"), "{error:#}");
 }

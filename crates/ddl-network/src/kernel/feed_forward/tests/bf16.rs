@@ -63,9 +63,7 @@ fn exact(case: &Case) -> [Vec<f64>; 2] {
         for i in 0..width {
             let b = f64::from(case.b2[i]);
             let [mut value, mut size, mut doubt] = [b, b.abs(), 0.0];
-            for (w, [activation, size_of, doubt_of]) in
-                w2[i * hidden..][..hidden].iter().zip(&activations)
-            {
+            for (w, [activation, size_of, doubt_of]) in w2[i * hidden..][..hidden].iter().zip(&activations) {
                 value += w * activation;
                 size += w.abs() * size_of;
                 doubt += w.abs() * doubt_of;
