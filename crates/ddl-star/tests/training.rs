@@ -85,10 +85,10 @@ fn path_trainer(epochs: usize, jitter: f64) -> Trainer {
 #[test]
 fn paths_to_goals_are_learned() {
     // Exact positions: jitter would add to the loss of so few pedestrians.
-    let losses = losses(path_trainer(30, 0.0));
+    let losses = losses(path_trainer(45, 0.0));
     // Training starts at the neutral motion. Its endpoints are 0.36 m off, because the goals are, so the path can
     // follow the true one only in part: training removes a third of the error.
-    let last = losses[29];
+    let last = losses[44];
     assert!(last < 0.72 * losses[0] && last < 0.22, "{losses:?}");
 }
 
