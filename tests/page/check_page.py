@@ -26,13 +26,17 @@ class Opened:
     """A page in a browser, with its errors, warnings and requests."""
 
     def __init__(self, browser, path, viewport=WIDE, scheme="light", motion="no-preference"):
-        self.context = browser.new_context(viewport=viewport, color_scheme=scheme, reduced_motion=motion, has_touch=viewport is NARROW)
+        self.context = browser.new_context(
+            viewport=viewport, color_scheme=scheme, reduced_motion=motion, has_touch=viewport is NARROW
+        )
         self.page = self.context.new_page()
         self.faults = []
         self.page.on("console", lambda m: m.type in ("error", "warning") and self.faults.append(f"console: {m.text}"))
         self.page.on("pageerror", lambda e: self.faults.append(f"page error: {e}"))
         address = path.as_uri()
-        self.page.on("request", lambda r: r.url not in (address, "data:,") and self.faults.append(f"request: {r.url[:200]}"))
+        self.page.on(
+            "request", lambda r: r.url not in (address, "data:,") and self.faults.append(f"request: {r.url[:200]}")
+        )
         self.page.set_default_timeout(20_000)
         self.page.goto(address)
         self.page.evaluate("document.documentElement.style.scrollBehavior = 'auto'")
@@ -127,7 +131,9 @@ def decoded(data):
                         h[name] = letters[k] == "y"
                 hypotheses.append(h)
             truth = path(last, w["truth"])[0]
-            pedestrians.append({"pedestrian": w["pedestrian"], "observed": observed, "truth": truth, "hypotheses": hypotheses})
+            pedestrians.append(
+                {"pedestrian": w["pedestrian"], "observed": observed, "truth": truth, "hypotheses": hypotheses}
+            )
         out = {key: moment[key] for key in ("fold", "forecaster", "recording", "frame")}
         out |= {"frame_step": moment["frameStep"], "pedestrians": pedestrians}
         yield out | ({"picks": moment["picks"]} if moment["picks"] else {})
@@ -143,7 +149,9 @@ def path(start, steps):
 
 
 def errors(pedestrian):
-    distances = [[math.dist(p, q) for p, q in zip(h["positions"], pedestrian["truth"])] for h in pedestrian["hypotheses"]]
+    distances = [
+        [math.dist(p, q) for p, q in zip(h["positions"], pedestrian["truth"])] for h in pedestrian["hypotheses"]
+    ]
     return [sum(d) / 12 for d in distances], [d[-1] for d in distances]
 
 
@@ -158,7 +166,8 @@ def check_pedestrian(opened, moment, at):
     assert opened.text("#pedestrian-name") == f"Pedestrian {pedestrian['pedestrian']}"
     assert same(opened.text("#min-ade"), min(ade)) and same(opened.text("#min-fde"), min(fde)), moment["frame"]
     rows = opened.page.evaluate(
-        "[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => [...row.cells].map((cell) => cell.textContent))"
+        "[...document.querySelectorAll('#hypotheses tbody tr')]"
+        ".map((row) => [...row.cells].map((cell) => cell.textContent))"
     )
     assert len(rows) == len(pedestrian["hypotheses"])
     weights = [float(row[1]) for row in rows]
@@ -233,7 +242,12 @@ def check_player(opened, moments):
     assert page.input_value("#choose-recording") == recording
     for at in range(0, len(moments), 7):
         moment = moments[at]
-        page.select_option("#choose-recording", label=page.evaluate("(at) => JSON.parse(document.getElementById('moments-json').textContent)[at].recording", at))
+        page.select_option(
+            "#choose-recording",
+            label=page.evaluate(
+                "(at) => JSON.parse(document.getElementById('moments-json').textContent)[at].recording", at
+            ),
+        )
         page.select_option("#choose-moment", str(at))
         who = at % len(moment["pedestrians"])
         page.select_option("#choose-pedestrian", str(who))
@@ -248,7 +262,9 @@ def check_player(opened, moments):
         page.keyboard.press(key)
         assert opened.picture() == before, f"key {key} pressed twice does not restore the picture"
     page.click("#hypotheses button[data-sort=ade]")
-    ades = page.evaluate("[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => Number(row.cells[2].textContent))")
+    ades = page.evaluate(
+        "[...document.querySelectorAll('#hypotheses tbody tr')].map((row) => Number(row.cells[2].textContent))"
+    )
     assert ades == sorted(ades)
     page.focus(".stage")
     page.keyboard.press("w")
@@ -327,7 +343,8 @@ def check_focus(opened):
     for _ in range(40):
         opened.page.keyboard.press("Tab")
         style, name = opened.page.evaluate(
-            "[getComputedStyle(document.activeElement).outlineStyle, document.activeElement.id || document.activeElement.className]"
+            "[getComputedStyle(document.activeElement).outlineStyle,"
+            " document.activeElement.id || document.activeElement.className]"
         )
         assert style != "none" or name == "time", f"the focus on {name} cannot be seen"
         seen.append(name)
@@ -379,7 +396,12 @@ def variants(html, data, folder):
     for pedestrian in one["pedestrians"]:
         for name in ("paths", "goals", "weights", "falls", "certified"):
             pedestrian[name] = pedestrian[name][:1]
-        pedestrian["goals"], pedestrian["weights"], pedestrian["falls"], pedestrian["certified"] = [None], [1000], "-", "-"
+        pedestrian["goals"], pedestrian["weights"], pedestrian["falls"], pedestrian["certified"] = (
+            [None],
+            [1000],
+            "-",
+            "-",
+        )
         pedestrian["representative"] = 0
     one["picks"], one["pedestrians"] = [], one["pedestrians"][:1]
     yield variant(html, folder, "one-hypothesis", [one])
@@ -437,7 +459,9 @@ def main():
                             print(f"{name}: a picture with everyone's hypotheses takes {spent:.1f} ms")
                         if arguments.screenshots:
                             arguments.screenshots.mkdir(parents=True, exist_ok=True)
-                            opened.page.screenshot(path=arguments.screenshots / f"{name}-{size}-{scheme}.png", full_page=True)
+                            opened.page.screenshot(
+                                path=arguments.screenshots / f"{name}-{size}-{scheme}.png", full_page=True
+                            )
         browser.close()
     print("the page is as it should be")
 

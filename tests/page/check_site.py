@@ -21,15 +21,22 @@ def visit(browser, path, size, scheme):
     context = browser.new_context(viewport=SIZES[size], color_scheme=scheme)
     page = context.new_page()
     faults = []
-    page.on("console", lambda message: message.type in ("error", "warning") and faults.append(f"console: {message.text}"))
+    page.on(
+        "console", lambda message: message.type in ("error", "warning") and faults.append(f"console: {message.text}")
+    )
     page.on("pageerror", lambda error: faults.append(f"page error: {error}"))
-    page.on("request", lambda request: request.url.startswith(("file:", "data:")) or faults.append(f"request: {request.url}"))
+    page.on(
+        "request",
+        lambda request: request.url.startswith(("file:", "data:")) or faults.append(f"request: {request.url}"),
+    )
     page.goto(path.as_uri())
     # Wide tables and code scroll; the page itself must not.
     spare = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
     if spare > 0:
         faults.append(f"{spare} px of horizontal overflow")
-    broken = page.evaluate("[...document.images].filter((image) => image.complete && !image.naturalWidth).map((image) => image.src)")
+    broken = page.evaluate(
+        "[...document.images].filter((image) => image.complete && !image.naturalWidth).map((image) => image.src)"
+    )
     faults.extend(f"missing picture: {source}" for source in broken)
     return context, page, [f"{path.name}, {size}, {scheme}: {fault}" for fault in faults]
 
@@ -41,12 +48,15 @@ def ratio(page, selector):
             const element = document.querySelector(selector);
             const numbers = (colour) => colour.match(/[\\d.]+/g).map(Number);
             let behind = element;
-            while (behind && (numbers(getComputedStyle(behind).backgroundColor)[3] ?? 1) === 0) behind = behind.parentElement;
+            while (behind && (numbers(getComputedStyle(behind).backgroundColor)[3] ?? 1) === 0)
+                behind = behind.parentElement;
             const light = (colour) => {
-                const [r, g, b] = numbers(colour).slice(0, 3).map((c) => (c /= 255) <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+                const linear = (c) => (c /= 255) <= 0.03928 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4;
+                const [r, g, b] = numbers(colour).slice(0, 3).map(linear);
                 return 0.2126 * r + 0.7152 * g + 0.0722 * b;
             };
-            const pair = [getComputedStyle(element).color, getComputedStyle(behind ?? document.documentElement).backgroundColor].map(light);
+            const background = getComputedStyle(behind ?? document.documentElement).backgroundColor;
+            const pair = [getComputedStyle(element).color, background].map(light);
             return (Math.max(...pair) + 0.05) / (Math.min(...pair) + 0.05);
         }""",
         selector,
@@ -79,7 +89,10 @@ def main():
                     page.screenshot(path=arguments.screenshots / f"{picture}-{size}-{scheme}.png")
                     for selector in ("main p", "main a", "main pre code", "main td"):
                         if page.query_selector(selector) and ratio(page, selector) < 4.5:
-                            faults.append(f"{name}, {scheme}: the text of `{selector}` has a contrast of {ratio(page, selector):.1f}")
+                            faults.append(
+                                f"{name}, {scheme}: the text of `{selector}` has a contrast of "
+                                f"{ratio(page, selector):.1f}"
+                            )
                 context.close()
         # The search must work from the file system, too.
         context, page, _ = visit(browser, site / "guide" / "index.html", "wide", "light")
@@ -89,7 +102,10 @@ def main():
         context.close()
         browser.close()
     assert not faults, "\n".join(faults)
-    print(f"{len(pages)} pages checked in {visits} visits, light and dark, wide and narrow; screenshots in {arguments.screenshots}")
+    print(
+        f"{len(pages)} pages checked in {visits} visits, light and dark, wide and narrow; "
+        f"screenshots in {arguments.screenshots}"
+    )
 
 
 if __name__ == "__main__":

@@ -55,7 +55,10 @@ def tslearn_gradient(x: np.ndarray, y: np.ndarray) -> tuple[float, np.ndarray]:
 def main() -> None:
     ddl_forecast.set_num_threads(1)
     rng = np.random.default_rng(0)
-    print(f"{processor()}, one core; ddl-forecast {ddl_forecast.__version__}, tslearn {version('tslearn')}, aeon {version('aeon')}\n")
+    print(
+        f"{processor()}, one core; ddl-forecast {ddl_forecast.__version__}, "
+        f"tslearn {version('tslearn')}, aeon {version('aeon')}\n"
+    )
     print("| shape | what | ddl-forecast | tslearn | aeon | times as fast as the faster |")
     print("|---|---|---|---|---|---|")
     for steps, components in SHAPES:
@@ -81,7 +84,8 @@ def main() -> None:
                 assert np.allclose(slope, gradient, rtol=1e-9, atol=1e-9), what
             times = [median_time(call) if call else float("nan") for call in calls]
             shown = [f"{1e6 * one:.2f} us" if one == one else "-" for one in times]
-            print(f"| {steps} x {steps} x {components} | {what} | {' | '.join(shown)} | {np.nanmin(times[1:]) / times[0]:.0f} |")
+            ratio = np.nanmin(times[1:]) / times[0]
+            print(f"| {steps} x {steps} x {components} | {what} | {' | '.join(shown)} | {ratio:.0f} |")
 
 
 if __name__ == "__main__":

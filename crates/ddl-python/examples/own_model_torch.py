@@ -1,7 +1,7 @@
 """A small torch model, trained and evaluated on the folds of the benchmark.
 
-    pip install ddl-forecast torch
-    python own_model_torch.py [simulated|star] [EPOCHS]
+pip install ddl-forecast torch
+python own_model_torch.py [simulated|star] [EPOCHS]
 """
 
 import sys

@@ -1,7 +1,7 @@
 """Forecasts of a folder of recordings with Ray.
 
-    pip install ddl-forecast pandas ray
-    python ray_folder.py FOLDER OUT
+pip install ddl-forecast pandas ray
+python ray_folder.py FOLDER OUT
 """
 
 import sys

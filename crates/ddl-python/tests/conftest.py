@@ -61,4 +61,7 @@ def program() -> str:
 
 
 def run(*arguments: object, **options: object) -> subprocess.CompletedProcess[str]:
-    return subprocess.run([str(one) for one in arguments], capture_output=True, text=True, timeout=120, **options)  # type: ignore[call-overload,no-any-return]
+    words = [str(one) for one in arguments]
+    return subprocess.run(  # type: ignore[call-overload,no-any-return]
+        words, capture_output=True, text=True, timeout=120, **options
+    )

@@ -11,8 +11,20 @@ from pathlib import Path
 
 import pytest
 
-MODULES = ["ddl_forecast", "ddl_forecast._evaluation", "ddl_forecast._forecast", "ddl_forecast._forecaster", "ddl_forecast._live"]
-MODULES += ["ddl_forecast._recording", "ddl_forecast.baselines", "ddl_forecast.dynamics", "ddl_forecast.goals", "ddl_forecast.metrics"]
+MODULES = [
+    "ddl_forecast",
+    "ddl_forecast._evaluation",
+    "ddl_forecast._forecast",
+    "ddl_forecast._forecaster",
+    "ddl_forecast._live",
+]
+MODULES += [
+    "ddl_forecast._recording",
+    "ddl_forecast.baselines",
+    "ddl_forecast.dynamics",
+    "ddl_forecast.goals",
+    "ddl_forecast.metrics",
+]
 MODULES += ["ddl_forecast.soft_dtw"]
 CHECKOUT = Path(__file__).resolve().parents[3]
 PAGES = ["docs/python.md", "docs/scale.md", "crates/ddl-python/README.md"]
@@ -43,10 +55,25 @@ def test_pages(page, tracks, tmp_path, request):
         (tmp_path / "recordings" / f"day{part}.csv").write_text(head)
     script = tmp_path / "page.py"
     script.write_text("\n".join(blocks(page)))
-    environment = {**os.environ, "MPLBACKEND": "Agg", "RAYON_NUM_THREADS": "1", "PYTHONPATH": str(CHECKOUT / "crates/ddl-python/examples")}
-    ran = subprocess.run([sys.executable, script], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300, check=False)
+    environment = {
+        **os.environ,
+        "MPLBACKEND": "Agg",
+        "RAYON_NUM_THREADS": "1",
+        "PYTHONPATH": str(CHECKOUT / "crates/ddl-python/examples"),
+    }
+    ran = subprocess.run(
+        [sys.executable, script],
+        cwd=tmp_path,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
     assert ran.returncode == 0, ran.stderr
-    shown = [line.split("# ", 1)[1] for line in script.read_text().splitlines() if "->" in line and line.startswith("print(")]
+    shown = [
+        line.split("# ", 1)[1] for line in script.read_text().splitlines() if "->" in line and line.startswith("print(")
+    ]
     for answer in shown:
         assert answer.split("-> ", 1)[1] in ran.stdout.splitlines(), answer
     pictures = os.environ.get("DDL_PAGE_PICTURES")
@@ -55,14 +82,32 @@ def test_pages(page, tracks, tmp_path, request):
             shutil.copy(picture, pictures)
     if page not in TYPED:
         return
-    strict = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--disable-error-code=import-untyped", "--allow-untyped-calls", script]
+    strict = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--ignore-missing-imports",
+        "--disable-error-code=import-untyped",
+        "--allow-untyped-calls",
+        script,
+    ]
     typed = subprocess.run(strict, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert typed.returncode == 0, typed.stdout
 
 
 def test_examples_are_typed():
     examples = sorted((CHECKOUT / "crates/ddl-python/examples").glob("*.py"))
-    strict = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports", "--disable-error-code=import-untyped", "--allow-untyped-calls", *examples]
+    strict = [
+        sys.executable,
+        "-m",
+        "mypy",
+        "--strict",
+        "--ignore-missing-imports",
+        "--disable-error-code=import-untyped",
+        "--allow-untyped-calls",
+        *examples,
+    ]
     typed = subprocess.run(strict, cwd=examples[0].parent, capture_output=True, text=True, timeout=300, check=False)
     assert typed.returncode == 0, typed.stdout
 

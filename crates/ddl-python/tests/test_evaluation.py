@@ -16,11 +16,17 @@ def constant_velocity(past):
 
 def test_scores_are_those_of_the_program(recordings, program, tmp_path):
     told = []
-    results = ddl.evaluate(constant_velocity, folds=["zara1"], protocols=["fair", "single"], progress=lambda *now: told.append(now))
+    results = ddl.evaluate(
+        constant_velocity, folds=["zara1"], protocols=["fair", "single"], progress=lambda *now: told.append(now)
+    )
     assert told[-1][0] == told[-1][1] and results.mean("min_ade") == pytest.approx(0.428, abs=5e-4)
     run(program, "baselines", "--convention", "star", "--fold", "zara1", "--out", tmp_path, check=True)
     rows = json.loads((tmp_path / "report.json").read_text())["rows"]
-    theirs = [row["scores"] for row in rows if "last step" in row["conditions"]["forecaster"] and row["conditions"]["protocol"] == "fair"]
+    theirs = [
+        row["scores"]
+        for row in rows
+        if "last step" in row["conditions"]["forecaster"] and row["conditions"]["protocol"] == "fair"
+    ]
     rules = [row["conditions"]["window_rule"] for row in rows if "last step" in row["conditions"]["forecaster"]]
     ours = next(row for row in results.rows if row["conditions"]["protocol"] == "fair")
     same = theirs[rules.index(ours["conditions"]["window_rule"])]
@@ -64,7 +70,9 @@ def test_all_forms_of_predictions_and_wrong_ones():
     ways = [constant_velocity, lambda past: constant_velocity(past)[:, 0], weighted, baselines.constant_velocity]
     scores = [ddl.evaluate(way, convention="simulated", folds=["doorway"]).mean("min_ade") for way in ways]
     assert np.allclose(scores, scores[0])
-    by_fold = ddl.evaluate({"plaza": constant_velocity, "doorway": weighted}, convention="simulated", protocols=["single"])
+    by_fold = ddl.evaluate(
+        {"plaza": constant_velocity, "doorway": weighted}, convention="simulated", protocols=["single"]
+    )
     assert {row["conditions"]["fold"] for row in by_fold.rows} == {"plaza", "doorway"}
     for wrong, words in [
         (lambda past: constant_velocity(past)[:, :, :5], "window 0"),
@@ -94,7 +102,10 @@ def test_a_model_may_reuse_its_arrays():
         out[: len(past)] = constant_velocity(past)
         return out[: len(past)]
 
-    scores = [ddl.evaluate(way, convention="simulated", folds=["doorway"]).mean("min_fde") for way in (constant_velocity, reusing)]
+    scores = [
+        ddl.evaluate(way, convention="simulated", folds=["doorway"]).mean("min_fde")
+        for way in (constant_velocity, reusing)
+    ]
     assert scores[0] == scores[1]
 
 

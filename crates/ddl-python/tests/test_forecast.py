@@ -84,7 +84,9 @@ def test_wrong_models_and_samples(tmp_path, forecaster, crossing):
 
 
 def test_every_builtin_model_forecasts(crossing):
-    ends = [ddl.Forecaster(name).forecast(crossing).paths[0, 0, -1] for name in ("eth", "hotel", "univ", "zara1", "zara2")]
+    ends = [
+        ddl.Forecaster(name).forecast(crossing).paths[0, 0, -1] for name in ("eth", "hotel", "univ", "zara1", "zara2")
+    ]
     assert len({tuple(end) for end in ends}) == 5
 
 
@@ -108,7 +110,9 @@ def test_keeping_clear(crossing):
 
 
 def test_bits_of_the_program(forecaster, tracks, program):
-    lines = run(program, "forecast", tracks, "--format", "jsonl", "--last", "--region", "0.9", check=True).stdout.splitlines()
+    lines = run(
+        program, "forecast", tracks, "--format", "jsonl", "--last", "--region", "0.9", check=True
+    ).stdout.splitlines()
     told = {line["pedestrian"]: line for line in map(json.loads, lines)}
     recording = ddl.read(tracks)
     (forecast,) = forecaster.forecast_recording(recording, last=True)
@@ -140,7 +144,9 @@ def test_tables_of_numpy_pandas_and_polars(forecaster, tracks, program, tmp_path
     table = polars.read_csv(tracks)
     again = forecaster.forecast_table(table["frame"], table["pedestrian"], table["x"], table["y"])
     assert all(np.array_equal(columns[name], again[name]) for name in columns)
-    words = forecaster.forecast_table(table["frame"], ["p" + str(one) for one in table["pedestrian"]], table["x"], table["y"])
+    words = forecaster.forecast_table(
+        table["frame"], ["p" + str(one) for one in table["pedestrian"]], table["x"], table["y"]
+    )
     assert words["pedestrian"].dtype.kind == "U" and np.allclose(np.sort(words["x"]), np.sort(columns["x"]), atol=1e-3)
 
 
@@ -245,7 +251,10 @@ def test_an_empty_scene_has_all_fields(forecaster, crossing):
     for name in ("paths", "weights", "goals", "certified", "spread", "familiarity"):
         assert getattr(some, name).shape == getattr(empty, name).shape, name
     assert some.certificates.potentials.shape == empty.certificates.potentials.shape
-    assert baselines.angular_noise(absent).paths.shape == (2, 20, 12, 2) and baselines.constant_velocity(absent).goals is None
+    assert (
+        baselines.angular_noise(absent).paths.shape == (2, 20, 12, 2)
+        and baselines.constant_velocity(absent).goals is None
+    )
 
 
 def test_forecasts_are_written_for_the_program(forecaster, tracks, tmp_path):
@@ -285,7 +294,9 @@ def test_suspicious_input_gives_a_warning(forecaster, crossing, tracks, tmp_path
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         forecaster.forecast_recording(ddl.read(tracks), last=True)
-    slow = ddl.Recording(np.arange(60), np.ones(60, int), np.arange(60) * 0.12, np.zeros(60))  # 10 frames a second, taken as 2.5
+    slow = ddl.Recording(
+        np.arange(60), np.ones(60, int), np.arange(60) * 0.12, np.zeros(60)
+    )  # 10 frames a second, taken as 2.5
     pixels = ddl.Recording(np.arange(20), np.ones(20, int), np.arange(20) * 40.0, np.zeros(20))
     for recording in (slow, pixels):
         for call in (forecaster.forecast_recording, forecaster.show):

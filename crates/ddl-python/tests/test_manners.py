@@ -67,7 +67,8 @@ LONG = """
 import numpy as np, time, sys
 import ddl_forecast as ddl
 rng = np.random.default_rng(0)
-scenes = [rng.uniform(0, 20, (30, 1, 2)) + rng.normal(0, .5, (30, 1, 2)) * .4 * np.arange(8)[None, :, None] for _ in range(2000)]
+times = .4 * np.arange(8)[None, :, None]
+scenes = [rng.uniform(0, 20, (30, 1, 2)) + rng.normal(0, .5, (30, 1, 2)) * times for _ in range(2000)]
 forecaster = ddl.Forecaster()
 print("begun", flush=True)
 try:
@@ -96,7 +97,9 @@ def test_a_forked_child_computes(forecaster, crossing):
 
     def everything():
         scores = metrics.scores(paths, list(truth), [crossing, crossing])
-        report = ddl.evaluate(lambda past: past[:, -1:, None] + np.zeros((len(past), 1, 12, 2)), convention="simulated", folds=["doorway"])
+        report = ddl.evaluate(
+            lambda past: past[:, -1:, None] + np.zeros((len(past), 1, 12, 2)), convention="simulated", folds=["doorway"]
+        )
         walks = [np.cumsum(crossing[i], axis=0) for i in range(25)]
         nearest = soft_dtw.SearchIndex(walks).nearest(walks[0], 3)[1]
         return f"{forecaster.forecast(crossing).paths.sum()} {scores['min_ade']} {report.to_markdown()} {nearest}"
@@ -173,11 +176,19 @@ def test_the_console_script_is_the_program(program, tracks, tmp_path):
     assert run(program, "forecats").returncode == 2
     page = run(program, "view", tracks, "--no-open", "--output", tmp_path / "page.html", check=True)
     assert page.stdout and (tmp_path / "page.html").stat().st_size > 10_000
-    piped = subprocess.run(["sh", "-c", f"{program} forecast {tracks} | head -n 2"], capture_output=True, text=True, timeout=60, check=False)
+    piped = subprocess.run(
+        ["sh", "-c", f"{program} forecast {tracks} | head -n 2"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
     assert len(piped.stdout.splitlines()) == 2 and not piped.stderr
     told = run(program, "train", "--data", tracks, "--out", tmp_path / "run")
     assert told.returncode == 1 and "libtorch" in told.stderr
-    watching = subprocess.Popen([program, "forecast", "-", "--fps", "2.5"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    watching = subprocess.Popen(
+        [program, "forecast", "-", "--fps", "2.5"], stdin=subprocess.PIPE, stderr=subprocess.DEVNULL
+    )
     time.sleep(0.5)
     watching.send_signal(signal.SIGINT)
     assert watching.wait(5) != 0

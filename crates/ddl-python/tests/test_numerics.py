@@ -64,7 +64,11 @@ def test_searches_are_exact(components):
     sliding = soft_dtw.SlidingIndex(walks, 8, tail=2)
     tracks, first, distances = sliding.nearest(query[:9], 3)
     assert tracks.shape == first.shape == distances.shape == (2, 3)
-    windows = {(i, s): soft_dtw.value(query[1:9], walk[s : s + 8], normalised=True) for i, walk in enumerate(walks) for s in range(len(walk) - 9)}
+    windows = {
+        (i, s): soft_dtw.value(query[1:9], walk[s : s + 8], normalised=True)
+        for i, walk in enumerate(walks)
+        for s in range(len(walk) - 9)
+    }
     best = sorted(windows, key=lambda at: windows[at])[:3]
     assert list(zip(tracks[1].tolist(), first[1].tolist(), strict=True)) == best
 
@@ -109,7 +113,9 @@ def test_metrics_are_their_definitions():
     truth = np.cumsum(rng.normal(0, 0.3, (6, 12, 2)), axis=1)
     paths = truth[:, None] + np.cumsum(rng.normal(0, 0.2, (6, 20, 12, 2)), axis=2)
     errors = np.linalg.norm(paths - truth[:, None], axis=-1)
-    assert np.allclose(metrics.ade(paths, truth), errors.mean(-1)) and np.allclose(metrics.fde(paths, truth), errors[..., -1])
+    assert np.allclose(metrics.ade(paths, truth), errors.mean(-1)) and np.allclose(
+        metrics.fde(paths, truth), errors[..., -1]
+    )
     assert np.allclose(metrics.min_ade(paths, truth), errors.mean(-1).min(1))
     assert metrics.joint_fde(paths, truth) == pytest.approx(errors[..., -1].mean(0).min())
     assert metrics.miss(paths, truth, distance=0.5).tolist() == (errors[..., -1].min(1) > 0.5).tolist()
@@ -121,7 +127,11 @@ def test_metrics_are_their_definitions():
     density = [[scipy.gaussian_kde(paths[i, :, t].T).logpdf(truth[i, t])[0] for t in range(12)] for i in range(6)]
     assert np.allclose(metrics.kde_nll(paths, truth), -np.maximum(density, -20).mean(1), rtol=1e-6)
     assert (metrics.amd(paths, truth) > 0).all() and metrics.amv(paths) > 0
-    assert metrics.collides(np.array([[[0.0, 0], [2, 0]], [[2.0, 0], [0, 0]], [[9.0, 9], [9, 9]]])).tolist() == [True, True, False]
+    assert metrics.collides(np.array([[[0.0, 0], [2, 0]], [[2.0, 0], [0, 0]], [[9.0, 9], [9, 9]]])).tolist() == [
+        True,
+        True,
+        False,
+    ]
     past = np.zeros((6, 8, 2))
     everything = metrics.scores(paths, truth, past)
     assert everything["min_ade"] == pytest.approx(errors.mean(-1).min(1).mean()) and everything["pedestrians"] == 6

@@ -12,7 +12,9 @@ from ddl_forecast._recording import FORMATS
 @pytest.mark.parametrize("format", FORMATS)
 def test_a_written_recording_is_read_back(format, tmp_path, tracks):
     recording = ddl.read(tracks)
-    path = tmp_path / ("tracks.txt" if format in ("social-gan", "obsmat") else "tracks.ndjson" if format == "trajnet" else "tracks.csv")
+    path = tmp_path / (
+        "tracks.txt" if format in ("social-gan", "obsmat") else "tracks.ndjson" if format == "trajnet" else "tracks.csv"
+    )
     recording.write(path, format=format)
     for back in (ddl.read(path), ddl.read(path, format=format)):
         for column in ("frame", "id", "x", "y"):

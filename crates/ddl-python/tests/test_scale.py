@@ -43,9 +43,14 @@ def test_dask_gives_the_bits_of_one_process_though_a_worker_dies(folder, tmp_pat
     for path in sorted(folder.glob("*.csv")):
         forecast_file(str(path), str(plain), forecaster)
     out = tmp_path / "out"
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, distributed.Client(cluster) as client:
+    with (
+        distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster,
+        distributed.Client(cluster) as client,
+    ):
         victims = [worker["pid"] for worker in client.run(lambda: {"pid": os.getpid()}).values()]
-        tasks = client.map(slow_forecast, sorted(map(str, folder.glob("*.csv"))), out=str(out), forecaster=forecaster, pure=False)
+        tasks = client.map(
+            slow_forecast, sorted(map(str, folder.glob("*.csv"))), out=str(out), forecaster=forecaster, pure=False
+        )
         while not any(out.glob("*.csv")):
             time.sleep(0.05)
         os.kill(victims[0], signal.SIGKILL)
@@ -54,7 +59,9 @@ def test_dask_gives_the_bits_of_one_process_though_a_worker_dies(folder, tmp_pat
     assert len(made) == 6
     for path in made:
         assert Path(path).read_bytes() == (plain / Path(path).name).read_bytes()
-    assert {path.name for path in out.iterdir()} - {Path(path).name for path in made} <= {one.name for one in out.glob(".*")}
+    assert {path.name for path in out.iterdir()} - {Path(path).name for path in made} <= {
+        one.name for one in out.glob(".*")
+    }
 
 
 def slow_forecast(path, out, forecaster):
@@ -75,14 +82,21 @@ def free_port():
 def frames_of(camera, count):
     """Two pedestrians who pass, another place for each camera."""
     for frame in range(count):
-        yield {"frame": frame, "fps": 2.5, "ids": [1, 2], "xy": [[camera + 0.5 * frame, 0.0], [camera + 9 - 0.4 * frame, 1.0]]}
+        yield {
+            "frame": frame,
+            "fps": 2.5,
+            "ids": [1, 2],
+            "xy": [[camera + 0.5 * frame, 0.0], [camera + 9 - 0.4 * frame, 1.0]],
+        }
 
 
 def test_twenty_cameras_over_zenoh_lose_nothing(tmp_path):
     zenoh = pytest.importorskip("zenoh")
     place = f"tcp/127.0.0.1:{free_port()}"
     program = subprocess.Popen(
-        [sys.executable, EXAMPLES / "zenoh_cameras.py", "--listen", place, "--memory", tmp_path], stdout=subprocess.PIPE, text=True
+        [sys.executable, EXAMPLES / "zenoh_cameras.py", "--listen", place, "--memory", tmp_path],
+        stdout=subprocess.PIPE,
+        text=True,
     )
     try:
         assert program.stdout.readline().startswith("watching")
@@ -117,7 +131,9 @@ def test_twenty_cameras_over_zenoh_lose_nothing(tmp_path):
         for seen in frames_of(7, 12):
             expected = live.observe(seen["frame"], seen["ids"], seen["xy"])
         assert answers["camera7", 11]["paths"] == expected.paths.round(4).tolist()
-        print(f"240 frames of 20 cameras: median {1e3 * statistics.median(times):.1f} ms, worst {1e3 * max(times):.1f} ms")
+        print(
+            f"240 frames of 20 cameras: median {1e3 * statistics.median(times):.1f} ms, worst {1e3 * max(times):.1f} ms"
+        )
     finally:
         program.send_signal(signal.SIGINT)
         program.wait(20)
@@ -138,11 +154,21 @@ def test_the_program_as_a_filter_between_mqtt_topics(program):
             f"mosquitto_sub -p {port} -t cam/7/tracks | {program} forecast - --frame-step 1 --one --format jsonl "
             f"| mosquitto_pub -p {port} -t cam/7/forecasts -l"
         )
-        listener = subprocess.Popen(["mosquitto_sub", "-p", port, "-t", "cam/7/forecasts", "-C", "4", "-W", "60"], stdout=subprocess.PIPE, text=True)
+        listener = subprocess.Popen(
+            ["mosquitto_sub", "-p", port, "-t", "cam/7/forecasts", "-C", "4", "-W", "60"],
+            stdout=subprocess.PIPE,
+            text=True,
+        )
         started += [subprocess.Popen(["sh", "-c", pipe], start_new_session=True), listener]
         time.sleep(2)
-        lines = [f"{seen['frame']} {one} {x} {y}" for seen in frames_of(0, 10) for one, (x, y) in zip(seen["ids"], seen["xy"], strict=True)]
-        publisher = subprocess.Popen(["mosquitto_pub", "-p", port, "-t", "cam/7/tracks", "-l"], stdin=subprocess.PIPE, text=True)
+        lines = [
+            f"{seen['frame']} {one} {x} {y}"
+            for seen in frames_of(0, 10)
+            for one, (x, y) in zip(seen["ids"], seen["xy"], strict=True)
+        ]
+        publisher = subprocess.Popen(
+            ["mosquitto_pub", "-p", port, "-t", "cam/7/tracks", "-l"], stdin=subprocess.PIPE, text=True
+        )
         for line in [*lines, ""]:
             publisher.stdin.write(line + "\n")
             publisher.stdin.flush()

@@ -24,9 +24,7 @@ def request_for(address):
 def main(address, timeout, authorities=None):
     context = ssl.create_default_context(cafile=authorities or None)
     try:
-        with urllib.request.urlopen(
-            request_for(address), timeout=float(timeout), context=context
-        ) as response:
+        with urllib.request.urlopen(request_for(address), timeout=float(timeout), context=context) as response:
             while True:
                 block = response.read(1 << 16)
                 if not block:

@@ -1,4 +1,4 @@
-//! Columns of Markdown and Rust.
+//! Columns of Markdown, Rust and Python.
 
 use std::path::Path;
 
@@ -15,6 +15,7 @@ pub(super) fn faults(file: &Path, text: &str) -> Vec<String> {
             let is_table = |mark| line.trim_start().starts_with(mark);
             line.chars().count() > COLUMNS && !is_table("//! |") && !is_table("/// |")
         }),
+        Some("py" | "pyi") => numbered(text.lines(), |line| line.chars().count() > COLUMNS),
         Some("md") => in_markdown(text),
         _ => Vec::new(),
     };
@@ -69,7 +70,9 @@ mod tests {
             ("a.md", format!("```rust\n{long}\n```\n"), vec![2]),
             ("a.md", format!("see [this]({target}) page\n"), vec![]),
             ("a.md", format!("see [this]({target}) {long}\n"), vec![1]),
-            ("a.py", format!("{long}\n"), vec![]),
+            ("a.rs", format!("//! | {long} |\n    /// | {long} |\n// | {long} |\n"), vec![3]),
+            ("a.py", format!("{long}\n"), vec![1]),
+            ("a.toml", format!("{long}\n"), vec![]),
             ("a.rs", format!("// {}\n", "é".repeat(117)), vec![]),
         ] {
             let found = faults(Path::new(file), &text);

@@ -39,8 +39,14 @@ def spread(points, weights, at):
 
 def case(points, weights, at):
     distance, covariance = spread(points, weights, at)
-    return dict(points=points, weights=weights, at=at, log_density=log_density(points, weights, at),
-                mahalanobis=distance, eigenvalue=float(np.linalg.eigvalsh(covariance).max()))
+    return dict(
+        points=points,
+        weights=weights,
+        at=at,
+        log_density=log_density(points, weights, at),
+        mahalanobis=distance,
+        eigenvalue=float(np.linalg.eigvalsh(covariance).max()),
+    )
 
 
 def cases():

@@ -51,7 +51,9 @@ def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
     words = []
     for row, value in enumerate(array.tolist()):
         if isinstance(value, bool) or not isinstance(value, (str, int)):
-            raise ValueError(f"row {row}, column id: {value!r} is neither a whole number nor a word (rows are counted from 0)")
+            raise ValueError(
+                f"row {row}, column id: {value!r} is neither a whole number nor a word (rows are counted from 0)"
+            )
         words.append(str(value))
     known, coded = np.unique(np.array(words, dtype=np.str_), return_inverse=True)
     return np.ascontiguousarray(coded, dtype=np.int64).reshape(-1), known.tolist()
@@ -61,7 +63,9 @@ def whole(values: ArrayLike, name: str) -> Integers:
     """Whole numbers below 2^53 in size, such as frames; fractions are refused."""
     array = column(values, name)
     if array.dtype.kind not in "iuf":
-        raise ValueError(f"column {name} must hold whole numbers; found the type {array.dtype} (text? convert it by astype(int))")
+        raise ValueError(
+            f"column {name} must hold whole numbers; found the type {array.dtype} (text? convert it by astype(int))"
+        )
     wrong = np.flatnonzero(~((np.abs(array.astype(np.float64)) < LARGEST) & (array == np.round(array))))
     if len(wrong):
         row = int(wrong[0])

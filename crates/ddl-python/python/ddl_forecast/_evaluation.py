@@ -96,7 +96,9 @@ class Results:
         """Tables, one for each convention, window rule and protocol, with means over the folds."""
         return _core.report(title, self._rows)
 
-    def mean(self, score: str = "min_ade", *, protocol: str = "fair", name: str | None = None, rule: str | None = None) -> float:
+    def mean(
+        self, score: str = "min_ade", *, protocol: str = "fair", name: str | None = None, rule: str | None = None
+    ) -> float:
         """Mean over folds of a score of one model under a protocol.
 
         ``name`` and ``rule`` (as in ``conditions["window_rule"]``) select one of several models and window rules.
@@ -139,7 +141,11 @@ class Results:
 
 def _words(rule: Any) -> str:
     """A window rule as one word, with its number if it has one."""
-    return rule if isinstance(rule, str) else "-".join(f"{name}-{number}" for name, of in rule.items() for number in of.values())
+    return (
+        rule
+        if isinstance(rule, str)
+        else "-".join(f"{name}-{number}" for name, of in rule.items() for number in of.values())
+    )
 
 
 PROTOCOLS = ("fair", "single", "online", "online-single")
@@ -190,7 +196,7 @@ def evaluate(
     Examples
     --------
     >>> from ddl_forecast import baselines, evaluate
-    >>> results = evaluate(baselines.constant_velocity, convention="simulated", folds=["plaza"], name="constant velocity")
+    >>> results = evaluate(baselines.constant_velocity, convention="simulated", folds=["plaza"], name="cv")
     >>> round(results.mean("min_ade"), 3) > 0
     True
     """
@@ -202,7 +208,9 @@ def evaluate(
     if isinstance(model, Forecaster):
         of, fold = model._core.trained_on
         if of != convention:
-            raise ValueError(f"{model!r} was trained without {of} {fold} and can only be evaluated on it: set convention={of!r}")
+            raise ValueError(
+                f"{model!r} was trained without {of} {fold} and can only be evaluated on it: set convention={of!r}"
+            )
         model = {fold: model}
     asked = list(folds) if folds is not None else [*model] if isinstance(model, Mapping) else known[convention]
     for fold in asked:
@@ -229,7 +237,9 @@ def evaluate(
     return rows
 
 
-def _of_forecaster(model: Forecaster, protocols: Sequence[str], data: Folder, progress: Progress | bool | None) -> Results:
+def _of_forecaster(
+    model: Forecaster, protocols: Sequence[str], data: Folder, progress: Progress | bool | None
+) -> Results:
     with _Progress(progress, "pedestrians") as told:
         return Results(_core.evaluate_model(model._core, data, list(protocols), told.update))
 
@@ -245,7 +255,9 @@ def _measured(
             window = tests.observed(index)
             earlier = (seen[window["recording"]].until(window["frame"]),) if watching else ()
             count = len(window["past"])
-            made.append(_prediction(model(window["past"], *earlier), (protocol, name, count), f"window {index} of {title}"))
+            made.append(
+                _prediction(model(window["past"], *earlier), (protocol, name, count), f"window {index} of {title}")
+            )
             told.update(index + 1, len(tests))
     return tests.score(protocol, name, made)
 

@@ -117,9 +117,9 @@ class Forecast:
         if few == 0:
             return None
         return (
-            f"{few} of {int(self.valid.sum())} motions are unlike the training motions (familiarity below {UNFAMILIAR}); "
-            "check that positions are in metres and steps are 0.4 s. Forecasts of such motions use little of the "
-            "network, and their weights are flatter"
+            f"{few} of {int(self.valid.sum())} motions are unlike the training motions "
+            f"(familiarity below {UNFAMILIAR}); check that positions are in metres and steps are 0.4 s. "
+            "Forecasts of such motions use little of the network, and their weights are flatter"
         )
 
     @property
@@ -172,7 +172,9 @@ class Forecast:
         shown = self.valid
         goals = None if self.goals is None else self.goals[shown]
         radii = None if level is None else self.regions(level)[shown, :, -1]
-        return draw(ax, self.past[shown], self.made_up[shown, 0], self.paths[shown], self.weights[shown], goals, radii, level)
+        return draw(
+            ax, self.past[shown], self.made_up[shown, 0], self.paths[shown], self.weights[shown], goals, radii, level
+        )
 
 
 def _ids(names: list[Any]) -> NDArray[Any]:
@@ -230,18 +232,22 @@ def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast])
     rows = []
     for forecast in forecasts:
         if forecast.frame is None or not forecast.recording or forecast.ids.dtype.kind not in "iu":
-            raise ValueError("only forecasts of recordings with numbered pedestrians can be written, not of arrays or words")
+            raise ValueError(
+                "only forecasts of recordings with numbered pedestrians can be written, not of arrays or words"
+            )
         if forecast.frame != int(forecast.frame):
             between = f"frame {forecast.frame} lies between two frames, because the recording was resampled"
             raise ValueError(f"{between}; such forecasts cannot be written")
         keep = forecast.valid
-        rows.append((
-            forecast.recording,
-            int(forecast.frame),
-            [int(one) for one in forecast.ids[keep]],
-            np.ascontiguousarray(forecast.past[keep]),
-            np.ascontiguousarray(forecast.paths[keep]),
-            np.ascontiguousarray(forecast.weights[keep]),
-            None if forecast.goals is None else np.ascontiguousarray(forecast.goals[keep]),
-        ))
+        rows.append(
+            (
+                forecast.recording,
+                int(forecast.frame),
+                [int(one) for one in forecast.ids[keep]],
+                np.ascontiguousarray(forecast.past[keep]),
+                np.ascontiguousarray(forecast.paths[keep]),
+                np.ascontiguousarray(forecast.weights[keep]),
+                None if forecast.goals is None else np.ascontiguousarray(forecast.goals[keep]),
+            )
+        )
     _core.write_forecasts(path, rows)

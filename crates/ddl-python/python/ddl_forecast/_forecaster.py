@@ -29,7 +29,7 @@ class Forecaster:
         after the ETH/UCY scene that it was trained without. Or a path: the folder of a training run, or a packed model
         (``./hotel`` for a folder with the name of a built-in model).
     keep_clear
-        Distance in metres, such as 0.4, that pedestrians keep from each other's most likely paths; None for no distance.
+        Distance in metres, such as 0.4, that pedestrians keep from each other's most likely paths, or None.
 
     Raises
     ------
@@ -83,9 +83,9 @@ class Forecaster:
         ----------
         past
             (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not observed. Holes
-            of up to 2 positions are filled on a straight line; positions before a longer hole are ignored. A pedestrian is
-            forecast if the last position and at least one other remain; earlier positions are padded at the mean
-            velocity.
+            of up to 2 positions are filled on a straight line; positions before a longer hole are ignored. A
+            pedestrian is forecast if the last position and at least one other remain; earlier positions are padded at
+            the mean velocity.
         neighbours
             (m, 8, 2) positions of other pedestrians, which influence the forecast but are not forecast.
         samples
@@ -149,7 +149,7 @@ class Forecaster:
         whole: bool = False,
         certificates: bool = False,
     ) -> list[Forecast]:
-        """Forecast from every frame of a recording that has pedestrians to forecast, or with ``last`` from the last one."""
+        """Forecast from every frame of a recording with pedestrians to forecast; with ``last`` from the last one."""
         _tell_doubt(recording)
         made = self._core.forecast_recording(recording._core, last, samples, whole, certificates)
         return _told([Forecast._of(parts) for parts in made])
@@ -215,7 +215,9 @@ class Forecaster:
 def _tell_doubt(recording: Recording) -> None:
     """Warn of suspicious speeds: wrong units or a wrong rate give forecasts that are plausible but meaningless."""
     if not isinstance(recording, Recording):
-        raise TypeError(f"recording must be a Recording, as read('tracks.csv') gives it; found {type(recording).__name__}")
+        raise TypeError(
+            f"recording must be a Recording, as read('tracks.csv') gives it; found {type(recording).__name__}"
+        )
     doubt = recording.doubt()
     if doubt is not None:
         warnings.warn(f"{recording.name}: {doubt}", DoubtWarning, stacklevel=3)

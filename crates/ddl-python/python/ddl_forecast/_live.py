@@ -62,7 +62,9 @@ class Live:
         certificates: bool = False,
     ) -> None:
         if not isinstance(forecaster, Forecaster):
-            raise TypeError(f"forecaster must be a Forecaster, such as Forecaster('hotel'); found {type(forecaster).__name__}")
+            raise TypeError(
+                f"forecaster must be a Forecaster, such as Forecaster('hotel'); found {type(forecaster).__name__}"
+            )
         self._core = _core.Live(forecaster._core, fps, memory, whole, certificates)
         self._numbers: dict[str, int] = {}
         self._words: dict[int, str] = {}
@@ -103,7 +105,9 @@ class Live:
             names = None if parts is None else [words.get(one, one) for one in parts["ids"]]
         self._tell_refusal()
         if unwritten is not None:
-            warnings.warn(f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2)
+            warnings.warn(
+                f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2
+            )
         if parts is None:
             return None
         forecast = Forecast._of(parts, names)
@@ -162,5 +166,7 @@ class Live:
     def __enter__(self) -> Live:
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self.close()

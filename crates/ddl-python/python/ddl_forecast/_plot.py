@@ -39,7 +39,9 @@ def draw(
         if radii is not None:
             for end, radius in zip(paths[i, :, -1], radii[i], strict=True):
                 if not np.isnan(radius):
-                    ax.add_patch(Circle((float(end[0]), float(end[1])), float(radius), color=PATH, alpha=0.06, linewidth=0))
+                    ax.add_patch(
+                        Circle((float(end[0]), float(end[1])), float(radius), color=PATH, alpha=0.06, linewidth=0)
+                    )
         lines = np.concatenate([np.broadcast_to(now, (len(weights_of), 1, 2)), paths[i]], axis=1)
         share = weights_of / weights_of.max()
         order = np.argsort(weights_of)
@@ -52,19 +54,37 @@ def draw(
             )
         )
         if goals is not None:
-            ax.scatter(goals[i, :, 0], goals[i, :, 1], 260 * weights_of, "none", edgecolors=GOAL, linewidths=0.9, zorder=3)
+            ax.scatter(
+                goals[i, :, 0], goals[i, :, 1], 260 * weights_of, "none", edgecolors=GOAL, linewidths=0.9, zorder=3
+            )
         seen, invented = past[i, padded[i] :], past[i, : padded[i] + 1]
         ax.plot(seen[:, 0], seen[:, 1], color=PAST, linewidth=1.6, zorder=4)
         ax.plot(invented[:, 0], invented[:, 1], ":", color=PAST, linewidth=1.0, zorder=4)
         ax.plot(now[0], now[1], "o", color=PAST, markersize=5, zorder=5)
-    legend = [Line2D([], [], color=PAST, marker="o", label="observed, 3.2 s"), Line2D([], [], color=PATH, linewidth=2, label="forecast, 4.8 s")]
+    legend = [
+        Line2D([], [], color=PAST, marker="o", label="observed, 3.2 s"),
+        Line2D([], [], color=PATH, linewidth=2, label="forecast, 4.8 s"),
+    ]
     if padded.any():
         legend.insert(1, Line2D([], [], color=PAST, linestyle=":", label="not observed (padded)"))
     if goals is not None and len(goals):
-        ring = Line2D([], [], color="none", marker="o", markerfacecolor="none", markeredgecolor=GOAL, label="goal, size by weight")
+        ring = Line2D(
+            [], [], color="none", marker="o", markerfacecolor="none", markeredgecolor=GOAL, label="goal, size by weight"
+        )
         legend.append(ring)
     if level is not None:
-        legend.append(Line2D([], [], color=PATH, alpha=0.25, marker="o", markersize=10, linestyle="", label=f"{level:.0%} region at the horizon"))
+        legend.append(
+            Line2D(
+                [],
+                [],
+                color=PATH,
+                alpha=0.25,
+                marker="o",
+                markersize=10,
+                linestyle="",
+                label=f"{level:.0%} region at the horizon",
+            )
+        )
     ax.legend(handles=legend, loc="best", frameon=False, fontsize="small")
     ax.set(xlabel="x (m)", ylabel="y (m)", aspect="equal")
     ax.margins(0.08)

@@ -18,7 +18,14 @@ from ddl_forecast import _core
 from ddl_forecast._arrays import floats, scene
 from ddl_forecast._forecast import Forecast
 
-__all__ = ["angular_noise", "constant_acceleration", "constant_velocity", "mean_velocity", "social_force", "straight_line"]
+__all__ = [
+    "angular_noise",
+    "constant_acceleration",
+    "constant_velocity",
+    "mean_velocity",
+    "social_force",
+    "straight_line",
+]
 
 
 def _baseline(name: str, past: ArrayLike, seed: int = 0, goals: ArrayLike | None = None) -> Forecast:

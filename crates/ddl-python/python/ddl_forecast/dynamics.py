@@ -62,7 +62,9 @@ class Flow:
         A matrix is not symmetric and positive definite (the message names it), or a number is not finite.
     """
 
-    def __init__(self, goal: ArrayLike, P: ArrayLike, *, obstacles: ArrayLike | None = None, margin: float = 0.5) -> None:
+    def __init__(
+        self, goal: ArrayLike, P: ArrayLike, *, obstacles: ArrayLike | None = None, margin: float = 0.5
+    ) -> None:
         matrices = np.asarray(P, dtype=np.float64)
         if matrices.ndim not in (2, 3) or matrices.shape[-2:] != (2, 2):
             raise ValueError(f"P must have the shape (2, 2) or (steps, 2, 2); found {matrices.shape}")

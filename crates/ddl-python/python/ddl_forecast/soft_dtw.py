@@ -100,5 +100,5 @@ class SlidingIndex:
         return len(self._core)
 
     def nearest(self, query: ArrayLike, n: int = 1) -> tuple[Integers, Integers, Floats]:
-        """Tracks, first steps and distances, (w, n) each, of the windows nearest to each of the w windows of ``query``."""
+        """Tracks, first steps and distances, (w, n) each, of the windows nearest to each of the w of ``query``."""
         return self._core.nearest(query, n)
