@@ -70,7 +70,11 @@ mod tests {
             ("a.md", format!("```rust\n{long}\n```\n"), vec![2]),
             ("a.md", format!("see [this]({target}) page\n"), vec![]),
             ("a.md", format!("see [this]({target}) {long}\n"), vec![1]),
-            ("a.rs", format!("//! | {long} |\n    /// | {long} |\n// | {long} |\n"), vec![3]),
+            (
+                "a.rs",
+                format!("//! | {long} |\n    /// | {long} |\n// | {long} |\n"),
+                vec![3],
+            ),
             ("a.py", format!("{long}\n"), vec![1]),
             ("a.toml", format!("{long}\n"), vec![]),
             ("a.rs", format!("// {}\n", "é".repeat(117)), vec![]),
