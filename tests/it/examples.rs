@@ -61,8 +61,8 @@ const EXAMPLES: [(&str, &[&str]); 11] = [
     ),
 ];
 
-/// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for
-/// minutes, some of other places.
+/// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for minutes, some
+/// of other places.
 const ELSEWHERE: [&str; 5] = [
     "ddl-forecast calibrate",
     "ddl-forecast elsewhere",

@@ -16,8 +16,8 @@ use crate::unknown_name::UnknownName;
 pub enum Convention {
     /// ETH/UCY as SR-LSTM, STAR and DDL use it: eth has a step of 6 raw frames, the others of 10.
     Star,
-    /// ETH/UCY as Social-GAN and most other papers use it: eth has a step of 10 raw frames, so that
-    /// its "0.4 s" are 0.667 s.
+    /// ETH/UCY as Social-GAN and most other papers use it: eth has a step of 10 raw frames, so that its "0.4 s" are
+    /// 0.667 s.
     SocialGan,
     /// Simulated crowds ([`simulate`](crate::simulate)), for machines without the recordings.
     Simulated,

@@ -53,8 +53,7 @@ impl Dataset {
     }
 
     /// The user's own recordings, in steps of 0.4 s ([`Recording::resampled_to_steps`]). Each recording can be left out
-    /// as a
-    /// fold, which has the recording's name.
+    /// as a fold, which has the recording's name.
     ///
     /// # Errors
     /// If there are no recordings, if two have the same name, or if one is called `none` ([`Fold::WHOLE`]).

@@ -105,8 +105,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
         }
     }
 
-    /// The distance to the goal (metres) and the unit vector `u` away from it (0 at the goal), for
-    /// either kind of potential.
+    /// The distance to the goal (metres) and the unit vector `u` away from it (0 at the goal), for either kind of
+    /// potential.
     #[inline]
     pub fn distance_and_direction(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         polar_way(&self.goal, position)

@@ -23,8 +23,8 @@ impl<T: Real, const D: usize> Ball<T, D> {
     /// The ball around `centre` with `radius` (metres).
     ///
     /// # Errors
-    /// [`DynamicsError::NonFinite`] for the centre, [`DynamicsError::NotPositive`] unless the radius is
-    /// positive and finite.
+    /// [`DynamicsError::NonFinite`] for the centre, [`DynamicsError::NotPositive`] unless the radius is positive and
+    /// finite.
     pub fn new(centre: SVector<T, D>, radius: T) -> Result<Self, DynamicsError> {
         ensure_finite("centre of the obstacle", &centre)?;
         let radius = ensure_positive("the radius of the obstacle", " m", radius)?;
@@ -41,8 +41,8 @@ impl<T: Real, const D: usize> Ball<T, D> {
         self.radius
     }
 
-    /// The distance from the surface (metres), negative inside, and the unit vector from the centre to
-    /// `position`, 0 at the centre. A distance too large for `T` is infinite.
+    /// The distance from the surface (metres), negative inside, and the unit vector from the centre to `position`, 0 at
+    /// the centre. A distance too large for `T` is infinite.
     #[must_use]
     pub fn gap_and_normal(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         let (distance, normal) = polar_way(&self.centre, position);

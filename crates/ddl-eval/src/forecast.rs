@@ -12,9 +12,9 @@ use crate::{error::ForecastShapeError, region::RegionTable};
 /// future.
 ///
 /// # Shapes
-/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 for each pedestrian), goals `[N][K]` in metres;
-/// certified `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds; spread `[N][12]` in
-/// metres: standard deviation of a pedestrian around the right hypothesis; familiarity `[N]`, 0 to 1: similarity of the
+/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 for each pedestrian), goals `[N][K]` in metres; certified
+/// `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds; spread `[N][12]` in metres:
+/// standard deviation of a pedestrian around the right hypothesis; familiarity `[N]`, 0 to 1: similarity of the
 /// observed motion to the training data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
@@ -35,8 +35,8 @@ impl Forecast {
     /// A forecast from flat arrays; the layout is pedestrian, hypothesis, frame.
     ///
     /// # Errors
-    /// An array has the wrong length, a number is not finite, a weight is negative, or the weights
-    /// of a pedestrian do not sum to 1 within 1e-6.
+    /// An array has the wrong length, a number is not finite, a weight is negative, or the weights of a pedestrian do
+    /// not sum to 1 within 1e-6.
     pub fn new(
         pedestrians: usize,
         hypotheses: usize,

@@ -11,8 +11,8 @@ pub struct Leak {
     pub change: String,
 }
 
-/// Looks for a leak: forecasts the window as it is, without its future, and with futures changed one
-/// frame of one pedestrian at a time and all together. `None` when every forecast is bit-identical.
+/// Looks for a leak: forecasts the window as it is, without its future, and with futures changed one frame of one
+/// pedestrian at a time and all together. `None` when every forecast is bit-identical.
 ///
 /// # Errors
 /// The forecaster failed, for instance because it needs the future, which is also a leak.

@@ -166,8 +166,7 @@ impl Forecast {
     }
 
     /// The radius (m) of the disc around hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a
-    /// level;
-    /// `None` without a disc.
+    /// level; `None` without a disc.
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
         let quantile = self.regions()?.quantile(level, t)?;
         let left = quantile + self.log_weight(i, k);

@@ -30,8 +30,8 @@ impl GoalSet {
     ///   pedestrian with noise;
     /// - x = exp(-(w / 5 mm)²) measures how uniform the motion is.
     ///
-    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/tried.md` lists
-    /// the recordings on which the constants were chosen.
+    /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/tried.md` lists the
+    /// recordings on which the constants were chosen.
     ///
     /// # Shapes
     /// `observed`: the observed positions (m), the last one last. With fewer than three, the result is the median.

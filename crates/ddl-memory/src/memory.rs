@@ -28,8 +28,8 @@ const OLDEST: usize = 8;
 /// - Two stretches are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
 /// - A track is kept in runs of up to 8 stretches. A run is removed if its first and its last stretch are both similar
 ///   to stretches of an earlier run of the same track (the run right before it does not count). Of the others the
-///   latest [`MAX_RUNS`](crate::MAX_RUNS) are kept. So a pedestrian that stands for an hour takes the space of
-///   three runs.
+///   latest [`MAX_RUNS`](crate::MAX_RUNS) are kept. So a pedestrian that stands for an hour takes the space of three
+///   runs.
 /// - The memory holds at most `capacity` stretches. A full memory frees 1/32 of them among the oldest eighth of the
 ///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, each time the
 ///   oldest first. If no track has ended, the longest one loses its oldest run.

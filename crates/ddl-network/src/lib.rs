@@ -73,9 +73,8 @@
 //! AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results agree up to rounding.
 //!
 //! [`MotionNetwork::with_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything
-//! else
-//! stay in `f32`. It is faster on processors with AVX-512 BF16; on others the same products are emulated to the bit,
-//! slowly.
+//! else stay in `f32`. It is faster on processors with AVX-512 BF16; on others the same products are emulated to the
+//! bit, slowly.
 #![cfg_attr(
     not(feature = "training"),
     allow(dead_code, reason = "only training uses the backward passes")

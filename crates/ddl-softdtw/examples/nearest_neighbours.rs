@@ -4,8 +4,7 @@
 //! cargo run --release -p ddl-softdtw --example nearest_neighbours
 //! ```
 //! Two thousand pedestrians are made up; the query turns left a little later than any of them. The 5 nearest are
-//! printed
-//! with their distances d (m²/s²) and the weights exp(-(d - smallest d) / temperature), divided by their sum.
+//! printed with their distances d (m²/s²) and the weights exp(-(d - smallest d) / temperature), divided by their sum.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use std::error::Error;

@@ -107,8 +107,7 @@ impl<const D: usize> SoftDtwBatch<D> {
     ///
     /// # Errors
     /// [`SearchError::Query`] when `x` is empty or not finite, [`SearchError::Candidate`] for a pair whose value or
-    /// gradient
-    /// leaves the range of `f64`.
+    /// gradient leaves the range of `f64`.
     pub fn values_and_gradients(&self, x: &[[f64; D]]) -> Result<BatchGradients<D>, SearchError> {
         let mut results = BatchGradients::default();
         self.values_and_gradients_into(x, &mut results)?;

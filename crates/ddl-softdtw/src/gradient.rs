@@ -9,8 +9,7 @@ impl SoftDtw {
     /// `D_γ(x, y)` and its gradient with respect to `x`.
     ///
     /// The gradient is `Σ_j E(i, j) ∂δ(x_i, y_j)/∂x_i`, where E(i, j), the expected alignment, is the probability that
-    /// a
-    /// warping path drawn with weight exp(−cost/γ) passes cell (i, j).
+    /// a warping path drawn with weight exp(−cost/γ) passes cell (i, j).
     ///
     /// # Shapes
     /// `x`: n steps, `y`: m steps; the gradient has the shape of `x`. Memory: O(n m), with a band O(n · its width).

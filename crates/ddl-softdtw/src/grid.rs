@@ -144,9 +144,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
 }
 
 /// A number for each component of each column, component by component and from the last column to the first, so that
-/// what the lanes of
-/// a strip are at lies side by side. Before the first and after the last column there is room for the slanted ends of a
-/// strip.
+/// what the lanes of a strip are at lies side by side. Before the first and after the last column there is room for the
+/// slanted ends of a strip.
 pub(crate) struct Slanted {
     numbers: Vec<f64>,
     /// Numbers a component.
@@ -155,8 +154,7 @@ pub(crate) struct Slanted {
 
 impl Slanted {
     /// The steps of the columns; beyond the ends the first or the last one. Cells there are computed and not used:
-    /// nothing in them
-    /// overflows unless it does within the grid.
+    /// nothing in them overflows unless it does within the grid.
     #[inline(always)]
     pub(crate) fn of<T: Scalar, const D: usize>(columns: &[[T; D]]) -> Self {
         let stride = columns.len() + 2 * (STRIP - 1);

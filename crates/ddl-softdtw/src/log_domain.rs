@@ -1,6 +1,5 @@
 //! The recursion as it is written down, in the log domain: what γ = 0 and extreme ratios of cost to γ need, and the
-//! oracle
-//! that the fast recursion is held to.
+//! oracle that the fast recursion is held to.
 
 use crate::cost::{Cost, Length, Metric, Squared};
 use crate::grid::Grid;

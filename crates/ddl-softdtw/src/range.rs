@@ -63,8 +63,7 @@ pub(crate) struct Range {
 
 impl Range {
     /// The range in `f32` for lengths `n` and `m` with a [`floor`] of at most `floor`, or `None` when the sequences are
-    /// too
-    /// long for it.
+    /// too long for it.
     pub(crate) fn narrow(floor: f32, n: usize, m: usize) -> Option<Self> {
         let floor = f64::from(floor);
         Self::of(Format { floor, ..NARROW }, n, m)
@@ -135,9 +134,8 @@ impl Range {
     }
 
     /// Width of the band below the n-th score that may hold members of the true n best, or `None` when it would be so
-    /// wide
-    /// that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error; that of the
-    /// `f64` values is added, so that what is ruled out is further than the n-th neighbour in computed values too.
+    /// wide that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error; that of
+    /// the `f64` values is added, so that what is ruled out is further than the n-th neighbour in computed values too.
     pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
         // A candidate just inside the band scores a little lower than the n-th: one unit covers it.
         let score_log2 = score_log2 - 1.0;

@@ -1,8 +1,7 @@
 //! The recursion on sixteen candidates at once, in `f32` and the exponential domain.
 //!
 //! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over
-//! all
-//! warping paths: no exponential and no logarithm in the recursion.
+//! all warping paths: no exponential and no logarithm in the recursion.
 //!
 //! Costs are clamped and a floor is added to every sum of three predecessors ([`Register::exp2`], [`cell`]), so that
 //! every product is a normal number. What both do to small scores is bounded in [`crate::range`].

@@ -33,8 +33,7 @@ impl<const D: usize> SearchIndex<D> {
     ///
     /// # Errors
     /// [`SearchError::NoCandidates`] for an empty list, [`SearchError::Candidate`] for an empty candidate, one that is
-    /// not
-    /// finite or whose D(y, y) cannot be represented.
+    /// not finite or whose D(y, y) cannot be represented.
     pub fn build<S>(dtw: &SoftDtw, candidates: &[S]) -> Result<Self, SearchError>
     where
         S: AsRef<[[f64; D]]> + Sync,

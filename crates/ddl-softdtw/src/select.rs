@@ -66,8 +66,7 @@ impl Selection {
     }
 
     /// The candidates that may be among the best, or `None` when too few were offered, the last of them scores less
-    /// than
-    /// `smallest_log2`, or no margin can be told for its score (log2).
+    /// than `smallest_log2`, or no margin can be told for its score (log2).
     pub(crate) fn survivors(
         mut self,
         smallest_log2: f64,

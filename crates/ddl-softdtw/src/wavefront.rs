@@ -14,10 +14,9 @@
 //! To first order in u = 2^−53, the relative error of R is at most the largest over paths of the sum of those of its
 //! cells:
 //! (D + 5) u t ln 2 for t itself (D components), 2.1 u for 2^−t, 3 u for the two sums and the product. At most n + m −
-//! 1
-//! cells make a path, and the mean of the cost over paths, weighted by exp(−cost/γ), exceeds the value by γ times their
-//! entropy, at most γ ln(paths) < 0.9 γ (n + m). The logarithm and the last two products add 5 u |v| + 3 u γ. In all
-//! less than (D + 12) u (|v| + γ (n + m)).
+//! 1 cells make a path, and the mean of the cost over paths, weighted by exp(−cost/γ), exceeds the value by γ times
+//! their entropy, at most γ ln(paths) < 0.9 γ (n + m). The logarithm and the last two products add 5 u |v| + 3 u γ. In
+//! all less than (D + 12) u (|v| + γ (n + m)).
 //!
 //! # Order
 //! Eight consecutive rows (a strip) advance together, each one column behind the row above it: the cells of a step are
@@ -40,8 +39,7 @@ const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
 /// Entries of the working memory that fit on the stack.
 const SHORT: usize = 48;
 /// Significands are brought back to [1, 2) every so many columns and rows. Between two of these a path has at most 2 ·
-/// 128
-/// cells, an antidiagonal each, and each multiplies the significand by 2^−1/2 to (1 + √2) √2 < 2^1.78: in all by
+/// 128 cells, an antidiagonal each, and each multiplies the significand by 2^−1/2 to (1 + √2) √2 < 2^1.78: in all by
 /// 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
 pub(crate) const STRETCH: usize = 128;
 
@@ -59,8 +57,7 @@ impl<W: Weight> StepRecord<W> for Forget {
 }
 
 /// Compiled for each instruction set: the loops over lanes become vectors of its width. Every operation is rounded by
-/// itself, so that all
-/// give the same bits.
+/// itself, so that all give the same bits.
 struct Forwards<'a, 'b, T, const D: usize>(&'a Grid<'b, T, D>);
 
 impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
@@ -104,8 +101,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
         let path = (self.rows.len() + self.columns.len()) as f64;
         // Entry c + 7 is column c. A step reads entry d + 7 (column d) for its first lane and writes entry d (column d
-        // − 7)
-        // from its last; seven entries before and after the columns take what the slanted ends of a strip read and
+        // − 7) from its last; seven entries before and after the columns take what the slanted ends of a strip read and
         // write.
         let mut short = [W::NONE_ONE; SHORT];
         let mut long = Vec::new();

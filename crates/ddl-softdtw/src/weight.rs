@@ -343,8 +343,7 @@ fn alone(lane: usize, one: f64, none: f64) -> Lanes {
 }
 
 /// number · 2^shift for an integer shift. The low bits of the sum are the shift; moved to the place of the exponent
-/// they
-/// multiply by 2^shift.
+/// they multiply by 2^shift.
 #[inline(always)]
 fn shifted(number: f64, shift: f64) -> f64 {
     let shift = (shift + ROUNDING).to_bits() << 52;

@@ -1,8 +1,7 @@
 //! The built-in models on recordings of places that no model was trained on: `elsewhere FOLDER=FPS ...`.
 //!
 //! Folders hold csv files (frame, pedestrian, x, y in metres). All tables are printed; those of the default model by
-//! place
-//! go into `docs/elsewhere.md`.
+//! place go into `docs/elsewhere.md`.
 
 #![expect(clippy::print_stdout, reason = "a program that prints tables")]
 

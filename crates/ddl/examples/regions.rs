@@ -4,8 +4,7 @@
 //!
 //! The folder of the convention `star` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The
 //! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on
-//! the
-//! two recordings that no fold tests, the constants were chosen.
+//! the two recordings that no fold tests, the constants were chosen.
 
 #![expect(clippy::print_stdout, reason = "a program that prints tables")]
 

@@ -56,8 +56,7 @@ pub(crate) struct Forecast {
     /// many were dropped
     ///
     /// Without it every frame is forecast, and the writer of the stream has to wait. Tracks and memory use every frame
-    /// in
-    /// both cases. With a file as input nearly all frames would be dropped.
+    /// in both cases. With a file as input nearly all frames would be dropped.
     #[arg(long)]
     latest: bool,
     /// Add to every hypothesis the evidence that it approaches its goal at every step

@@ -52,15 +52,13 @@ pub struct Frame {
 /// of the `star` convention are not in order of time and cannot be streamed.
 ///
 /// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of frames that are
-/// not
-/// whole yet, 100,000 at most, and the last 200,000 words: whose word was forgotten is somebody new.
+/// not whole yet, 100,000 at most, and the last 200,000 words: whose word was forgotten is somebody new.
 ///
 /// # Scenes
 /// A table with a column `scene`, or lines of JSON with a field `track.scene`, are of several scenes, whose lines come
-/// in
-/// any order: a frame is whole when a later one of the *same* scene comes, or an empty line right after a line of the
-/// scene, or at the end. Only within a scene must frames be in order of time. There are at most 1,000 scenes at a time;
-/// one of which no line has come for 10 minutes is forgotten, after its last frame was given out.
+/// in any order: a frame is whole when a later one of the *same* scene comes, or an empty line right after a line of
+/// the scene, or at the end. Only within a scene must frames be in order of time. There are at most 1,000 scenes at a
+/// time; one of which no line has come for 10 minutes is forgotten, after its last frame was given out.
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,

@@ -31,8 +31,8 @@ use crate::{
 ///
 /// # What is guaranteed
 /// `dV/dt <= -lambda_min(P) s_min(J)^2 < 0` away from the goal, which is the only minimum of `V`. So the flow converges
-/// to the goal from everywhere (Theorem 5 of `PROOFS.md`). In the coordinates `y = psi(p)`, the
-/// [`chart`](Flow::chart), the flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
+/// to the goal from everywhere (Theorem 5 of `PROOFS.md`). In the coordinates `y = psi(p)`, the [`chart`](Flow::chart),
+/// the flow is a [`NaturalGradientFlow`](crate::NaturalGradientFlow) with the metric `J P J^T`.
 /// [`StableEuler`](crate::StableEuler) takes its steps there: `V` falls in every step, for every `dt`.
 ///
 /// # References

@@ -17,8 +17,8 @@ mod stable_euler;
 mod straightening;
 mod transform;
 
-/// Runs a law, a function `fn law<T: Real, const D: usize>(draw) -> TestCaseResult`, on random
-/// draws of a strategy in every number type and dimension.
+/// Runs a law, a function `fn law<T: Real, const D: usize>(draw) -> TestCaseResult`, on random draws of a strategy in
+/// every number type and dimension.
 macro_rules! for_every_space {
     ($law:ident, $draw:ident) => {
         mod $law {

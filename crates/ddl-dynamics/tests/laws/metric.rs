@@ -30,8 +30,8 @@ fn applied_as_formed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResu
 }
 for_every_space!(applied_as_formed, any_scene);
 
-/// The eigenvalues agree with nalgebra's symmetric eigendecomposition of the formed matrix, and
-/// enclose the quadratic form of every unit vector.
+/// The eigenvalues agree with nalgebra's symmetric eigendecomposition of the formed matrix, and enclose the quadratic
+/// form of every unit vector.
 fn eigenvalues_agree_and_enclose<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let unit = scene.unit::<T, D>();
     for metric in scene.metrics::<T, D>() {

@@ -86,8 +86,8 @@ for_every_space!(step_is_as_long_as_proved, any_scene);
 
 #[test]
 fn a_limited_step_by_hand() {
-    // L = [1 0; 1 1]: P = [1 1; 1 2]. e = (0.3, -0.4): u = (0.6, -0.8), P u = (-0.2, -1),
-    // u^T P u = 0.68, |P u|^2 = 1.04, dt* = 0.5 * 0.68 / 1.04 = 17/52 s.
+    // L = [1 0; 1 1]: P = [1 1; 1 2]. e = (0.3, -0.4): u = (0.6, -0.8), P u = (-0.2, -1), u^T P u = 0.68, |P
+    // u|^2 = 1.04, dt* = 0.5 * 0.68 / 1.04 = 17/52 s.
     let attractor = Attractor::new(Vector2::zeros()).unwrap();
     let metric = CholeskyMetric::planar(1.0, 1.0, 1.0, 1e-16).unwrap();
     let flow = NaturalGradientFlow::new(attractor, metric);

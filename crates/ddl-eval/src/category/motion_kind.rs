@@ -59,8 +59,8 @@ impl MotionKind {
         Self::SpeedingUp,
     ];
 
-    /// The kind of motion of a track of 20 positions (m, 0.4 s apart); `None` for other tracks and for
-    /// positions that are not finite.
+    /// The kind of motion of a track of 20 positions (m, 0.4 s apart); `None` for other tracks and for positions that
+    /// are not finite.
     pub fn of(track: &[Position]) -> Option<Self> {
         if track.len() != WINDOW || !track.iter().flatten().all(|c| c.is_finite()) {
             return None;

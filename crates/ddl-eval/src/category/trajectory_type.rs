@@ -21,8 +21,8 @@ const LINEAR: f64 = 0.5;
 /// `src/category/kalman.rs`). Its data sets keep a tenth of the static scenes; here all count.
 ///
 /// # References
-/// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS 2021,
-/// section III; the tool is `trajnetplusplusdataset`.
+/// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS 2021, section
+/// III; the tool is `trajnetplusplusdataset`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum TrajectoryType {

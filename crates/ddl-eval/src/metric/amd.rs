@@ -1,7 +1,6 @@
 //! AMD and AMV: distance of the truth from the forecast distribution in deviations, and width of the distribution.
 //!
-//! For one pedestrian and one frame, with mean m and covariance C of the weighted hypotheses and the
-//! true position p:
+//! For one pedestrian and one frame, with mean m and covariance C of the weighted hypotheses and the true position p:
 //!
 //! ```text
 //! Mahalanobis distance = sqrt((p - m)^T C^-1 (p - m))              deviations, no unit
@@ -18,8 +17,8 @@
 //! their code, but not in their paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world axes.
 //!
 //! # References
-//! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness
-//! of Implicit Maximum Likelihood Estimation", ECCV 2022.
+//! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness of Implicit
+//! Maximum Likelihood Estimation", ECCV 2022.
 
 use ddl_data::HORIZON;
 

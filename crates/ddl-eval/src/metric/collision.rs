@@ -1,8 +1,8 @@
 //! Collisions between the forecasts of one scene.
 //!
-//! Each pedestrian is a disc of radius r = 0.2 m that follows its representative hypothesis; between two
-//! frames it moves in a straight line at constant speed. Two pedestrians collide when their discs
-//! overlap at any time from the first to the last forecast frame:
+//! Each pedestrian is a disc of radius r = 0.2 m that follows its representative hypothesis; between two frames it
+//! moves in a straight line at constant speed. Two pedestrians collide when their discs overlap at any time from the
+//! first to the last forecast frame:
 //!
 //! ```text
 //! min over t in [1, 12] of |p_i(t) - p_j(t)| < 2 r = 0.4 m between the centres

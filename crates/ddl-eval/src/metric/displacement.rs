@@ -18,9 +18,9 @@
 //! counts with its number of pedestrians. A goal beyond the 12th frame is still compared with the last true position.
 //!
 //! # References
-//! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al.,
-//! "Social GAN", CVPR 2018 (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III-A; Weng et al.,
-//! "Joint Metrics Matter", ICCV 2023.
+//! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al., "Social GAN", CVPR 2018
+//! (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III-A; Weng et al., "Joint Metrics Matter",
+//! ICCV 2023.
 
 use ddl_data::Position;
 

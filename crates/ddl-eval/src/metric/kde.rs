@@ -1,7 +1,7 @@
 //! The likelihood of the truth under a kernel density of the hypotheses.
 //!
-//! For one pedestrian and one frame with the hypotheses `x_k` of weight `w_k` (sum 1) and the true
-//! position p, in d = 2 dimensions:
+//! For one pedestrian and one frame with the hypotheses `x_k` of weight `w_k` (sum 1) and the true position p, in d = 2
+//! dimensions:
 //!
 //! ```text
 //! n_eff = 1 / sum_k w_k^2                     effective number of hypotheses
@@ -22,8 +22,8 @@
 //! the number of hypotheses: values for 1,000 samples and for 20 are not comparable.
 //!
 //! # References
-//! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV
-//! 2020; Mohamed et al., "Social-Implicit", ECCV 2022; Scott, "Multivariate Density Estimation", 1992.
+//! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV 2020; Mohamed et
+//! al., "Social-Implicit", ECCV 2022; Scott, "Multivariate Density Estimation", 1992.
 
 use ddl_data::Position;
 
@@ -41,8 +41,8 @@ pub const MIN_DEVIATION: f64 = 0.01;
 /// When the numbers of weights and points differ.
 ///
 /// # Numerics
-/// The sum of exponentials is taken relative to its largest term. Where all weight is on one point
-/// the covariance is 0/0; it counts as 0.
+/// The sum of exponentials is taken relative to its largest term. Where all weight is on one point the covariance is
+/// 0/0; it counts as 0.
 pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();

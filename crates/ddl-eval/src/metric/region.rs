@@ -65,8 +65,8 @@ mod tests {
     };
 
     /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a
-    /// spread of 0.5 m its score is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it
-    /// is 1.5.
+    /// spread of 0.5 m its score is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it is
+    /// 1.5.
     #[test]
     fn by_hand() {
         let still = [0.0, 0.0];
@@ -85,8 +85,8 @@ mod tests {
         assert_relative_eq!(scores.coverage[1], 1.0);
         let area = 2.0 * 0.25 * (3.0 + (3.0 + 0.25_f64.ln()));
         assert_relative_eq!(scores.end_radius[1], area.sqrt(), epsilon = 0.1);
-        // The likelihood is that of Gaussians of this spread. Their variance of 0.25 adds to that around the mean
-        // (2, 0), 0.8 * 4 + 0.2 * 64 = 16 along x.
+        // The likelihood is that of Gaussians of this spread. Their variance of 0.25 adds to that around the mean (2,
+        // 0), 0.8 * 4 + 0.2 * 64 = 16 along x.
         let nll = 0.5 - (0.2 / (std::f64::consts::TAU * 0.25)).ln();
         assert_relative_eq!(kde_nll(&scene, 0).unwrap(), nll, epsilon = 1e-12);
         let errors = DistributionErrors::of(&scene, 0).unwrap();

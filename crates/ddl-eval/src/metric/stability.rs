@@ -1,8 +1,7 @@
 //! Stability of rollouts: whether they go to their goals, checked on the output.
 //!
-//! Phi(t) = |p(t) - g| is the distance to the goal, the Lyapunov function of DDL (its potential),
-//! from the last observed position (t = 0) to the 12th forecast frame. For each rollout, that is each
-//! hypothesis of each pedestrian:
+//! Phi(t) = |p(t) - g| is the distance to the goal, the Lyapunov function of DDL (its potential), from the last
+//! observed position (t = 0) to the 12th forecast frame. For each rollout, that is each hypothesis of each pedestrian:
 //!
 //! ```text
 //! decreasing     Phi(t+1) < Phi(t) at every step t = 0..11, or both are at the goal (within 1 mm)

@@ -15,8 +15,8 @@
 //!
 //! # References
 //! - Gibbs and Candes, *Adaptive Conformal Inference Under Distribution Shift*, 2021.
-//! - Angelopoulos, Candes and Tibshirani, *Conformal PID Control for Time Series Prediction*, 2023
-//!   (tracking of the quantile).
+//! - Angelopoulos, Candes and Tibshirani, *Conformal PID Control for Time Series Prediction*, 2023 (tracking of the
+//!   quantile).
 
 use std::sync::Arc;
 

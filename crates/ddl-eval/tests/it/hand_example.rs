@@ -93,8 +93,8 @@ fn misses_and_collisions() {
     check("collisions", s.collision_rate, 2.0 / 3.0);
     // In truth A and C pass each other at 0.3 m, and B is 2.26 m from C.
     check("true collisions", s.true_collision_rate, 2.0 / 3.0);
-    // A (y = 0.32) against the true C (0.3): 0.02 m. B (1.36) against the true C: 1.06 m. C (1.26) against the
-    // true A (0) and B (2.56): 1.26 and 1.3 m.
+    // A (y = 0.32) against the true C (0.3): 0.02 m. B (1.36) against the true C: 1.06 m. C (1.26) against the true A
+    // (0) and B (2.56): 1.26 and 1.3 m.
     let into_truth = s.true_neighbour_collision_rate;
     check("collisions with the truth", into_truth, 1.0 / 3.0);
 }
@@ -130,15 +130,15 @@ fn goals_and_stability() {
 #[test]
 fn diversity() {
     let s = scores();
-    // A: |0.4 - 0.1 s| is 4.2 in all; B: |0.25 s - 1.5| is 9 in all; C: right angle, legs 1.2 and 1.6, so 2 m
-    // for 11 frames and 1.2 m at the end.
+    // A: |0.4 - 0.1 s| is 4.2 in all; B: |0.25 s - 1.5| is 9 in all; C: right angle, legs 1.2 and 1.6, so 2 m for 11
+    // frames and 1.2 m at the end.
     let path = (4.2 / 12.0 + 9.0 / 12.0 + 23.2 / 12.0) / 3.0;
     check("diversity", s.diversity, path);
     check("of the ends", s.end_diversity, (0.8 + 1.5 + 1.2) / 3.0);
 }
 
-/// Numbers of `hand_example()` in `tests/reference/distribution.py` (numpy 2.4.6, scipy 1.17.1), which has the
-/// offsets typed in anew and works with whole matrices.
+/// Numbers of `hand_example()` in `tests/reference/distribution.py` (numpy 2.4.6, scipy 1.17.1), which has the offsets
+/// typed in anew and works with whole matrices.
 #[test]
 fn the_distribution_as_computed_elsewhere() {
     let s = scores();

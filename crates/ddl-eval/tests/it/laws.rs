@@ -187,8 +187,8 @@ proptest! {
         prop_assert_eq!(several, [None; 5]);
     }
 
-    /// All hypotheses on the truth: the narrowest distribution there is, (1 cm)^2 in all directions, with
-    /// the truth at its middle.
+    /// All hypotheses on the truth: the narrowest distribution there is, (1 cm)^2 in all directions, with the truth at
+    /// its middle.
     #[test]
     fn certain_and_right_is_the_best_distribution((window, _) in any_scene(), k in 2..6_usize) {
         let n = window.len();

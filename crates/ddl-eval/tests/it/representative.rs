@@ -29,9 +29,8 @@ fn expected_ade(forecast: &Forecast, i: usize, k: usize) -> f64 {
 }
 
 /// Straight walks are 6.5/12 of the distance of their ends apart on average. Weights 0.3, 0.25, 0.25, 0.2 at the ends
-/// 0, 4, 5 and 7 m; in that order
-/// 0.25 * 4 + 0.25 * 5 + 0.2 * 7 = 3.65; 0.3 * 4 + 0.25 * 1 + 0.2 * 3 = 2.05; 0.3 * 5 + 0.25 * 1 + 0.2 * 2 = 2.15;
-/// 0.3 * 7 + 0.25 * 3 + 0.25 * 2 = 3.35.
+/// 0, 4, 5 and 7 m; in that order 0.25 * 4 + 0.25 * 5 + 0.2 * 7 = 3.65; 0.3 * 4 + 0.25 * 1 + 0.2 * 3 = 2.05; 0.3 * 5 +
+/// 0.25 * 1 + 0.2 * 2 = 2.15; 0.3 * 7 + 0.25 * 3 + 0.25 * 2 = 3.35.
 #[test]
 fn of_four_straight_walks() {
     let ends = [[0.0, 0.0], [4.0, 0.0], [5.0, 0.0], [7.0, 0.0]];

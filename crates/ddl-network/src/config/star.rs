@@ -103,8 +103,8 @@ impl StarConfig {
         }
     }
 
-    /// The default: the pedestrian's own frame if the variant has goals (`docs/tried.md`), and the smallest sizes
-    /// that lose no accuracy (`docs/performance.md`).
+    /// The default: the pedestrian's own frame if the variant has goals (`docs/tried.md`), and the smallest sizes that
+    /// lose no accuracy (`docs/performance.md`).
     pub fn recommended(variant: Variant) -> Self {
         Self {
             frame: if variant.goal_shift() {

@@ -14,8 +14,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Pedestrians times hypotheses that are rolled out together: enough to fill the products, and so few that the
-/// key-value
-/// caches of all time steps stay in the processor's cache. Threads take such parts in turns.
+/// key-value caches of all time steps stay in the processor's cache. Threads take such parts in turns.
 const ROWS_AT_ONCE: usize = 128;
 
 #[derive(Clone, Copy)]

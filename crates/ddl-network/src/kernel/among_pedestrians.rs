@@ -39,8 +39,8 @@ pub(crate) struct AmongPedestrians {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Attended {
     mixed: Buffer,
-    /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and
-    /// 1 / Σ 2^(score − largest).
+    /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score −
+    /// largest).
     normalisers: Vec<[Lanes; 2]>,
 }
 

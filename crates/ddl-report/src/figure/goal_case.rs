@@ -25,8 +25,8 @@ impl GoalCase {
     /// `track`: 20 positions (m), 8 observed and 12 true future ones; `goals` in the same coordinates.
     ///
     /// # Errors
-    /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed
-    /// position; weights outside [0, 1], or that do not sum to 1.
+    /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed position;
+    /// weights outside [0, 1], or that do not sum to 1.
     pub fn new(title: impl Into<String>, track: &[Position], goals: WeightedGoals) -> Result<Self, FigureError> {
         let title = title.into();
         let nearest = check(track, &goals).map_err(|problem| FigureError::GoalCase {
@@ -45,8 +45,8 @@ impl GoalCase {
     /// The same case with the tracks of the expert library that the goals come from, in any order.
     ///
     /// # Shapes
-    /// Each expert: 20 positions (m), transformed to this pedestrian, in the coordinates of its track. The last
-    /// 12 are drawn.
+    /// Each expert: 20 positions (m), transformed to this pedestrian, in the coordinates of its track. The last 12 are
+    /// drawn.
     ///
     /// # Errors
     /// As [`GoalCase::new`], for the experts.

@@ -30,8 +30,8 @@ const FORMAT: u32 = 1;
 
 /// Results of any number of runs.
 ///
-/// Rows are grouped into one table for each data convention, window rule, protocol and test subset,
-/// so that every column holds comparable numbers.
+/// Rows are grouped into one table for each data convention, window rule, protocol and test subset, so that every
+/// column holds comparable numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     format: u32,

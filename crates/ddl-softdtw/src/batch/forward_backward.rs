@@ -1,8 +1,7 @@
 //! Scores and gradients of a block of sixteen sequences against one, in `f32` and the exponential domain.
 //!
 //! With α(i, j) = R(i, j), the sum over the paths to a cell, and β(i, j), the sum over the paths from it to the end
-//! without
-//! its own factor K(i, j), the expected alignment is E(i, j) = α(i, j) β(i, j) / R(n, m).
+//! without its own factor K(i, j), the expected alignment is E(i, j) = α(i, j) β(i, j) / R(n, m).
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 

@@ -9,8 +9,7 @@ use crate::refine::{GAMMAS, WIDE_GROUP, WideLanes, spread};
 use crate::value::SoftDtw;
 
 /// Largest difference of two components, in √γ, 2^20. The clamp on costs leaves up to 2^−57 of the alignment in a cell
-/// that
-/// no path should pass: the gradient counts that times the difference.
+/// that no path should pass: the gradient counts that times the difference.
 const FARTHEST: f64 = 1_048_576.0;
 
 /// Takes the place of a sequence, the value and the gradient of the pair.

@@ -1,12 +1,9 @@
 //! Scores of all windows of a query track against all windows of a group of pieces.
 //!
 //! K(i, j) = 2^−|x(i) − y(j)|² is computed once for each step i of the query and each step j of a piece, and serves
-//! every
-//! pair of windows that holds both. Neighbouring pairs share more than that. Let `length` rows of the query be a block
-//! and
-//! c its last row. Every window that starts in the block crosses row c, so that its sum over all warping paths splits
-//! at
-//! the last cell m = (c, j) a path has in that row:
+//! every pair of windows that holds both. Neighbouring pairs share more than that. Let `length` rows of the query be a
+//! block and c its last row. Every window that starts in the block crosses row c, so that its sum over all warping
+//! paths splits at the last cell m = (c, j) a path has in that row:
 //!
 //! ```text
 //! Z(s, t) = Σ over j of F(j, s) B(j, t)
@@ -14,9 +11,8 @@
 //! ```
 //!
 //! (F counts the cells s to m, B those behind m). One recursion from m backwards gives F(j, s) for every first cell s
-//! at once,
-//! one forwards gives B(j, t) for every last cell t: a pair of windows costs two columns of cells and a sum of `length`
-//! products. All terms are positive, so that nothing cancels.
+//! at once, one forwards gives B(j, t) for every last cell t: a pair of windows costs two columns of cells and a sum of
+//! `length` products. All terms are positive, so that nothing cancels.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 

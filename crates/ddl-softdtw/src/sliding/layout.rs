@@ -46,8 +46,7 @@ struct Piece {
 
 impl<const D: usize> WindowLayout<D> {
     /// Lays out the first `windows[t]` windows of `length` steps of every track t, whose D(y, y) are `self_values`,
-    /// track by
-    /// track.
+    /// track by track.
     pub(super) fn new(
         gamma: f64,
         tracks: &[&[[f64; D]]],

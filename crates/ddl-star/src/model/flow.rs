@@ -34,8 +34,8 @@ pub struct StepBounds {
 /// (paper eq. 7, 9, 11, 12).
 ///
 /// # Shapes
-/// `positions` and `goals` broadcast to `[.., 2]`; `factors` `[.., 3]` holds (a, b, c) of
-/// L = [[a, 0], [b, c]] -> `[.., 2]`.
+/// `positions` and `goals` broadcast to `[.., 2]`; `factors` `[.., 3]` holds (a, b, c) of L = [[a, 0], [b, c]] ->
+/// `[.., 2]`.
 ///
 /// # Numerics
 /// P is never formed: P u = L (L^T u) + sigma u, so that sigma is not lost in f32. At the goal u and its derivative are

@@ -55,8 +55,7 @@ impl ProposalTrainer {
     /// Prepares training on the examples and on `reversed` ones, with time running backwards; there may be none.
     ///
     /// # Errors
-    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without
-    /// examples.
+    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without examples.
     pub fn new(
         network: TorchProposals,
         examples: &[ProposalExample],

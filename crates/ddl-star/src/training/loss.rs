@@ -2,8 +2,7 @@
 
 use tch::{Kind, Tensor};
 
-/// Squared distance between forecast and true positions, summed over x and y, averaged over
-/// pedestrians and steps.
+/// Squared distance between forecast and true positions, summed over x and y, averaged over pedestrians and steps.
 ///
 /// # Shapes
 /// Both `[T, P, 2]` -> scalar, in square metres.

@@ -45,8 +45,7 @@ impl Trainer {
     /// Prepares training of `network` on `windows`, each with its future.
     ///
     /// # Errors
-    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] when no
-    /// window has a future.
+    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] when no window has a future.
     pub fn new(network: TorchNetwork, windows: Vec<Window>, config: TrainingConfig) -> Result<Self, StarError> {
         let with_future = windows.into_iter().filter(Window::has_future).collect();
         Self::of(network, with_future, None, config)

@@ -6,8 +6,7 @@
 //! thread, wall-clock time for two.
 //!
 //! `cargo bench -p ddl-forecast --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead, and
-//! `-- crowd
-//! 100 400` only these numbers of pedestrians.
+//! `-- crowd 100 400` only these numbers of pedestrians.
 
 mod clock;
 mod crowd;

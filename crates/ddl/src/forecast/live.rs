@@ -21,8 +21,7 @@ use std::borrow::Borrow;
 /// The last 8 time steps of the pedestrians that are present, so that memory is bounded by their number. The memory of
 /// the place, bounded by its capacity, [if requested](Self::remembering). Where [regions
 /// adapt](Self::with_adaptive_regions), also the forecasts of the last 4.8 s. No state of the networks is kept: their
-/// tokens
-/// are relative to goals and to the scene, which change at every frame.
+/// tokens are relative to goals and to the scene, which change at every frame.
 ///
 /// # Errors
 /// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) the state is unchanged:

@@ -21,8 +21,7 @@ use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 /// As a [`Forecaster`] it is the model of the protocol `fair`: one hypothesis for each of the K = 20 goals, with the
 /// weight of the goal. Each hypothesis follows a flow whose distance to the goal falls at every step. The protocol
 /// `single` calls [`forecast_central`](Self::forecast_central). The model reads the 8 observed frames and the memory of
-/// the
-/// window, if it has one.
+/// the window, if it has one.
 ///
 /// # Numerics
 /// The network computes in `f32` and shapes the metric P of each step. The variants with dynamics integrate in `f64`,

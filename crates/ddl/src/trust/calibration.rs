@@ -1,6 +1,6 @@
-//! Constants that determine how far a model is trusted. They are the same for all models; `docs/tried.md` describes
-//! how they were chosen. The example `calibrate` writes the regions in `calibration.json`, from places that no model
-//! was trained on.
+//! Constants that determine how far a model is trusted. They are the same for all models; `docs/tried.md` describes how
+//! they were chosen. The example `calibrate` writes the regions in `calibration.json`, from places that no model was
+//! trained on.
 
 use crate::run::sha256;
 use ddl_data::{HORIZON, Position};

@@ -87,8 +87,8 @@ fn rotation<const D: usize>(from: &SVector<f64, D>, to: &SVector<f64, D>, share:
     SMatrix::identity() + plane * (cosine - 1.0) + quarter * sine
 }
 
-/// The rotation `R` that maximises `tr(R^T M)` (Kabsch): `U diag(1, .., 1, ±1) V^T` of the singular
-/// value decomposition of `M`, the sign such that `det R = 1`.
+/// The rotation `R` that maximises `tr(R^T M)` (Kabsch): `U diag(1, .., 1, ±1) V^T` of the singular value decomposition
+/// of `M`, the sign such that `det R = 1`.
 fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
     // Entries too small to matter are set to 0: the decomposition would divide by their squares, which underflow, and
     // return NaN.
