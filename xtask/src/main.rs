@@ -1,8 +1,8 @@
 //! `cargo xtask`: set-up, recordings, benchmark, tests and tidy checks of this workspace; one file per command under
 //! `command/`.
 //!
-//! Of the `ddl` crates the program depends only on `ddl-data`, and it does not depend on libtorch. So it builds on a
-//! bare machine and installs the rest.
+//! The program depends on one of the `ddl` crates, `ddl-data`, and not on libtorch. So it builds on a machine without
+//! libtorch and can install it.
 #![allow(clippy::print_stdout, reason = "a command-line program prints to standard output")]
 
 mod browser;

@@ -43,13 +43,13 @@ pub(crate) fn table_metres(metres: f64) -> f64 {
 
 /// A share in tables, rounded to 3 significant digits.
 pub(crate) fn table_share(share: f64) -> f64 {
-    // a formatted number parses
+    // cannot fail: a formatted number parses
     format!("{share:.2e}").parse().unwrap_or(share)
 }
 
 pub(crate) fn shell_word(path: &Path) -> String {
     let path = path.display().to_string();
-    // No file system has a path with a zero byte, the only one without a quoted form.
+    // Quoting fails only for a zero byte, which no path contains.
     shlex::try_quote(&path).map_or_else(|_| path.clone(), Into::into)
 }
 

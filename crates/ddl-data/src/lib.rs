@@ -2,7 +2,8 @@
 //!
 //! ## Tracks of a camera
 //!
-//! Tracks of another rate, in pixels, begun late or with gaps become what a forecast needs:
+//! Tracks at another frame rate, in pixels, or with missing observations are converted to the windows that a forecast
+//! needs:
 //!
 //! ```rust
 //! use ddl_data::{Completion, Format, Homography, LiveTracks, FrameReader, parse_recording};
@@ -16,11 +17,11 @@
 //! let recording = ground.to_ground(&parse_recording(film.as_bytes(), "film.csv", Format::Table)?)?;
 //! let steps = recording.resampled_to_steps(0.1)?.recording; // 4 frames a step
 //! let windows = steps.completed_windows(Completion::USUAL);
-//! let last = windows.last().ok_or("nobody")?;
+//! let last = windows.last().ok_or("no window")?;
 //! assert!((last.observed(0)[0][0] - 0.12 * (39.0 - 28.0)).abs() < 1e-9);
 //! assert_eq!(last.made_up(0).filled, 1); // frame 15, on the way from 12 to 17
 //!
-//! // The same as it comes: a window a frame.
+//! // The same tracks frame by frame, as from a live tracker.
 //! let mut tracks = LiveTracks::with_frame_step(4)?.with_completion(Completion::USUAL);
 //! let mut frames = FrameReader::new(film.as_bytes(), "camera");
 //! while let Some(frame) = frames.next_frame()? {
@@ -46,7 +47,7 @@
 //! ```
 //!
 //! Published tables mix two samplings of ETH/UCY and several ways of cutting windows; their numbers are not comparable.
-//! Each has a name here, which goes with every result:
+//! Here each has a name, and every result states it:
 //!
 //! | [`Convention`] | |
 //! |---|---|
@@ -58,10 +59,10 @@
 //! |---|---|
 //! | `Published` | the windows of the published STAR and DDL code, with its quirks |
 //! | `Complete` | every pedestrian with all 20 steps, from every annotated frame |
-//! | `SocialGan` | 20 annotated frames in a row, with a least number of pedestrians |
+//! | `SocialGan` | 20 annotated frames in a row, with a minimum number of pedestrians |
 //!
 //! [`Fold::training_split`] keeps the last part of each training recording for validation.
-//! [`Fold::social_gan_split`] is what the published folders `train`, `val` and `test` of Social-GAN hold, to the row.
+//! [`Fold::social_gan_split`] reproduces the published folders `train`, `val` and `test` of Social-GAN, row by row.
 
 mod augment;
 mod completion;

@@ -85,7 +85,7 @@ impl PedestrianNames {
     }
 }
 
-/// Numbers words in order of arrival, from 2^53 on, beyond all numbers that files may use.
+/// Assigns numbers to words in order of arrival, from 2^53 on: above all numbers that files may use.
 #[derive(Debug)]
 pub(crate) struct Numbering {
     numbers: HashMap<Arc<str>, i64>,
@@ -105,7 +105,7 @@ impl Numbering {
         }
     }
 
-    /// The number of a word, and the word to be kept.
+    /// The number of a word, and the shared copy of the word.
     pub(crate) fn number(&mut self, word: &str) -> (PedestrianId, Arc<str>) {
         if let Some((word, &number)) = self.numbers.get_key_value(word) {
             return (PedestrianId(number), Arc::clone(word));

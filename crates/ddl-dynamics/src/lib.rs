@@ -21,11 +21,11 @@
 //! let path = rollout(&reach, &StableEuler, Vector3::zeros(), 0.05, 200)?;
 //! assert_eq!(path[200], *cup.goal());
 //!
-//! // How long can it take at most? Distance over the smallest eigenvalue (of the continuous flow).
+//! // The longest possible duration: distance over the smallest eigenvalue (of the continuous flow).
 //! let slowest = metric.eigenvalue_range().smallest;
 //! println!("{:.1} s", cup.potential(&path[0]) / slowest);
 //!
-//! // The same with a pillar in the way: it is not touched, and the cup is reached all the same.
+//! // The same with a pillar in the way: the hand passes it and still reaches the cup.
 //! let pillar = Ball::new(Vector3::new(0.3, 0.08, 0.12), 0.1)?;
 //! let careful = AvoidingFlow::new(reach, [pillar], 0.1)?;
 //! let path = rollout(&careful, &StableEuler, Vector3::zeros(), 0.05, 400)?;
@@ -67,12 +67,12 @@
 //! |---|---|---|
 //! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min` seconds | `P` positive definite: every [`CholeskyMetric`] |
 //! | [`DiffeomorphicFlow`] | `V = Phi o psi` falls; turns of more than 90 degrees are possible | `psi` invertible, with its Jacobian |
-//! | [`AvoidingFlow`] | `Phi` falls off the balls; none is entered; the goal is the only attractor | balls stand still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
+//! | [`AvoidingFlow`] | `Phi` falls outside the balls; no ball is entered; the goal is the only attractor | balls stand still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
 //! | [`Euler`] | `Phi` falls in a step | only if `dt < 2 Phi u^T P u / \|P u\|^2`: never near the goal |
 //! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32` or `f64` |
 //! | [`StableEuler`] | `Phi <= tolerance` in a bounded number of steps | eigenvalues within `[m, M]`, `m > 0` |
 //! | [`DormandPrince`] | decrease as above, estimated error below a tolerance | flows that are not too stiff |
-//! | [`LyapunovCertificate`] | names the first step of a path that broke it | none: any path |
+//! | [`LyapunovCertificate`] | names the first step of a path that violates the decrease | none: any path |
 //!
 //! The smallest eigenvalue `sigma` of the paper, 1e-8, is lost when `P` is formed in `f32`; here `P` is applied through
 //! its factor and never formed. Certificates and chains are `serde` types: with the feature `float_roundtrip` of

@@ -15,10 +15,10 @@ pub trait Forecaster {
     /// The name printed in tables, the same for every window.
     fn name(&self) -> String;
 
-    /// Forecasts the pedestrians of one window, in its order.
+    /// Forecasts the pedestrians of one window, in the order of [`Window::pedestrians`].
     ///
     /// # Errors
-    /// The model failed, or needs a future that the window does not have.
+    /// The model failed, or it needs a future and the window has none.
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError>;
 
     /// Forecasts many windows; models that work in batches override it.

@@ -4,11 +4,11 @@
 //!
 //! [`external::read`] reads the file of another program and [`external::measure`] scores it; `ddl evaluate --forecasts`
 //! does so for a fold, and `docs/your-model.md` describes the files. A model that certifies its hypotheses passes the
-//! verdicts with [`Forecast::with_certified`], and their share is scored too.
+//! results with [`Forecast::with_certified`]; the share of certified hypotheses is then scored too.
 //!
 //! ## Cost
 //!
-//! Scoring 24,254 pedestrians with 20 hypotheses each, as many as univ has, by every metric and category takes a second
+//! Scoring 24,254 pedestrians (the size of univ) with 20 hypotheses each, by every metric and category, takes a second
 //! on two cores (`cargo bench -p ddl-eval --bench scores`). The result does not depend on the number of threads.
 //! Densities were compared with scipy: `tests/reference/distribution.py` writes the numbers that a test reads.
 

@@ -13,7 +13,7 @@ use ddl_memory::SceneMemory;
 
 const PEDESTRIANS: usize = 25;
 
-/// A memory that has begun to forget, its crowd, the next frame, and queries for the memory.
+/// A memory at its capacity, its crowd, the next frame, and queries for the memory.
 fn full() -> (SceneMemory, Crowd, i64, Vec<(PedestrianId, [Position; OBSERVED])>) {
     let mut memory = SceneMemory::new(1, SceneMemory::DEFAULT_CAPACITY).expect("in range");
     let mut crowd = Crowd::new(1, PEDESTRIANS);

@@ -1,4 +1,4 @@
-//! A piece: consecutive stretches of one track, all compared with a pedestrian at once.
+//! A piece: up to 8 consecutive stretches (20 positions each) of one track, all compared with a pedestrian at once.
 
 use ddl_data::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize, Serializer};
@@ -18,8 +18,8 @@ const COMPONENTS: usize = 2 + VELOCITIES;
 const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
 /// Squared distance below which two stretches are similar: that of two pedestrians that walk 1 m apart.
 const ALIKE: f32 = 1.0;
-/// Present positions of a piece are so close to the first (m) that an `f32` resolves micrometres; a pedestrian gets 6 m
-/// far.
+/// Largest distance (m) of the present positions of a piece from the first one: an `f32` resolves micrometres within
+/// it. A pedestrian usually moves 6 m in that time.
 const REACH: f64 = 30.0;
 
 /// A pedestrian's motion over 8 positions: present position (m), late and early velocity in units of their scales.
@@ -52,7 +52,8 @@ impl Motion {
         }
     }
 
-    /// All components, with the place relative to an origin. In `f32` they are exact to micrometres near that origin.
+    /// All components, with the position relative to an origin. In `f32` they are exact to micrometres near that
+    /// origin.
     fn from(&self, origin: Position) -> [f32; COMPONENTS] {
         let [x, y] = [0, 1].map(|axis| (self.now[axis] - origin[axis]) as f32);
         let [u, v, early_u, early_v] = self.velocities;
@@ -60,8 +61,8 @@ impl Motion {
     }
 }
 
-/// Positions one step apart, 1 to 27 of them, and the up to 8 stretches of 20 that begin at the first ones. A file
-/// holds the positions.
+/// 1 to 27 positions that are one step apart, and the motions of the up to 8 stretches of 20 positions in them. A file
+/// stores only the positions.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "Vec<Position>")]
 pub(crate) struct Piece {
@@ -71,7 +72,7 @@ pub(crate) struct Piece {
 }
 
 impl Piece {
-    /// A piece of the first positions of a run, or of the last ones of a piece.
+    /// The piece that holds these positions.
     fn of(path: &[Position]) -> Self {
         let mut piece = Self {
             motions: [[f32::INFINITY; LANES]; COMPONENTS],
@@ -113,7 +114,7 @@ impl Piece {
         None
     }
 
-    /// The beginning of the following piece: one position short of a stretch.
+    /// The beginning of the next piece: the last 19 positions, one fewer than a stretch has.
     pub(crate) fn rest(&self) -> Self {
         Self::of(&self.path[self.path.len().saturating_sub(SHARED)..])
     }
@@ -147,7 +148,8 @@ impl Piece {
         self.nearest(motion) < ALIKE
     }
 
-    /// Whether both its first and its last stretch are similar to stretches of another piece. It must have a stretch.
+    /// Whether both its first and its last stretch are similar to stretches of another piece. This piece must have a
+    /// stretch.
     pub(crate) fn is_repeated_by(&self, other: &Self) -> bool {
         other.is_alike(&self.motion(0)) && other.is_alike(&self.motion(self.len() - 1))
     }
@@ -167,7 +169,7 @@ impl Piece {
         distances
     }
 
-    /// The least of the distances.
+    /// The smallest of the distances.
     #[inline]
     pub(crate) fn nearest(&self, motion: &Motion) -> f32 {
         let mut least = self.distances(motion);

@@ -1,10 +1,10 @@
 #![doc = include_str!("../README.md")]
 //!
-//! A forecast without noise samples ([`Noise::Expected`]) uses the expectation of `L L^T` over the noise. The output
-//! without noise would be too slow. With [`StepRule::Bounded`] no step passes the goal. Where the goal can be reached
-//! at the pedestrian's top speed, no step is faster than that speed and the last one ends on the goal, up to the
-//! rounding of `f32`. A [`WindowRollout`] carries the factors (a, b, c) of every step, with which the path can be
-//! integrated again in `f64`.
+//! A forecast without noise samples ([`Noise::Expected`]) uses the expectation of `L L^T` over the noise. With zero
+//! noise instead, the forecast motion would be too slow. With [`StepRule::Bounded`] no step passes the goal. Where the
+//! goal can be reached at the pedestrian's top speed, no step is faster than that speed and the last one ends on the
+//! goal, up to the rounding of `f32`. A [`WindowRollout`] carries the factors (a, b, c) of every step, with which the
+//! path can be integrated again in `f64`.
 //!
 //! ## Propose endpoints
 //!
@@ -44,8 +44,8 @@
 //!
 //! ## Shapes
 //!
-//! P pedestrians of all windows of a batch one after the other, N those of one window, G goals and H hypotheses for a
-//! pedestrian. Positions in metres, time steps 0.4 s apart.
+//! P: pedestrians of all windows of a batch, concatenated; N: pedestrians of one window; G and H: goals and hypotheses
+//! per pedestrian. Positions are in metres, time steps 0.4 s apart.
 //!
 //! | | shape |
 //! |---|---|
@@ -60,20 +60,21 @@
 //!
 //! ## Weights
 //!
-//! [`weights::save_weights`] writes a safetensors file, which holds numbers alone, under a temporary name that is
+//! [`weights::save_weights`] writes a safetensors file, which holds only numbers, under a temporary name that is
 //! renamed when complete. [`weights::load_weights`] refuses a file that is truncated or far too large, lacks a tensor,
 //! has one of another shape or type, holds NaN or infinity, or differs from its SHA-256. It also refuses a file of
-//! another [`weights::Origin`]: configuration, seed and data that decided the numbers. So weights of another run are
-//! noticed even where their shapes fit.
+//! another [`weights::Origin`] (configuration, seed and training data). So it detects weights of another run even if
+//! their shapes fit.
 //!
 //! ## Reproducibility
 //!
-//! A window's forecast has the same bits alone and among other windows, in any order, and with every number of rayon's
-//! threads; so have a pedestrian's proposals. They are computed in `f32` with the fastest instructions of the machine:
-//! AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results agree up to rounding.
+//! The bits of a window's forecast do not depend on the other windows of the batch, their order, or the number of
+//! rayon's threads. The same holds for the proposals of a pedestrian. They are computed in `f32` with the fastest
+//! instructions of the machine: AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results
+//! agree up to rounding.
 //!
 //! [`MotionNetwork::with_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything
-//! else stay in `f32`. It is faster on processors with AVX-512 BF16; on others the same products are emulated to the
+//! else stay in `f32`. It is faster on processors with AVX-512 BF16; other processors emulate the same products bit for
 //! bit, slowly.
 #![cfg_attr(
     not(feature = "training"),

@@ -9,7 +9,7 @@ use numpy::{
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// An array of this shape that takes over the memory of a vector.
+/// Moves a vector into an array of this shape, without a copy.
 pub(crate) fn array<T: Element>(py: Python<'_>, flat: Vec<T>, shape: impl IntoDimension) -> PyResult<Py<PyAny>> {
     let flat = flat.into_pyarray(py);
     Ok(flat.reshape(shape)?.into_any().unbind())

@@ -14,7 +14,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The forecast of the baseline of that name for the first `asked` pedestrians.
+/// Forecasts the first `asked` pedestrians with the baseline `name`.
 #[pyfunction]
 #[pyo3(signature = (name, past, asked, seed, goals))]
 pub(crate) fn baseline<'py>(

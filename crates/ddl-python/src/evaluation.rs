@@ -171,7 +171,7 @@ impl TestSet {
         admitted.map(drop).map_err(|error| of_any(&error))
     }
 
-    /// The scores under a protocol of the forecasts, one for each window, as a JSON object.
+    /// Scores the forecasts (one for each window) under a protocol; returns a JSON object.
     fn score(
         &self,
         py: Python<'_>,
@@ -246,7 +246,7 @@ pub(crate) fn evaluate_model(
     rows.collect::<Result<_, _>>().map_err(|error| of_any(&error))
 }
 
-/// A report of rows, as markdown.
+/// A report of the rows, in Markdown.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, title: &str, rows: Vec<String>) -> PyResult<String> {
     let rows = rows.iter().map(|row| serde_json::from_str(row));

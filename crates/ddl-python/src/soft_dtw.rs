@@ -209,7 +209,7 @@ trait Search: Send + Sync {
     fn len(&self) -> usize;
 }
 
-/// Index and position in it of each neighbour, with its distance; one list for each query.
+/// The neighbours of each query: index of the sequence, offset of the window in it, and distance.
 type Found = Result<Vec<Vec<WindowNeighbour>>, String>;
 
 impl<const D: usize> Search for Arc<Index<D>> {

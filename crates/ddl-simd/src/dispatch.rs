@@ -41,13 +41,13 @@ impl InstructionSet {
         available.unwrap_or(Self::Portable)
     }
 
-    /// All that this machine has, slowest first.
+    /// All instruction sets of this machine, slowest first.
     pub fn available() -> Vec<Self> {
         let all = Self::ALL.into_iter();
         all.filter(|set| set.is_available()).collect()
     }
 
-    /// Whether this machine has it.
+    /// Whether this machine has the instruction set.
     pub fn is_available(self) -> bool {
         Dispatch::new(self).is_some()
     }
@@ -157,7 +157,7 @@ impl PairDispatch {
         Self(PairSet::Emulated(dispatch))
     }
 
-    /// Whether the machine has native instructions for it.
+    /// Whether the machine has native instructions for bf16 pairs.
     pub fn is_native(self) -> bool {
         !matches!(self.0, PairSet::Emulated(_))
     }

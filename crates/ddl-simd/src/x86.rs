@@ -218,7 +218,7 @@ impl Register for Avx512 {
         moved
     }
 
-    /// Uses f = exponent − floor(exponent), and scales the power, with one instruction each.
+    /// Computes f = exponent − floor(exponent) with one instruction, and scales the power with another.
     #[inline(always)]
     fn exp2_each<const G: usize>(self, mut exponents: [__m512; G]) -> [__m512; G] {
         let mut fractions = exponents;
@@ -242,7 +242,7 @@ impl Register for Avx512 {
 
 impl Avx512 {
     instructions! {
-        // Lanes `N` .. of both, one behind the other.
+        // The lanes from `N` on of `low` followed by `high`.
         fn shifted<const N: i32>(low: __m512d, high: __m512d) -> __m512d = _mm512_castsi512_pd(
             _mm512_alignr_epi64::<N>(_mm512_castpd_si512(high), _mm512_castpd_si512(low)),
         );
@@ -266,7 +266,7 @@ impl Pairs for Avx512Bf16 {
         fn store(value: __m512i, into: &mut [u32; LANES]) -> () =
             _mm512_storeu_epi32(into.as_mut_ptr().cast(), value);
         fn neighbours(a: [__m512; 1], b: [__m512; 1]) -> __m512i = words(_mm512_cvtne2ps_pbh(b[0], a[0]));
-        // Rounded numbers 0 of a and b, which are numbers 0 and 16 of both side by side; then 1 and 17, and so on.
+        // Pairs of a[i] and b[i], rounded: the numbers i and 16 + i of a followed by b.
         fn across(a: [__m512; 1], b: [__m512; 1]) -> __m512i = _mm512_permutexvar_epi16(
             _mm512_add_epi32(
                 _mm512_mullo_epi32(

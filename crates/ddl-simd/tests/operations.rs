@@ -54,7 +54,7 @@ impl Kernel for OnGroups<'_> {
             e,
             f,
             g,
-            // A multiply-add is rounded once or twice.
+            // A multiply-add is rounded once (fused) or twice.
             simd.mul_add(a, b, c),
         ];
         for result in results {

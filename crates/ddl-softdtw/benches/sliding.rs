@@ -1,6 +1,6 @@
-//! Speed of the sliding search: all windows of the tracks of one scene against those of the others, in pairs (window ×
-//! window) a second on one thread, with the choice of the 100 nearest and their `f64` distances. The tracks are real
-//! where `DDL_DATASETS` names their folder, synthetic otherwise, as the benchmarks' names say.
+//! Speed of the sliding search, in pairs of windows per second on one thread. It compares all windows of the tracks of
+//! one scene with those of the other scenes, and includes the choice of the nearest and their `f64` distances. The
+//! tracks are real if `DDL_DATASETS` names their folder, otherwise synthetic; the names of the benchmarks say which.
 
 #[path = "../tests/recorded/mod.rs"]
 mod recorded;
@@ -28,7 +28,7 @@ fn sliding(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group(format!("sliding, {source} tracks"));
     group.sample_size(20);
     for length in [7, 8] {
-        // Windows that have the rest of a complete window behind them, those of the queries too.
+        // Only windows that the rest of a complete window follows, in the index and in the queries.
         let tail = COMPLETE - length;
         let index = SlidingIndex::build(&dtw, &tracks, length, tail).expect("valid");
         let queries = queries.iter().filter(|track| track.len() >= COMPLETE);

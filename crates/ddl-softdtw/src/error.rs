@@ -1,4 +1,4 @@
-//! What can be wrong with the inputs, said so that the reader knows where to look.
+//! Errors of soft-DTW values, gradients and searches.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use thiserror::Error;
 
 use ddl_simd::InstructionSet;
 
-/// Which of the two sequences of a comparison an error speaks of.
+/// The sequence of a comparison that an error refers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SequenceRole {
     /// The first argument, `x` (the query of a search).

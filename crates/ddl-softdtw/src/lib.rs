@@ -1,6 +1,6 @@
 #![doc = include_str!("../README.md")]
 //!
-//! ## The rest in a few lines
+//! ## Bands, sliding windows and batches
 //!
 //! Sequences may be `f32` for single pairs; indices and batches take `f64`:
 //!
@@ -15,13 +15,13 @@
 //! let (x, y) = ([[0.0_f32], [1.0], [2.0]], [[0.5_f32], [1.0], [2.5]]);
 //! assert!((banded.value(&x, &y)? - 0.5).abs() < 1e-6);
 //!
-//! // All windows of 8 steps of two tracks that are followed by 12 more steps: their future is known.
+//! // All windows of 8 steps that are followed by 12 more steps, so that their future is known.
 //! let tracks = [track(0.0), track(0.7)];
 //! let windows = SlidingIndex::build(&dtw, &tracks, 8, 12)?;
 //! let found = windows.nearest(&tracks[1][5..13], 1)?;
 //! assert_eq!((found[0].track, found[0].offset, found[0].distance), (1, 5, 0.0));
 //!
-//! // A loss over many sequences, and its slope.
+//! // A loss over many sequences, and its gradient.
 //! let batch = SoftDtwBatch::build(&dtw, &tracks)?;
 //! let (loss, gradient) = batch.weighted_sum(&track(0.3), &[0.5, 0.5])?;
 //! assert!(loss.is_finite() && gradient.len() == 40);
@@ -30,32 +30,35 @@
 //!
 //! ## How a single value stays exact and fast
 //!
-//! The recursion runs on R = exp(−r/γ), where the smoothed minimum is a sum: one exponential a cell, off the critical
-//! path, and no logarithm. R is kept as a significand with an integer exponent of its own, so no range of costs
-//! underflows and nothing cancels; the error is bounded ([`SoftDtw`] states the bound; `tests/precision.rs` holds it
-//! against values in 60 decimal digits) and `D(x, y)` equals `D(y, x)` to the last bit. Eight rows advance together
-//! along antidiagonals in plain safe loops, compiled for each instruction set (the same bits with each). Where costs
-//! are so small and sequences so short that R stays in the range of `f64`, it is a plain number; a bound of the costs
-//! decides that beforehand. Where costs exceed about 10¹⁵ γ, and for γ = 0, the recursion runs in the log domain as it
-//! is written down.
+//! The recursion runs on R = exp(−r/γ), where the smoothed minimum is a sum. A cell needs one exponential, off the
+//! critical path, and no logarithm. R is stored as a significand with a separate integer exponent, so no range of costs
+//! underflows. All terms are positive, so nothing cancels. [`SoftDtw`] states a bound of the error, and
+//! `tests/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last bit.
+//!
+//! Eight rows advance together along antidiagonals in plain safe loops. The loops are compiled for each instruction
+//! set, and all give the same bits. If costs are small and sequences short, R stays in the range of `f64` and needs no
+//! separate exponent; a bound of the costs decides this in advance. If costs exceed about 10¹⁵ γ, or if γ = 0, the
+//! recursion runs in the log domain.
 //!
 //! ## How the search stays exact and fast
 //!
-//! The index holds the candidates in blocks of sixteen, one candidate a lane, in `f32`, scaled so that exp(−cost/γ) is
-//! a plain power of two. A query runs the recursion on all lanes at once in the exponential domain, where the smoothed
-//! minimum is one addition, and keeps every candidate whose score could still belong to the n best. The `f32` scores
-//! are only a sieve: a bound on their error is computed from the lengths, the dimension and the size of the data, and
-//! everything within that bound of the n-th score is evaluated again in `f64`, eight pairs at once. Those values decide
-//! the set, its order and the distances that are returned. Ties are broken by the index of the candidate.
+//! The index stores the candidates in blocks of sixteen, one candidate per lane, in `f32`. They are scaled so that
+//! exp(−cost/γ) is a power of two. A query runs the recursion on all lanes at once in the exponential domain, where the
+//! smoothed minimum is one addition. It keeps every candidate whose score may belong to the n best. The `f32` scores
+//! only preselect candidates (the sieve): a bound of their error is computed from the lengths, the dimension and the
+//! size of the data. Every candidate within that bound of the n-th score is evaluated again in `f64`, eight pairs at
+//! once. The `f64` values decide the set, its order and the returned distances. Ties are broken by the index of the
+//! candidate.
 //!
-//! The `f64` values are computed in the exponential domain too, to 4e-14 γ; a pair beyond its range (a value above 570
-//! γ, more than 180 steps) is evaluated in the log domain. Every operation on them is rounded in the same order
-//! everywhere, so that the results, distances included, are the same to the last bit for every instruction set, every
-//! number of threads and every batch of queries. A candidate that equals the query is at distance 0.
+//! The `f64` values are also computed in the exponential domain, to 4e-14 γ. A pair beyond its range (a value above
+//! 570 γ, or more than 180 steps) is evaluated in the log domain. Operations are rounded in the same order everywhere.
+//! So the results, including the distances, have the same bits for every instruction set, every number of threads and
+//! every batch of queries. A candidate that equals the query is at distance 0.
 //!
-//! Where the sieve could not be trusted or does not apply (a band, the Euclidean cost, sequences of more than 32 steps,
-//! data so large that the bound is useless, an n-th neighbour further than about 57 γ, 47 γ without fused
-//! multiplication), every candidate is evaluated in `f64`: slower, never wrong. γ = 0 takes the log domain for all.
+//! Some searches evaluate every candidate in `f64`, which is slower: those with a band, with the Euclidean cost, with
+//! sequences of more than 32 steps, or with data so large that the bound is useless. So do searches whose n-th
+//! neighbour is further than about 57 γ (47 γ without fused multiplication). For γ = 0 all values are computed in the
+//! log domain.
 //!
 //! The kernels are written once and compiled for three instruction sets (`ddl-simd`): AVX-512, AVX2 with fused
 //! multiplication, and the baseline of the target. The instruction set is chosen when an index is built;
@@ -63,12 +66,12 @@
 //!
 //! ## Windows of long tracks
 //!
-//! Two windows that overlap share most of their steps, so the similarities between a query's and a candidate's steps
-//! are computed once for all windows that contain them. [`SlidingIndex`] shares the sums over paths as well: a block of
-//! as many query steps as a window is long is cut at its last row; every path of every window that starts in the block
-//! crosses it, so one recursion up to the cut and one back from it serve all pairs of windows, and a pair costs a few
-//! products. All terms are positive, so nothing cancels, and the answers are those of [`SearchIndex`] on the windows
-//! written out, to the last bit.
+//! Overlapping windows share most of their steps. So the similarities between the steps of a query and of a candidate
+//! are computed once for all windows that contain them. [`SlidingIndex`] also shares the sums over paths. A block has
+//! as many query steps as a window, and is cut at its last row. Every path of every window that starts in the block
+//! crosses the cut. So one recursion up to the cut and one back from it serve all pairs of windows, and a pair costs a
+//! few products. All terms are positive, so nothing cancels. The results are those of [`SearchIndex`] on the extracted
+//! windows, to the last bit.
 //!
 //! ## Accuracy, and the cost of a batch
 //!

@@ -4,7 +4,7 @@
 //! all warping paths: no exponential and no logarithm in the recursion.
 //!
 //! Costs are clamped and a floor is added to every sum of three predecessors ([`Register::exp2`], [`cell`]), so that
-//! every product is a normal number. What both do to small scores is bounded in [`crate::range`].
+//! every product is a normal number. [`crate::range`] bounds the effect of both on small scores.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 #![expect(clippy::needless_range_loop, reason = "arrays of registers that advance together")]
@@ -14,14 +14,14 @@ use ddl_simd::{Lanes, Register};
 use crate::blocks::Step;
 use crate::range::{FLOOR, FUSED_FLOOR};
 
-/// Cells whose similarities are computed together where the length of a sequence is not known to the compiler: enough
-/// independent operations to fill the time each one takes.
+/// Number of cells whose similarities are computed together if the compiler does not know the length of a sequence:
+/// enough independent operations to hide their latency.
 pub(crate) const GROUP: usize = 4;
 
 /// Scores of one part of a block: start · Σ over warping paths of 2^−cost, for each lane.
 ///
 /// # Shapes
-/// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. Where the compiler knows m
+/// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. If the compiler knows m,
 /// the row stays in registers. Similarities are computed G at a time: m, or [`GROUP`].
 #[inline(always)]
 pub(crate) fn recursion<S: Register, const D: usize, const G: usize>(
@@ -77,7 +77,7 @@ pub(crate) fn similarities_of_row<S: Register, const D: usize, const G: usize>(
     }
 }
 
-/// 2^−|x − y|² of a query step x and G steps y from `first` on, as far as there are any.
+/// 2^−|x − y|² of a query step x and up to G steps y from `first` on.
 #[inline(always)]
 fn similarities<S: Register, const D: usize, const G: usize>(
     simd: S,
@@ -110,7 +110,7 @@ pub(crate) fn cell<S: Register>(
     up: S::Floats,
     left: S::Floats,
 ) -> S::Floats {
-    // `left` is the one that is waited for: it comes last.
+    // `left` is the result of the previous cell and available last, so it is added last.
     let others = simd.add(diagonal, up);
     if S::FUSED {
         let others = simd.mul_add(k, others, simd.splat(FUSED_FLOOR));

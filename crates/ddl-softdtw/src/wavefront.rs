@@ -11,12 +11,12 @@
 //! the same bits.
 //!
 //! # Error
-//! To first order in u = 2^−53, the relative error of R is at most the largest over paths of the sum of those of its
-//! cells:
-//! (D + 5) u t ln 2 for t itself (D components), 2.1 u for 2^−t, 3 u for the two sums and the product. At most n + m −
-//! 1 cells make a path, and the mean of the cost over paths, weighted by exp(−cost/γ), exceeds the value by γ times
-//! their entropy, at most γ ln(paths) < 0.9 γ (n + m). The logarithm and the last two products add 5 u |v| + 3 u γ. In
-//! all less than (D + 12) u (|v| + γ (n + m)).
+//! To first order in u = 2^−53, the relative error of R is at most the largest error of a path, the sum of the errors
+//! of its cells.
+//! A cell contributes (D + 5) u t ln 2 for t (D components), 2.1 u for 2^−t, and 3 u for the two sums and the product.
+//! A path has at most n + m − 1 cells. The mean cost of the paths, weighted by exp(−cost/γ), exceeds the value by γ
+//! times their entropy, at most γ ln(paths) < 0.9 γ (n + m). The logarithm and the last two products add 5 u |v| + 3 u
+//! γ. The total is less than (D + 12) u (|v| + γ (n + m)).
 //!
 //! # Order
 //! Eight consecutive rows (a strip) advance together, each one column behind the row above it: the cells of a step are
@@ -38,9 +38,9 @@ use crate::weight::{Plain, Scaled, Weight};
 const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
 /// Entries of the working memory that fit on the stack.
 const SHORT: usize = 48;
-/// Significands are brought back to [1, 2) every so many columns and rows. Between two of these a path has at most 2 ·
-/// 128 cells, an antidiagonal each, and each multiplies the significand by 2^−1/2 to (1 + √2) √2 < 2^1.78: in all by
-/// 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
+/// Number of columns and rows after which significands are normalised to [1, 2). Between two normalisations a path has
+/// at most 2 · 128 cells, one per antidiagonal. Each cell multiplies the significand by 2^−1/2 to (1 + √2) √2 < 2^1.78.
+/// The total factor is 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
 pub(crate) const STRETCH: usize = 128;
 
 /// Receives what the backward recursion needs of each step of each strip.
@@ -56,8 +56,8 @@ impl<W: Weight> StepRecord<W> for Forget {
     fn step(&mut self, _: &W::Factor, _: &W) {}
 }
 
-/// Compiled for each instruction set: the loops over lanes become vectors of its width. Every operation is rounded by
-/// itself, so that all give the same bits.
+/// Compiled for each instruction set: the loops over lanes become vectors of its width. Every operation is rounded
+/// separately, so that all give the same bits.
 struct Forwards<'a, 'b, T, const D: usize>(&'a Grid<'b, T, D>);
 
 impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
@@ -75,7 +75,7 @@ impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
 }
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
-    /// The soft-DTW value, or `None` where costs are so large against γ that the log domain must be used.
+    /// The soft-DTW value, or `None` if costs are so large relative to γ that the log domain must be used.
     pub(crate) fn value(&self) -> Option<f64> {
         Dispatch::detect().run_on_registers(Forwards(self))
     }
@@ -101,8 +101,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
         let path = (self.rows.len() + self.columns.len()) as f64;
         // Entry c + 7 is column c. A step reads entry d + 7 (column d) for its first lane and writes entry d (column d
-        // − 7) from its last; seven entries before and after the columns take what the slanted ends of a strip read and
-        // write.
+        // − 7) from its last; seven additional entries before and after the columns serve the slanted ends of a strip.
         let mut short = [W::NONE_ONE; SHORT];
         let mut long = Vec::new();
         let length = self.columns.len() + 2 * (STRIP - 1);
@@ -139,7 +138,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     }
 }
 
-/// One strip: `row` holds the row above it before, its last row after. `largest` takes the largest t of each lane.
+/// Computes one strip. Before the call `row` holds the row above the strip, after it the last row of the strip.
+/// `largest` receives the largest t of each lane.
 #[inline(always)]
 fn advance<S: Register, W: Weight, M: Metric, const D: usize, const BANDED: bool>(
     simd: S,
@@ -189,14 +189,14 @@ fn advance<S: Register, W: Weight, M: Metric, const D: usize, const BANDED: bool
             diagonal = up;
             row[d] = cells.last();
         }
-        // The diagonal of the next step may stay as it is: the step after that takes its own from these.
+        // `diagonal` need not be normalised, because only the next step uses it.
         cells = cells.normalised();
         next = stop + 1;
     }
     *largest = t_max;
 }
 
-/// The working memory of so many entries: on the stack where it fits there.
+/// Working memory of `length` entries, on the stack if it fits there.
 #[inline(always)]
 fn row_of<'a, One: Copy>(
     short: &'a mut [One; SHORT],

@@ -1,7 +1,7 @@
 #![doc = include_str!("../README.md")]
 //!
-//! [`TorchNetwork::into_forecaster`] and [`TorchProposals::into_proposer`] give the traits of `ddl-network`, computed
-//! by libtorch: on CUDA, or as the reference.
+//! [`TorchNetwork::into_forecaster`] and [`TorchProposals::into_proposer`] implement the traits of `ddl-network` with
+//! libtorch, on CUDA or as a reference for the CPU kernels.
 //!
 //! ## Propose endpoints
 //!
@@ -40,7 +40,7 @@
 //!
 //! ## Shapes
 //!
-//! T time steps, P pedestrians of all windows of a batch one after the other, H hypotheses. Positions in metres, time
+//! T: time steps; P: pedestrians of all windows of a batch, concatenated; H: hypotheses. Positions are in metres, time
 //! steps 0.4 s apart.
 //!
 //! | | shape |
@@ -54,15 +54,15 @@
 //! ## State of a training
 //!
 //! [`Trainer::save`] and [`ProposalTrainer::save`] write weights, Adam's moments and the progress into one safetensors
-//! file, which holds numbers alone and is renamed when complete. `resume` refuses a file that is damaged or of another
+//! file, which holds only numbers and is renamed when complete. `resume` refuses a file that is damaged or of another
 //! run, and leaves the training as it was. A resumed run ends with the same weights, bit for bit, as an uninterrupted
 //! one on the same machine.
 //!
 //! ## Devices and threads
 //!
-//! [`ComputeDevice::open`] comes first: CUDA can be opened only before the first tensor is made. A missing `Cuda` is an
-//! error; `Auto` then takes the CPU. [`set_threads`] sets libtorch's threads for the process. One is enough on the CPU,
-//! because the kernels run on rayon's threads, with the same results for every number of them. Training seeds
+//! [`ComputeDevice::open`] comes first: CUDA can be opened only before the first tensor is made. Without CUDA, `Cuda`
+//! is an error and `Auto` takes the CPU. [`set_threads`] sets libtorch's threads for the process. One is enough on the
+//! CPU, because the kernels run on rayon's threads, with the same results for every number of them. Training seeds
 //! libtorch's process-wide generator at every step, for dropout.
 
 mod device;

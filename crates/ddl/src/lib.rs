@@ -50,10 +50,11 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The rows hold the model and the baselines, each with the conditions it was measured under. Under `fair` there are
-//! also rows without the expert library and for straight lines at constant speed to the same goals, and, for a network
-//! trained on single steps, with plain Euler steps. Under `single` there is also a row for the path that the network
-//! shapes. Under `fair` and `single` the future is removed from the windows before the model is called.
+//! The rows hold the model and the baselines, each with its conditions of measurement. The protocol `fair` adds rows
+//! for the model without the expert library and for straight lines at constant speed to the same goals. For a network
+//! trained on single steps it also adds a row with plain Euler steps. The protocol `single` adds a row for the path
+//! that the network shapes. Under `fair` and `single` the future is removed from the windows before the model is
+//! called.
 //!
 //! ## Guarantees
 //!
@@ -65,7 +66,7 @@
 //!   machine with the same number of threads.
 //! - Files are checked when they are loaded. A packed model carries the SHA-256 of its configuration and weights.
 //!   Truncated, mismatched or non-finite files are errors that name the file and the problem.
-//! - A model reads the 8 observed positions alone. Its hypotheses belong to the goals of the estimator and carry their
+//! - A model reads only the 8 observed positions. Its hypotheses belong to the goals of the estimator and carry their
 //!   weights, which sum to 1 for each pedestrian; the variant without goals (`star`) has 20 equally likely samples.
 #![cfg_attr(not(feature = "torch"), allow(dead_code, reason = "only training needs it"))]
 

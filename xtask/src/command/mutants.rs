@@ -89,8 +89,7 @@ impl Arguments {
             let out = workspace.path("target/mutants").join(name);
             let call = || {
                 let mut call = Command::new(&tool);
-                // In a common folder the tests of one mutant would overwrite those of another one tested at the same
-                // time.
+                // In a common folder, the tests of two mutants that run at the same time would overwrite each other.
                 call.current_dir(workspace.root())
                     .env_remove("CARGO_TARGET_DIR")
                     .args(["mutants", "--package", name]);

@@ -17,9 +17,9 @@ use ddl::{
 };
 use std::path::PathBuf;
 
-/// Own recordings with fewer pedestrian-windows are too few to train from random weights.
+/// Number of pedestrian-windows below which training on own recordings starts from a built-in model.
 const FEW: usize = 10_000;
-/// Epochs without a smaller validation error that end training on own recordings.
+/// Default patience for own recordings: training stops after this many epochs without a smaller validation error.
 const PATIENCE: usize = 10;
 
 /// Train a model on your own recordings, or on all scenes but one
@@ -301,7 +301,7 @@ impl Train {
             let wrong = || format!("{} holds no settings of goals", path.display());
             let mut recipe: serde_json::Value =
                 serde_json::from_str(&text).with_context(|| format!("{} is not JSON", path.display()))?;
-            // a whole config.json works as well
+            // A whole config.json is also accepted.
             if let Some(goals) = recipe.get_mut("goals") {
                 recipe = goals.take();
             }

@@ -134,7 +134,7 @@ fn a_constant_frame_number_does_not_fill_the_memory() {
     assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
 }
 
-/// The frames of each scene, in order, whatever stands between them.
+/// The frames of each scene, in order.
 fn by_scene(frames: Vec<Frame>) -> BTreeMap<Option<SceneName>, Vec<Frame>> {
     let mut scenes = BTreeMap::<_, Vec<_>>::new();
     for frame in frames {
@@ -275,7 +275,7 @@ fn scenes_that_fall_silent_make_room() {
     let early = reader.next_frame().unwrap_err().to_string();
     assert!(early.contains("frame 0 of scene 7 comes after frame 5"), "{early}");
     assert_eq!(std::iter::from_fn(|| reader.unfinished()).count(), 1_000);
-    // Where silence begins at once, every frame is the first of its scene.
+    // With a silence of zero, every frame is the first of its scene.
     let reader = FrameReader::new(text.as_bytes(), "tracker");
     let mut reader = reader.forgetting_after(Duration::ZERO);
     let read: Vec<Frame> = std::iter::from_fn(|| reader.next_frame().unwrap()).collect();

@@ -76,7 +76,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     }
 }
 
-/// A `sigma` at the rounding error of the smallest eigenvalue: the factor contains all of `P`.
+/// A `sigma` of the size of the rounding error of the smallest eigenvalue, because the factor already contains all of
+/// `P`.
 fn remainder<T: Real>(smallest: T) -> T {
     (smallest * T::EPSILON).max(T::MIN_POSITIVE)
 }
@@ -126,7 +127,7 @@ mod tests {
 
     #[test]
     fn a_rotation_by_subnormal_numbers_is_a_rotation() {
-        // Entries of a few units of the smallest positive number: their hypotenuse has hardly a digit.
+        // Entries of a few units of the smallest positive number: their hypotenuse has almost no significant digits.
         let tiny = f64::from_bits(3);
         let left = Matrix2::new(tiny, tiny, 3.0, 4.0);
         let right = Matrix2::new(f64::from_bits(65), 0.0, 12.0, 84.0);

@@ -27,8 +27,8 @@ fn balls<T: Real, const D: usize>(scene: &SceneDraw) -> Vec<Ball<T, D>> {
 }
 
 /// The certificate holds for all obstacles, starts and time steps. A pedestrian outside the balls stays outside, up to
-/// rounding: on a surface that it reached by rounding, epsilon of its speed remains as approach, which is visible at a
-/// million metres per second.
+/// rounding. On a surface, a share epsilon of its speed may still point inwards, which is visible at a million metres
+/// per second.
 fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let start = scene.start::<T, D>();
     let metrics: Vec<CholeskyMetric<T, D>> = scene.metrics();
@@ -140,7 +140,7 @@ fn the_velocity_is_continuous() {
     let pedestrian = NaturalGradientFlow::new(attractor, metric);
     let pillar = Ball::new(Vector2::new(0.0, 0.0), 1.0).unwrap();
     let flow = AvoidingFlow::new(pedestrian, [pillar], 1.0).unwrap();
-    // A circle around the pillar, in small steps: no jump anywhere, also where share is small.
+    // A circle around the pillar, in small steps: the velocity has no jump, even where the share is small.
     for gap in [1e-6, 0.3, 0.999] {
         let velocity = |k: u32| {
             let angle = f64::from(k) * std::f64::consts::TAU / 20_000.0;
@@ -152,8 +152,8 @@ fn the_velocity_is_continuous() {
     }
 }
 
-/// Exactly behind the pillar as seen from the goal is the saddle, where a pedestrian comes to rest; slightly beside it,
-/// every pedestrian passes.
+/// The saddle is exactly behind the pillar as seen from the goal: a pedestrian comes to rest there. A pedestrian that
+/// starts slightly beside it passes.
 #[test]
 fn the_saddle_is_the_only_other_equilibrium() {
     let pedestrian = straight_to(Vector2::new(4.0, 0.0));

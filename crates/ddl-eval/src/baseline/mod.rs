@@ -14,7 +14,7 @@ pub use straight_line::{GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
 
 use crate::{Conditions, Forecaster, MeasureError, ResultRow};
 
-/// Seed of the baseline with angular noise: always the same, so that its rows agree.
+/// Default seed of the baseline with angular noise, so that its rows are reproducible.
 pub const NOISE_SEED: u64 = 1;
 
 /// Measures the baselines that a protocol admits on the windows of one fold.

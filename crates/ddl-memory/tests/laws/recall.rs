@@ -1,4 +1,4 @@
-//! Recall against a search through all stretches, and changes that must not affect it.
+//! Recall agrees with a search through all stretches, for any order of the pedestrians and any origin.
 
 use std::collections::BTreeMap;
 

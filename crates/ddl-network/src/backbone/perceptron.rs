@@ -43,7 +43,7 @@ impl<B: Backend> Backbone<B> for Perceptron {
         if memory.tokens.len() < OBSERVED {
             memory.tokens.push(relative.clone());
         }
-        // At an observed time step the later ones are replaced by the present one.
+        // During the observation, the present position replaces the observed positions that are still to come.
         let observed = (0..OBSERVED).map(|t| memory.tokens.get(t).unwrap_or(relative));
         let inputs = observed.fold(relative.clone(), |inputs, x| {
             let x = backend.repeated(x, backend.entries(relative));

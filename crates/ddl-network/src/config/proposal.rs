@@ -17,7 +17,7 @@ pub struct ProposalConfig {
     pub width: i64,
     /// Number of hidden layers after the attention over neighbours.
     pub layers: usize,
-    /// Width of a neighbour's code.
+    /// Width of the encoding of a neighbour.
     pub neighbour_width: i64,
     /// Heads of the attention over neighbours.
     pub heads: i64,
@@ -107,17 +107,17 @@ pub struct ProposalTraining {
     pub learning_rate: f64,
     /// Largest norm of a member's gradient, as the root mean square over the members.
     pub gradient_clip: f64,
-    /// Number of nearest endpoints that share the loss at the start; it falls to 1, the nearest alone.
+    /// Number of nearest endpoints that share the loss at the start; it falls to 1 during training.
     pub relaxed_ends: f64,
-    /// Share of the training after which the nearest endpoint alone has the loss.
+    /// Share of the training after which only the nearest endpoint contributes to the loss.
     pub relaxed_share: f64,
     /// Weight of the waypoints' distances in the loss, relative to the endpoint's distance.
     pub waypoint_weight: f64,
     /// Weight of the cross-entropy of the endpoints' probabilities in the loss (metres).
     pub probability_weight: f64,
-    /// Scenes are enlarged by exp(u), u uniform in ±`scale`.
+    /// Scenes are scaled by exp(u), with u uniform in ±`scale`.
     pub scale: f64,
-    /// Scenes are turned by a normal angle of this standard deviation (radians).
+    /// Standard deviation of the normally distributed angle by which scenes are rotated (radians).
     pub turn: f64,
     /// Largest standard deviation of the errors added to observed positions (metres). The deviation of each pedestrian
     /// is uniform from 0 to this.
@@ -187,8 +187,8 @@ impl ProposalTraining {
         self.memory.check()
     }
 
-    /// Number of nearest endpoints that share the loss at step `step` of `steps`. With a fractional number the last
-    /// endpoint has this fraction as its weight.
+    /// Number of nearest endpoints that share the loss at step `step` of `steps`. For a fractional number, the fraction
+    /// is the weight of the last endpoint.
     pub fn relaxed_ends_at(&self, step: u64, steps: u64) -> f64 {
         let done = step as f64 / steps as f64;
         let left = if self.relaxed_share > 0.0 {

@@ -16,7 +16,7 @@ const SIDE: f64 = 0.5;
 const SMALLEST: f64 = 4.0;
 /// Shades, from few tracks to many.
 const SHADES: usize = 5;
-/// Radius of a mark for the most tracks that begin or end in a square, pixels.
+/// Radius of the largest mark, pixels: that of the square in which most tracks begin or end.
 const LARGEST_MARK: f64 = 15.0;
 /// Least radius of a mark, so that one track is visible.
 const SMALLEST_MARK: f64 = 2.2;
@@ -61,7 +61,7 @@ pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     drawing.to_file(PLOT_STYLE)
 }
 
-/// The least number of tracks of each shade, up to `most`: 1, 1/25, 4/25, 9/25 and 16/25 of it.
+/// The least number of tracks of each shade: 1, then 1/25, 4/25, 9/25 and 16/25 of `most`.
 fn shades(most: usize) -> Vec<usize> {
     let share = |shade: usize| (shade * shade * most).div_ceil(SHADES * SHADES).max(1);
     let mut least: Vec<usize> = (0..SHADES).map(share).collect();
@@ -69,7 +69,7 @@ fn shades(most: usize) -> Vec<usize> {
     least
 }
 
-/// The class of a shade; the shade of the most tracks is the darkest, for any number of shades.
+/// The CSS class of a shade. The last shade has the darkest class, for any number of shades.
 fn shade_class(shade: usize, shades: &[usize]) -> String {
     format!("walked w{}", shade + SHADES - shades.len())
 }

@@ -4,8 +4,8 @@ use ddl_eval::MotionKind;
 
 /// Picks for each kind of motion the pedestrian whose error is the median of its kind.
 ///
-/// Errors are in metres; of two middle ones the lower is taken, and errors that are not finite are ignored. The indices
-/// are in the order of [`MotionKind::ALL`].
+/// Errors are in metres. Of an even number of errors the lower middle one is the median. Errors that are not finite are
+/// ignored. The indices are in the order of [`MotionKind::ALL`].
 pub fn typical_pedestrians(pedestrians: &[(MotionKind, f64)]) -> Vec<usize> {
     MotionKind::ALL
         .into_iter()

@@ -1,4 +1,4 @@
-//! The rows and columns of a report that a results page shows: few enough to be read as a whole.
+//! The rows and columns of a report that a results page shows.
 
 use ddl_data::Convention;
 
@@ -36,7 +36,7 @@ pub struct Summary {
     /// the seeds. A row that a second protocol repeats, such as that of a baseline, is given once. The last row is the
     /// best published system of the convention.
     pub errors: Table,
-    /// Of the same rows, over the folds measured: the mean errors with their 95 % intervals, and further metrics.
+    /// For the same rows, over the measured folds: the mean errors with their 95 % intervals, and further metrics.
     pub metrics: Table,
 }
 

@@ -1,5 +1,5 @@
-//! The observed motion of every pedestrian on tensors: the twins of [`length_unit`](ddl_network::length_unit) and
-//! [`motion_bounds`](ddl_network::motion_bounds).
+//! The observed motion of every pedestrian: [`length_unit`](ddl_network::length_unit) and
+//! [`motion_bounds`](ddl_network::motion_bounds) on tensors.
 
 use ddl_dynamics::MotionBounds;
 use tch::{Kind, Tensor};

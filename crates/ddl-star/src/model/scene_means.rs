@@ -3,7 +3,7 @@
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// Averages over scenes, always summed in the same order. Sums by index on CUDA are not.
+/// Means over scenes, summed in a fixed order. CUDA's sums by index have no fixed order.
 #[derive(Debug)]
 pub(crate) struct SceneMeans {
     scenes: i64,

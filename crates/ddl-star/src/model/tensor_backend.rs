@@ -19,7 +19,8 @@ pub(crate) trait TensorBackend: Backend {
     /// All batch entries of all tokens as a tensor of libtorch.
     fn joined(&self, all: &[Self::Tokens]) -> Tensor;
 
-    /// The neighbours during some time steps: one step serves every batch entry, several serve one entry each.
+    /// The neighbours at the time steps `steps`: a single step applies to every batch entry, several steps to one entry
+    /// each.
     fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> Self::Seen;
 }
 
@@ -65,7 +66,7 @@ impl TensorBackend for KernelBackend {
             [one] => tensor(one),
             all => Tensor::cat(&all.iter().map(tensor).collect::<Vec<_>>(), 0),
         };
-        // libtorch's graph begins here; its gradients return to the rows first.
+        // libtorch's graph begins at this leaf. In the backward pass, its gradient is added to the rows first.
         let leaf = joined.set_requires_grad(true);
         let joined = leaf.shallow_clone();
         let all = all.to_vec();

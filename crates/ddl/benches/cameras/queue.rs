@@ -1,4 +1,4 @@
-//! Frames that wait for one core.
+//! A queue of camera frames that one core forecasts.
 
 use crate::Result;
 use crate::cameras::{Camera, FRAME};
@@ -11,17 +11,17 @@ use std::time::{Duration, Instant};
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Phases {
-    /// Each camera's frames come at moments of its own.
+    /// The frames of each camera arrive at their own times.
     Own,
     AtOnce,
 }
 
 pub(crate) struct Figures {
-    /// Seconds from a frame that is whole to its forecast, in order of their lengths.
+    /// Seconds from a complete frame to its forecast, sorted.
     pub(crate) latencies: Vec<f64>,
     pub(crate) frames: usize,
     pub(crate) dropped: u64,
-    /// Share of the time in which there was work.
+    /// Share of the time in which the core was busy.
     pub(crate) busy: f64,
 }
 
@@ -63,7 +63,7 @@ fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
     Ok((made, processor_time() - before))
 }
 
-/// Cameras that have been watched long enough for all their pedestrians to be forecast from the next frame.
+/// Cameras after 7 frames: from the next frame on, all their pedestrians have 8 observations and can be forecast.
 fn watched(cameras: usize) -> Result<(Vec<Camera>, LiveScenes)> {
     let mut cameras: Vec<Camera> = (0..cameras).map(Camera::new).collect::<Result<_>>()?;
     let mut scenes = LiveScenes::new().with_completion(Completion::USUAL).latest_only();
@@ -71,14 +71,14 @@ fn watched(cameras: usize) -> Result<(Vec<Camera>, LiveScenes)> {
         for frame in 0..OBSERVED as i64 - 1 {
             let seen = camera.frame(frame);
             scenes.observe(Some(&camera.name), frame, seen)?;
-            // What waits from before does not count.
+            // Discards the waiting windows, so that they are not measured.
             scenes.next_batch(usize::MAX);
         }
     }
     Ok((cameras, scenes))
 }
 
-/// Seconds of processor time a camera and frame, in batches of so many cameras: the median of some batches.
+/// Processor time (s) per camera and frame, in batches of `batch` cameras: the median over the batches.
 pub(crate) fn service(model: &Ddl, batch: usize, frames: usize) -> Result<f64> {
     let (mut cameras, mut scenes) = watched(batch)?;
     let mut times = Vec::new();
@@ -99,7 +99,7 @@ pub(crate) fn service(model: &Ddl, batch: usize, frames: usize) -> Result<f64> {
     Ok(times[times.len() / 2])
 }
 
-/// Work takes its processor time, and waiting takes none.
+/// Simulates the queue: the clock advances by the processor time of the work, and idle time is skipped.
 pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phases) -> Result<Figures> {
     let (mut cameras, mut scenes) = watched(cameras)?;
     let dropped_before = scenes.dropped();
@@ -116,7 +116,7 @@ pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phas
     }
     due.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut due = due.into_iter().peekable();
-    // When the frame of each scene that waits came.
+    // Arrival time of the waiting frame of each scene.
     let mut came: BTreeMap<SceneName, f64> = BTreeMap::new();
     let (mut now, mut busy, mut latencies) = (0.0, 0.0, Vec::new());
     loop {
@@ -146,7 +146,7 @@ pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phas
     Figures::new(latencies, cameras.len() * frames, dropped, busy / now)
 }
 
-/// A thread sends frames when they are due; this one observes what has come, forecasts what waits, and goes on.
+/// Measures in real time: one thread sends the frames when they are due, this thread observes and forecasts them.
 pub(crate) fn by_the_clock(model: &Ddl, cameras: usize, seconds: f64) -> Result<Figures> {
     let (mut cameras, mut scenes) = watched(cameras)?;
     let dropped_before = scenes.dropped();
@@ -199,7 +199,8 @@ pub(crate) fn by_the_clock(model: &Ddl, cameras: usize, seconds: f64) -> Result<
     Figures::new(latencies, count * frames, dropped, busy)
 }
 
-/// KiB of a camera that has been watched, with what makes its load here, and more while a frame of it waits.
+/// Memory per camera (KiB): after 7 frames, including the simulation of the camera; and in addition while a frame
+/// waits.
 pub(crate) fn memory(cameras: usize) -> Result<[f64; 2]> {
     let before = resident()?;
     let (mut seen, mut scenes) = watched(cameras)?;
@@ -214,7 +215,7 @@ pub(crate) fn memory(cameras: usize) -> Result<[f64; 2]> {
     Ok([each(watched - before), each(waiting - watched)])
 }
 
-/// KiB of the process.
+/// Resident memory of the process (KiB).
 fn resident() -> Result<f64> {
     let status = std::fs::read_to_string("/proc/self/status")?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));

@@ -72,8 +72,8 @@ impl Published {
         Ok(best)
     }
 
-    /// Makes 20 noise samples for the single goal of every pedestrian. The steps are plain Euler, or bounded for a
-    /// network that was trained with bounded steps, because its output has no unit.
+    /// Makes 20 noise samples for the single goal of every pedestrian. The steps are plain Euler steps. A network that
+    /// was trained with bounded steps keeps them, because its output is dimensionless.
     pub(crate) fn forecast_towards(
         &self,
         windows: &[Window],

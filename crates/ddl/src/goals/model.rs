@@ -29,9 +29,9 @@ pub struct GoalModel {
     source: ModelSource,
     config: RunConfig,
     origin: GoalOrigin,
-    /// Goals for each pedestrian.
+    /// Largest number of goals per pedestrian.
     clusters: usize,
-    /// The training motions that familiarity is measured against; `None` where too few are known.
+    /// The training motions that familiarity is measured against; `None` if too few are known.
     motions: Option<TrainingMotions>,
 }
 
@@ -144,12 +144,12 @@ impl GoalModel {
         &self.source
     }
 
-    /// How the goals were trained. [`words`](Self::words) tells which parts of it are available.
+    /// The settings of the goals in training. [`words`](Self::words) names the parts that are available.
     pub fn recipe(&self) -> &GoalRecipe {
         &self.config.goals
     }
 
-    /// The origin of the goals, in words.
+    /// Text that names the origin of the goals.
     pub fn words(&self) -> String {
         match &self.origin {
             GoalOrigin::Proposed(_) => self.recipe().description_without_library(),
@@ -157,7 +157,7 @@ impl GoalModel {
         }
     }
 
-    /// Goals for each pedestrian, at most.
+    /// Largest number of goals per pedestrian.
     pub fn clusters(&self) -> usize {
         self.clusters
     }
@@ -191,7 +191,7 @@ impl GoalModel {
             .map_or(0, |recipe| recipe.network.parameter_count())
     }
 
-    /// The windows of the dataset's recordings with the memory of their places.
+    /// Adds to each window the memory of its place: tracks of earlier pedestrians in the recordings of the dataset.
     ///
     /// # Errors
     /// When the model has no memory branch.
@@ -231,7 +231,7 @@ impl GoalModel {
         Ok(memory.remembered)
     }
 
-    /// The fold that the model was trained on, where the dataset is of its convention.
+    /// The fold that the model was trained on; `None` for own recordings, and if the dataset has another convention.
     fn fold_with_places<'a>(&self, dataset: &'a Dataset) -> Result<Option<Fold<'a>>, DdlError> {
         let data = &self.config.data;
         if dataset.convention() != data.convention || data.convention == Convention::Own {
@@ -253,7 +253,7 @@ impl GoalModel {
         self.config.goals.proposal.as_ref()?.network.memory.as_ref()
     }
 
-    /// The goals of every pedestrian of every window, from the observed frames and the memory of the windows.
+    /// The goals `[window][pedestrian]` (metres), from the observed frames and the memory of the windows.
     ///
     /// On the CPU, the goals of a pedestrian have the same bits however the windows are grouped.
     ///
@@ -270,7 +270,8 @@ impl GoalModel {
         Ok(self.within_reach(windows, sets))
     }
 
-    /// Pulls goals beyond reach back within it, and flattens the weights where the observed motion is unfamiliar.
+    /// Moves goals beyond the pedestrian's reach to its limit, and flattens the weights if the observed motion is
+    /// unfamiliar.
     fn within_reach(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
         let time_step = self.config.star.time_step;
         let of_window = |(window, sets)| {
@@ -293,7 +294,7 @@ impl GoalModel {
         self.motions.as_ref()
     }
 
-    /// The goals of the model without its expert library; unchanged where none of them are proposed.
+    /// The goals of the model without its expert library. A model without a proposal network keeps its retrieved goals.
     pub(crate) fn goals_without_library(&self, windows: &[Window]) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
         match self.proposal_network() {
             None => self.goals(windows),
@@ -304,7 +305,8 @@ impl GoalModel {
         }
     }
 
-    /// Goals that represent the endpoints of the network, and the retrieved goals where they have a share.
+    /// Clusters the endpoints of the network, with the retrieved goals if they have a share, to at most `clusters`
+    /// goals.
     fn representatives(
         &self,
         network: &dyn ProposeEndpoints,

@@ -15,8 +15,8 @@ use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-/// Writes the expert library and trains the proposal network, except what already exists. Training starts from the
-/// weights of `start` if given; `choose` then selects the network to keep.
+/// Writes the expert library and trains the proposal network. Files that already exist are kept. Training starts from
+/// the weights of `start` if given; `choose` then selects the network to keep.
 pub(crate) fn train(
     recipe: Option<&ProposalRecipe>,
     (start, choose): (Option<Weights>, impl FnOnce(Weights) -> Result<Weights, DdlError>),

@@ -1,4 +1,4 @@
-//! `ddl forecast -`: from the lines of trackers, a forecast a frame.
+//! `ddl forecast -`: reads tracks from standard input and forecasts every frame.
 
 use super::frames::{Frames, Incoming};
 use super::kept_memory::KeptMemory;
@@ -17,15 +17,15 @@ use std::io::{Write as _, stdout};
 use std::path::Path;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// Largest number of frames assumed to be 0.4 s: more may be a hole, or timestamps.
+/// Largest difference of frame numbers that is taken for a step of 0.4 s. A larger one may be a gap, or timestamps.
 const LONGEST_STEP: i64 = 1000;
 
-/// Windows that wait before no more is read, where every frame is forecast.
+/// Number of waiting windows at which reading stops, if every frame is forecast.
 const MOST_WAITING: usize = 64;
-/// Frames that are read between two batches, where only the latest of each scene is forecast.
+/// Largest number of frames read between two batches, if only the latest frame of each scene is forecast.
 const MOST_TAKEN: usize = 4096;
 
-/// Forecasts from every frame as soon as it is whole, until standard input ends or nobody reads on.
+/// Forecasts every frame as soon as it is complete, until standard input ends or the reader closes the output.
 pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     let model = forecast.model()?;
     let memory = forecast.memory.as_deref();
@@ -35,7 +35,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     };
     let watching = Arc::new(Mutex::new(watching));
     if memory.is_some() {
-        // Ctrl-C writes the memory too, from a thread of its own.
+        // After Ctrl-C, the thread of the handler writes the memory.
         let of_handler = Arc::clone(&watching);
         Interrupt::catch_until(2, move |_| {
             if let Err(error) = lock(&of_handler).end() {
@@ -45,7 +45,7 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
         })?;
     }
     let answered = answer(forecast, &model, &watching);
-    // however the stream ended, what was seen is kept
+    // The memory is also written if the stream ended with an error.
     let kept = lock(&watching).end();
     if let (Err(_), Err(error)) = (&answered, &kept) {
         tell(format_args!("error: {}", words(error)));
@@ -93,7 +93,7 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
     Ok(())
 }
 
-/// Begins to watch, as soon as it is known how many frames make a step.
+/// Creates the scenes, as soon as the frame step is known.
 fn begin(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>, step: i64) -> anyhow::Result<()> {
     let scenes = LiveScenes::with_frame_step(step)?;
     let scenes = scenes.with_completion(forecast.tracks.completion());
@@ -102,20 +102,20 @@ fn begin(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>, step: i64
     let Watching { scenes: to, memory } = &mut *watching;
     let scenes = to.insert(scenes);
     match memory {
-        // What is wrong with the file of the only scene is told before its first frame.
+        // Without scene names there is one memory file: its errors are reported before the first frame.
         Some(memory) => memory.begin(None, scenes, model),
         None => Ok(()),
     }
 }
 
-/// What is kept of the scenes.
+/// The scenes of the stream, and their memories.
 struct Watching {
-    /// `None` until it is known how many frames make a step.
+    /// `None` until the frame step is known.
     scenes: Option<LiveScenes>,
     memory: Option<KeptMemory>,
 }
 
-/// After a panic of the other thread too: scenes and memories are whole after every call.
+/// Ignores a panic of the other thread: scenes and memories are consistent after every call.
 fn lock(watching: &Mutex<Watching>) -> MutexGuard<'_, Watching> {
     watching.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -144,7 +144,7 @@ impl Watching {
             return Ok(scenes.observe_frame(frame)?);
         };
         let name = frame.scene.clone();
-        // A scene whose memory cannot be used is forecast without.
+        // A scene whose memory cannot be used is forecast without memory.
         let begun = memory.begin(name.as_ref(), scenes, model);
         scenes.observe_frame(frame)?;
         memory.tell_refusal(name.as_ref(), scenes);
@@ -170,23 +170,23 @@ struct Stream<'a> {
     model: &'a Ddl,
     watching: &'a Mutex<Watching>,
     homography: Option<Homography>,
-    /// The frames until it is known how many of them make a step: one of each scene.
+    /// The first frame of each scene, until the frame step is known.
     early: Vec<Frame>,
     output: Output,
     onward: Onward,
     left_out: LeftOut,
     is_empty: bool,
-    /// Whether the speeds of the first people have been looked at.
+    /// Whether the speeds of the first pedestrians have been checked.
     looked_at: bool,
-    /// Frames that were taken since the last batch.
+    /// Number of frames read since the last batch.
     taken: usize,
-    /// Frames that were answered.
+    /// Number of frames whose forecasts were written.
     answered: u64,
 }
 
 impl Stream<'_> {
-    /// Takes whatever has come before it forecasts, so that what waits is known, and waits for more only where nothing
-    /// waits to be forecast.
+    /// Reads all frames that have arrived, then forecasts a batch. It blocks for input only if no window waits for a
+    /// forecast.
     fn follow(&mut self, frames: &Frames, units: &Units) -> anyhow::Result<()> {
         let wrong = loop {
             let waiting = self.waiting();
@@ -214,7 +214,7 @@ impl Stream<'_> {
                 Some(Incoming::End(error)) => break Some(error.into()),
             }
         };
-        // what came before the bad line is not lost
+        // Frames before the invalid line are still forecast.
         while self.waiting() > 0 {
             self.answer_batch()?;
         }
@@ -226,7 +226,7 @@ impl Stream<'_> {
         watching.scenes.as_ref().map_or(0, LiveScenes::waiting)
     }
 
-    /// Adds a frame. `rate`: frames that follow each other in a second, where the lines say so.
+    /// Adds a frame. `rate`: frames per second, if the input states it.
     fn take(&mut self, frame: Frame, rate: Option<f64>, units: &Units) -> anyhow::Result<()> {
         if std::mem::take(&mut self.is_empty)
             && let Some(memory) = &lock(self.watching).memory
@@ -251,7 +251,7 @@ impl Stream<'_> {
         for frame in early.chain([frame]) {
             let is_named = frame.scene.is_some();
             match self.observe(frame) {
-                // The other scenes go on.
+                // The other scenes continue.
                 Err(error) if is_named => self.left_out.wrong(&error),
                 observed => observed?,
             }
@@ -291,7 +291,7 @@ impl Stream<'_> {
         }
         match self.text(&batch.windows, &batch.scenes) {
             Ok(text) => return self.write(&text, batch.windows.len()),
-            // It does not say of which window; those before it are answered.
+            // The error does not name its window, so the windows are forecast one by one.
             Err(_) if batch.windows.len() > 1 => {}
             Err(error) => return self.failed(error, batch.scenes.iter().any(Option::is_some)),
         }
@@ -310,8 +310,8 @@ impl Stream<'_> {
         self.forecast.text(self.model, (windows, scenes), Clock::WHOLE, onward)
     }
 
-    /// A forecast that fails is left out where there are other scenes; the first of all says what is wrong with the
-    /// call.
+    /// Leaves out a failed forecast of a named scene. Before the first forecast it is an error, because the arguments
+    /// are probably wrong.
     fn failed(&mut self, error: anyhow::Error, is_named: bool) -> anyhow::Result<()> {
         if !is_named || self.answered == 0 {
             return Err(error);
@@ -385,7 +385,7 @@ fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
         return Ok(false);
     }
     let recording = Recording::new("standard input", window.frame_step(), seen)?;
-    // A jump does not point to wrong units, and a pedestrian may be slow for 3.2 s.
+    // Other warnings are left out: a jump does not point to wrong units, and a pedestrian may be slow for 3.2 s.
     if let Some(doubt @ PlausibilityWarning::Fast { .. }) = &recording.speed_doubt() {
         recordings::warn_of(doubt);
     }
@@ -403,7 +403,7 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
     Ok(frame)
 }
 
-/// Frame numbers in a step that no option gives, with the reason; `apart`: difference of the first two frame numbers.
+/// The frame step if no option gives it, with the reason. `apart`: difference of the first two frame numbers.
 fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
     if let Some(rate) = rate {
         let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {

@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 const FORECASTER: &str = "DDL without an expert library";
-/// The largest size of each that the repository should hold.
+/// Largest size of a built-in model, bytes.
 const MOST_BYTES: usize = 2_000_000;
 
 #[derive(Debug, PartialEq, Serialize)]

@@ -56,7 +56,7 @@ impl WeightDecisions {
 
     #[inline(always)]
     fn decide(&self, value: u32) -> f32 {
-        // With 24 bits a signed comparison is right, which all instruction sets have.
+        // 24 bits are never negative, so a signed comparison is correct; all instruction sets have one.
         if (value >> 8).cast_signed() >= self.least {
             self.scale
         } else {
@@ -89,7 +89,8 @@ impl LaneBits {
     }
 }
 
-/// The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with a word of the query before it and within.
+/// The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with one word of the query mixed in before it
+/// and another in its middle.
 #[inline(always)]
 fn hash(query: QueryBits, key: u32, head: u32) -> u32 {
     let value = (key << 8).wrapping_add(head) ^ query.low;
