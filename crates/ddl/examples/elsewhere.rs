@@ -18,15 +18,15 @@ use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster, Protocol, Remem
 use places::{Part, Place};
 use std::error::Error;
 
-/// Pedestrian-windows of a folder, about: evenly spread where there are more.
+/// Approximate number of pedestrian-windows of a folder. Larger folders are sampled evenly.
 const PEDESTRIANS: usize = 3000;
 const CHUNK: usize = 64;
-/// Who is faster than this (m/s) runs or rides.
+/// Speed (m/s) above which a pedestrian is taken to run or ride.
 const FAST: f64 = 3.0;
 const SEED: u64 = 0;
 
 const RATIO: &str = "ratio of the minADE";
-/// What is measured of a model, as the columns of its table and the rows of the page.
+/// The measures of a model: the columns of its table and the rows of the page.
 const MEASURES: [&str; 12] = [
     "`fair`",
     "straight lines to the same goals",
@@ -42,7 +42,7 @@ const MEASURES: [&str; 12] = [
     "of these `fair`, straight lines",
 ];
 
-/// Figures of the default model at one place, with the baselines: name and value.
+/// Results of the default model and the baselines at one place: name and value.
 type Figures = Vec<(&'static str, String)>;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -226,7 +226,8 @@ fn print_recordings(name: &str, model: &Ddl, windows: &[Window]) -> Result<(), B
     Ok(())
 }
 
-/// The same windows with a memory of their recording until then, as a camera has it that has watched from the start.
+/// Evaluates the same windows with a memory of their recording up to that time, as for a camera that has observed the
+/// place from the start.
 fn print_watching(name: &str, model: &Ddl, place: &Place) -> Result<Figures, Box<dyn Error>> {
     let dataset = Dataset::own(place.recordings.clone())?;
     let goals = model.goal_model();
@@ -292,8 +293,8 @@ fn print_change(
     Ok([0, 1].map(|at| format!("{} ({:+.1} %)", errors(&after[at]), change(at))))
 }
 
-/// How many were observed to be faster than 3 m/s on average, and the minADE of the model and of straight lines on
-/// these.
+/// The number of pedestrians with a mean observed speed above 3 m/s, and the minADE of the model and of straight lines
+/// on them.
 fn runners(windows: &[Window], ours: &[Forecast], lines: &[Forecast]) -> Result<[String; 2], Box<dyn Error>> {
     let (mut count, mut sums) = (0, [0.0; 2]);
     for (window, pair) in windows.iter().zip(ours.iter().zip(lines)) {
@@ -319,7 +320,7 @@ fn mean_speed(observed: &[Position]) -> f64 {
     steps.sum::<f64>() / ((OBSERVED - 1) as f64 * TIME_STEP)
 }
 
-/// The interval of the ratio, in words; none where there are too few blocks.
+/// The interval of the ratio as text; empty if there are too few blocks.
 fn interval(ours: &[BlockErrors], lines: &[BlockErrors], error: f64) -> Result<String, Box<dyn Error>> {
     let difference = paired_difference(&[ours], &[lines], BlockMetric::MinAde)?;
     Ok(difference.map_or_else(String::new, |paired| {

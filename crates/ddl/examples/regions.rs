@@ -1,4 +1,4 @@
-//! The regions of the built-in models over the time of recordings, as they come and as they follow what is seen:
+//! The regions of the built-in models over the time of recordings, fixed and adaptive:
 //! `regions STAR_FOLDER [FOLDER=FPS ...]`. It prints all tables, puts that of the tested recordings into
 //! `docs/regions.md`, and draws `docs/regions.svg`.
 //!
@@ -23,28 +23,28 @@ use std::path::Path;
 
 /// Levels of regions; reliability is measured over all of them.
 const LEVELS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
-/// Of these the ones that have columns.
+/// Indices of the levels that have columns in the table.
 const HALF: usize = 4;
 const MOST: usize = 8;
 /// Windows forecast at a time.
 const CHUNK: usize = 64;
-/// Minutes before a moment whose forecasts make its share, and between two moments.
+/// Length in minutes of the sliding interval over which a share is computed, and its step.
 const SLIDING: f64 = 1.0;
 const APART: f64 = 1.0 / 12.0;
-/// Shorter recordings (minutes) end before there is much to follow.
+/// Recordings shorter than this (minutes) are left out, because the regions hardly adapt in them.
 const SHORTEST: f64 = 0.8;
-/// Forecasts of fewer pedestrians make no share of a recording.
+/// Recordings with fewer forecast pedestrians are left out.
 const FEWEST: usize = 1000;
 
-/// What regions held, of the forecasts of one moment.
+/// Coverage of the regions of the forecasts from one frame.
 struct Moment {
     minutes: f64,
     people: usize,
-    /// Steps at which somebody forecast was seen.
+    /// Number of forecast steps at which the pedestrian was observed.
     seen: usize,
-    /// Of these inside the regions, and sums of radii (m): fixed and adaptive, level by level.
+    /// Number of these observations inside the regions, fixed and adaptive, for each level.
     held: [[usize; LEVELS.len()]; 2],
-    /// Of the levels `HALF` and `MOST`.
+    /// Sums of radii (m), fixed and adaptive, for the levels `HALF` and `MOST`.
     radii: [[f64; 2]; 2],
 }
 
@@ -148,7 +148,7 @@ impl Watched {
         &self.moments[from..]
     }
 
-    /// Share of the minute before each moment: minutes and share.
+    /// The covered share in the minute before each frame: time (minutes) and share.
     fn sliding(&self, kind: usize, level: usize) -> Vec<[f64; 2]> {
         let moments = (SLIDING / 3.0 / APART) as usize..=(self.minutes() / APART) as usize;
         let until = |minutes: f64| self.moments.partition_point(|moment| moment.minutes <= minutes);
@@ -202,7 +202,7 @@ fn radius(moments: &[Moment], kind: usize, which: usize) -> f64 {
     sum / people as f64
 }
 
-/// 1 less the mean, and less the largest, of the differences between the share held and the level.
+/// 1 minus the mean difference, and 1 minus the largest difference, between the covered share and the level.
 fn reliability(moments: &[Moment], kind: usize) -> [f64; 2] {
     let off = LEVELS.iter().enumerate();
     let off = off.map(|(at, level)| (share(moments, kind, at) - level).abs());

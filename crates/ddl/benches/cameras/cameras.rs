@@ -1,4 +1,4 @@
-//! The load: what cameras see, and when.
+//! The load: simulated cameras with their pedestrians and frame times.
 
 use ddl::data::{PedestrianId, Position, SceneName};
 use rand::{RngExt as _, SeedableRng as _};
@@ -9,17 +9,17 @@ use std::f64::consts::TAU;
 pub(crate) const FRAME: f64 = 0.4;
 /// Pedestrians that a camera sees.
 pub(crate) const PEDESTRIANS: usize = 12;
-/// Pedestrians in a square metre, about as many as in the recording `students003`.
+/// Pedestrians per square metre, about as many as in the recording `students003`.
 const DENSITY: f64 = 0.2;
-/// Metres that a place jitters by from frame to frame.
+/// Noise of a position from frame to frame (metres).
 const JITTER: f64 = 0.01;
 
-/// Pedestrians who walk in a square, straight on from wall to wall.
+/// A camera over a square, in which pedestrians walk straight and turn back at the walls.
 pub(crate) struct Camera {
     pub(crate) name: SceneName,
-    /// Share of a frame's time after which its frames come.
+    /// Delay of its frames, as a share of the time between two frames.
     pub(crate) phase: f64,
-    /// Where each began, and its velocity in metres a frame.
+    /// Start position (m) and velocity (metres per frame) of each pedestrian.
     walks: Vec<[Position; 2]>,
     random: ChaCha8Rng,
 }

@@ -1,10 +1,10 @@
-//! How many cameras one core forecasts, `cargo bench -p ddl --bench cameras`; `-- 60 150` for these numbers of cameras
-//! alone.
+//! How many cameras one core can forecast: `cargo bench -p ddl-forecast --bench cameras`, or with `-- 60 150` only
+//! these numbers of cameras.
 //!
-//! Every camera sees 12 pedestrians and gives 2.5 frames a second, at moments of its own. All work is done on one
-//! thread, and all of it is real: frames are observed and forecast by a built-in model, 20 hypotheses each. Time is
-//! simulated: work takes its processor time, and waiting takes none. So a busy machine disturbs little, and hours pass
-//! in seconds. One run is by the clock.
+//! Every camera sees 12 pedestrians and sends 2.5 frames per second, at its own times. One thread does all the work: a
+//! built-in model observes and forecasts every frame, with 20 hypotheses per pedestrian. Time is simulated: it advances
+//! by the processor time of the work, and idle time is skipped. So other load on the machine disturbs little, and hours
+//! pass in seconds. One run uses the real clock.
 
 mod cameras;
 mod queue;
@@ -19,9 +19,9 @@ type Result<T> = std::result::Result<T, Box<dyn Error + Send + Sync>>;
 
 /// Cameras of the table.
 const CAMERAS: [usize; 8] = [1, 10, 30, 60, 100, 150, 200, 300];
-/// Frames that are answered or dropped in a row of the table, at least.
+/// Smallest number of frames, forecast or dropped, for a row of the table.
 const FRAMES: usize = 900;
-/// Frames of every camera, at least.
+/// Smallest number of frames of every camera.
 const FRAMES_EACH: usize = 6;
 
 fn main() -> Result<()> {

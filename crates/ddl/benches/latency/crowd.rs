@@ -40,7 +40,7 @@ pub(crate) fn measure(sizes: &[usize]) -> Result<()> {
     Ok(())
 }
 
-/// Pedestrians at random positions in a square, each in a straight line at its own speed.
+/// Pedestrians at random positions in a square. Each walks in a straight line at its own speed.
 fn crowd(pedestrians: usize) -> Result<Window> {
     let mut random = ChaCha8Rng::seed_from_u64(1);
     let side = (pedestrians as f64 / DENSITY).sqrt();

@@ -2,8 +2,8 @@
 //! training step.
 //!
 //! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of about
-//! 266 pedestrians with initial weights. Figures are medians of turns, each with empty caches: processor time for one
-//! thread, wall-clock time for two.
+//! 266 pedestrians with initial weights. The results are medians of several turns, each with empty caches: processor
+//! time for one thread, wall-clock time for two.
 //!
 //! `cargo bench -p ddl-forecast --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead, and
 //! `-- crowd 100 400` only these numbers of pedestrians.
@@ -57,7 +57,7 @@ fn main() -> Result<()> {
 
 const CROWDS: [usize; 9] = [1, 10, 25, 100, 400, 1_600, 5_000, 10_000, 20_000];
 
-/// Stretches of a memory that is almost full.
+/// Number of stretches in a memory that is almost full.
 const FULL: usize = SceneMemory::DEFAULT_CAPACITY * 9 / 10;
 
 /// A memory of all simulated scenes, filled with other simulated crowds up to this number of stretches.

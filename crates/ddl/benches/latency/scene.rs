@@ -3,7 +3,7 @@ use ddl::data::{Dataset, Window};
 
 const PEDESTRIANS: usize = 25;
 
-/// The first moment of the simulated recordings with enough pedestrians to forecast, cut to `PEDESTRIANS`.
+/// The first window of the simulated recordings with at least `PEDESTRIANS` pedestrians, reduced to this number.
 pub(crate) fn of(dataset: &Dataset) -> Result<Window> {
     let recordings = dataset.recordings().iter();
     let window = recordings

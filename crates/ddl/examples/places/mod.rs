@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[allow(dead_code, reason = "each example uses one part")]
 pub(crate) enum Part {
-    /// Every other file from the first, or the first half of the windows of a single file: data for fitting constants.
+    /// Data for fitting constants: every other file, starting with the first, or the first half of the windows of a
+    /// single file.
     Calibration,
     /// The others, for the final evaluation.
     Rest,

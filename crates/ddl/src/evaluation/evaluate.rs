@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 const PEDESTRIANS_PER_REPORT: usize = 128;
-/// Protocols that show the windows alone.
+/// Protocols that show only the windows.
 const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
 /// Protocols that also show the recording before the last observed frame of a window.
 const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
@@ -33,8 +33,8 @@ pub struct EvaluationRequest {
     pub protocols: Vec<Protocol>,
     /// The windows.
     pub on: Split,
-    /// Recordings that form the validation part of own recordings, instead of the part that training would keep. Only
-    /// for models that were trained on none of these recordings.
+    /// Recordings that form the validation part of own recordings, instead of the default part. Only for models that
+    /// were not trained on any of these recordings.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub validation_recordings: Vec<String>,
     /// Evaluate a seeded part of the windows with at least this many test pedestrians; `None`: all.
@@ -58,16 +58,15 @@ pub struct EvaluationProgress {
 pub struct Evaluation {
     /// The scores, each with its conditions.
     pub rows: Vec<ResultRow>,
-    /// Moments to look at, with the model's `fair` forecasts on windows of the headline rule; empty without that
-    /// protocol.
+    /// Windows for display with the model's `fair` forecasts, under the headline rule; empty without that protocol.
     pub moments: Vec<Moment>,
 }
 
 /// Evaluates the model and the baselines on the test windows of the model's fold.
 ///
 /// # Errors
-/// When the data is neither of the convention that the model was trained on nor own recordings; when the model was
-/// trained on the data; when forecasting or scoring fails. [`DdlError::Interrupted`] when the observer asks to stop.
+/// When the data has another convention than the training data and is not own recordings; when the model was trained on
+/// the data; when forecasting or scoring fails. [`DdlError::Interrupted`] when the observer asks to stop.
 pub fn evaluate(
     model: &Ddl,
     dataset: &Dataset,
@@ -112,7 +111,7 @@ pub fn evaluate(
     })
 }
 
-/// The goals for a manner, from the model itself; `None` for the published goals, which another estimator makes.
+/// The model's own goals for a manner; `None` for the published goals, which another estimator makes.
 fn goals_for(
     given: GivenGoals,
     model: &GoalModel,
@@ -219,7 +218,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         Ok(Evaluation { rows, moments })
     }
 
-    /// Moments to look at from the model's forecasts, one for each window of the test set.
+    /// Windows for display, from the model's forecasts for each window of the test set.
     fn moments(&self, forecasts: &[Forecast]) -> Result<Vec<Moment>, DdlError> {
         let (windows, forecasts): (Vec<Window>, Vec<Forecast>) = self
             .test
@@ -274,7 +273,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         ])
     }
 
-    /// Forecasts all windows in several manners, in chunks. Futures are shown only where the protocol shows them.
+    /// Forecasts all windows in several manners, in chunks. The model sees the futures only if the protocol shows them.
     fn forecast(
         &mut self,
         (protocol, windows): (Protocol, &[Window]),

@@ -24,7 +24,7 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
         .collect();
     let mut shown: Vec<&Pedestrian<'_>> = Vec::new();
     for kind in MotionKind::ALL {
-        // each pedestrian once
+        // Each pedestrian only once.
         let candidates: Vec<&Pedestrian<'_>> = pedestrians
             .iter()
             .filter(|pedestrian| pedestrian.kind == kind && !shown.iter().any(|other| other.is(pedestrian)))

@@ -15,11 +15,11 @@ use std::time::Instant;
 pub struct GoalEvaluation {
     /// The fold.
     pub fold: String,
-    /// The origin of the goals, in words.
+    /// Text that names the origin of the goals.
     pub goals: String,
-    /// The windows, in words.
+    /// Text that names the windows.
     pub windows: String,
-    /// Goals for each pedestrian.
+    /// Number of goals per pedestrian.
     pub clusters: usize,
     /// Errors over all pedestrians.
     pub all: GoalErrors,
@@ -31,25 +31,25 @@ pub struct GoalEvaluation {
     pub seconds: f64,
 }
 
-/// Figures, with the windows and goals they were measured on.
+/// The quality of the goals, with the windows and goals that it was measured on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasuredGoals {
-    /// The figures.
+    /// The quality of the goals.
     pub evaluation: GoalEvaluation,
     /// Windows with their futures.
     pub windows: Vec<Window>,
-    /// The goals of every pedestrian of every window.
+    /// The goals, `[window][pedestrian]`.
     pub sets: Vec<Vec<GoalSet>>,
 }
 
 /// Distances between goals and true endpoints in metres, means over pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct GoalErrors {
-    /// Pedestrians.
+    /// Number of pedestrians.
     pub pedestrians: usize,
-    /// Distance of the goal nearest the TRUE endpoint: a lower bound for every forecast that ends at a goal.
+    /// Mean distance of the goal nearest the TRUE endpoint (m): a lower bound for every forecast that ends at a goal.
     pub oracle_fde: f64,
-    /// Distance of the most likely goal.
+    /// Mean distance of the most likely goal (m).
     pub likeliest_fde: f64,
 }
 

@@ -35,7 +35,8 @@ pub(crate) enum Way {
     Neutral(Option<Clearance>),
 }
 
-/// The memory under a protocol, in the same words for all folds of a convention, because they share a line.
+/// Describes the memory under a protocol. The text is the same for all folds of a convention, because they share a line
+/// of the table.
 pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
     let convention = model.config().data.convention;
     let folds: Vec<&str> = convention.folds_with_place_memory().collect();
@@ -53,7 +54,7 @@ impl Manner {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         let goals = model.goal_model();
         let words = match self.goals {
-            // The name of the row already tells of the published goals.
+            // The name of the row already states the published goals.
             GivenGoals::Own | GivenGoals::Central | GivenGoals::Published | GivenGoals::WithoutMemory => goals.words(),
             GivenGoals::WithoutLibrary => goals.recipe().description_without_library(),
         };

@@ -1,4 +1,4 @@
-//! The record of the evaluation in a run's `report.json`, by which a repeated evaluation is skipped.
+//! The record of the evaluation in a run's `report.json`. An evaluation that equals the record is not repeated.
 
 use crate::error::DdlError;
 use crate::evaluation::evaluate::EvaluationRequest;
@@ -97,7 +97,7 @@ pub fn save_evaluation(
     let _claimed = RunLock::wait(run.path())?;
     let record = record_file(run);
     if record.is_file() {
-        // Remove the record first: it must not vouch for a half-written report.
+        // Remove the record first, so that it never belongs to a half-written report.
         std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
     }
     let json = report.to_json()?;

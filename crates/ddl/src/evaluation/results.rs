@@ -7,14 +7,13 @@ use std::path::Path;
 
 const LOSS: &str = "training loss: mean squared error of the next position (m²)";
 
-/// Results of evaluated runs and of other programs' forecasts, with moments to look at.
+/// Results of evaluated runs and of other programs' forecasts, with windows for display.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub struct Results {
     /// All rows.
     pub report: Report,
-    /// Moments of other programs' forecasts and of the headline model: the runs of the whole method with the lowest
-    /// seed.
+    /// Windows for display: of other programs' forecasts, and of the runs of the full variant with the lowest seed.
     pub moments: Vec<Moment>,
     /// The training curves.
     pub curves: Vec<TrainingCurve>,
@@ -112,7 +111,7 @@ impl Results {
         for (name, svg) in &drawn {
             write_atomically(&figures.join(name), svg.as_bytes())?;
         }
-        // Figures of an earlier report could be taken for those of this one.
+        // Figures of an earlier report could be mistaken for those of this one.
         remove_others(&figures, &drawn)?;
         write_atomically(&folder.join("report.html"), page.to_html()?.as_bytes())
     }

@@ -12,7 +12,7 @@ use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 #[derive(Debug)]
 pub(crate) struct Forecasted {
     forecaster: String,
-    /// By the trained model, or by straight lines to goals, which depend on the run's seed only.
+    /// True for the trained model. False for straight lines to goals, which depend only on the run's seed.
     by_model: bool,
     goals: String,
     forecasts: Vec<Forecast>,
@@ -34,7 +34,7 @@ impl Forecasted {
         }
     }
 
-    /// Straight lines to the goals of that name; `recipe` tells how these were made.
+    /// Straight lines to the goals of that name; `recipe` describes how the goals were made.
     pub(crate) fn lines_to(goal: &str, recipe: String, forecasts: Vec<Forecast>) -> Self {
         Self {
             forecaster: format!("straight line to {goal}"),

@@ -94,7 +94,7 @@ impl TestSet {
         Ok(Self::validation(&fold, data.convention, kept, pedestrians))
     }
 
-    /// The default validation part of own recordings, for a model that was not trained on them.
+    /// The validation part of own recordings, for a model that was not trained on them.
     fn own_validation(
         goals: &GoalModel,
         dataset: &Dataset,
@@ -122,7 +122,7 @@ impl TestSet {
         Ok(set)
     }
 
-    /// Own recordings: the one that the model was trained without, if present, else all of them.
+    /// Own recordings: the recording that the model was trained without, if present, else all recordings.
     fn of_own(goals: &GoalModel, dataset: &Dataset, pedestrians: Option<usize>) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let all = dataset.recordings();
@@ -253,7 +253,7 @@ impl TestSet {
         let Some(pedestrians) = pedestrians else {
             return self;
         };
-        // The same words for every fold, cut or not, because the folds of a benchmark share a table.
+        // The text is the same for every fold, because the folds of a benchmark share a table.
         let subset = format!("where a fold has more than {pedestrians} pedestrians, a seeded part of its windows");
         let part = if self.pedestrians() > pedestrians {
             self.part(pedestrians)

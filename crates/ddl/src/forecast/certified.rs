@@ -9,15 +9,15 @@ use rayon::prelude::*;
 
 /// A forecast with a Lyapunov certificate for every hypothesis.
 ///
-/// A certificate refers to exactly the positions of the forecast, from the last observed one on.
-/// [`LyapunovCertificate::holds`] checks it from its numbers.
+/// A certificate refers to exactly the positions of the forecast, starting with the last observed one.
+/// [`LyapunovCertificate::holds`] checks its numbers.
 ///
 /// # Shapes
 /// One certificate of 12 steps for each pedestrian and hypothesis, `[N][K]`.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct CertifiedForecast {
-    /// The forecast; its [`certified`](Forecast::certified) holds the verdicts.
+    /// The forecast; [`certified`](Forecast::certified) states which certificates hold.
     pub forecast: Forecast,
     /// `[N][K]`.
     pub certificates: Vec<LyapunovCertificate<f64>>,
@@ -79,20 +79,20 @@ pub(crate) struct Walked<'a> {
     pub(crate) gait: Gait,
     pub(crate) window: &'a Window,
     pub(crate) hypotheses: usize,
-    /// `[N][K][12]`: the path of the network's own rollout, metres; empty where the network is not used.
+    /// `[N][K][12]`: the path of the network's own rollout, metres; empty if the network is not used.
     pub(crate) rolled_out: Vec<Position>,
     /// `[N][K][12]`: (a, b, c) of the factor of P; `None` without a flow.
     pub(crate) factors: Option<Vec<[f64; 3]>>,
     /// N: share of the network's metric in the metric of the steps.
     pub(crate) shares: Vec<f64>,
-    /// N: familiarity of the observed motions; `None` where it is not requested.
+    /// N: familiarity of the observed motions; `None` if it is not requested.
     pub(crate) familiarity: Option<Vec<f64>>,
     pub(crate) weights: Vec<f64>,
     pub(crate) goals: Vec<Position>,
 }
 
 impl Walked<'_> {
-    /// The forecast, with the verdicts of its certificates where there is a flow.
+    /// The forecast. If there is a flow, it states which certificates hold.
     pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
         if self.factors.is_some() {
             // Certificates of a crowd take more memory than its forecast: drop each after its check.
@@ -165,8 +165,7 @@ impl Walked<'_> {
         Ok((positions.into_flattened(), certificates))
     }
 
-    /// The obstacles of all pedestrians: the paths to their most likely goals, each computed without regard to the
-    /// others.
+    /// The obstacles of all pedestrians: the paths to their most likely goals, each computed without the others.
     fn others(&self, factors: &[[f64; 3]], clearance: Clearance) -> Result<Others, ForecastError> {
         let hypotheses = self.hypotheses;
         let weights = self.weights.chunks_exact(hypotheses).enumerate();
@@ -192,8 +191,8 @@ impl Walked<'_> {
         }
     }
 
-    /// Applies `of` to every hypothesis, in order: its index pedestrian x hypotheses + hypothesis, its course and its
-    /// factors. The error is that of the first hypothesis that fails.
+    /// Applies `of` to every hypothesis, in order. Its arguments are the index (pedestrian x hypotheses + hypothesis),
+    /// the course and the factors. The error is that of the first hypothesis that fails.
     fn each<R: Send>(
         &self,
         factors: &[[f64; 3]],

@@ -43,7 +43,7 @@ impl Clearance {
     }
 }
 
-/// The most likely path of every pedestrian, which the others keep clear of.
+/// The most likely path of every pedestrian; the other pedestrians keep the clearance from it.
 #[derive(Debug)]
 pub(crate) struct Others {
     clearance: Clearance,
@@ -62,7 +62,7 @@ impl Others {
         }
     }
 
-    /// The discs that pedestrian `i` keeps clear of in each step from `start` to `goal`.
+    /// For each step, the discs that pedestrian `i` avoids on its way from `start` to `goal`.
     ///
     /// With d the first distance to the goal, which falls at every step, the pedestrian stays within 2 d of the start.
     /// A disc shortens a step that would use more than half of the gap to it, and no step is longer than d. Discs

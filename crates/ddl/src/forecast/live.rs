@@ -13,15 +13,15 @@ use std::borrow::Borrow;
 /// Every [`push`](Self::push) forecasts all pedestrians that have been observed at 8 consecutive time steps, or as a
 /// [`Completion`] allows. The forecast has the bits of [`Forecaster::forecast`] on the window that
 /// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With a memory,
-/// this window holds what the memory recalls; regions that adapt are the only other difference. For gaps, see
+/// this window also holds the recalled tracks. Adaptive regions are the only other difference. For gaps, see
 /// [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`, one model serves several
 /// places.
 ///
 /// # State kept between frames
-/// The last 8 time steps of the pedestrians that are present, so that memory is bounded by their number. The memory of
-/// the place, bounded by its capacity, [if requested](Self::remembering). Where [regions
-/// adapt](Self::with_adaptive_regions), also the forecasts of the last 4.8 s. No state of the networks is kept: their
-/// tokens are relative to goals and to the scene, which change at every frame.
+/// It keeps the last 8 time steps of the pedestrians that are present, so the memory use is bounded by their number.
+/// [On request](Self::remembering) it keeps the memory of the place, which has a fixed capacity. With [adaptive
+/// regions](Self::with_adaptive_regions) it also keeps the forecasts of the last 4.8 s. It keeps no state of the
+/// networks: their tokens are relative to goals and to the scene, which change at every frame.
 ///
 /// # Errors
 /// After an error of [`push`](Self::push) or [`push_certified`](LiveForecaster::push_certified) the state is unchanged:
@@ -51,7 +51,7 @@ pub struct LiveForecaster<M = Ddl> {
     regions: Option<AdaptiveRegions>,
 }
 
-/// The forecast from one frame.
+/// The forecast made at one frame.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct LiveForecast<F = Forecast> {
@@ -79,7 +79,7 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// A forecaster without tracks, with another number of raw frames in a step of 0.4 s, such as 10 of a camera at 25
+    /// A forecaster without tracks, with another number of raw frames per step of 0.4 s, such as 10 for a camera at 25
     /// frames per second.
     ///
     /// # Errors
@@ -92,16 +92,16 @@ impl<M> LiveForecaster<M> {
         })
     }
 
-    /// Fills incomplete observations in as the completion allows. [`Window::made_up`] counts the filled-in positions.
+    /// Fills in incomplete observations as the completion allows. [`Window::made_up`] counts the filled-in positions.
     #[must_use]
     pub fn with_completion(mut self, completion: Completion) -> Self {
         self.watch.tracks = self.watch.tracks.with_completion(completion);
         self
     }
 
-    /// Adapts the regions to the observations of this place so that they keep their share, see [`AdaptiveRegions`]. All
-    /// other parts of the forecasts have the same bits. To continue from what an earlier watch of the place
-    /// [learned](AdaptiveRegions::learned), use [`AdaptiveRegions::resuming`].
+    /// Adapts the regions to the observations of this place, so that they keep their coverage; see [`AdaptiveRegions`].
+    /// All other parts of the forecasts have the same bits. To continue from the [learned
+    /// state](AdaptiveRegions::learned) of an earlier session, use [`AdaptiveRegions::resuming`].
     #[must_use]
     pub fn with_adaptive_regions(self, regions: AdaptiveRegions) -> Self {
         Self {
@@ -145,7 +145,7 @@ impl<M> LiveForecaster<M> {
         self.watch.place.as_ref()
     }
 
-    /// Decides from the pedestrians so far whether the given memory is of this place; call it when no more will follow
+    /// Decides from the pedestrians so far whether the given memory is of this place. Call it at the end of the stream
     /// ([`WatchedPlace::finish_test`]).
     pub fn finish_test(&mut self) {
         if let Some(place) = &mut self.watch.place {
@@ -158,7 +158,8 @@ impl<M> LiveForecaster<M> {
         &self.watch.tracks
     }
 
-    /// Adds a frame and forecasts from it with `forecast` if there are pedestrians to forecast; changes all or nothing.
+    /// Adds a frame, and forecasts with `forecast` if there are pedestrians to forecast. After an error nothing has
+    /// changed.
     fn push_with<F>(
         &mut self,
         frame: i64,
@@ -185,7 +186,7 @@ impl<M: Forecaster> LiveForecaster<M> {
     ///
     /// # Errors
     /// [`DdlError::Live`] for a frame out of order, a position that is not finite or a repeated pedestrian;
-    /// [`DdlError::Forecast`] when the forecast fails, for instance for positions of absurd size.
+    /// [`DdlError::Forecast`] when the forecast fails, for instance because positions are too large.
     pub fn push(
         &mut self,
         frame: i64,
@@ -208,7 +209,7 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     /// empty one replaces it.
     ///
     /// # Errors
-    /// When the model has no memory branch, or the memory another number of raw frames in a step.
+    /// When the model has no memory branch, or the memory has another number of raw frames per step.
     pub fn remembering(mut self, memory: SceneMemory) -> Result<Self, DdlError> {
         let place = WatchedPlace::new(self.model.borrow(), memory)?;
         self.watch.remember(place)?;

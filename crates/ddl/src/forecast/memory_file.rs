@@ -1,4 +1,4 @@
-//! The file that keeps the memory of a place from one watch to the next.
+//! The file that stores the memory of a place between sessions.
 
 use crate::error::DdlError;
 use crate::forecast::watched_place::WatchedPlace;
@@ -8,7 +8,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// The file of a scene memory. It is read when a watch begins and written during the watch and at its end, by one
+/// The file of a scene memory. It is read at the start of a session and written during and at the end of it, by one
 /// process at a time.
 ///
 /// A memory that is, or may be, of another place never overwrites the file.
@@ -58,22 +58,22 @@ impl MemoryFile {
         self.written.elapsed() >= Self::PAUSE
     }
 
-    /// Writes the memory. It is not written when it is empty, or is or may be of another place than the file.
+    /// Writes the memory, unless it is empty or may be of another place than the file.
     ///
     /// # Errors
     /// When the file cannot be written; an earlier one is unchanged.
     pub fn write(&mut self, place: &WatchedPlace) -> Result<(), DdlError> {
         self.written = Instant::now();
         let decided = place.refused().is_none() && place.on_trial().is_none();
-        // Without a frame, the file would only fix the frame rate of the next watch.
+        // Without a frame, the file would only fix the frame rate of the next session.
         if decided && place.memory().last_frame().is_some() {
             place.memory().write(&self.file)?;
         }
         Ok(())
     }
 
-    /// Writes the memory at the end of a watch, after its [trial](WatchedPlace::finish_test). Returns the reason if the
-    /// file is left unchanged.
+    /// Writes the memory at the end of a session, after its [test](WatchedPlace::finish_test). Returns the reason if
+    /// the file is left unchanged.
     ///
     /// # Errors
     /// As [`write`](Self::write).

@@ -6,7 +6,7 @@ use ddl_eval::{EvaluationError, Forecast, Forecaster as _};
 use ddl_report::Moment;
 use ddl_report::page::Viewer;
 
-/// A self-contained page that plays forecasts at moments of a recording.
+/// A self-contained HTML page that plays forecasts for some windows of a recording.
 #[derive(Debug)]
 pub struct RecordingPlayer<'a> {
     model: &'a Ddl,

@@ -1,4 +1,4 @@
-//! Many cameras in one process, whose frames are forecast together.
+//! Many cameras in one process; their windows are forecast in batches.
 
 use crate::error::DdlError;
 use crate::forecast::watch::Watch;
@@ -8,24 +8,23 @@ use ddl_eval::{Forecast, ForecastError, Forecaster};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
-/// The tracks of many scenes, a camera each, and the windows that wait to be forecast from.
+/// The tracks of many scenes (one camera each), and the windows that wait for a forecast.
 ///
-/// A frame is [observed](Self::observe) at once, whatever is being forecast: scenes do not wait for each other. Where
-/// somebody can be forecast from it, its window waits. Waiting windows of any scenes make a [batch](Self::next_batch),
-/// the oldest first, which one call of a model forecasts. Whether a window is forecast alone or in a batch, and what
-/// other scenes do in between, changes no bit of its forecast: it is that of a
-/// [`LiveForecaster`](crate::LiveForecaster) of this scene alone.
+/// A frame is [observed](Self::observe) at once: scenes do not wait for each other. If a pedestrian can be forecast at
+/// this frame, its window joins a queue. The oldest windows of the queue, from any scenes, form a
+/// [batch](Self::next_batch), which the model forecasts in one call. The forecast of a window has the bits of that by a
+/// [`LiveForecaster`](crate::LiveForecaster) for this scene alone: it does not depend on the batch or on other scenes.
 ///
 /// # Overload
-/// Every window waits, up to [`MOST_WAITING`](Self::MOST_WAITING); then frames are refused until some are forecast.
-/// With [`latest_only`](Self::latest_only) one window of each scene waits at most: a later frame takes its place in the
-/// queue, which is [counted](Self::dropped). Tracks and memory take every frame all the same.
+/// At most [`MOST_WAITING`](Self::MOST_WAITING) windows wait; then frames are refused until some windows are forecast.
+/// With [`latest_only`](Self::latest_only) at most one window of each scene waits: the window of a later frame replaces
+/// it in the queue, and the replaced windows are [counted](Self::dropped). Tracks and memory still use every frame.
 ///
 /// # What is kept
-/// What a `LiveForecaster` keeps, of each scene; at most [`MOST_SCENES`](Self::MOST_SCENES) of them. A scene of which
-/// no frame has come for [`SILENCE`](Self::SILENCE) is forgotten when another one begins, or by
-/// [`forget_silent`](Self::forget_silent). Regions that adapt are the caller's: one
-/// [`AdaptiveRegions`](ddl_eval::AdaptiveRegions) a scene.
+/// It keeps the state of a `LiveForecaster` for each scene, for at most [`MOST_SCENES`](Self::MOST_SCENES) scenes. A
+/// scene without a frame for [`SILENCE`](Self::SILENCE) is forgotten when another scene begins, or by
+/// [`forget_silent`](Self::forget_silent). For adaptive regions the caller keeps one
+/// [`AdaptiveRegions`](ddl_eval::AdaptiveRegions) per scene.
 ///
 /// # Examples
 /// ```
@@ -63,49 +62,50 @@ struct Scene {
     dropped: u64,
 }
 
-/// Windows of some scenes, to be forecast together.
+/// Windows of several scenes that are forecast in one call.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SceneBatch {
-    /// The scene of each window; `None` for that of a stream that names none.
+    /// The scene of each window; `None` for a stream without scene names.
     pub scenes: Vec<Option<SceneName>>,
-    /// As many windows.
+    /// The windows, in the order of `scenes`.
     pub windows: Vec<Window>,
 }
 
-/// What is forecast from a frame of a scene.
+/// The forecast at a frame of a scene.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct SceneForecast {
-    /// The scene; `None` for that of a stream that names none.
+    /// The scene; `None` for a stream without scene names.
     pub scene: Option<SceneName>,
-    /// Who is forecast, in the order of the forecast, and their last 8 positions.
+    /// The pedestrians, in the order of the forecast, with their last 8 positions.
     pub window: Window,
-    /// The forecast, or why there is none. An error of one scene leaves the others as they are.
+    /// The forecast, or its error. An error of one scene does not affect the other scenes.
     pub forecast: Result<Forecast, ForecastError>,
 }
 
 impl LiveScenes {
-    /// Scenes at a time: twice as many as a [`FrameReader`](ddl_data::FrameReader) reads, so that those which it has
-    /// just forgotten have room beside the new ones.
+    /// Largest number of scenes. It is twice that of a [`FrameReader`](ddl_data::FrameReader), so that there is room
+    /// for new scenes beside those that the reader has just forgotten.
     pub const MOST_SCENES: usize = 2_000;
-    /// Windows that wait at most.
+    /// Largest number of waiting windows.
     pub const MOST_WAITING: usize = 10_000;
-    /// Pedestrians of a batch that answers soon: several cameras of a dozen, and never more than one crowd.
+    /// Number of pedestrians in a batch with a short latency: several cameras with a dozen pedestrians each, or one
+    /// crowd.
     pub const BATCH: usize = 50;
     /// Time without a frame after which a scene is forgotten.
     pub const SILENCE: Duration = Duration::from_mins(10);
 
-    /// No scene seen yet; frames are counted, so that one step of 0.4 s is from one number to the next.
+    /// Starts without scenes; consecutive frame numbers are one step of 0.4 s apart.
     #[must_use]
     pub fn new() -> Self {
         Self::of(LiveTracks::new())
     }
 
-    /// No scene seen yet, with another number of raw frames in a step of 0.4 s, such as 10 of cameras at 25 frames a
-    /// second.
+    /// Starts without scenes, with another number of raw frames per step of 0.4 s, such as 10 for cameras at 25 frames
+    /// per second.
     ///
     /// # Errors
-    /// [`DdlError::Live`] if the step does not lie in 1..=2^31.
+    /// [`DdlError::Live`] if the step is outside 1..=2^31.
     pub fn with_frame_step(frame_step: i64) -> Result<Self, DdlError> {
         Ok(Self::of(LiveTracks::with_frame_step(frame_step)?))
     }
@@ -121,7 +121,7 @@ impl LiveScenes {
         }
     }
 
-    /// The same, with incomplete observations filled in as the completion allows.
+    /// Fills in incomplete observations as the completion allows.
     #[must_use]
     pub fn with_completion(self, completion: Completion) -> Self {
         Self {
@@ -130,7 +130,7 @@ impl LiveScenes {
         }
     }
 
-    /// The same, where of each scene only the latest frame waits to be forecast from.
+    /// Keeps only the latest window of each scene in the queue.
     #[must_use]
     pub fn latest_only(self) -> Self {
         Self {
@@ -139,7 +139,7 @@ impl LiveScenes {
         }
     }
 
-    /// The same, with another time after which a scene of which no frame comes is forgotten.
+    /// Sets another time without a frame after which a scene is forgotten.
     #[must_use]
     pub fn forgetting_after(self, silence: Duration) -> Self {
         Self { silence, ..self }
@@ -150,12 +150,13 @@ impl LiveScenes {
         self.unseen.frame_step()
     }
 
-    /// Adds a frame of a scene, everybody's positions (m) in any order. `None` is the scene of a stream that names
-    /// none, and is never forgotten for its silence.
+    /// Adds a frame of a scene, with the positions (m) of all pedestrians in any order. `None` is the scene of a stream
+    /// without scene names; it is never forgotten.
     ///
     /// # Errors
-    /// [`DdlError::Live`] for a frame that is out of order within its scene, a position that is not finite or somebody
-    /// twice; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond the limits. Nothing has changed then.
+    /// [`DdlError::Live`] for a frame that is out of order within its scene, a position that is not finite or a
+    /// repeated pedestrian; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond the limits. After an
+    /// error nothing has changed.
     pub fn observe(
         &mut self,
         scene: Option<&SceneName>,
@@ -166,8 +167,8 @@ impl LiveScenes {
         self.add(scene.cloned(), frame, people, PedestrianNames::default())
     }
 
-    /// The same with a frame as it was read, whose pedestrians keep their words. Of a scene that [begins
-    /// anew](Frame::is_first) the tracks are forgotten first; what is remembered of its place stays.
+    /// Adds a frame as read by a [`FrameReader`](ddl_data::FrameReader); its pedestrians keep their names. If the scene
+    /// [begins again](Frame::is_first), its tracks are forgotten first, but the memory of its place is kept.
     ///
     /// # Errors
     /// As [`observe`](Self::observe).
@@ -216,7 +217,7 @@ impl LiveScenes {
         Ok(())
     }
 
-    /// The scene, which begins if it is not known.
+    /// The scene; it is created if it is not known.
     #[expect(clippy::ref_option, reason = "a key of the map")]
     fn scene(&mut self, name: &Option<SceneName>) -> Result<&mut Scene, DdlError> {
         if !self.scenes.contains_key(name) {
@@ -236,15 +237,15 @@ impl LiveScenes {
         Ok(self.scenes.entry(name.clone()).or_insert_with(unseen))
     }
 
-    /// Lets a scene look at what is remembered of its place, and go on remembering.
+    /// Gives a scene the memory of its place: forecasts read it, and it grows with every frame.
     ///
     /// # Errors
-    /// When the memory has another number of raw frames in a step; [`DdlError::TooManyScenes`] beyond that limit.
+    /// When the memory has another number of raw frames per step; [`DdlError::TooManyScenes`] beyond that limit.
     pub fn remember(&mut self, scene: Option<&SceneName>, place: WatchedPlace) -> Result<(), DdlError> {
         self.scene(&scene.cloned())?.watch.remember(place)
     }
 
-    /// The place of a scene that [remembers](Self::remember).
+    /// The place of a scene, if it [has a memory](Self::remember).
     pub fn place(&self, scene: Option<&SceneName>) -> Option<&WatchedPlace> {
         self.scenes.get(&scene.cloned())?.watch.place.as_ref()
     }
@@ -257,26 +258,26 @@ impl LiveScenes {
         }
     }
 
-    /// Forgets a scene; what it remembered of its place is given back. Its windows that wait stay.
+    /// Forgets a scene, and returns its place with the memory. Its waiting windows stay in the queue.
     pub fn forget(&mut self, scene: Option<&SceneName>) -> Option<WatchedPlace> {
         self.scenes.remove(&scene.cloned())?.watch.place
     }
 
-    /// Scenes of which no frame has come for so long that they are forgotten when another one begins.
+    /// Scenes that have been without a frame for so long that they are forgotten when another scene begins.
     pub fn silent(&self) -> Vec<SceneName> {
         let scenes = self.scenes.iter();
         let silent = scenes.filter(|(_, scene)| scene.heard.elapsed() >= self.silence);
         silent.filter_map(|(name, _)| name.clone()).collect()
     }
 
-    /// Forgets the [silent](Self::silent) scenes, and what they remembered.
+    /// Forgets the [silent](Self::silent) scenes and their memories.
     pub fn forget_silent(&mut self) {
         for scene in self.silent() {
             self.forget(Some(&scene));
         }
     }
 
-    /// Scenes that are known.
+    /// Number of known scenes.
     pub fn len(&self) -> usize {
         self.scenes.len()
     }
@@ -286,17 +287,17 @@ impl LiveScenes {
         self.scenes.is_empty()
     }
 
-    /// Windows that wait to be forecast from.
+    /// Number of windows that wait for a forecast.
     pub fn waiting(&self) -> usize {
         self.waiting.len()
     }
 
-    /// Windows that were never forecast from, because a later frame of their scene came first.
+    /// Number of windows that were not forecast, because a window of a later frame replaced them.
     pub fn dropped(&self) -> u64 {
         self.dropped
     }
 
-    /// The scene, of those known, with the most [dropped](Self::dropped) windows, and how many.
+    /// The known scene with the most [dropped](Self::dropped) windows, and their number.
     pub fn most_dropped(&self) -> Option<(&SceneName, u64)> {
         let scenes = self.scenes.iter();
         let named = scenes.filter_map(|(name, scene)| Some((name.as_ref()?, scene.dropped)));
@@ -305,7 +306,8 @@ impl LiveScenes {
             .max_by_key(|(_, dropped)| *dropped)
     }
 
-    /// Takes the oldest windows out, as many as have so many pedestrians, and at least one.
+    /// Removes the oldest windows from the queue: as many as have together at most `pedestrians` pedestrians, and at
+    /// least one.
     pub fn next_batch(&mut self, pedestrians: usize) -> SceneBatch {
         let mut batch = SceneBatch::default();
         let mut taken = 0;
@@ -327,7 +329,7 @@ impl LiveScenes {
         let SceneBatch { scenes, windows } = self.next_batch(pedestrians);
         let forecasts: Vec<_> = match model.forecast_all(&windows) {
             Ok(forecasts) => forecasts.into_iter().map(Ok).collect(),
-            // Of which window, it does not say.
+            // The error does not name its window, so each window is forecast separately.
             Err(_) => windows.iter().map(|window| model.forecast(window)).collect(),
         };
         let each = scenes.into_iter().zip(windows).zip(forecasts);

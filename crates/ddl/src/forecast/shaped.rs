@@ -12,9 +12,9 @@ use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 /// Hypotheses of the variant without goals: one for each noise vector.
 const NOISE_HYPOTHESES: usize = 20;
 
-/// For every pedestrian one hypothesis for each goal, with the weight of the goal. The network shapes it as far as the
-/// observed motion is familiar. The variant without goals makes one for each noise vector of this seed, all equally
-/// likely.
+/// For every pedestrian, one hypothesis for each goal, with the weight of the goal. The more familiar the observed
+/// motion, the more the network shapes the path. The variant without goals makes one for each noise vector of this
+/// seed, all equally likely.
 pub(crate) fn towards(
     network: &dyn ForecastWindows,
     seed: u64,

@@ -16,7 +16,7 @@ use std::cell::RefCell;
 pub(crate) enum Gait {
     /// Plain Euler steps as published, which may overshoot the goal.
     PlainEuler,
-    /// `StableEuler` within bounds, with a clearance or without regard to others.
+    /// `StableEuler` within bounds, with or without a clearance from the others.
     Stable(Option<Clearance>),
 }
 

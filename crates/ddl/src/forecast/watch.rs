@@ -1,10 +1,11 @@
-//! One scene that is watched frame by frame: its tracks, and what is remembered of the place.
+//! One scene that is observed frame by frame: its tracks, and the memory of the place.
 
 use crate::error::DdlError;
 use crate::forecast::watched_place::WatchedPlace;
 use ddl_data::{LiveTracks, PedestrianId, Position, Window};
 
-/// What a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes) of each.
+/// The state that a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes)
+/// of each scene.
 #[derive(Debug, Clone)]
 pub(crate) struct Watch {
     pub(crate) tracks: LiveTracks,
@@ -17,10 +18,10 @@ impl Watch {
         Self { tracks, place }
     }
 
-    /// Looks at this memory of the place from now on.
+    /// Uses this memory of the place from now on.
     ///
     /// # Errors
-    /// When it has another number of raw frames in a step.
+    /// When it has another number of raw frames per step.
     pub(crate) fn remember(&mut self, place: WatchedPlace) -> Result<(), DdlError> {
         let (camera, memory) = (self.tracks.frame_step(), place.memory().frame_step());
         if camera != memory {
@@ -30,8 +31,8 @@ impl Watch {
         Ok(())
     }
 
-    /// Adds a frame; where somebody can be forecast from it, the window with what the memory recalls, and what is made
-    /// of it. All or nothing.
+    /// Adds a frame. If a pedestrian can be forecast, returns the window with the recalled tracks, and the result of
+    /// the given function for it. After an error nothing has changed.
     pub(crate) fn push<T, E>(
         &mut self,
         frame: i64,
@@ -60,7 +61,7 @@ impl Watch {
         Ok(made)
     }
 
-    /// The tracker starts anew: any frame may come next.
+    /// The tracker restarts: any frame may come next.
     pub(crate) fn clear(&mut self) {
         self.tracks.clear();
         if let Some(place) = &mut self.place {

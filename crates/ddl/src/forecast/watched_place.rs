@@ -7,20 +7,20 @@ use ddl_memory::SceneMemory;
 use std::collections::BTreeSet;
 use std::fmt;
 
-/// Two motions are alike where their squared distance is below this, which corresponds to 2 m.
+/// Two motions are similar if their squared distance is below this, which corresponds to 2 m.
 const ALIKE: f64 = 4.0;
 /// Number of pedestrians that a memory is tested on.
 const TRIED: usize = 30;
-/// A memory is refused if a smaller share of them moves like an earlier pedestrian in the memory. Of 65 pairs of parts
-/// of recordings of one camera the smallest share was 0.30; of 89 pairs of two cameras 7 in 8 are below 0.15
-/// (docs/memory.md).
+/// A memory is refused if a smaller share of these pedestrians moves like an earlier pedestrian in the memory. For 65
+/// pairs of recordings of one camera, the smallest share was 0.30. For 89 pairs of two cameras, 7 in 8 shares are below
+/// 0.15 (docs/memory.md).
 const LEAST_SHARE: f64 = 0.15;
-/// A memory is not refused on fewer pedestrians. At 0.30, the smallest share of one camera, none of 12 pedestrians has
-/// a similar trajectory in the memory with a probability of 1.4 %.
+/// A memory is not refused on fewer pedestrians. At a share of 0.30, the smallest of one camera, 12 pedestrians all
+/// lack a similar track with a probability of 1.4 %.
 const FEWEST_TRIED: usize = 13;
 
-/// A memory that observes the frames it is used for: the remembering part of a
-/// [`LiveForecaster`](crate::LiveForecaster), for programs that keep tracks themselves.
+/// The memory of an observed place, and the test that the memory belongs to it. It is the part of a
+/// [`LiveForecaster`](crate::LiveForecaster) for programs that keep tracks themselves.
 ///
 /// A memory of at least [`OtherPlace::FEWEST_STRETCHES`] stretches is tested on the first pedestrians. If it is of
 /// another place, it is [refused](Self::refused), and an empty one replaces it.
@@ -89,7 +89,7 @@ impl WatchedPlace {
         })
     }
 
-    /// The memory, given and grown since.
+    /// The memory: the given one, with the frames observed since.
     pub fn memory(&self) -> &SceneMemory {
         &self.memory
     }
@@ -141,7 +141,7 @@ impl WatchedPlace {
         self.memory.observe(frame, people)?;
         if let (Some(trial), Some(window)) = (&mut self.trial, window) {
             trial.look_at(window);
-            // With this many alike, no later pedestrian can cause a refusal.
+            // With this many similar pedestrians, later ones cannot cause a refusal.
             let is_certain = trial.alike as f64 >= LEAST_SHARE * TRIED as f64;
             if is_certain || trial.tried.len() >= TRIED {
                 self.finish_test();

@@ -2,7 +2,8 @@ use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
 
-/// Pulls goals beyond reach back to the distance that the pedestrian covers at its top speed until the horizon.
+/// Moves goals beyond the pedestrian's reach closer: to the distance that it covers at its top speed within the
+/// horizon.
 pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec<GoalSet> {
     let each = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);

@@ -86,7 +86,7 @@ impl GoalRecipe {
         Ok(())
     }
 
-    /// The origin of the goals without the expert library, in words.
+    /// Text that names the origin of the goals without the expert library.
     #[must_use]
     pub fn description_without_library(&self) -> String {
         match &self.proposal {
@@ -95,7 +95,7 @@ impl GoalRecipe {
         }
     }
 
-    /// The origin of the goals, in words.
+    /// Text that names the origin of the goals.
     #[must_use]
     pub fn words(&self) -> String {
         match &self.proposal {

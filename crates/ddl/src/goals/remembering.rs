@@ -5,13 +5,13 @@ use ddl_data::{Recording, Window};
 use ddl_memory::{Playback, SceneMemory};
 use std::collections::BTreeMap;
 
-/// The recordings of a place that the forecast of a window may remember.
+/// The recordings that the memory of a window may hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Remembering {
     /// The training recordings of the same place.
     Place,
     /// The recording of the window before its last observed frame. The training recordings of the same place are added
-    /// where they are [confirmed](ddl_data::Fold::place_memory_confirmed_by).
+    /// if they are [confirmed](ddl_data::Fold::place_memory_confirmed_by).
     Online,
 }
 

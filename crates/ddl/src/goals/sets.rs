@@ -35,8 +35,8 @@ pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>,
         .collect()
 }
 
-/// The central goal of each pedestrian. Positions before the first observation extrapolate the first observed positions
-/// in a straight line, so they tell nothing about how even a motion is.
+/// The central goal of each pedestrian. Padded positions before the first observation extrapolate in a straight line,
+/// so they do not show how steady a motion is.
 pub(crate) fn with_central_only(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
         let pedestrians = sets.iter().enumerate();

@@ -8,7 +8,7 @@ use ddl_network::{PedestrianView, ProposalExample, length_unit};
 #[derive(Debug)]
 pub(crate) struct Seen {
     pub(crate) frame: HeadingFrame,
-    /// Metres in a unit of the view.
+    /// Metres per unit of length of the view.
     pub(crate) unit: f64,
     pub(crate) view: PedestrianView,
 }

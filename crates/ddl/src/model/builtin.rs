@@ -93,7 +93,7 @@ mod tests {
             let loaded = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
             assert_eq!(loaded.config(), &config);
             assert!(loaded.goal_model().estimator().is_none());
-            // Two bytes for each weight, names and configuration: no space is left for tracks.
+            // Two bytes for each weight, and the names and configuration: a file of this size holds no tracks.
             let numbers = loaded.parameter_count() + loaded.goal_model().parameter_count();
             assert!(model.bytes().len() < 2 * numbers + 20_000, "{model}");
             assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);

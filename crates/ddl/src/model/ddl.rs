@@ -119,7 +119,7 @@ impl Ddl {
         }
     }
 
-    /// The clearance that its pedestrians keep from each other; `None` where they ignore each other.
+    /// The clearance that its pedestrians keep from each other; `None` if they ignore each other.
     pub fn clearance(&self) -> Option<Clearance> {
         self.clearance
     }
@@ -146,8 +146,8 @@ impl Ddl {
     /// # Errors
     /// As [`forecast_all`](Forecaster::forecast_all). Inside [`ForecastError::Model`]:
     /// [`CertificateError::NoFlow`](crate::CertificateError::NoFlow) for the variants without dynamics, `star` and
-    /// `no-dynamics`; [`CertificateError::Walk`](crate::CertificateError::Walk) where the output of the network does
-    /// not shape a flow.
+    /// `no-dynamics`; [`CertificateError::Walk`](crate::CertificateError::Walk) if the output of the network does not
+    /// define a flow.
     pub fn forecast_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
@@ -159,7 +159,7 @@ impl Ddl {
 
     /// One hypothesis for each pedestrian: the neutral motion to the central goal of its goal set
     /// ([`GoalSet::central`]). The forecasting network is not used. The variant without goals makes noise samples.
-    /// `Forecast::certified` holds the verdict on each path.
+    /// [`Forecast::certified`] states whether the certificate of each path holds.
     ///
     /// # Shapes
     /// One forecast for each window, with one hypothesis of 12 positions (m) for each pedestrian.

@@ -138,7 +138,7 @@ impl BuiltinModel {
     /// The configuration of the model.
     ///
     /// # Errors
-    /// Never, as long as the program was built from matching files; a test ensures this.
+    /// None if the program was built from matching files, which a test ensures.
     pub fn config(self) -> Result<RunConfig, DdlError> {
         ModelSource::Builtin(self).config()
     }
@@ -148,7 +148,7 @@ impl BuiltinModel {
     /// window, one value for each pedestrian.
     ///
     /// # Errors
-    /// Never, as long as the program was built from matching files; a test ensures this.
+    /// None if the program was built from matching files, which a test ensures.
     pub fn familiarity(self, windows: &[Window]) -> Result<Vec<Vec<f64>>, DdlError> {
         let source = ModelSource::Builtin(self);
         let (config, motions) = packed::motions(self.bytes(), &source)?;

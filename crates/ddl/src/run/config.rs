@@ -57,7 +57,7 @@ impl RunConfig {
     pub fn network_origin(&self) -> Origin {
         match self.training.objective {
             Objective::NextStep => self.origin_of(&["format", "star", "training", "data", "patience", "from"]),
-            // Training on whole paths leads to the proposed goals, and so depends on these.
+            // Training on whole paths uses the proposed goals, so it depends on their settings.
             Objective::Walk => self.origin_of(&["format", "star", "training", "data", "goals", "patience", "from"]),
         }
     }
@@ -87,7 +87,7 @@ impl RunConfig {
     /// Some parts of `config.json`, each leaf with its path, such as `training.seed`.
     fn origin_of(&self, parts: &[&str]) -> Origin {
         let mut leaves = Vec::new();
-        // Plain data always converts to JSON; a failure would match nothing.
+        // Plain data always converts to JSON. An empty origin would match no file.
         if let Ok(Value::Object(fields)) = serde_json::to_value(self) {
             for (name, value) in fields {
                 if parts.contains(&name.as_str()) {
@@ -102,7 +102,7 @@ impl RunConfig {
 /// The leaves of plain data, each with its path, which begins with `name`.
 pub(crate) fn leaves(name: &str, data: &impl Serialize) -> Origin {
     let mut leaves = Vec::new();
-    // Plain data always converts to JSON; a failure would match nothing.
+    // Plain data always converts to JSON. An empty origin would match no file.
     if let Ok(value) = serde_json::to_value(data) {
         push_leaves(name.to_owned(), &value, &mut leaves);
     }
