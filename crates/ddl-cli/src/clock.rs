@@ -1,4 +1,4 @@
-//! Frame numbers of tracks whose recordings count frames in finer parts.
+//! Frame numbers for output, if the tracks were resampled and count parts of a raw frame.
 
 use ddl::data::PlausibilityWarning;
 use serde::Serialize;

@@ -74,7 +74,7 @@ impl Machine {
         ddl::prepare(self.device, self.threads)
     }
 
-    /// The same for small amounts of work, which a second thread would not speed up.
+    /// As [`prepare`](Self::prepare), but with one thread by default, for work that a second thread would not speed up.
     pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads.or(Some(1)))
     }
@@ -162,7 +162,7 @@ impl Reporting {
         if self.telling.json {
             output::print(&(report.to_json()? + "\n"))
         } else if self.telling.progress == ProgressMode::Json {
-            // standard output holds lines of progress
+            // Standard output already holds the lines of progress.
             Ok(())
         } else {
             output::print(&result_lines::lines(report, rest))
@@ -192,8 +192,8 @@ impl RecordingsAt {
         data + &self.units.as_options()
     }
 
-    /// The requested convention or, by default, that of the model; own recordings where `--data` names a place without
-    /// the model's files.
+    /// The requested convention or, by default, that of the model; own recordings if `--data` names a folder without
+    /// the files of the model's convention.
     fn convention(&self, asked: Option<Convention>, of_model: Convention) -> Convention {
         asked.unwrap_or_else(|| convention_of(self.data.as_deref(), of_model))
     }

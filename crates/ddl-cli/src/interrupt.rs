@@ -1,4 +1,4 @@
-//! Ctrl-C as a request to stop, which the work checks between two steps.
+//! Ctrl-C as a request to stop, which is checked between two steps of the work.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -45,7 +45,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
             out,
             "\nconvention {convention}, protocol {protocol}, windows {rule}; {errors} in metres, {of}"
         )?;
-        // the same for all rows: they were evaluated together
+        // The subset is the same for all rows, because they were evaluated together.
         if let Some(subset) = &first.conditions.test_subset {
             writeln!(out, "{subset}")?;
         }

@@ -45,7 +45,7 @@ pub(crate) struct Observed {
     pub(crate) recording: Recording,
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
-    /// A fault that the speeds suggest: wrong units or a wrong rate give meaningless forecasts.
+    /// A fault that the speeds suggest, such as wrong units or a wrong rate, which give meaningless forecasts.
     pub(crate) doubt: Option<PlausibilityWarning>,
     whole: bool,
 }
@@ -103,7 +103,7 @@ impl Tracks {
                 frames(clock.number(recording.frame_step()))
             );
         }
-        // Show the note only on a terminal, where the user may be trying the tracks for the first time.
+        // The note is shown only on a terminal, where the user may be trying the tracks for the first time.
         if guessed && std::io::stderr().is_terminal() {
             tell(format_args!(
                 "note: a step of 0.4 s is taken as {}, the most common difference of two rows; give --fps, --dt or \
@@ -132,7 +132,7 @@ impl Tracks {
 }
 
 impl Observed {
-    /// Notes incomplete observations: a forecast from two positions looks like any other.
+    /// Reports incomplete observations, because a forecast from two positions looks like any other.
     pub(crate) fn tell_what_is_made_up(&self) {
         let windows = self.windows.iter();
         let all: Vec<CompletionCounts> = windows

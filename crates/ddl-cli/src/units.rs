@@ -45,7 +45,8 @@ pub(crate) struct ResampledRecording {
 const SAME: f64 = 0.005;
 
 impl Units {
-    /// These units; those that neither options nor files give are taken from the training of a run on own recordings.
+    /// These units. Units that neither options nor files give are taken from the training of the run, if it used own
+    /// recordings.
     pub(crate) fn or_those_of(&self, run: &RunConfig) -> Self {
         Self {
             remembered: run.units.unwrap_or_default(),
@@ -81,7 +82,7 @@ impl Units {
         rate.unwrap_or_default() + &homography.unwrap_or_default()
     }
 
-    /// Whether this file is the homography, which may be in the folder of the recordings.
+    /// Whether this file is the homography, which may be stored in the folder of the recordings.
     pub(crate) fn are_from(&self, file: &Path) -> bool {
         let place = |path: &Path| path.canonicalize().ok();
         let homography = self.homography.as_deref().and_then(place);
@@ -211,12 +212,12 @@ impl Units {
         Ok(Some(homography))
     }
 
-    /// Frame numbers in a step of live tracks, if options give them.
+    /// Frame step of live tracks (frame numbers in 0.4 s), if options give it.
     pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
         live_step_of(&self.rate())
     }
 
-    /// The same from the run, with its description.
+    /// The frame step from the run, with its description.
     pub(crate) fn remembered_live_frame_step(&self) -> anyhow::Result<Option<(i64, String)>> {
         let Some(rate) = rate_option(&self.remembered) else {
             return Ok(None);
@@ -241,7 +242,7 @@ fn live_step_of(rate: &TrackUnits) -> anyhow::Result<Option<i64>> {
     }
 }
 
-/// Frame numbers in a step of live tracks, from the seconds between consecutive ones.
+/// Frame step of live tracks, from the seconds between consecutive frame numbers.
 pub(crate) fn live_step(frame_time: f64) -> anyhow::Result<i64> {
     let Some(step) = whole_frame_step(frame_time) else {
         bail!(

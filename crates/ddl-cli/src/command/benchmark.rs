@@ -118,7 +118,7 @@ impl Benchmark {
         let out = self.out.clone().unwrap_or_else(|| choice::usual_folder(&plan));
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let claimed = RunLock::take(&out)?;
-        // Not in the folders of tasks: a process of an earlier benchmark may still write there.
+        // The folders of tasks are left alone, because a process of an earlier benchmark may still write there.
         remove_half_written(&out);
         match self.executor {
             Executor::Local => self.run_here(&plan, &out),
@@ -231,7 +231,8 @@ impl Benchmark {
     /// Makes the report of the finished tasks.
     ///
     /// # Errors
-    /// Also, after the report is written, when tasks are not finished.
+    /// When the report cannot be written, or tasks are not finished; then the report of the finished ones is written
+    /// before.
     fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<Report> {
         let (finished, missing): (Vec<&Task>, Vec<&Task>) =
             plan.tasks.iter().partition(|task| Record::of(task, out).is_some());

@@ -102,11 +102,11 @@ struct Onward {
     headed: bool,
     /// Whether the warning about unfamiliar motions has been given.
     warned: bool,
-    /// Of each scene.
+    /// The adaptive regions of each scene.
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
 
-/// Windows in order of time, and the scene of each; no scenes where the tracks name none.
+/// Windows in order of time, and the scene of each; no scenes if the tracks name none.
 type Windows<'a> = (&'a [Window], &'a [Option<SceneName>]);
 
 struct Moment<'a> {
@@ -325,7 +325,7 @@ impl<'a> Moment<'a> {
         Some(self.certified?.certificate(i, hypothesis))
     }
 
-    /// A pedestrian as messages name it.
+    /// The name of a pedestrian in messages.
     fn who(&self, i: usize) -> String {
         let name = self.window.name(i);
         match self.scene {
@@ -345,8 +345,8 @@ impl<'a> Moment<'a> {
     }
 }
 
-/// Stable steps keep the guarantee whatever the network emits. If one breaks it, a user who relies on the forecasts
-/// must know.
+/// Stable steps keep the guarantee for any output of the network. If one violates it, a user who relies on the
+/// forecasts must know.
 fn warn_of_violation(moments: &[Moment<'_>]) {
     let first = moments.iter().find_map(|moment| {
         let (i, hypothesis, violation) = moment.certified?.first_violation()?;

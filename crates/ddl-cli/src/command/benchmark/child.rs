@@ -9,11 +9,11 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
-/// Time between two checks for a wish to stop and for the end of a process.
+/// Time between two checks for a request to stop and for the end of a process.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
 
-/// Runs a process to its end in a process group of its own, which Ctrl-C does not reach. The first wish to stop is
-/// passed on as SIGTERM, on which the process saves its state; further ones kill it.
+/// Runs a process to its end in its own process group, which Ctrl-C does not reach. The first request to stop is passed
+/// on as SIGTERM: the process then saves its state. Further requests kill it.
 pub(super) fn run(
     command: &mut Command,
     interrupt: &Interrupt,
@@ -63,7 +63,7 @@ pub(super) fn run(
     }
 }
 
-/// Asks a process to stop, or kills it. That the process has just ended is no error.
+/// Asks a process to stop, or kills it. It is not an error if the process has just ended.
 fn stop(child: &mut Child, at_once: bool) {
     #[cfg(unix)]
     if !at_once {

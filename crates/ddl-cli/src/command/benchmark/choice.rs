@@ -76,7 +76,7 @@ impl Choice {
                 let there = recorded.find(|&convention| locate(convention, data).is_ok());
                 match (there, data) {
                     (Some(convention), _) => convention,
-                    // The error then names what the folder lacks.
+                    // The error then names the missing recordings.
                     (None, Some(_)) => Convention::Star,
                     (None, None) => Convention::Simulated,
                 }

@@ -29,8 +29,9 @@ pub(super) fn expected(
     let known = TEST_PEDESTRIANS.iter().find(|(name, _)| *name == fold);
     let test = known.map_or(TYPICAL_TEST_PEDESTRIANS, |(_, pedestrians)| *pedestrians);
     let train = ALL_PEDESTRIANS - test;
-    // Seconds for a pedestrian in one epoch (with its share of the training of the goals) and for a pedestrian scored:
-    // by the full-size network under all protocols, by the narrow recommended one under those without the truth.
+    // Seconds per pedestrian and epoch (with its share of the training of the goals), and per scored pedestrian. The
+    // full-size network is scored under all protocols, the narrow recommended one under the protocols that do not show
+    // the future.
     let (train_seconds, evaluate_seconds, usual) = match recipe {
         Recipe::Published => (0.007, 0.03, train),
         Recipe::Recommended => (0.000_7, 0.02, RECOMMENDED_PEDESTRIANS),

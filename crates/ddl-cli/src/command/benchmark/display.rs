@@ -31,7 +31,7 @@ struct State {
 
 #[derive(Debug)]
 struct Progressing {
-    /// Expected share of the work, and the part of it that is done, from 0 to 1.
+    /// Expected share of the task in the work of the plan.
     cost: f64,
     done: f64,
     bar: ProgressBar,
@@ -78,7 +78,7 @@ impl Display {
         }
     }
 
-    /// Prints a line; in modes other than `Auto` only if it `must_be` printed.
+    /// Prints a line. In modes other than `Auto` it is printed only if `must_be` is set.
     pub(super) fn say(&self, line: &str, must_be: bool) {
         match &self.bars {
             _ if self.mode != ProgressMode::Auto && !must_be => {}
@@ -147,7 +147,7 @@ impl State {
         task.bar.finish_and_clear();
         task.done = 1.0;
         if *end == End::Kept {
-            // The work of an earlier run must not count for the speed of this one.
+            // The work of an earlier run must not count towards the speed of this one.
             task.cost = 0.0;
         }
         self.ended += 1;

@@ -23,7 +23,7 @@ pub(crate) struct Plan {
     pub(crate) tasks: Vec<Task>,
 }
 
-/// What can be read of the plan of any version.
+/// The part of `plan.json` that every version has.
 #[derive(Deserialize)]
 struct Layout {
     format: u32,
@@ -43,7 +43,7 @@ pub(crate) struct Settings {
     pub(super) proposal_steps: Option<u64>,
     /// Test pedestrians scored; `None` for all.
     pub(crate) test_pedestrians: Option<usize>,
-    /// Protocols scored under, each once, in the order of [`Protocol`].
+    /// The protocols of the scores, each once, in the order of [`Protocol`].
     pub(super) protocols: Vec<Protocol>,
     pub(crate) recipe: Training,
 }
@@ -54,7 +54,7 @@ pub(crate) struct Training {
     pub(super) optimiser: Option<Optimiser>,
 }
 
-/// One model: trained on all folds but one, scored on that one.
+/// One model: trained on all scenes but one, and scored on that scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Task {
     /// Unique, and the name of the task's folder.
@@ -133,7 +133,7 @@ impl Plan {
                 });
             }
         }
-        // The first method comes first, because the others take the goals that it trains. The sort is stable: equal
+        // The first method comes first, because the others use the goals that it trains. The sort is stable: equal
         // tasks keep their order.
         let first = |task: &Task| methods.first() == Some(&task.variant);
         tasks.sort_by(|one, other| {
@@ -147,7 +147,7 @@ impl Plan {
         })
     }
 
-    /// The earlier task of the same fold and seed, whose goals this task takes.
+    /// The earlier task of the same fold and seed, whose goals this task uses.
     pub(super) fn with_same_goals(&self, task: &Task) -> Option<&Task> {
         let same = |other: &&Task| (&other.fold, other.seed) == (&task.fold, task.seed);
         let first = self.tasks.iter().find(same)?;
@@ -171,7 +171,7 @@ impl Plan {
             .option("--learning-rate", optimiser.map(|of| of.learning_rate))
             .option("--learning-rate-schedule", optimiser.map(|of| of.schedule))
             .path("--out", &task.run_folder(out));
-        // Only `published` chooses an epoch (with the truth).
+        // Only `published` chooses an epoch, with the true future.
         let last_alone = !settings.protocols.contains(&Protocol::Published);
         self.on_machine(words, threads)
             .option("--progress", Some("json"))
@@ -211,7 +211,7 @@ impl Plan {
     /// Writes `plan.json` into `out`.
     ///
     /// # Errors
-    /// Also when `out` holds results of other settings; folds, variants and seeds may differ.
+    /// When the file cannot be written, or `out` holds results of other settings; folds, variants and seeds may differ.
     pub(crate) fn write(&self, out: &Path) -> anyhow::Result<()> {
         let file = out.join("plan.json");
         match fs::read(&file) {
@@ -248,7 +248,7 @@ impl Plan {
     }
 
     fn check_same_settings(&self, before: &Self, out: &Path) -> anyhow::Result<()> {
-        // The recordings are pinned by hash: their folder makes no difference.
+        // The recordings are identified by their hash, so their folder may differ.
         let comparable = |settings: &Settings| {
             serde_json::to_value(Settings {
                 data: None,

@@ -14,7 +14,7 @@ fn every_combination_is_there_once_and_the_longest_comes_first() {
     let methods = [Method::FULL, Method::ALL[3]];
     let plan = published(&["eth", "univ", "zara2"], &methods, &[1, 2]).unwrap();
     assert_eq!(plan.tasks.len(), 12);
-    // The tasks of the first method come first: the others take their goals.
+    // The tasks of the first method come first: the others use their goals.
     for of_method in plan.tasks.chunks(6) {
         let variant = of_method[0].variant;
         assert!(of_method.iter().all(|task| task.variant == variant));

@@ -1,4 +1,4 @@
-//! The name of this machine's processor, which published times need.
+//! The name of this machine's processor, printed beside measured times.
 
 use std::fs;
 

@@ -1,4 +1,4 @@
-//! The main results of a benchmark, and how they were made, in the results page of the documentation.
+//! Writes the main results of a benchmark, and how they were made, into the results page of the documentation.
 
 use super::super::recipe::Recipe;
 use super::choice::usual_folder;
@@ -17,7 +17,7 @@ use time::OffsetDateTime;
 
 pub(super) const PAGE: &str = "docs/results.md";
 
-/// What made the results, as the finished tasks and their results say.
+/// How the results were made, read from the finished tasks.
 pub(super) struct Making {
     commits: Vec<String>,
     tasks: usize,
@@ -51,7 +51,7 @@ fn unique<T: Ord>(values: impl Iterator<Item = T>) -> Vec<T> {
     set.into_iter().collect()
 }
 
-/// Fails where [`publish`] would fail after the benchmark.
+/// Fails if [`publish`] would fail after the benchmark.
 pub(super) fn check(checkout: &Path, plan: &Plan) -> anyhow::Result<()> {
     ensure!(
         plan.settings.recipe.name == Recipe::Recommended,
@@ -120,7 +120,7 @@ fn seeds(plan: &Plan) -> Vec<String> {
     seeds.iter().map(u64::to_string).collect()
 }
 
-/// Lines of a shell that do the same on another machine: they name no folder of this one.
+/// Shell commands that repeat the benchmark on another machine; they name no folder of this machine.
 fn command(plan: &Plan) -> String {
     let settings = &plan.settings;
     let folds = unique(plan.tasks.iter().map(|task| task.fold.as_str()));

@@ -86,7 +86,7 @@ fn a_section_replaces_that_of_its_convention_and_keeps_the_other() {
         assert_eq!(page.matches(&command).count(), 1, "{page}");
     }
     for errors in ["0.125/0.250", "0.375/0.750"] {
-        // five folds and their mean, of the model and of the baseline
+        // Five folds and their mean, for the model and the baseline.
         assert_eq!(page.matches(errors).count(), 12, "{page}");
     }
     assert_eq!(publish(Convention::SocialGan, 0.375), page);

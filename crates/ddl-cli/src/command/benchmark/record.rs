@@ -1,4 +1,4 @@
-//! The file of a finished task, by which a second run skips it.
+//! The file of a finished task. A second run skips tasks that have one.
 
 use super::plan::Task;
 use super::processor;

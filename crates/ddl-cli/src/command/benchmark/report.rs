@@ -41,15 +41,15 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
     Ok(results.report)
 }
 
-/// The baselines in the other recorded convention, if its recordings are there: rows without training show best how far
-/// the two conventions differ.
+/// The baselines in the other recorded convention, if its recordings are there. These rows need no training, and show
+/// how far the two conventions differ.
 fn baselines_elsewhere(settings: &Settings, out: &Path, commit: &str) -> anyhow::Result<Option<PathBuf>> {
     let other = match settings.convention {
         Convention::Star => Convention::SocialGan,
         Convention::SocialGan => Convention::Star,
         Convention::Simulated | Convention::Own => return Ok(None),
     };
-    // `published` chooses with the truth, which says nothing about baselines.
+    // `published` chooses with the true future, which is not meaningful for baselines.
     let mut protocols = settings.protocols.clone();
     protocols.retain(|protocol| *protocol != Protocol::Published);
     let beside = settings.data.as_deref();

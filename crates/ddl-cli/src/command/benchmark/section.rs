@@ -1,4 +1,4 @@
-//! Generated sections of a page: what stands between two marks is replaced, and nothing else.
+//! Generated sections of a page: only the text between two marks is replaced.
 
 use anyhow::Context as _;
 

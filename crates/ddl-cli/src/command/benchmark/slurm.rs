@@ -29,7 +29,7 @@ pub(super) use queue::ids;
 /// Time between two calls of `squeue`.
 const EVERY: Duration = Duration::from_secs(3);
 
-/// Time between two checks for a wish to stop.
+/// Time between two checks for a request to stop.
 const BEAT: Duration = Duration::from_millis(50);
 
 #[derive(Debug)]
@@ -129,7 +129,7 @@ impl Slurm {
         Ok(())
     }
 
-    /// The job's number.
+    /// Submits a job and returns its number.
     fn sbatch(&self, options: &[String], (name, script): (&str, &str), first: &[OsString]) -> anyhow::Result<String> {
         let file = self.out.join("slurm").join(name);
         let unwritable = || format!("cannot write {}", file.display());
@@ -155,7 +155,7 @@ impl Slurm {
     /// Shows the progress of the tasks until all jobs of this folder have ended.
     ///
     /// # Errors
-    /// [`DdlError::Interrupted`] after a wish to stop, which does not stop the jobs.
+    /// [`DdlError::Interrupted`] after a request to stop, which does not stop the jobs.
     pub(super) fn watch(&self, plan: &Plan, display: &Display, interrupt: &Interrupt) -> anyhow::Result<()> {
         let mut told: BTreeMap<usize, String> = BTreeMap::new();
         let mut open: Vec<usize> = (0..plan.tasks.len()).collect();

@@ -42,7 +42,7 @@ pub(super) enum End {
     Finished { seconds: f64 },
     /// An earlier run finished it.
     Kept,
-    /// With the last lines of the log.
+    /// `reason` holds the last lines of the log.
     Failed { reason: String },
     /// Stopped by a signal, or not begun; a later run resumes it.
     Interrupted,
@@ -69,7 +69,7 @@ pub(super) fn side_by_side(asked: Option<usize>, device: DeviceChoice, cores: us
 }
 
 impl Workers {
-    /// The end of each task, in the plan's order. After a wish to stop no task starts, and running ones save their
+    /// The end of each task, in the plan's order. After a request to stop no task starts, and running tasks save their
     /// state.
     pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watch<'_>, interrupt: &Interrupt) -> Vec<End> {
         let next = AtomicUsize::new(0);
@@ -165,8 +165,8 @@ impl Workers {
         }
     }
 
-    /// Runs the program once. Its standard error goes to the task's log, whose lock it thereby holds until it ends,
-    /// even if this process ends before.
+    /// Runs the program once. Its standard error goes to the log of the task. With the open file it holds the lock of
+    /// the log until it ends, even if this process ends earlier.
     fn run_step(
         &self,
         log: &mut File,

@@ -56,8 +56,8 @@ impl Bench {
         let folder = tempfile::tempdir().unwrap();
         let script = folder.path().join("ddl");
         fs::write(&script, STAND_IN).unwrap();
-        // The shell reads the script. To execute it could fail: a process that another test starts at this moment may
-        // still hold it open for writing.
+        // The shell reads the script instead of executing it. Execution could fail, because a process of another test
+        // may still hold the file open for writing.
         let workers = Workers {
             program: vec!["sh".into(), script.into()],
             jobs,

@@ -1,20 +1,19 @@
-//! Frames of standard input, read on a thread of its own: who forecasts never waits for a line while something can be
-//! forecast.
+//! Frames of standard input, read on a separate thread, so that forecasts do not wait for input.
 
 use ddl::data::{DataError, Frame, FrameReader};
 use std::io::{BufRead, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 
-/// Frames that are read ahead. When they are there, the thread waits, and whoever writes the lines is held back.
+/// Number of frames that are read ahead. When they are full, the thread waits, and so does the writer of the stream.
 const AHEAD: usize = 64;
 
 pub(super) enum Incoming {
-    /// And how many frames follow each other in a second, where the lines so far have said so.
+    /// A frame, and the frames per second if the lines so far state them.
     Frame(Frame, Option<f64>),
-    /// A line that is left out.
+    /// An invalid line, which is left out.
     Wrong(DataError),
-    /// Why no more can be read. What was read before has come.
+    /// The error that ends the stream. Earlier frames have been sent.
     End(DataError),
 }
 
@@ -25,24 +24,24 @@ impl Frames {
         let (send, received) = sync_channel(AHEAD);
         let name = "standard input";
         let thread = thread::Builder::new().name(name.to_owned());
-        // It ends with the input, when nobody listens any more, or with the process.
+        // The thread ends with the input, when the receiver is dropped, or with the process.
         thread.spawn(move || read(FrameReader::new(stdin().lock(), name), &send))?;
         Ok(Self(received))
     }
 
-    /// What comes next; `None` at the end.
+    /// Waits for the next item; `None` at the end.
     pub(super) fn wait(&self) -> Option<Incoming> {
         self.0.recv().ok()
     }
 
-    /// What has come already; `None` where nothing has, or at the end.
+    /// The next item that has already arrived; `None` if there is none, or at the end.
     pub(super) fn come(&self) -> Option<Incoming> {
         self.0.try_recv().ok()
     }
 }
 
-/// Sends every frame. In a stream that names scenes a wrong line is left out: it is no reason to stop what other
-/// cameras are answered. Any other stream ends there, after what was read before.
+/// Sends every frame. In a stream with scene names an invalid line is left out, so that the other cameras continue. Any
+/// other stream ends at an invalid line, after the frames before it.
 fn read<R: BufRead>(mut frames: FrameReader<R>, to: &SyncSender<Incoming>) {
     loop {
         let incoming = match frames.next_frame() {

@@ -12,7 +12,7 @@ struct Line<'a> {
     scene: Option<&'a SceneName>,
     observed_until: FrameNumber,
     pedestrian: PedestrianName,
-    /// Number of made-up positions: before the first observation, and in holes.
+    /// Numbers of positions padded before the first observation, and filled in gaps.
     padded: usize,
     filled: usize,
     frames: Vec<FrameNumber>,

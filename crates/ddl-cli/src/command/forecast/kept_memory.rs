@@ -1,4 +1,4 @@
-//! The memories of places in their files: read when a scene begins, and written as frames come.
+//! The files of scene memories: read when a scene begins, and written while frames arrive.
 
 use crate::telling::{tell, words};
 use anyhow::{Context as _, bail};
@@ -19,13 +19,13 @@ pub(super) struct KeptMemory {
 
 struct Kept {
     file: MemoryFile,
-    /// The memory in the file, until the number of frames in a step is known.
+    /// The memory in the file, until the frame step is known.
     read: Option<SceneMemory>,
     is_refusal_told: bool,
 }
 
 impl KeptMemory {
-    /// Reads the file, if there is one. What would keep it from being written is found here.
+    /// Reads the file, if there is one, and checks that it can be written.
     pub(super) fn open(path: &Path, model: &Ddl) -> anyhow::Result<Self> {
         model.goal_model().recalled_per_pedestrian()?;
         let is_folder = path.is_dir();
@@ -55,7 +55,7 @@ impl KeptMemory {
         }
     }
 
-    /// Begins to remember a scene that is not known yet, once it is known how many frames make a step.
+    /// Adds a memory to a new scene, once the frame step is known.
     pub(super) fn begin(
         &mut self,
         scene: Option<&SceneName>,
@@ -69,7 +69,7 @@ impl KeptMemory {
             if self.kept.contains_key(&scene.cloned()) {
                 return Ok(());
             }
-            // Should it fail, it is not tried again at every frame.
+            // After a failure, the scene does not try again at every frame.
             self.kept.insert(scene.cloned(), None);
             let kept = Kept::open(&self.at.join(file_name(name)))?;
             self.kept.insert(scene.cloned(), Some(kept));
@@ -84,7 +84,7 @@ impl KeptMemory {
         begun
     }
 
-    /// Says so where the memory of a scene turned out to be of another place.
+    /// Reports that the memory of a scene is of another place, if so.
     pub(super) fn tell_refusal(&mut self, scene: Option<&SceneName>, scenes: &LiveScenes) {
         if let Some(Some(kept)) = self.kept.get_mut(&scene.cloned())
             && let Some(other) = scenes.place(scene).and_then(WatchedPlace::refused)
@@ -98,7 +98,7 @@ impl KeptMemory {
         }
     }
 
-    /// Writes the files where a minute has passed. Where that fails, forecasts go on.
+    /// Writes the files for which a minute has passed. After an error, forecasts continue.
     pub(super) fn write_when_due(&mut self, scenes: &LiveScenes) {
         for (scene, kept) in &mut self.kept {
             let Some(kept) = kept.as_mut().filter(|kept| kept.file.is_due()) else {
@@ -113,7 +113,7 @@ impl KeptMemory {
         }
     }
 
-    /// Writes the file of a scene that has ended, and lets go of it.
+    /// Writes the file of a scene that has ended, and closes it.
     pub(super) fn end(&mut self, scene: Option<&SceneName>, scenes: &mut LiveScenes) -> anyhow::Result<()> {
         let Some(Some(mut kept)) = self.kept.remove(&scene.cloned()) else {
             return Ok(());
@@ -137,7 +137,7 @@ impl KeptMemory {
         Ok(())
     }
 
-    /// Writes all files at the end of the stream; the error is the first.
+    /// Writes all files at the end of the stream; returns the first error.
     pub(super) fn end_all(&mut self, scenes: &mut LiveScenes) -> anyhow::Result<()> {
         let names: Vec<_> = self.kept.keys().cloned().collect();
         let ends: Vec<_> = names.iter().map(|scene| self.end(scene.as_ref(), scenes)).collect();
@@ -179,7 +179,7 @@ impl Kept {
     }
 }
 
-/// The file of a scene: whatever may mean something in a path is written as `%` and two hexadecimal digits.
+/// The file name of a scene: characters with a meaning in paths are written as `%` and two hexadecimal digits.
 fn file_name(scene: &SceneName) -> String {
     let mut name = String::new();
     for byte in scene.as_str().bytes() {

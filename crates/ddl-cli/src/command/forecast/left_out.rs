@@ -1,11 +1,11 @@
-//! What is left out of a stream and told: lines that are wrong, and frames for which there was no time.
+//! Counts and reports what is left out of a stream: invalid lines, and frames dropped for lack of time.
 
 use crate::telling::{tell, words};
 use anyhow::anyhow;
 use ddl::LiveScenes;
 use std::time::{Duration, Instant};
 
-/// From one telling of a kind to the next, so that a flood of lines does not become a flood of messages.
+/// Time between two messages of a kind, so that many invalid lines do not cause as many messages.
 const PAUSE: Duration = Duration::from_secs(10);
 
 #[derive(Debug, Default)]
@@ -14,7 +14,7 @@ pub(super) struct LeftOut {
     dropped: Seldom,
 }
 
-/// Counts what happens, and tells of it now and then.
+/// Counts events, and limits the rate of messages about them.
 #[derive(Debug, Default)]
 struct Seldom {
     count: u64,
@@ -23,7 +23,7 @@ struct Seldom {
 }
 
 impl Seldom {
-    /// How many there were since the last telling, if it is time to tell.
+    /// Number of events since the last message, if the next message is due.
     fn take_due(&mut self) -> Option<u64> {
         let new = self.count - self.told;
         if new == 0 || self.last.is_some_and(|last| last.elapsed() < PAUSE) {
@@ -36,7 +36,7 @@ impl Seldom {
 }
 
 impl LeftOut {
-    /// A line, or a frame, of one scene cannot be used. The others go on.
+    /// A line or a frame of one scene cannot be used. The other scenes continue.
     pub(super) fn wrong(&mut self, error: &anyhow::Error) {
         self.wrong.count += 1;
         if let Some(new) = self.wrong.take_due() {
@@ -51,7 +51,7 @@ impl LeftOut {
         }
     }
 
-    /// Frames that were dropped so far.
+    /// Reports the frames that were dropped so far.
     pub(super) fn dropped(&mut self, scenes: &LiveScenes) {
         self.dropped.count = scenes.dropped();
         if let Some(new) = self.dropped.take_due() {
@@ -62,7 +62,7 @@ impl LeftOut {
         }
     }
 
-    /// Tells the sums at the end of the stream; an error if lines were wrong.
+    /// Reports the totals at the end of the stream; an error if lines were invalid.
     pub(super) fn end(&self, forecast: u64, scenes: Option<&LiveScenes>) -> anyhow::Result<()> {
         let dropped = scenes.map_or(0, LiveScenes::dropped);
         if dropped > 0 {

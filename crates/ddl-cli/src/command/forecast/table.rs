@@ -21,7 +21,7 @@ struct Row {
     y: f64,
     padded: usize,
     filled: usize,
-    /// Empty if the model does not tell.
+    /// Empty if the model has no familiarity.
     familiarity: Option<f64>,
 }
 
@@ -59,14 +59,14 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
     }
     for moment in moments {
         let frames = moment.frames();
-        // One field, or none.
+        // One field if the tracks name scenes, otherwise no field.
         let scene = Vec::from_iter(moment.scene);
         for i in 0..moment.window.len() {
             let made_up = moment.window.made_up(i);
             for hypothesis in 0..moment.forecast.hypotheses() {
                 let certificate = moment.certificate(i, hypothesis);
                 let holds = certificate.is_some_and(|certificate| certificate.holds().is_ok());
-                // the first distance belongs to the last observed position
+                // The first distance belongs to the last observed position.
                 let mut distances = certificate.map(|certificate| certificate.potentials().skip(1));
                 let positions = moment.forecast.hypothesis(i, hypothesis);
                 let goal = moment.forecast.goal(i, hypothesis);

@@ -8,7 +8,7 @@ pub(super) struct TrainingBars {
     goals: Option<Progress>,
     network: Option<Progress>,
     stood: String,
-    /// The last loss that was read; on CUDA it is not read at every step.
+    /// The last loss that was read back; on CUDA this does not happen at every step.
     loss: String,
 }
 

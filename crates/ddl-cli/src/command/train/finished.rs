@@ -8,7 +8,7 @@ use ddl::data::{Convention, Dataset, Fold};
 use ddl::{BuiltinModel, Comparison, Ddl, TrainingRequest, TrainingStage, best_epoch};
 use serde_json::json;
 
-/// Smallest difference, as a share of the built-in model's error, that counts without an interval.
+/// Smallest difference, as a share of the built-in model's error, that is reported as a difference without an interval.
 const LEAST: f64 = 0.02;
 
 pub(super) fn print(
@@ -49,7 +49,7 @@ pub(super) fn print(
         ),
         Some((error, epoch)) => {
             let error = match compared {
-                // The comparison below tells it.
+                // The comparison below states it.
                 Some(_) => String::new(),
                 None => format!(": minADE of 20 hypotheses {error:.3} m on the validation part"),
             };

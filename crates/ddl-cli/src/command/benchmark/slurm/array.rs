@@ -1,4 +1,4 @@
-//! Arrays of jobs, no longer than the site allows.
+//! Job arrays, no longer than the site allows.
 
 use anyhow::{Context as _, ensure};
 

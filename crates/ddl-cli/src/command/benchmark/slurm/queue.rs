@@ -25,7 +25,7 @@ pub(in super::super) struct Job {
 }
 
 impl Job {
-    /// The state in words.
+    /// The state as text.
     pub(super) fn state(&self) -> String {
         let state = self.state.to_lowercase();
         match (self.nodes.as_str(), self.reason.as_str()) {

@@ -51,7 +51,7 @@ impl Task {
         }
     }
 
-    /// Exit code, what was asked of `scontrol`, standard error.
+    /// Exit code, arguments of the `scontrol` call, standard error.
     fn end(self) -> (Option<i32>, Option<String>, String) {
         let output = self.script.wait_with_output().unwrap();
         let asked = fs::read_to_string(self.folder.path().join("asked")).ok();
