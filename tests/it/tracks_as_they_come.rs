@@ -1,4 +1,4 @@
-//! Imperfect tracks: begun late, with holes, at other rates, in pixels, with words as pedestrians; and the messages
+//! Imperfect tracks: begun late, with gaps, at other rates, in pixels, with words as pedestrians; and the messages
 //! about them.
 
 use ddl::TrackUnits;

@@ -7,7 +7,7 @@ use std::path::Path;
 const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Writes every file that a page may use: `tracks.csv`, which is the sample recording, and the same as `tracks.ndjson`,
-/// at 25 frames a second (`camera.csv`), in pixels with `H.txt`, with holes, under other names; `walk.csv`; the folder
+/// at 25 frames a second (`camera.csv`), in pixels with `H.txt`, with gaps, under other names; `walk.csv`; the folder
 /// `recordings`.
 pub fn write(folder: &Path) {
     let tracks = sample();

@@ -1,12 +1,12 @@
-//! Reads tracks of any format and cuts the windows that forecasts are made from.
+//! Reads tracks of any format and cuts the windows for forecasts.
 //!
 //! ```text
 //! cargo run -p ddl-data --example tracks_to_windows
 //! cargo run -p ddl-data --example tracks_to_windows -- tracks.csv 25
 //! ```
-//! The arguments are a file, whose format is recognised by its name and first lines, and the number of frames per
-//! second that its frame numbers count. Without arguments, three simulated pedestrians are written in two formats. One
-//! of them arrives late, one is lost for a moment.
+//! The arguments are a file, whose format is recognised by its name and first lines, and its number of frames per
+//! second. Without arguments, three simulated pedestrians are written in two formats. One of them arrives late, one is
+//! lost for a moment.
 #![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use std::error::Error;

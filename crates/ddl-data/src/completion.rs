@@ -1,18 +1,18 @@
-//! Completion of observations that begin late or have holes.
+//! Completion of observations that begin late or have gaps.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::track::{OBSERVED, Position, between, is_finite};
 
-/// Longest hole that may be filled, in frames.
+/// Longest gap that may be filled, in frames.
 const LONGEST_GAP: usize = 2;
 /// A single position does not show where a pedestrian is going.
 const LEAST_SEEN: usize = 2;
 
-/// Which of the 8 observed positions may be filled in where a pedestrian was not seen at all of them.
+/// Which of the 8 observed positions may be filled in, for pedestrians that were not observed at all 8 steps.
 ///
-/// - A *hole* of a few frames is filled on the straight line between the positions before and after it.
+/// - A *gap* of a few frames is filled on the straight line between the positions before and after it.
 /// - An observation that *begins late* is padded at its start, with the mean velocity of the rest.
 ///
 /// The last position is always an observed one. [`Window::made_up`](crate::Window::made_up) counts the positions filled
@@ -29,16 +29,17 @@ impl Completion {
         least_seen: OBSERVED,
         longest_gap: 0,
     };
-    /// Forecasts pedestrians seen at least twice, and fills holes of up to 2 frames.
+    /// Forecasts pedestrians seen at least twice, and fills gaps of up to 2 frames.
     pub const USUAL: Self = Self {
         least_seen: LEAST_SEEN,
         longest_gap: LONGEST_GAP,
     };
 
-    /// Pedestrians seen at `least_seen` of the 8 positions or more, with holes of up to `longest_gap` frames.
+    /// Completes pedestrians that were seen at `least_seen` or more of the 8 steps, with gaps of up to `longest_gap`
+    /// frames.
     ///
     /// # Errors
-    /// [`CompletionError`] if `least_seen` does not lie in 2..=8, or `longest_gap` in 0..=2.
+    /// [`CompletionError`] if `least_seen` is outside 2..=8, or `longest_gap` outside 0..=2.
     pub fn new(least_seen: usize, longest_gap: usize) -> Result<Self, CompletionError> {
         if !(LEAST_SEEN..=OBSERVED).contains(&least_seen) {
             return Err(CompletionError::LeastSeen { found: least_seen });
@@ -52,13 +53,13 @@ impl Completion {
         })
     }
 
-    /// Length of the longest hole that is filled, in frames.
+    /// Length of the longest gap that is filled, in frames.
     pub fn longest_gap(self) -> usize {
         self.longest_gap
     }
 
     /// The 8 positions up to the last of `seen` (raw frames and m, in order of time), one every `step` raw frames, and
-    /// which of them were filled in. `None` where the completion does not allow it.
+    /// which of them were filled in. `None` if the completion does not allow it.
     pub(crate) fn observation(
         self,
         seen: impl DoubleEndedIterator<Item = (i64, Position)>,
@@ -111,7 +112,7 @@ impl Completion {
 pub struct CompletionCounts {
     /// Positions at the start, before the pedestrian was seen.
     pub padded: usize,
-    /// Positions in holes.
+    /// Positions in gaps.
     pub filled: usize,
 }
 
@@ -127,7 +128,7 @@ impl CompletionCounts {
     }
 }
 
-/// Why a [`Completion`] is not allowed.
+/// Invalid parameters of a [`Completion`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]

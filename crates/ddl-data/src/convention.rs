@@ -1,4 +1,4 @@
-//! Data conventions: published tables mix them, this crate keeps them apart.
+//! Data conventions. Published tables mix them; this crate keeps them apart.
 
 use std::fmt;
 use std::str::FromStr;
@@ -150,7 +150,7 @@ static NOTHING_PLANNED: ConventionPlan = ConventionPlan {
 };
 
 static PLANS: LazyLock<Plans> = LazyLock::new(|| {
-    // The file is compiled in; the tests below read it.
+    // Cannot fail: the file is compiled in, and the tests below parse it.
     serde_json::from_str(include_str!("../folds.json")).expect("the compiled-in folds.json is valid")
 });
 

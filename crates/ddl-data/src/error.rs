@@ -16,7 +16,7 @@ pub struct FormatError {
     pub line: usize,
     /// Field within the line, counted from 1; `None` when the problem concerns the whole line.
     pub field: Option<usize>,
-    /// The problem, in words.
+    /// Text that describes the problem.
     pub problem: String,
 }
 
@@ -137,12 +137,12 @@ fn of(scene: Option<&SceneName>) -> String {
     scene.map(of).unwrap_or_default()
 }
 
-/// The frames whose people are counted together.
+/// Names a frame for the message about too many pedestrians.
 fn crowded(scene: Option<&SceneName>, frame: i64) -> String {
     match scene {
         None => format!("frame {frame}"),
         Some(scene) => {
-            format!("the frames that are not whole yet, one of them frame {frame} of scene {scene}")
+            format!("the incomplete frames, one of them frame {frame} of scene {scene}")
         }
     }
 }

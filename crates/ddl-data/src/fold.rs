@@ -30,11 +30,11 @@ const SOCIAL_GAN_VALIDATION: f64 = 0.2;
 /// Windows of the three folders that Social-GAN publishes for a fold.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SocialGanSplit {
-    /// Of the files `train/*_train.txt`.
+    /// Windows of the files `train/*_train.txt`.
     pub training: Vec<Window>,
-    /// Of the files `val/*_val.txt`.
+    /// Windows of the files `val/*_val.txt`.
     pub validation: Vec<Window>,
-    /// Of the files `test/*.txt`.
+    /// Windows of the files `test/*.txt`.
     pub test: Vec<Window>,
 }
 
@@ -63,7 +63,7 @@ impl<'a> Fold<'a> {
         }
     }
 
-    /// Keeps whole training recordings for validation; nothing of them is used for training.
+    /// Keeps whole training recordings for validation; they are not used for training.
     ///
     /// # Errors
     /// [`DataError::NotATrainingRecording`] for a name that is not a training recording of this fold.
@@ -109,14 +109,14 @@ impl<'a> Fold<'a> {
             recordings.find(|r| r.name == name)?.place.as_deref()
         };
         let place = place_of(recording);
-        // Where the recording's end is kept for validation, the recording itself would reveal its own future.
+        // The recording itself is left out: if its end is kept for validation, it would reveal its own future.
         let same = |r: &&&Recording| r.name() != recording && place.is_some() && place_of(r.name()) == place;
         self.training.iter().filter(same).copied().collect()
     }
 
     /// Two training recordings made at the place of the test recordings, which confirm that a memory of the place
-    /// helps. With a memory of the first, the goals in the second were better, for a model trained without the second.
-    /// Empty where this is not confirmed; forecasts of such a fold use no memory of the place.
+    /// helps. For a model trained without the second recording, a memory of the first improved the goals in the second.
+    /// Empty if this is not confirmed; then the forecasts of the fold use no memory of the place.
     pub fn place_memory_confirmed_by(&self) -> &[String] {
         self.planned.map_or(&[], |(_, fold)| &fold.place_memory)
     }

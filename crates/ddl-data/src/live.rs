@@ -16,10 +16,11 @@ const NAME: &str = "live";
 /// [`Recording::observed_windows`](crate::Recording::observed_windows) would cut from all frames so far and that ends
 /// at this frame.
 ///
-/// - A frame follows the previous one after one step (0.4 s), after more, or after less where the tracker is faster.
+/// - Frames may be one step (0.4 s) apart, further apart, or closer together if the tracker is faster.
 /// - A pedestrian not seen at one of the 8 steps is not in the window, unless a [`Completion`] is
 ///   [requested](Self::with_completion).
-/// - A pedestrian absent for a step (0.4 s), or for longer than the longest hole that is filled, is forgotten.
+/// - A pedestrian that is absent for a step (0.4 s) is forgotten; if gaps are filled, one that is absent for longer
+///   than the longest gap.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
 /// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.
 ///
@@ -62,7 +63,7 @@ impl Default for LiveTracks {
 }
 
 impl LiveTracks {
-    /// Empty tracks in which one step of 0.4 s is one frame number.
+    /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart.
     #[must_use]
     pub fn new() -> Self {
         Self {
@@ -79,7 +80,7 @@ impl LiveTracks {
     /// second.
     ///
     /// # Errors
-    /// [`LiveError::FrameStep`] if the step does not lie in 1..=2^31.
+    /// [`LiveError::FrameStep`] if the step is outside 1..=2^31.
     pub fn with_frame_step(frame_step: i64) -> Result<Self, LiveError> {
         Ok(Self {
             frame_step: checked_frame_step(frame_step)?,
@@ -187,7 +188,7 @@ impl LiveTracks {
         if frame - last > (gap + 1) * self.frame_step {
             return None;
         }
-        // A hole at the start of the window may begin before the window.
+        // A gap at the start of the window may begin before the window.
         let oldest = frame - (OBSERVED as i64 + gap) * self.frame_step;
         let forgotten = pedestrian.seen.partition_point(|(seen, _)| *seen <= oldest);
         let seen = pedestrian.seen.range(forgotten..).copied().collect();
@@ -237,7 +238,7 @@ impl Recording {
         for &frame in self.frames() {
             let positions = self.at(frame).iter();
             let positions = positions.map(|seen| (seen.pedestrian, seen.position));
-            // The invariants of a recording exclude every error of live tracks.
+            // Cannot fail: the invariants of a recording exclude every error of live tracks.
             windows.extend(tracks.push(frame, positions).ok().flatten());
         }
         windows
@@ -294,7 +295,7 @@ pub fn checked_frame(
 /// Checks the number of raw frames per step of 0.4 s.
 ///
 /// # Errors
-/// [`LiveError::FrameStep`] if it does not lie in 1..=2^31.
+/// [`LiveError::FrameStep`] if it is outside 1..=2^31.
 pub fn checked_frame_step(frame_step: i64) -> Result<i64, LiveError> {
     if is_frame_step(frame_step) {
         Ok(frame_step)

@@ -1,4 +1,4 @@
-//! Neighbours of pedestrians: the neighbourhood that a forecast may use.
+//! Neighbours of pedestrians within a box, and a spatial index of positions.
 
 use crate::Position;
 use rstar::primitives::GeomWithData;

@@ -7,15 +7,15 @@ use crate::{Observation, Recording, RecordingError, TIME_STEP};
 
 /// Largest relative deviation of a step from 0.4 s, smaller than the variation of walking speeds.
 const TOLERANCE: f64 = 0.005;
-/// Largest number of parts of a frame tried where a step is not a whole number of frames ...
+/// Largest number of parts per frame that is tried, if a step is not a whole number of frames ...
 const MOST_PARTS: i64 = 1000;
 /// ... and the relative accuracy required.
 const FIT: f64 = 1e-4;
 /// Spacing of observations (s) above which they no longer show the course of a track.
 const SLOWEST: f64 = 1.2;
-/// Share of the frame differences that must be multiples of the most common one; a jittering clock has others.
+/// Share of the frame differences that must be multiples of the most common one. It is smaller for a jittering clock.
 const EVEN: f64 = 0.95;
-/// Observations up to this many usual spacings apart are interpolated; longer holes stay holes.
+/// Observations up to this many usual spacings apart are interpolated; longer gaps stay gaps.
 const JOINED: f64 = 1.5;
 
 /// A recording in steps of 0.4 s.

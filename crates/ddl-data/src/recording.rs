@@ -142,7 +142,7 @@ impl Recording {
         &self.names
     }
 
-    /// Annotated frames per second, where the file states it: the `fps` of TrajNet++ scenes.
+    /// Annotated frames per second, if the file states it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate
     }
@@ -157,7 +157,7 @@ impl Recording {
     /// The same recording with another number of raw frames per step.
     ///
     /// # Errors
-    /// If the step does not lie in 1..=2^31.
+    /// If the step is outside 1..=2^31.
     pub fn with_frame_step(mut self, frame_step: i64) -> Result<Self, RecordingError> {
         if !is_frame_step(frame_step) {
             return Err(RecordingError::FrameStep { found: frame_step });

@@ -7,7 +7,7 @@ use crate::{Position, WINDOW};
 pub struct Remembered {
     /// `[x, y]` in metres, 0.4 s apart: 8 positions similar to the observed ones, and the 12 that followed.
     pub track: [Position; WINDOW],
-    /// Dissimilarity of the first 8 positions to the observed ones: a squared distance of place and velocities, at
-    /// least 0.
+    /// Dissimilarity of the first 8 positions to the observed ones: a squared distance of present position and
+    /// velocities, at least 0.
     pub distance: f64,
 }

@@ -1,4 +1,4 @@
-//! How a stream of several scenes names each of them.
+//! Names of the scenes in a stream of several scenes.
 
 use std::fmt;
 use std::sync::Arc;
@@ -11,10 +11,10 @@ use thiserror::Error;
 pub struct SceneName(Arc<str>);
 
 impl SceneName {
-    /// The longest name, in bytes: a file can be named after a scene wherever its name has to be escaped.
+    /// Largest length of a name in bytes. A file can be named after a scene, even if every byte is escaped.
     pub const LONGEST: usize = 64;
 
-    /// A name of 1 to 64 bytes without control characters; blanks around it do not count.
+    /// A name of 1 to 64 bytes without control characters; blanks around it are removed.
     ///
     /// # Errors
     /// [`SceneNameError`] for any other text.
@@ -52,7 +52,7 @@ impl Serialize for SceneName {
     }
 }
 
-/// Why a text is not the name of a scene.
+/// A text that cannot be the name of a scene.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]

@@ -54,9 +54,9 @@ pub struct Summary {
     pub brisk_speed: Option<f64>,
     /// Share of missing positions between the first and last frame of each pedestrian, counted over annotated frames.
     pub unseen: f64,
-    /// Number of holes: a pedestrian was not seen for some steps and then again.
+    /// Number of gaps: a pedestrian was not seen for some steps and then again.
     pub holes: usize,
-    /// The longest hole.
+    /// The longest gap.
     pub longest_hole: Option<Hole>,
     /// Number of observations from which a pedestrian can be forecast, seen at 2 or more of 8 steps
     /// ([`Completion::USUAL`]).

@@ -23,7 +23,7 @@ pub(crate) const FRAME_STEP_LIMIT: i64 = 1 << 31;
 /// Largest coordinate (m) accepted from files and streams; UTM coordinates reach 10,000 km.
 pub const COORDINATE_LIMIT: f64 = 1e7;
 
-/// The number of a pedestrian; unique within one recording only.
+/// The number of a pedestrian, unique only within its recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct PedestrianId(pub i64);

@@ -6,7 +6,7 @@ use std::path::Path;
 /// Prefix of the names of unfinished files.
 const WRITING: &str = ".writing-";
 
-/// Writes a file under a temporary name in its folder and renames it when it is whole.
+/// Writes a file under a temporary name in its folder and renames it when it is complete.
 ///
 /// # Errors
 /// When the file cannot be written; an existing file then stays unchanged.

@@ -20,7 +20,7 @@ const OLDEST: usize = 8;
 /// The tracks that one camera has observed.
 ///
 /// A *stretch* is 20 positions of one pedestrian, one step of 0.4 s apart, all of them observed. If frames come faster
-/// than steps, a track uses the positions at whole steps after its first frame, or after the first frame behind a hole.
+/// than steps, a track uses the positions at whole steps after its first frame, or after the first frame after a gap.
 /// A stretch contains only positions of observed frames.
 ///
 /// - A missing step ends a run of stretches. A track ends after more than

@@ -48,7 +48,7 @@ impl Observed {
     }
 }
 
-/// Fills holes and pads late beginnings, as the program does, unless only whole observations count.
+/// Fills gaps and pads late beginnings, as the program does, unless only whole observations count.
 pub(crate) fn completion(whole: bool) -> Completion {
     if whole { Completion::NONE } else { Completion::USUAL }
 }

@@ -18,30 +18,29 @@ use crate::names::Numbering;
 use crate::{PedestrianId, PedestrianName, PedestrianNames, Position, SceneName};
 
 const LONGEST_LINE: usize = 1 << 16;
-/// Most pedestrians of one frame, beyond any crowd a tracker sees. It bounds the memory if the frame number never
-/// changes.
+/// Largest number of pedestrians in a frame, above that of any tracked crowd. It bounds the memory if the frame number
+/// never changes.
 const LARGEST_CROWD: usize = 100_000;
-/// Words that are remembered: more than any frame has.
+/// Largest number of names that are kept: more than any frame has.
 const MOST_WORDS: usize = 2 * LARGEST_CROWD;
-/// Scenes at a time: beyond what one machine forecasts.
+/// Largest number of scenes at a time, above what one machine can forecast.
 const MOST_SCENES: usize = 1_000;
-/// Silence after which a scene is forgotten.
+/// Time without a line after which a scene is forgotten.
 const SILENCE: Duration = Duration::from_mins(10);
 
-/// Everybody of one scene at one moment.
+/// The pedestrians of one scene at one frame.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Frame {
-    /// The scene that the lines name; `None` where they name none, and all are of one.
+    /// The name of the scene; `None` if the lines name no scene and all belong to one.
     pub scene: Option<SceneName>,
-    /// Whether nothing of the scene is known from before: it is its first frame, or the first since the scene was
-    /// forgotten.
+    /// Whether this is the first frame of the scene, or the first since the scene was forgotten.
     pub is_first: bool,
     /// The raw frame number.
     pub number: i64,
     /// Pedestrians and their positions (m), in the order of the lines.
     pub people: Vec<(PedestrianId, Position)>,
-    /// The words that stand for pedestrians which the lines name by words.
+    /// The names of pedestrians that are not named by numbers.
     pub names: PedestrianNames,
 }
 
@@ -51,21 +50,22 @@ pub struct Frame {
 /// the format: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`, `obsmat`). Files
 /// of the `star` convention are not in order of time and cannot be streamed.
 ///
-/// Pedestrians may be words; a number stays one, also beside words. Memory is bounded by the people of frames that are
-/// not whole yet, 100,000 at most, and the last 200,000 words: whose word was forgotten is somebody new.
+/// Pedestrians may be named by words, by numbers or by both. Memory is bounded by the pedestrians of incomplete frames,
+/// 100,000 at most, and the last 200,000 words. A word that has been forgotten gets a new pedestrian number.
 ///
 /// # Scenes
-/// A table with a column `scene`, or lines of JSON with a field `track.scene`, are of several scenes, whose lines come
-/// in any order: a frame is whole when a later one of the *same* scene comes, or an empty line right after a line of
-/// the scene, or at the end. Only within a scene must frames be in order of time. There are at most 1,000 scenes at a
-/// time; one of which no line has come for 10 minutes is forgotten, after its last frame was given out.
+/// A table with a column `scene`, or lines of JSON with a field `track.scene`, may hold several scenes. Their lines may
+/// alternate in any order; only the frames of each scene must be in order of time. A frame is complete when a later
+/// frame of the *same* scene arrives, at an empty line right after a line of the scene, or at the end. There are at
+/// most 1,000 scenes at a time. A scene without a line for 10 minutes is forgotten, after its last frame has been
+/// returned.
 #[derive(Debug)]
 pub struct FrameReader<R> {
     reader: R,
     origin: String,
     lines: usize,
     kind: Option<Kind>,
-    /// The frame rate that scenes state.
+    /// The frame rate stated by scenes.
     rate: trajnet::Rate,
     words: Numbering,
     /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
@@ -73,11 +73,11 @@ pub struct FrameReader<R> {
     scenes: BTreeMap<Option<SceneName>, Scene>,
     /// The last frames of scenes that were forgotten.
     left: VecDeque<Frame>,
-    /// The scene of the last observation.
+    /// The scene of the last line.
     spoken_of: Option<SceneName>,
     /// Whether the first observation names a scene, and its line.
     named: Option<(bool, usize)>,
-    /// People in frames that are not whole yet.
+    /// Number of pedestrians in incomplete frames.
     unfinished: usize,
     silence: Duration,
     ended: bool,
@@ -88,7 +88,7 @@ struct Scene {
     current: Option<Growing>,
     /// The last frame that was returned.
     last: Option<i64>,
-    /// Whether it has named pedestrians by words.
+    /// Whether a pedestrian of the scene was named by a word.
     has_words: bool,
     heard: Instant,
 }
@@ -120,7 +120,7 @@ enum Kind {
 }
 
 impl<R: BufRead> FrameReader<R> {
-    /// A reader that has read nothing yet; `origin` is the name in messages.
+    /// Creates a reader; `origin` names the input in messages.
     pub fn new(reader: R, origin: impl Into<String>) -> Self {
         Self {
             reader,
@@ -140,16 +140,16 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// The same, with another time after which a scene of which no line comes is forgotten.
+    /// Sets another time without a line after which a scene is forgotten.
     #[must_use]
     pub fn forgetting_after(self, silence: Duration) -> Self {
         Self { silence, ..self }
     }
 
-    /// The next whole frame; waits for it. `None` at the end.
+    /// Waits for the next complete frame; `None` at the end.
     ///
     /// # Errors
-    /// If the input cannot be read, or a line is wrong: see [`FormatError`]. After an error the reader continues with
+    /// If the input cannot be read, or a line is invalid: see [`FormatError`]. After an error the reader continues with
     /// the next line.
     pub fn next_frame(&mut self) -> Result<Option<Frame>, DataError> {
         while !self.ended {
@@ -176,8 +176,7 @@ impl<R: BufRead> FrameReader<R> {
         Ok(self.unfinished())
     }
 
-    /// A frame that is being read, as far as it has been; `None` where there is no other. For who gives up after an
-    /// error.
+    /// Takes the next incomplete frame; `None` if there is none. For callers that stop after an error.
     pub fn unfinished(&mut self) -> Option<Frame> {
         if let Some(frame) = self.left.pop_front() {
             return Some(frame);
@@ -192,7 +191,7 @@ impl<R: BufRead> FrameReader<R> {
         self.named.is_some_and(|(named, _)| named)
     }
 
-    /// Frames per second, where a line so far has stated it: the `fps` of TrajNet++ scenes.
+    /// Frames per second, if a line so far states it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate.frames_a_second
     }
@@ -266,7 +265,7 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// Adds an observation; the frame before of its scene, if this is the first of a new one.
+    /// Adds an observation. If it begins a new frame of its scene, returns the previous frame of the scene.
     fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, FormatError> {
         self.refuse_mixed(seen.scene.is_some())?;
         self.hear(&seen.scene)?;
@@ -302,7 +301,7 @@ impl<R: BufRead> FrameReader<R> {
             };
             return Err(self.wrong(problem));
         }
-        // A frame that was given out has left room for one.
+        // A returned frame makes room for a pedestrian.
         if self.unfinished == limit {
             return Err(self.wrong(FormatProblem::Crowd {
                 scene: name,
@@ -329,7 +328,7 @@ impl<R: BufRead> FrameReader<R> {
         Ok(before)
     }
 
-    /// Lines that name a scene and lines that name none are not of one stream.
+    /// Refuses a stream in which only some lines name a scene.
     fn refuse_mixed(&mut self, named: bool) -> Result<(), FormatError> {
         match *self.named.get_or_insert((named, self.lines)) {
             (first, first_line) if first != named => Err(self.wrong(FormatProblem::MixedScenes { named, first_line })),
@@ -337,7 +336,7 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// Makes room for the scene, if it is not known, and forgets what has been silent.
+    /// Makes room for a new scene, and forgets silent scenes.
     fn hear(&mut self, name: &Option<SceneName>) -> Result<(), FormatError> {
         let silence = self.silence;
         match self.scenes.get_mut(name) {
@@ -368,11 +367,11 @@ impl<R: BufRead> FrameReader<R> {
         Ok(())
     }
 
-    /// The number of a pedestrian of the scene, and its word if it has one.
+    /// The number of a pedestrian of the scene, and its name if it is a word.
     fn numbered(&mut self, name: &Option<SceneName>, who: PedestrianField) -> (PedestrianId, Option<Arc<str>>) {
         let who = match who {
             PedestrianField::Number(number, None) => return (PedestrianId(number), None),
-            // after a word, `1e3` is one as well, unless it was a number before
+            // After a word, `1e3` is also a word, unless it was a number before.
             PedestrianField::Number(number, Some(text)) => {
                 let has_words = self.scenes.get(name).is_some_and(|scene| scene.has_words);
                 let written = (name.clone(), text);
@@ -393,7 +392,7 @@ impl<R: BufRead> FrameReader<R> {
         (id, Some(word))
     }
 
-    /// The frame of the scene as far as it has been read.
+    /// Takes the frame of the scene as read so far.
     fn whole(&mut self, name: &Option<SceneName>) -> Option<Frame> {
         let scene = self.scenes.get_mut(name)?;
         let growing = scene.current.take()?;

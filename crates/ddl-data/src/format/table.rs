@@ -9,7 +9,7 @@ use crate::SceneName;
 use crate::error::{FormatError, FormatProblem};
 
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
-/// A further column, of streams alone.
+/// An optional column, only for streams.
 const SCENE: &str = "scene";
 const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields, not at the end of a row and not for \
     a decimal point";
@@ -79,7 +79,7 @@ impl TrackColumns {
         }
         let (mut places, mut scene) = ([None; 4], None);
         for (index, name) in header.iter().enumerate() {
-            // Spreadsheets like capitals.
+            // Spreadsheets may write column names in capitals.
             if name.eq_ignore_ascii_case(SCENE) && scene.is_none() {
                 scene = Some(index);
                 continue;

@@ -42,7 +42,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
                     }),
                     frame,
                     first_line,
-                    // The shortest digits that distinguish the two.
+                    // Prints as many digits as distinguish the two.
                     first: format!("{known:?}"),
                     found: format!("{position:?}"),
                 };

@@ -1,4 +1,4 @@
-//! Writing of recordings; the reader of the format returns the same numbers.
+//! Writing of recordings. The reader of the format returns the same numbers.
 
 use std::fmt::Write as _;
 

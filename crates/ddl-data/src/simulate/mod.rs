@@ -44,8 +44,8 @@ impl CrowdScene {
         rng.set_stream(self as u64);
         let layout = SceneLayout::of(self);
         let trace = engine::run(&layout, STEPS, &mut rng);
-        // Pedestrians have unique ids and are seen once a frame; speeds are capped, so that positions stay finite; and
-        // three minutes of arrivals every two seconds leave observations.
+        // Cannot fail: pedestrians have unique ids and are seen once a frame, capped speeds keep positions finite, and
+        // there are many arrivals in three minutes.
         let recording = Recording::new(self.name(), FRAME_STEP, trace.observations)
             .expect("a simulation yields unique, finite observations");
         let SceneLayout { walls, pillars, .. } = layout;

@@ -10,7 +10,7 @@ pub(super) const SUBSTEPS: i64 = 8;
 /// One integration step (s).
 pub(super) const DT: f64 = TIME_STEP / SUBSTEPS as f64;
 
-/// Distance from its place to stand at which a pedestrian has arrived (m) ...
+/// Distance from its stopping place at which a pedestrian has arrived (m) ...
 pub(super) const ARRIVED: f64 = 0.3;
 /// ... and distance at which it also stops, because others may occupy the place (m).
 const CLOSE_BY: f64 = 1.5;
@@ -96,7 +96,7 @@ mod tests {
         pedestrian.desired(&[leg(gate)], 1.2, place)
     }
 
-    /// At 1.2 m/s to the place to stand, slowly over the last 0.6 m, and through a gate without slowing down.
+    /// A pedestrian walks at 1.2 m/s to its stopping place and slows down over the last 0.6 m, but not at a gate.
     #[test]
     fn pedestrians_slow_down_only_where_they_will_stand() {
         let near = |[x, y]: Position, expected: f64| (x - expected).abs() < 1e-12 && y.abs() < 1e-12;

@@ -69,7 +69,7 @@ fn party(layout: &SceneLayout, time: f64, rng: &mut ChaCha8Rng) -> Party {
     let chosen = &layout.routes[route];
     let rest = rng.random_range(REST.0..REST.1);
     let entries = side_by_side(chosen.origin, size, rng.random_range(0.0..1.0));
-    // A pedestrian that enters on the left tends to stay on the left: one lateral place for all gates.
+    // A pedestrian that enters on the left tends to stay on the left: it has one lateral position for all gates.
     let across: f64 = rng.random_range(0.0..1.0);
     let mut targets = vec![Vec::new(); size];
     for leg in &chosen.legs {

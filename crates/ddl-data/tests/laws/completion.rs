@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const STEP: i64 = 4;
 
-/// Frames at which a pedestrian is seen: mostly one step apart, with holes, and occasionally at other times.
+/// Frames at which a pedestrian is seen: mostly one step apart, with gaps, and occasionally at other times.
 fn frames() -> impl Strategy<Value = Vec<i64>> {
     let later = prop_oneof![
         12 => Just(STEP),

@@ -10,7 +10,7 @@ fn key(window: &Window) -> (String, i64) {
     (window.recording().to_owned(), window.start_frame())
 }
 
-/// Training and validation share no moment, and every window is one of the recording.
+/// Training and validation windows share no frame, and every window is one of the recording.
 fn check_splits(dataset: &Dataset) {
     for fold in dataset.folds() {
         for rule in [WindowRule::Complete, WindowRule::SocialGan { min_pedestrians: 1 }] {

@@ -35,7 +35,7 @@ fn errors_change_nothing() {
 }
 
 /// For 40,000 frames, more than four hours, pedestrians come and go, each with its own id. A pedestrian that left is
-/// forgotten at once, or slightly later where holes are filled.
+/// forgotten at once, or slightly later where gaps are filled.
 #[test]
 fn pedestrians_that_left_are_forgotten() {
     for (completion, most) in [(Completion::NONE, 10), (Completion::USUAL, 12)] {

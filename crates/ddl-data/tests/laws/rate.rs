@@ -16,8 +16,8 @@ fn step_seconds(steps: &ResampledRecording, rate: f64) -> f64 {
     steps.recording.frame_step() as f64 / rate / steps.parts as f64
 }
 
-/// Recordings whose step is a whole number of frames are left alone; others are counted in parts of a frame. By hand:
-/// 12 frames per second are 4.8 per step, 4 per second 1.6, 1 per second 0.4. At 25 per second, every third frame seen,
+/// Recordings whose step is a whole number of frames are unchanged; others are counted in parts of a frame. By hand: 12
+/// frames per second are 4.8 per step, 4 per second 1.6, 1 per second 0.4. At 25 per second, every third frame seen,
 /// the 10 frames of a step are not a multiple of 3.
 #[test]
 fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {

@@ -5,7 +5,7 @@ use ddl_data::{Convention, Dataset, locate};
 /// A convention's recordings, or `None` with the reason printed if they are not on this machine.
 ///
 /// # Panics
-/// If they are missing and the variable `CI` is set: a check that must not be skipped silently.
+/// If they are missing and the variable `CI` is set, because the check must not be skipped silently.
 pub(crate) fn load(convention: Convention) -> Option<Dataset> {
     match locate(convention, None) {
         Ok(folder) => Some(Dataset::load(convention, &folder).unwrap()),

@@ -183,7 +183,7 @@ fn ties_go_by_age() {
     assert_eq!((sides(1), sides(2)), (vec![true], vec![true, false]));
 }
 
-/// A camera with ten frames per step: a track uses the positions one step apart, and a hole begins another run.
+/// A camera with ten frames per step: a track uses the positions one step apart, and a gap begins another run.
 #[test]
 fn frames_between_steps_give_no_stretches() {
     let mut memory = SceneMemory::new(10, 1_000).unwrap();
@@ -207,7 +207,7 @@ fn frames_between_steps_give_no_stretches() {
     assert_eq!((summary.frames, summary.pedestrians, summary.stretches), (200, 1, 0));
 }
 
-/// The positions of all pedestrians, each once, without holes; pedestrians without a stretch are left out.
+/// The positions of all pedestrians, each once, without gaps; pedestrians without a stretch are left out.
 #[test]
 fn tracks_are_the_positions_held() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
