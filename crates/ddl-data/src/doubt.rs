@@ -14,8 +14,8 @@ const IMPLAUSIBLE: f64 = 4.0;
 const CREEPING: f64 = 0.6;
 /// Distance between first and last position (m) above which a track counts as walking.
 const FAR: f64 = 2.0;
-/// Speed (m/s) above which a step is taken for a track that jumps to another pedestrian: the fastest sprinters reach
-/// 12.
+/// Speed (m/s) above which a step is taken for a jump of the track to another pedestrian: the fastest sprinters reach
+/// 12 m/s.
 const JUMP: f64 = 12.0;
 /// Largest distance from the start (m) below which the positions are probably not in metres. Over [`MANY_STEPS`] steps
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.

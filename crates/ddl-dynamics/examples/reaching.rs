@@ -3,9 +3,9 @@
 //! ```text
 //! cargo run -p ddl-dynamics --example reaching
 //! ```
-//! A metric shapes the reach. A ball in the way slows the approach to it, and the hand slides along it. The program
-//! prints the distance to the cup, the clearance from the ball's surface, and whether the certificate holds. It also
-//! prints the verdict on plain Euler steps, which overshoot.
+//! A metric shapes the path of the hand. A ball in the way slows the approach to it, and the hand slides along it. The
+//! program prints the distance to the cup, the clearance from the ball's surface, and whether the certificate holds. It
+//! does the same for plain Euler steps, which overshoot.
 #![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use ddl_dynamics::{

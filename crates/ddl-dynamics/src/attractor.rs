@@ -79,7 +79,8 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// The potential `Phi(p)` (metres; square metres when quadratic).
     ///
     /// # Numerics
-    /// The square underflows to 0 within 1e-162 m of the goal (1e-23 m in `f32`): compare distances near it.
+    /// The square underflows to 0 within 1e-162 m of the goal (1e-23 m in `f32`); near the goal use
+    /// [`distance`](Self::distance).
     #[inline]
     pub fn potential(&self, position: &SVector<T, D>) -> T {
         self.potential_and_gradient(position).0
@@ -89,7 +90,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
     /// 0 at the goal.
     ///
     /// # Numerics
-    /// `u` has length 1 for every offset but zero, subnormal and huge ones included.
+    /// `u` has length 1 for every offset except zero, including subnormal and huge offsets.
     #[inline]
     pub fn gradient(&self, position: &SVector<T, D>) -> SVector<T, D> {
         self.potential_and_gradient(position).1

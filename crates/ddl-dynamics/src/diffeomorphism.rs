@@ -20,8 +20,8 @@ pub use straightening::Straightening;
 /// # Guarantees
 /// - `psi` is smooth, and one-to-one from the whole space onto the whole space.
 /// - `det J > 0` everywhere, and above a positive number that each implementation states.
-/// - No panic for any input. For finite input, `apply` and `inverse` return a number, or infinity where it is too large
-///   for `T`, never NaN. A Jacobian with an entry too large for `T` is not finite.
+/// - No panic for any input. For finite input, `apply` and `inverse` never return NaN; a result too large for `T` is
+///   infinite. A Jacobian with an entry too large for `T` is not finite.
 pub trait Diffeomorphism<T: Real, const D: usize> {
     /// The image `psi(x)` of `position` (metres).
     fn apply(&self, position: &SVector<T, D>) -> SVector<T, D>;

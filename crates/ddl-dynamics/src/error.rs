@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use crate::real::Real;
 
-/// An invalid input. Nothing in this crate panics on invalid input.
+/// An invalid input. This crate does not panic on invalid input.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]

@@ -30,7 +30,7 @@ pub use violation::Violation;
 /// distance to the goal, also for a quadratic attractor.
 ///
 /// JSON keeps it exactly with the feature `float_roundtrip` of `serde_json`. Without the feature, rounding can change
-/// the strict verdict on a pedestrian that hardly moves.
+/// the result of the strict check for a pedestrian that hardly moves.
 ///
 /// # Examples
 /// ```
@@ -61,12 +61,12 @@ pub struct LyapunovCertificate<T> {
 }
 
 impl<T: Real> LyapunovCertificate<T> {
-    /// The same certificate with the [motion](Self::motion) figures and their bounds from [`MotionBounds`].
-    /// [`holds`](Self::holds) checks these as well.
+    /// Adds the [motion](Self::motion) quantities and their bounds from [`MotionBounds`]. [`holds`](Self::holds) then
+    /// checks these as well.
     ///
     /// # Shapes
-    /// `path`: the positions of the certificate (metres), the start first. Set `alone` unless obstacles were avoided:
-    /// these may delay a pedestrian, so then only its speed is bounded.
+    /// `path`: the positions of the certificate (metres), the start first. Set `alone` unless obstacles were avoided.
+    /// Obstacles may delay a pedestrian, so only its speed is then bounded.
     ///
     /// # Errors
     /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] if the distances from the goal differ from
@@ -112,7 +112,7 @@ impl<T: Real> LyapunovCertificate<T> {
     /// # Errors
     /// [`DynamicsError::LengthMismatch`], [`DynamicsError::NotPositive`], and, inside [`DynamicsError::Step`] with the
     /// index of the position, [`DynamicsError::NonFinite`] or [`DynamicsError::DistanceTooLarge`]. A rollout that
-    /// breaks the guarantee is not an error.
+    /// violates the guarantee is not an error.
     pub fn new<const D: usize>(
         positions: &[SVector<T, D>],
         metrics: &[CholeskyMetric<T, D>],
@@ -181,10 +181,10 @@ impl<T: Real> LyapunovCertificate<T> {
 
     /// Checks the guarantee: `P` positive definite, `d Phi / dt < 0` and `Phi` strictly smaller after every step away
     /// from the goal, and no motion at the goal. If [bounds were set](Self::within), every [motion](Self::motion)
-    /// figure must be within its bound.
+    /// quantity must be within its bound.
     ///
     /// # Errors
-    /// The [`Violation`] of the first step that breaks the guarantee.
+    /// The [`Violation`] of the first step that violates the guarantee.
     pub fn holds(&self) -> Result<(), Violation> {
         let after = self.potentials().skip(1);
         self.steps

@@ -16,11 +16,11 @@ pub const PUBLISHED_SIGMA: f64 = 1e-8;
 /// A positive-definite matrix `P = L L^T + sigma I`, given by its lower-triangular factor `L`.
 ///
 /// `P` turns the unit vector towards the goal into a velocity, so its entries, `sigma` and its eigenvalues are in m/s;
-/// those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least `sigma`, whatever `L` is.
+/// those of `L` in (m/s)^(1/2). The smallest eigenvalue is at least `sigma`, for every `L`.
 ///
 /// # Numerics
-/// `P` is never formed to be applied. In `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a` as soon as `|a| >=
-/// 0.5`, so a matrix that should be positive definite would be singular.
+/// `P` is applied through `L`, without forming the matrix. In `f32` a diagonal entry `a * a + 1e-8` rounds to `a * a`
+/// as soon as `|a| >= 0.5`, so a matrix that should be positive definite would be singular.
 ///
 /// # References
 /// Equations (11) and (12) of the paper.

@@ -41,7 +41,7 @@ pub struct StepTime<T> {
 }
 
 impl<T: Real> Default for MotionBounds<T> {
-    /// The bounds of a pedestrian without observed motion, with the whole metric (`share` 1).
+    /// The bounds of a pedestrian without observed motion, with only the metric (`share` 1).
     fn default() -> Self {
         Self {
             top_speed: Self::top_speed_after(T::zero()),
@@ -63,7 +63,7 @@ impl<T: Real> MotionBounds<T> {
     pub const SPEEDING_UP: f64 = 1.3;
     /// ... and the constant added to it (m/s).
     pub const SPEED_MARGIN: f64 = 0.45;
-    /// Weight of the own velocity in the neutral motion at the start (no unit).
+    /// Weight of the pedestrian's own velocity in the neutral motion at the start (no unit).
     pub const MOMENTUM: f64 = 0.75;
     /// Time in which that weight falls by a factor e (s).
     pub const RELAXATION: f64 = 1.0;
@@ -83,8 +83,8 @@ impl<T: Real> MotionBounds<T> {
         Self::MOMENTUM * (-middle / Self::RELAXATION).exp()
     }
 
-    /// Bounds with the top speed `V` (m/s, positive), the pedestrian's own velocity `v0` (m/s), and the `share` (0 to
-    /// 1) of the metric; the rest is neutral. `None` if one is out of range or not finite.
+    /// Bounds with the top speed `V` (m/s, positive), the pedestrian's own velocity `v0` (m/s), and the `share` of the
+    /// metric, from 0 to 1; the rest is neutral. `None` if one is out of range or not finite.
     pub fn new(top_speed: T, velocity: Vector2<T>, share: T) -> Option<Self> {
         let valid = top_speed.is_finite()
             && top_speed > T::zero()
@@ -168,8 +168,8 @@ impl<T: Real> MotionBounds<T> {
         into_metric(&(neutral + (given - neutral) * self.share), &range)
     }
 
-    /// `N`, before its eigenvalues are brought within the bounds: of all matrices with this flow, the one with the
-    /// smallest condition number.
+    /// `N` before its eigenvalues are brought within the bounds. Of all matrices with this velocity it has the smallest
+    /// condition number.
     fn neutral(&self, s: T, direction: &Vector2<T>, range: &EigenvalueRange<T>, time: StepTime<T>) -> Vector3<T> {
         let g = T::rounded(Self::momentum(time));
         let [cos, sin] = [direction.x, direction.y];

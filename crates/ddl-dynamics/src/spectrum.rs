@@ -42,7 +42,7 @@ fn iterative<T: Real, const D: usize>(factor: &SMatrix<T, D, D>) -> (T, T) {
     let decomposition = SVD::try_new_unordered(general, false, false, T::EPSILON, ITERATIONS_PER_DIMENSION * D);
     match decomposition {
         Some(svd) => (svd.singular_values.min(), svd.singular_values.max()),
-        // Never observed. Both values are still bounds, so every use of them is safe.
+        // This has never occurred. Both values are still bounds, so every use of them is safe.
         None => (T::zero(), factor.norm()),
     }
 }

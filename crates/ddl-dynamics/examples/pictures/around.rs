@@ -1,5 +1,5 @@
-//! Above: a path around the end of a wall, where the distance in the chart falls but not the distance in space. Below:
-//! paths among pillars, where the distance falls.
+//! Above: a path around the end of a wall; the distance in the chart falls, but not the distance in space. Below: paths
+//! among pillars; the distance in space falls.
 
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, Chain, CholeskyMetric, DiffeomorphicFlow, DynamicsError, Flow, NaturalGradientFlow,

@@ -19,7 +19,8 @@ const CONTINUATION: usize = 6;
 /// Smallest distance of a continuation from another part of the path, in units of the sample spacing.
 const CLEARANCE: f64 = 1.25;
 
-/// Share of the layers that follow the path while it unbends; the others reduce the remaining residual.
+/// Share of the layers that fit the intermediate shapes of the path while it unbends; the others reduce the remaining
+/// residual.
 const FOLLOWING: f64 = 0.75;
 
 /// A chain that straightens a path, with its residuals: the result of [`Chain::straightening`].
@@ -42,8 +43,8 @@ impl<T: Real, const D: usize> Chain<T, D> {
     /// Fits a chain of at most `layers` [local translations](LocalTranslation) that maps `path`, a polygon from a start
     /// to a goal, to a straight line of the same length.
     ///
-    /// The distance of two points along the path becomes the distance of their images. So a flow that descends `V(x) =
-    /// |psi(x) - psi(p*)|` on straight lines in the image follows the path.
+    /// The distance of two points along the path becomes the distance of their images. So a flow follows the path if it
+    /// descends the potential `V(x) = |psi(x) - psi(p*)|` on straight lines in the image.
     ///
     /// # Method
     /// The path is unbent like a wire. Over the first three quarters of the layers, all its turns are scaled by a

@@ -39,14 +39,14 @@ use crate::{
 ///
 /// # Numerics
 /// The decrease has priority. A pedestrian at a saddle still makes the smallest move to the goal that changes the
-/// computed distance, and so enters the ball by rounding errors. On a surface, `epsilon lambda_max` of the approach
-/// remains, between several balls up to `sqrt(2 epsilon) lambda_max`. In `f64` both are negligible; in `f32` allow some
-/// millimetres.
+/// computed distance, and so it enters the ball by a few rounding errors. On a surface, an approach speed of
+/// `epsilon lambda_max` remains; between several balls, up to `sqrt(2 epsilon) lambda_max`. In `f64` both are
+/// negligible; in `f32` allow some millimetres.
 ///
 /// # Obstacles that move
-/// The decrease of the distance does not depend on the obstacles. To keep clear of moving obstacles, give each step the
-/// obstacles as they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)). A pedestrian that is clear of
-/// these at the start of a step is clear of them at its end. A pedestrian in the way of an obstacle is not moved aside.
+/// The decrease of the distance does not depend on the obstacles. To avoid moving obstacles, give each step the
+/// obstacles as they will be at its end ([`ObstacleSchedule`](crate::ObstacleSchedule)). A pedestrian outside these at
+/// the start of a step is outside them at its end. A pedestrian in the way of an obstacle does not step aside.
 ///
 /// # References
 /// Similar to Khansari-Zadeh and Billard, "A dynamical system approach to realtime obstacle avoidance" (Autonomous
@@ -105,7 +105,7 @@ where
                 .map(|(gap, normal)| ((gap / self.margin).max(T::EPSILON), normal))
         };
         // Sliding along one ball may turn the pedestrian towards another one. Each round slows the approach to one more
-        // ball, or is the last.
+        // ball; otherwise the loop ends.
         for round in 0..near().count() {
             let mut slowed = false;
             for (share, normal) in near() {

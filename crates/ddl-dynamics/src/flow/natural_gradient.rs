@@ -11,8 +11,8 @@ use crate::{
 /// Natural gradient descent: `v = -P grad Phi`, `P = L L^T + sigma I`.
 ///
 /// The distance falls at the rate `u^T P u`, at least the smallest eigenvalue of `P`, for every metric at every state.
-/// So the goal is reached after at most `Phi(p(0)) / lambda_min` seconds. On a quadratic attractor `|e(t)| <= |e(0)|
-/// exp(-lambda_min t)`. The velocity is less than 90 degrees away from the direction to the goal.
+/// So the goal is reached after at most `Phi(p(0)) / lambda_min` seconds. For a quadratic attractor,
+/// `|e(t)| <= |e(0)| exp(-lambda_min t)`. The velocity is less than 90 degrees away from the direction to the goal.
 ///
 /// # References
 /// Equation (9) of the paper, with `P` of equation (11); equation (8) is [`straight`](NaturalGradientFlow::straight).
@@ -23,8 +23,8 @@ pub struct NaturalGradientFlow<T, const D: usize, M> {
 }
 
 impl<T: Real, const D: usize> NaturalGradientFlow<T, D, CholeskyMetric<T, D>> {
-    /// Gradient descent, `v = -grad Phi`: `P` is the identity, so the motion is straight to the goal, on a distance at
-    /// 1 m/s.
+    /// Gradient descent, `v = -grad Phi`: `P` is the identity, so the motion is straight to the goal. If `Phi` is the
+    /// distance, the speed is 1 m/s.
     pub fn straight(attractor: Attractor<T, D>) -> Self {
         Self::new(attractor, CholeskyMetric::identity())
     }

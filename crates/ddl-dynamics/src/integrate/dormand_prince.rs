@@ -14,7 +14,7 @@ use crate::{
 /// Largest and smallest factor between successive step lengths.
 const GROWTH: f64 = 5.0;
 const SHRINKAGE: f64 = 0.2;
-/// Inner steps tried in one time step; smooth flows need tens.
+/// Largest number of inner steps in one time step; smooth flows need tens.
 const INNER_STEPS: usize = 10_000;
 const SAFETY: f64 = 0.9;
 
@@ -23,14 +23,14 @@ const SAFETY: f64 = 0.9;
 /// falls.
 ///
 /// # What is guaranteed
-/// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], whatever the flow.
+/// - *Strict decrease* of the computed distance at every step, as for [`StableEuler`], for every flow.
 /// - *Error*: estimated at no more than the tolerance in each inner step, for flows that depend smoothly on the state.
 /// - *At the goal*: a position nearer to it than the tolerance (in the [`chart`](Flow::chart), if there is one) is set
 ///   to it.
 /// - *Time to the goal*: that of the continuous flow, for a distance at most `Phi(0) / lambda_min`.
 ///
-/// Where even a step as short as the tolerance is rejected (a metric that jumps), a [`StableEuler`] step of that length
-/// is taken. The `step` and `history` of a state are those of the whole time step.
+/// If even a step as short as the tolerance is rejected (at a discontinuity of the metric), a [`StableEuler`] step of
+/// that length is taken. The `step` and `history` of a state are those of the whole time step.
 ///
 /// # References
 /// Dormand and Prince, "A family of embedded Runge-Kutta formulae" (J. Comp. Appl. Math. 1980).

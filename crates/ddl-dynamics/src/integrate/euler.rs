@@ -13,9 +13,10 @@ use crate::{
 /// The plain Euler step `p' = p + dt v`: the published scheme, kept for reproduction.
 ///
 /// # What is guaranteed
-/// Little: with `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a step exactly when
-/// `dt < 2 |e| u^T P u / |P u|^2` (Proposition 2 of `PROOFS.md`). On a distance this fails for every fixed `dt` close
-/// to the goal: the pedestrian oscillates around it. [`StableEuler`](super::StableEuler) keeps the guarantee.
+/// There is no general guarantee. With `e = p - p*`, `u = e / |e|` and `v = -P u`, the distance to the goal falls in a
+/// step exactly when `dt < 2 |e| u^T P u / |P u|^2` (Proposition 2 of `PROOFS.md`). For the distance potential this
+/// fails close to the goal for every fixed `dt`: the pedestrian oscillates around the goal.
+/// [`StableEuler`](super::StableEuler) keeps the guarantee.
 ///
 /// # References
 /// Equation (2) of the paper, with a step of 0.4 s in the published program.

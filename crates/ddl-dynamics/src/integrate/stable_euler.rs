@@ -13,8 +13,8 @@ use crate::{
     state::State,
 };
 
-/// Within this many rounding errors of the goal, a step that aims at the closest point has arrived: the rest is the
-/// rounding of the step itself, not a distance.
+/// A step to the closest point that ends within this many rounding errors of the goal is moved onto the goal, because
+/// the rest is rounding.
 const ARRIVAL: f64 = 8.0;
 
 /// Euler steps that end, at the latest, at the point of the line of motion closest to the goal.
@@ -28,8 +28,8 @@ const ARRIVAL: f64 = 8.0;
 ///
 /// # What is guaranteed
 /// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.
-/// - *Convergence in a bounded number of steps* on a distance, if the eigenvalues of the metrics stay in `[m, M]`,
-///   `m > 0`: with `r = (M - m) / (M + m)`, `Phi <= tolerance` after at most
+/// - *Convergence in a bounded number of steps* for the distance potential, if the eigenvalues of the metrics stay in
+///   `[m, M]`, `m > 0`: with `r = (M - m) / (M + m)`, `Phi <= tolerance` after at most
 ///   `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
 ///
 /// The proofs are Theorems 3 and 4 of `PROOFS.md`.
@@ -87,8 +87,8 @@ impl StableEuler {
     }
 }
 
-/// [`StableEuler::advance`] where a position is `settled` before its distance is measured: it is transformed to another
-/// space and back, so that the decrease holds for the values seen there.
+/// [`StableEuler::advance`], but `settled` is applied to a position before its distance is measured. It transforms the
+/// position to another space and back, so that the decrease holds for the rounded values.
 #[inline]
 fn descend<T: Real, const D: usize>(
     attractor: &Attractor<T, D>,

@@ -1,4 +1,4 @@
-//! One step of a certificate: its figures and their check.
+//! One step of a certificate: its quantities and their check.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -12,8 +12,8 @@ use crate::{attractor::Attractor, metric::CholeskyMetric, polar::polar, real::Re
 pub struct CertifiedStep<T> {
     /// `Phi`: the distance to the goal at the start of the step (metres).
     pub potential: T,
-    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s); 0 only at the goal. Where it is too small for
-    /// `T`, it is the smallest normal number.
+    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s); 0 only at the goal. A value too small for `T` is
+    /// replaced by the smallest normal number.
     pub rate: T,
     /// The smallest eigenvalue of the step's metric (m/s; 1/s on a quadratic attractor).
     pub min_eigenvalue: T,
@@ -57,7 +57,7 @@ impl<T: Real> CertifiedStep<T> {
     pub(super) fn check(&self, step: usize, after: T) -> Result<(), Violation> {
         let (before, rate) = (self.potential.as_f64(), self.rate.as_f64());
         let (min_eigenvalue, after) = (self.min_eigenvalue.as_f64(), after.as_f64());
-        // Written so that NaN also breaks the guarantee; certificates made here hold no NaN.
+        // Written so that NaN also violates the guarantee. Certificates made here hold no NaN.
         let (definite, descending) = (min_eigenvalue > 0.0, rate < 0.0);
         match (before == 0.0, after == 0.0) {
             _ if !definite => Err(Violation::NotPositiveDefinite { step, min_eigenvalue }),

@@ -1,4 +1,4 @@
-//! Motion figures of a certificate: speed, change of speed, deviation from the straight line, and final distance.
+//! Motion quantities of a certificate: speed, change of speed, deviation from the straight line, and final distance.
 
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ const ROUNDING: f64 = 1e-9;
 /// Tolerance of a position, in rounding errors of its coordinates.
 const ROUNDINGS: f64 = 16.0;
 
-/// A figure of a motion with its bound.
+/// A quantity of a motion with its bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Bounded<T> {
@@ -27,7 +27,7 @@ impl<T: Real> Bounded<T> {
     }
 }
 
-/// Figures of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. For a
+/// Quantities of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. For a
 /// motion that avoids obstacles, which may delay it, `deviation` and `distance_left` have no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -178,7 +178,8 @@ mod tests {
     #[test]
     fn each_figure_that_exceeds_its_bound_is_reported() {
         assert_eq!(said(|t| [0.4 * t, 0.0]), "");
-        // At rest at the start, then at a constant speed: a jump of 0.9 m, and 0 m/s before 2.1 m/s.
+        // A pedestrian that first rests and then walks at a constant speed: once with a jump of 0.9 m, once with 0 m/s
+        // before 2.1 m/s.
         let late = |first: f64, leap: f64, pace: f64| {
             said(move |t| [if t < first { 0.0 } else { leap + pace * (t - first) }, 0.0])
         };

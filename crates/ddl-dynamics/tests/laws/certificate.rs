@@ -1,4 +1,4 @@
-//! Certificates: they hold for every stable rollout, and name the step that breaks one.
+//! Certificates hold for every stable rollout, and name the step that violates the guarantee.
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
@@ -21,8 +21,8 @@ fn stable_path<T: Real, const D: usize>(
     (path, scene.metrics(), scene.attractor())
 }
 
-/// The certificate of every `StableEuler` rollout holds; its figures are within their bounds, and its rate agrees with
-/// the formed matrix.
+/// The certificate of every `StableEuler` rollout holds, its quantities are within their bounds, and its rate agrees
+/// with the formed matrix.
 fn holds_for_every_stable_rollout<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (path, metrics, attractor) = stable_path::<T, D>(scene);
     let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
@@ -74,7 +74,7 @@ fn holds_on_a_quadratic_attractor<T: Real, const D: usize>(scene: &SceneDraw) ->
 }
 for_every_space!(holds_on_a_quadratic_attractor, any_scene);
 
-/// P = [1 1; 1 2] and e = (0.3, -0.4): the figures of a step, computed by hand.
+/// P = [1 1; 1 2] and e = (0.3, -0.4): the quantities of a step, computed by hand.
 fn by_hand() -> LyapunovCertificate<f64> {
     let attractor = Attractor::new(Vector2::new(10.0, 20.0)).unwrap();
     let metric = CholeskyMetric::planar(1.0, 1.0, 1.0, 1e-16).unwrap();

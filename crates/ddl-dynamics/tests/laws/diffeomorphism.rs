@@ -193,7 +193,7 @@ fn maps_that_are_not_invertible_are_refused() {
         2.0,
         "and must be at most 0.95; shorten the translation v or lower the rate rho",
     );
-    // The limit itself is accepted, a little more is not.
+    // The limit itself is accepted, a slightly larger value is not.
     let limit = 0.95 / STEEPEST;
     assert!(new(0.0, 2.0, limit * 0.5 * (1.0 - 1e-14)).is_ok());
     let error = new(0.0, 2.0, limit * 0.501).unwrap_err();

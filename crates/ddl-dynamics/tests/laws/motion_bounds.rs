@@ -153,9 +153,9 @@ proptest! {
 }
 
 /// By hand: 4.8 m in 12 steps of 0.4 s are 1 m/s. P = diag(9, 0.04) becomes diag(2, 0.25). With share 0 and the own
-/// velocity (1, 1) m/s, half of which remains, it is the metric of the flow (1, 0.5): [1 0.5; 0.5 1.5]. Relative to the
-/// neutral motion, which is I for a pedestrian at the arriving velocity, Q = 2.25 I asks for 1.25 arriving speeds more:
-/// out of bounds, 2. Q = I asks for no change, and Q = 0.5 I for half the speed.
+/// velocity (1, 1) m/s, half of which remains, it is the metric of the velocity (1, 0.5): [1 0.5; 0.5 1.5]. For a
+/// pedestrian at the arriving velocity, the neutral motion is I. Relative to it, Q = 2.25 I adds 1.25 arriving speeds,
+/// which exceeds the bound 2. Q = I changes nothing, and Q = 0.5 I halves the speed.
 #[test]
 fn shaped_by_hand() {
     let (done, left, dt) = (0, 12, 0.4);

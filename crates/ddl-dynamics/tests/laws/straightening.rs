@@ -67,8 +67,8 @@ fn descended<const D: usize>(psi: &Chain<f64, D>, start: SVector<f64, D>, path: 
     }
 }
 
-/// The figures of a path: straightened to a mean residual below 0.3 % of its length and a largest one below 1.5 %. The
-/// flow starts along the path and follows it within 1 % of its length to the goal.
+/// Checks a path: it is straightened to a mean residual below 0.3 % of its length and a largest one below 1.5 %. The
+/// flow starts along the path and follows it to the goal within 1 % of its length.
 fn straightened_and_walked<const D: usize>(path: &[SVector<f64, D>]) -> Descent<D> {
     let Straightening {
         chain,
@@ -113,8 +113,8 @@ fn corner_hairpin_curves_and_arc_become_straight_and_are_walked() {
     }));
 }
 
-/// The goal is 1 m away behind a wall: the path begins away from it and continues so for metres. A positive-definite
-/// matrix alone never turns a velocity by more than 90 degrees. The goal is also reached from beside the path.
+/// The goal is 1 m away behind a wall, and the path first leads away from it for metres. A positive-definite matrix
+/// alone never turns a velocity by more than 90 degrees. The goal is also reached from beside the path.
 #[test]
 fn around_the_end_of_a_wall_and_back() {
     let path = hairpin(1.0);

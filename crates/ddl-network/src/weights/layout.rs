@@ -193,8 +193,8 @@ impl Layout {
     }
 
     /// Declares an encoder layer. The joint projection of query, key and value is initially Xavier-uniform with biases
-    /// of 0; the feed-forward layers are as in [`linear`](Self::linear), and the output projection too, with a bias of
-    /// 0.
+    /// of 0. The feed-forward layers are as in [`linear`](Self::linear), and so is the output projection, but with zero
+    /// bias.
     pub fn encoder_layer(&mut self, name: &str, sizes: Sizes, dropout: f64) -> EncoderLayer {
         let Sizes { width, hidden, .. } = sizes;
         let (first, tensor) = (self.count, self.tensors.len());

@@ -90,7 +90,7 @@ fn rotation<const D: usize>(from: &SVector<f64, D>, to: &SVector<f64, D>, share:
 /// The rotation `R` that maximises `tr(R^T M)` (Kabsch): `U diag(1, .., 1, ±1) V^T` of the singular value decomposition
 /// of `M`, the sign such that `det R = 1`.
 fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64, D, D> {
-    // Entries too small to matter are set to 0: the decomposition would divide by their squares, which underflow, and
+    // Negligible entries are set to 0, because the decomposition would divide by their squares, which underflow, and
     // return NaN.
     let counts = f64::EPSILON * f64::EPSILON * matrix.amax();
     let general = DMatrix::from_fn(D, D, |row, column| {
@@ -100,8 +100,8 @@ fn nearest_rotation<const D: usize>(matrix: &SMatrix<f64, D, D>) -> SMatrix<f64,
     let decomposition = SVD::try_new(general, true, true, f64::EPSILON, ITERATIONS_PER_DIMENSION * D);
     let finite = |(u, v_t): &(DMatrix<f64>, DMatrix<f64>)| u.iter().chain(v_t).all(|entry| entry.is_finite());
     let factors = decomposition.and_then(|svd| svd.u.zip(svd.v_t));
-    // Not observed since negligible entries are set to 0. The identity is a valid rotation, only farther from the
-    // optimum.
+    // This has not occurred since negligible entries are set to 0. The identity is a valid rotation, but farther from
+    // the optimum.
     let Some((mut u, v_t)) = factors.filter(finite) else {
         return SMatrix::identity();
     };

@@ -399,8 +399,8 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
     let page = markdown(alone.iter().cloned().chain(online.clone()));
     let (before, section) = page.split_once("### Error over watching time").unwrap();
     assert!(before.contains("## Protocol `online`"));
-    // Nine blocks in quarters: 0 to 2, 3 and 4, 5 and 6, 7 and 8; without watching ten: 0 to 2, 3 and 4, 5 to 7, 8 and
-    // 9.
+    // Nine blocks in quarters: 0 to 2, 3 and 4, 5 and 6, 7 and 8. Without observation ten blocks: 0 to 2, 3 and 4, 5 to
+    // 7, and 8 and 9.
     let expected = [
         "0.400 (+0.0 %)",
         "0.200 (-50.0 %)",
