@@ -30,7 +30,7 @@ pub struct Conditions {
     pub epochs: Option<usize>,
     /// Choice of the scored epoch, such as `last epoch`.
     pub selection: Option<String>,
-    /// Recipe in words: batch size and step size of the training, source of the goals; `None` when neither applies.
+    /// Text with the batch size and step size of the training and the source of the goals; `None` when neither applies.
     pub recipe: Option<String>,
     /// Device the forecasts were computed on, such as `cpu`; empty when unknown.
     #[serde(default)]
@@ -38,9 +38,9 @@ pub struct Conditions {
     /// Commit of the project; empty when unknown.
     #[serde(default)]
     pub commit: String,
-    /// Rule by which a part of the training windows was used, the same text for every fold; `None` for all of them.
+    /// Text that describes the used part of the training windows, the same for every fold; `None` for all windows.
     pub training_subset: Option<String>,
-    /// Rule by which a part of the test windows was scored, the same text for every fold; `None` for all of them.
+    /// Text that describes the scored part of the test windows, the same for every fold; `None` for all windows.
     pub test_subset: Option<String>,
 }
 
@@ -98,7 +98,7 @@ impl ResultRow {
     /// The caller ensures that the windows agree with the conditions.
     ///
     /// # Errors
-    /// The forecaster failed, broke the protocol, or its forecasts cannot be scored.
+    /// The forecaster failed or violated the protocol, or its forecasts cannot be scored.
     pub fn measure(
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
@@ -147,7 +147,7 @@ impl ResultRow {
         })
     }
 
-    /// The errors of each recording, by name; empty where the row has no errors by block.
+    /// The errors of each recording, by name; empty if the row has no errors by block.
     ///
     /// The mean over the recordings, weighted by their pedestrians, is that of the row.
     pub fn by_recording(&self) -> Vec<RecordingErrors> {

@@ -14,8 +14,8 @@ use crate::{error::ForecastShapeError, region::RegionTable};
 /// # Shapes
 /// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 for each pedestrian), goals `[N][K]` in metres; certified
 /// `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds; spread `[N][12]` in metres:
-/// standard deviation of a pedestrian around the right hypothesis; familiarity `[N]`, 0 to 1: similarity of the
-/// observed motion to the training data.
+/// standard deviation of a pedestrian around the hypothesis that it follows; familiarity `[N]`, 0 to 1: similarity of
+/// the observed motion to the training data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pedestrians: usize,
@@ -92,7 +92,7 @@ impl Forecast {
         Self::new(pedestrians, hypotheses, positions, weights, None)
     }
 
-    /// The same forecast with, for each hypothesis, whether its certificate holds, `[N][K]`.
+    /// Adds whether the certificate of each hypothesis holds, `[N][K]`.
     ///
     /// # Errors
     /// The array has the wrong length.
@@ -109,7 +109,7 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with its spread around the hypotheses, `[N][12]` (metres), and its table of regions.
+    /// Adds the spread around the hypotheses, `[N][12]` (metres), and the table of regions.
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
@@ -122,7 +122,7 @@ impl Forecast {
         })
     }
 
-    /// The same forecast with the familiarity of each pedestrian's observed motion, `[N]`, 0 to 1.
+    /// Adds the familiarity of each pedestrian's observed motion, `[N]`, 0 to 1.
     ///
     /// # Errors
     /// The array has the wrong length, or a number is not above 0 and at most 1.
@@ -135,7 +135,8 @@ impl Forecast {
         })
     }
 
-    /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, around the right hypothesis (metres), if known.
+    /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, around the hypothesis that it follows (metres), if
+    /// known.
     pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;
         Some(spread[i * HORIZON..][..HORIZON][t])
@@ -159,7 +160,7 @@ impl Forecast {
         }
     }
 
-    /// Similarity of the observed motion of pedestrian `i` to the training data, 0 to 1; `None` where unknown.
+    /// Similarity of the observed motion of pedestrian `i` to the training data, 0 to 1; `None` if unknown.
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])
     }
@@ -207,7 +208,7 @@ impl Forecast {
         self.certified.is_some()
     }
 
-    /// The hypothesis of greatest weight of pedestrian `i`; the first of equal ones.
+    /// The hypothesis of pedestrian `i` with the largest weight; of equal weights, the first.
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {
             if self.weight(i, k) > self.weight(i, best) {

@@ -78,7 +78,8 @@ mod tests {
 
         fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
             let last = window.track(window.len() - 1);
-            // The unchanged future equals no future here: only a moved one shows the leak.
+            // For this forecaster, the unchanged future has the same effect as no future: only a changed future reveals
+            // the leak.
             let seen = last.get(self.frame).map_or(0.0, |p| p[1]);
             let step = [0.0, if seen > 0.0 { 1e-9 } else { 0.0 }];
             Ok(forecast(window.len(), &vec![walk([0.0, 0.0], step); window.len()]))

@@ -13,7 +13,7 @@ use crate::{
     },
 };
 
-/// Distances beyond which an endpoint is missed by every hypothesis: 0.5 m, and those of other works; metres.
+/// Thresholds of the miss rate: 0.5 m, and those of other works; metres.
 const MISS_DISTANCES: [f64; 3] = [0.5, 1.0, 2.0];
 
 /// Lengths in metres.
@@ -26,7 +26,7 @@ pub(crate) struct PedestrianScores {
     pub(crate) expected_fde: f64,
     pub(crate) most_likely_ade: f64,
     pub(crate) most_likely_fde: f64,
-    /// By 0.5 m, 1 m and 2 m.
+    /// Whether every hypothesis misses the endpoint by more than 0.5 m, 1 m and 2 m.
     pub(crate) missed: [bool; 3],
     pub(crate) collides: bool,
     pub(crate) truly_collides: bool,
@@ -35,7 +35,7 @@ pub(crate) struct PedestrianScores {
     pub(crate) kde_nll: Option<f64>,
     pub(crate) distribution: Option<DistributionErrors>,
     pub(crate) diversity: Option<Diversity>,
-    /// -ln of the weight of the hypothesis whose goal is nearest to the true end, nats.
+    /// -ln of the weight of the hypothesis whose goal is nearest to the true endpoint, nats.
     pub(crate) weight_log_loss: Option<f64>,
     pub(crate) regions: Option<RegionScores>,
     pub(crate) familiarity: Option<f64>,

@@ -13,7 +13,7 @@ use crate::{Forecast, Forecaster, error::ForecastError};
 pub enum Protocol {
     /// The protocol of the published DDL code: the goal is chosen with the true endpoint.
     Published,
-    /// 20 hypotheses with all goals; the truth chooses only the usual best of 20.
+    /// Up to 20 hypotheses. The true future is used only to choose the best of 20 in the metrics.
     Fair,
     /// One forecast: the [representative](Forecast::representative) hypothesis.
     Single,

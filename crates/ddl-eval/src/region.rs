@@ -9,8 +9,8 @@
 //!
 //! The region of a level is the set of positions whose score is at most `q`, the quantile of this level of the scores
 //! of true positions in separate calibration recordings (split-conformal prediction). It is one disc around each
-//! hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, without a disc where the root is not real. The coverage
-//! holds on average over places like those of the calibration.
+//! hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, and no disc if the root is not real. The coverage holds on
+//! average over places like those of the calibration.
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
@@ -84,8 +84,8 @@ impl Disc {
 }
 
 impl RegionTable {
-    /// The table from scores of true positions: for each level and step the split-conformal quantile of the scores. n
-    /// scores suffice for levels up to n / (n + 1).
+    /// The table from scores of true positions: for each level and step the split-conformal quantile of the scores.
+    /// With n scores, the levels can be up to n / (n + 1).
     ///
     /// # Shapes
     /// `scores` `[pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
@@ -141,7 +141,8 @@ impl Forecast {
         self.score_among(i, t, at, &self.log_weights(i))
     }
 
-    /// The same, with the [`log_weights`](Self::log_weights) of the pedestrian at hand.
+    /// As [`region_score`](Self::region_score), from the precomputed [`log_weights`](Self::log_weights) of the
+    /// pedestrian.
     fn score_among(&self, i: usize, t: usize, at: Position, log_weights: &[f64]) -> Option<f64> {
         let spread = self.spread(i, t)?;
         let of_hypothesis = |(k, log_weight): (usize, &f64)| {
@@ -186,7 +187,7 @@ impl Forecast {
     }
 }
 
-/// Whether one of the discs holds the position.
+/// Whether one of the discs contains the position.
 pub fn holds(region: &[Disc], at: Position) -> bool {
     region.iter().any(|disc| disc.holds(at))
 }
@@ -229,7 +230,7 @@ mod tests {
         for beyond in [0.2, 0.99, f64::NAN] {
             assert_eq!(table.quantile(beyond, 3), None);
         }
-        // 99 scores do not say what one in a hundred exceeds
+        // 99 scores are enough for the level 0.99.
         assert!(RegionTable::of(&scores, &[0.99]).is_some());
         assert_eq!(RegionTable::of(&scores[..98], &[0.99]), None);
         let empty: Result<RegionTable, _> = serde_json::from_str(r#"{"levels": [], "quantiles": []}"#);
@@ -272,7 +273,7 @@ mod tests {
             let quantile = forecast.regions().unwrap().quantile(level, 5).unwrap();
             let mut inside = 0;
             for (&at, score) in truths.iter().zip(&scores) {
-                // the one on the edge may be either
+                // The score on the edge may be on either side.
                 if (score[5] - quantile).abs() > 1e-9 {
                     prop_assert_eq!(holds(&region, at), score[5] < quantile);
                 }

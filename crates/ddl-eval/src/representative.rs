@@ -6,11 +6,11 @@
 //! ```
 //!
 //! If the truth were hypothesis `j` with probability `w_j`, the sum would be the expected ADE of hypothesis `k`. The
-//! hypothesis of greatest weight ([`Forecast::most_likely`]) may be far from most of the probability.
+//! hypothesis with the largest weight ([`Forecast::most_likely`]) may be far from most of the probability.
 //!
 //! # Numerics
-//! O(K^2 T). Expected errors within 1 nm of the least count as equal; of these the hypothesis of greatest weight is
-//! taken, then the first.
+//! O(K^2 T). Expected errors within 1 nm of the smallest count as equal. Of these, the hypothesis with the largest
+//! weight is taken, then the first.
 //!
 //! # References
 //! Berger, "Statistical Decision Theory and Bayesian Analysis", 2nd ed. 1985, section 4.4 (Bayes actions); Kaufman,
@@ -22,8 +22,8 @@ use crate::{Forecast, metric::displacement::average_displacement};
 const EQUAL: f64 = 1e-9;
 
 impl Forecast {
-    /// The representative hypothesis of pedestrian `i`: that of least expected ADE if the truth is one of its
-    /// hypotheses.
+    /// The representative hypothesis of pedestrian `i`: the one with the smallest expected ADE if the truth is one of
+    /// the hypotheses.
     pub fn representative(&self, i: usize) -> usize {
         let weights: Vec<f64> = (0..self.hypotheses()).map(|k| self.weight(i, k)).collect();
         medoid(&weights, |k, j| {
@@ -32,8 +32,8 @@ impl Forecast {
     }
 }
 
-/// The weighted medoid: `argmin_k sum_j w_j d(k, j)`; of equals the one of greatest weight, then the first. Distances
-/// in metres.
+/// The weighted medoid: `argmin_k sum_j w_j d(k, j)`; of equal ones the one with the largest weight, then the first.
+/// Distances are in metres.
 ///
 /// # Panics
 /// When there are no weights.

@@ -36,11 +36,11 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The same scene within `everybody`, the window with all pedestrians of these frames. Metrics that use the true
-    /// futures of others take them from there.
+    /// Sets `everybody`, the window with all pedestrians of these frames. Metrics that use the true futures of others
+    /// take them from it.
     ///
     /// # Errors
-    /// That window has no future, or is not of the same frames of the same recording with all these pedestrians.
+    /// `everybody` has no future, is of other frames or another recording, or lacks a pedestrian of the window.
     pub fn among(self, everybody: &'a Window) -> Result<Self, EvaluationError> {
         let window = self.window;
         let same_frames = window.recording() == everybody.recording() && window.frames() == everybody.frames();

@@ -33,7 +33,7 @@ pub struct Scores {
     pub min_ade: f64,
     /// minFDE over K, a separate minimum, metres.
     pub min_fde: f64,
-    /// FDE of the hypothesis of least ADE, metres.
+    /// FDE of the hypothesis with the smallest ADE, metres.
     pub fde_at_min_ade: f64,
     /// JADE: one hypothesis index for the whole scene, metres.
     pub joint_ade: f64,
@@ -43,13 +43,13 @@ pub struct Scores {
     pub miss_rate: f64,
     /// Share of pedestrians whose representative forecast collides with another's, in [0, 1].
     pub collision_rate: f64,
-    /// The same share of the true futures, in [0, 1].
+    /// Share of pedestrians whose true future collides with another's, in [0, 1].
     pub true_collision_rate: f64,
-    /// Distance of the nearest goal from the true end, metres; `None` for forecasts without goals.
+    /// Distance of the nearest goal from the true endpoint, metres; `None` for forecasts without goals.
     pub goal_fde: Option<f64>,
     /// Behaviour of the rollouts towards their goals; `None` for forecasts without goals.
     pub stability: Option<StabilityScores>,
-    /// ADE of the hypothesis of least FDE, metres.
+    /// ADE of the hypothesis with the smallest FDE, metres.
     pub ade_at_min_fde: Option<f64>,
     /// Weighted mean ADE of all hypotheses, metres.
     pub expected_ade: Option<f64>,
@@ -75,11 +75,12 @@ pub struct Scores {
     pub diversity: Option<f64>,
     /// Mean distance between the ends of two hypotheses, metres; `None` for one hypothesis.
     pub end_diversity: Option<f64>,
-    /// Mean of -ln of the weight of the hypothesis whose goal is nearest to the true end, nats; `None` for one.
+    /// Mean of -ln of the weight of the hypothesis whose goal is nearest to the true endpoint, nats; `None` for one
+    /// hypothesis.
     pub weight_log_loss: Option<f64>,
     /// Share of true positions inside the regions of 50 % and of 90 %, in [0, 1]; `None` for forecasts without regions.
     pub coverage: Option<[f64; 2]>,
-    /// Mean radius of a disc as large as these regions at the last step, metres.
+    /// Mean radius of a disc with the area of these regions at the last step, metres.
     pub region_radius: Option<[f64; 2]>,
     /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not give it.
     pub familiarity: Option<f64>,
@@ -102,8 +103,8 @@ impl Scores {
 
     /// [`Scores::evaluate`] for a part of the pedestrians; `everybody` holds the whole window of each.
     ///
-    /// Means are over the part. Collisions with true futures and interactions include all pedestrians; the collision
-    /// rate, JADE and JFDE, which compare forecasts, only those with forecasts.
+    /// Means are over the part. Collisions with true futures and interactions include all pedestrians. The collision
+    /// rate, JADE and JFDE compare forecasts, so they include only the pedestrians with forecasts.
     ///
     /// # Errors
     /// As [`Scores::evaluate`]; also when a whole window does not belong to the reduced one.
@@ -143,7 +144,7 @@ impl Scores {
             let all = scenes.iter().flat_map(|s| &s.pedestrians);
             all.filter(|pedestrian| of(pedestrian)).count() as f64 / total
         };
-        // All pedestrians have equally many hypotheses: all have a distribution, or none.
+        // All pedestrians have the same number of hypotheses, so either all or none have a distribution.
         let several = first.hypotheses() > 1;
         let of_several = |of: fn(&PedestrianScores) -> Option<f64>| {
             let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(of).sum::<f64>();

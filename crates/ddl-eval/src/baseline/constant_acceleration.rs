@@ -18,12 +18,12 @@ pub struct ConstantAcceleration {
 }
 
 impl ConstantAcceleration {
-    /// As defined, without bounds.
+    /// The definition of the literature, without bounds.
     pub fn unbounded() -> Self {
         Self { bounded: false }
     }
 
-    /// At most the observed speed, and no turning back.
+    /// At most as fast as the fastest observed step, and without turning back.
     pub fn bounded() -> Self {
         Self { bounded: true }
     }
@@ -78,10 +78,10 @@ mod tests {
     use super::*;
     use crate::fixture::of_tracks;
 
-    /// The end after 12 frames, computed by hand: from (7, -0.1) with v = (1, 0) and a = (0, 0.1) 12 m along x and
-    /// 0.1 * 12 * 13 / 2 = 7.8 m along y; steps of 1 m, the last of 0.75 m, turn back by 12 * 0.75 - 0.25 *
-    /// 78 = -10.5 m, and bounded 0.5, 0.25 and 0 m follow; steps of 0.5 m, once 0.6 m, the last 0.55 m, get faster,
-    /// bounded by 0.6 m.
+    /// The position after 12 frames, computed by hand. From (7, -0.1) with v = (1, 0) and a = (0, 0.1): 12 m along x
+    /// and 0.1 * 12 * 13 / 2 = 7.8 m along y. Steps of 1 m, the last of 0.75 m: unbounded it turns back by 12 * 0.75 -
+    /// 0.25 * 78 = -10.5 m; bounded, steps of 0.5, 0.25 and 0 m follow. Steps of 0.5 m, one of 0.6 m, the last of
+    /// 0.55 m: it gets faster, bounded by 0.6 m.
     #[test]
     fn ends_by_hand() {
         let (free, bounded) = (ConstantAcceleration::unbounded(), ConstantAcceleration::bounded());

@@ -1,4 +1,4 @@
-//! Straight lines to the goals: the value of a goal estimator without a model.
+//! Straight lines to the goals: the quality of a goal estimator without a model.
 
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
@@ -64,7 +64,7 @@ pub trait GoalSource {
     /// The goals of every pedestrian, in the order of the window; all sets have the same size.
     ///
     /// # Errors
-    /// The goals cannot be estimated, or need a future that the window does not have.
+    /// The goals cannot be estimated, or they need a future and the window has none.
     fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError>;
 }
 
@@ -99,7 +99,7 @@ impl GoalSource for TrueEndpoint {
     }
 }
 
-/// Constant speed straight to each goal, which is reached at the 12th frame:
+/// Straight at constant speed to each goal, with arrival at the 12th frame:
 /// `p(8 + t) = p(8) + t/12 (g - p(8))`, one hypothesis for each goal, with the goal's weight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct StraightLine<G>(G);

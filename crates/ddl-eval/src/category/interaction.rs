@@ -11,9 +11,9 @@ use crate::metric::displacement::{distance, minus, turn};
 const STRIDE: usize = 3;
 /// Pedestrians at this distance or farther are ignored, metres.
 const REACH: f64 = 5.0;
-/// Half the width of "ahead", and of "in the same direction"; degrees.
+/// Half the width of the sectors "ahead" and "in the same direction", degrees.
 const NARROW: f64 = 15.0;
-/// Half the width of "at the side"; degrees.
+/// Half the width of the sector "at the side", degrees.
 const SIDE: f64 = 45.0;
 const FOLLOWED: usize = 5;
 /// Mean distance below which pedestrians may be a group, metres.
@@ -39,10 +39,10 @@ const GROUP_DEVIATION: f64 = 0.2;
 /// The frames need not be consecutive, and the deviation is that of the population.
 ///
 /// # Differences from `TrajNet++`
-/// `TrajNet++`'s dataset tool observes 9 frames and judges a group over 21. It includes one border of each sector; here
-/// both borders belong to it, so that mirror images are alike. There, a pedestrian that does not move from t - 3 to t
-/// walks along x; here it has no direction, so no neighbour is ahead of it or beside it. There, all pedestrians of a
-/// frame are neighbours; here only those with all 20 steps.
+/// `TrajNet++`'s dataset tool observes 9 frames and decides over 21 frames whether pedestrians are a group. It includes
+/// one border of each sector; here a sector includes both borders, so that mirror images give the same result. In the
+/// tool, a pedestrian that does not move from t - 3 to t walks along x; here it has no direction, so no neighbour is
+/// ahead of it or beside it. In the tool, all pedestrians of a frame are neighbours; here only those with all 20 steps.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds", T-ITS 2021, section III.
@@ -167,9 +167,9 @@ mod tests {
 
     const EAST: Position = [0.5, 0.0];
 
-    /// A pedestrian from the origin to the east, and others. Ahead is within 15 degrees and 5 m; a pedestrian from 16 m
-    /// is nearer only at the forecast frames; a group walks at most 0.8 m apart, and not from 0.1 m to 1.05 m; a
-    /// standing pedestrian has no course.
+    /// A pedestrian that walks from the origin to the east, and others. "Ahead" is within 15 degrees and 5 m. A
+    /// pedestrian that comes from 16 m is nearer only at the forecast frames. A group walks at most 0.8 m apart, and
+    /// its distance does not change from 0.1 m to 1.05 m. A standing pedestrian has no course.
     #[test]
     fn each_kind_by_hand() {
         let aside = |degrees: f64, metres: f64| {

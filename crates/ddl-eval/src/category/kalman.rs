@@ -47,8 +47,8 @@ mod tests {
 
     use super::*;
 
-    /// The same filter with matrices, written with numpy from the equations above: `tests/reference/distribution.py`
-    /// prints these numbers.
+    /// The expected numbers are printed by `tests/reference/distribution.py`: the same filter, written with numpy
+    /// matrices from the equations above.
     #[test]
     fn a_crooked_walk_as_computed_elsewhere() {
         let walk = [

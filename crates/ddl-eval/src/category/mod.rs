@@ -1,6 +1,6 @@
 //! Categories of pedestrians: [`MotionKind`], and `TrajNet++`'s [`TrajectoryType`] with [`Interaction`]s.
 //!
-//! All read the future. They group results after the forecasts are made; no forecast may depend on them.
+//! All categories read the future. They group results after the forecasts are made; forecasts must not depend on them.
 
 mod interaction;
 mod kalman;
@@ -39,7 +39,7 @@ impl Category {
         motions.chain(types).chain(interactions)
     }
 
-    /// The categories of pedestrian `i`, in that order; none for windows without a future.
+    /// The categories of pedestrian `i`, in that order; empty for windows without a future.
     pub fn of(window: &Window, i: usize) -> Vec<Self> {
         let Some((kind, interactions)) = TrajectoryType::with_interactions(window, i) else {
             return Vec::new();

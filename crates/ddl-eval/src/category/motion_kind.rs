@@ -11,9 +11,9 @@ use crate::metric::displacement::{distance, minus, turn};
 const STANDING: f64 = 1.0;
 /// A shorter displacement has no direction (m).
 const NO_DIRECTION: f64 = 0.5;
-/// A smaller turn counts as straight on (degrees).
+/// Turn below which the motion counts as straight (degrees).
 const TURN: f64 = 20.0;
-/// A smaller change counts as the same speed (share of the observed speed).
+/// Relative change of speed below which the speed counts as the same.
 const CHANGE: f64 = 0.3;
 
 /// Kind of motion of a track of 20 positions, with its true future.
@@ -36,7 +36,7 @@ const CHANGE: f64 = 0.3;
 pub enum MotionKind {
     /// Within 1 m of the first position all the time.
     Standing,
-    /// None of the other kinds.
+    /// Any other motion.
     Straight,
     /// 20 degrees or more to the left.
     TurningLeft,

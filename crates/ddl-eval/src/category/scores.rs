@@ -16,7 +16,7 @@ pub struct CategoryScores {
     pub min_ade: f64,
     /// minFDE over K, a separate minimum, metres.
     pub min_fde: f64,
-    /// FDE of the hypothesis of least ADE, metres.
+    /// FDE of the hypothesis with the smallest ADE, metres.
     pub fde_at_min_ade: f64,
     /// Share of pedestrians for whom every hypothesis ends more than 0.5 m from the true endpoint, in [0, 1].
     pub miss_rate: f64,

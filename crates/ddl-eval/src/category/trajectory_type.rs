@@ -18,7 +18,7 @@ const LINEAR: f64 = 0.5;
 /// # Differences from `TrajNet++`
 /// `TrajNet++` has 9 observed frames of 21 and one primary pedestrian in a scene; here each pedestrian of a window has
 /// a type, over 20 frames. The bound of II is the paper's; the published tool uses 1 m, and fits its filter first (see
-/// `src/category/kalman.rs`). Its data sets keep a tenth of the static scenes; here all count.
+/// `src/category/kalman.rs`). Its data sets keep a tenth of the static scenes; here all are counted.
 ///
 /// # References
 /// Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds: A Deep Learning Perspective", T-ITS 2021, section

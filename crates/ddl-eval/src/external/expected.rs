@@ -14,7 +14,7 @@ use crate::Forecast;
 pub(super) struct PedestrianForecast {
     /// `[K][12]`, metres.
     pub(super) positions: Vec<Position>,
-    /// `[K]`; `None` for equal ones.
+    /// `[K]`; `None` for equal weights.
     pub(super) weights: Option<Vec<f64>>,
     /// `[K]`, metres.
     pub(super) goals: Option<Vec<Position>>,
@@ -99,7 +99,7 @@ impl<'a> ExpectedForecasts<'a> {
         self.by_last.get(&(recording, observed_until)).copied()
     }
 
-    /// The index of the named recording; without a name, of the only one. `None` for an unknown name.
+    /// The index of the named recording. Without a name, the index of the only recording. `None` for an unknown name.
     pub(super) fn recording(&self, name: Option<&str>) -> Result<Option<usize>, Wrong> {
         match name {
             Some(name) => Ok(self.index_of(name)),

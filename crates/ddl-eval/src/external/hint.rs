@@ -9,9 +9,9 @@ pub(super) struct Unknown {
     pub(super) count: usize,
     pub(super) first: Vec<String>,
     recordings: Vec<String>,
-    /// Number that would match if the frame were the first one of the window.
+    /// Number of forecasts that would match if the frame were the first one of the window.
     as_first_frame: usize,
-    /// Number that would match if it were the first forecast frame.
+    /// Number of forecasts that would match if the frame were the first forecast frame.
     as_next_frame: usize,
     frames: Option<(i64, i64)>,
 }
@@ -52,7 +52,7 @@ impl Unknown {
                 self.recordings.join(" and ")
             );
         }
-        // If more match unchanged, the frame is not the reason.
+        // If more forecasts match without a shift, the frame is not the reason.
         let most = fitting.max(self.count / 2);
         for (count, frame) in [
             (self.as_first_frame, "first frame of a window"),

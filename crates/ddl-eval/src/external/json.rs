@@ -10,7 +10,7 @@ use serde_path_to_error::{Path, Segment};
 use super::error::ExternalProblem;
 use super::lines::{self, Wrong, in_field, quoted, whole_line};
 
-/// Words for numbers that are not JSON but that several programs write.
+/// Words for numbers that are not valid JSON, but that several programs write.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
 
 /// A whole number in any notation.
@@ -38,7 +38,7 @@ pub(super) fn whole<'de, D: Deserializer<'de>>(field: D) -> Result<i64, D::Error
     Whole::deserialize(field).map(|Whole(number)| number)
 }
 
-/// For fields: a pedestrian, either a whole number in any notation or a word in quotes.
+/// Deserialises a pedestrian: a whole number in any notation, or a word in quotes.
 pub(super) fn pedestrian<'de, D: Deserializer<'de>>(field: D) -> Result<PedestrianName, D::Error> {
     Ok(match Name::deserialize(field)? {
         Name::Number(Whole(number)) => PedestrianName::Number(number),

@@ -33,7 +33,7 @@ struct JsonHypothesis {
     positions: Vec<Position>,
 }
 
-/// A field must be a number if it is there; `null`, which some programs write for NaN, is an error.
+/// A field that is present must be a number; `null`, which some programs write for NaN, is an error.
 fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     f64::deserialize(deserializer).map(Some)
 }

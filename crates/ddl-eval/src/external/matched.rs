@@ -57,7 +57,7 @@ impl Matched {
         self.pedestrians
     }
 
-    /// The description of the scored part of the pedestrians, with a digest of them. `None` where all are scored.
+    /// Text that describes the scored part of the pedestrians, with a digest of them; `None` if all are scored.
     pub fn test_subset(&self) -> Option<String> {
         let scored = self.forecast_pedestrians();
         (scored < self.pedestrians).then(|| {

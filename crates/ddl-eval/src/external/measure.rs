@@ -7,8 +7,8 @@ use super::matched::Matched;
 use crate::metric::displacement::distance;
 use crate::{Conditions, Protocol, ResultRow, baseline};
 
-/// Distance that a pedestrian does not walk in 0.4 s, m. If half of the forecasts start farther away, the file is
-/// wrong.
+/// Distance (m) above that of any step of 0.4 s. If half of the forecasts start farther from their pedestrians, the
+/// file is refused.
 const FARTHEST: f64 = 3.0;
 
 /// Scores forecasts of a file under the protocol of the conditions, then the baselines on the same pedestrians.
@@ -17,8 +17,8 @@ const FARTHEST: f64 = 3.0;
 /// [`Scores::evaluate_among`](crate::Scores::evaluate_among).
 ///
 /// # Errors
-/// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] where half of the
-/// forecasts start more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
+/// [`ExternalError::Published`] under the protocol `published`; [`ExternalError::OutOfPlace`] if half of the forecasts
+/// start more than 3 m from their pedestrians; too many hypotheses; windows that cannot be scored.
 pub fn measure(conditions: &Conditions, matched: &Matched, noise_seed: u64) -> Result<Vec<ResultRow>, ExternalError> {
     if conditions.protocol == Protocol::Published {
         return Err(ExternalError::Published);

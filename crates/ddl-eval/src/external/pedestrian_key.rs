@@ -36,7 +36,8 @@ pub(super) fn last_observed(window: &Window) -> i64 {
     window.frames()[OBSERVED - 1]
 }
 
-/// The forecast frames of a window: its own, and those at its regular step, which differ where the recording has gaps.
+/// The forecast frames of a window: its own frames, and those at its regular step. They differ if the recording has
+/// gaps.
 pub(super) fn frames_ahead(window: &Window) -> [Vec<i64>; 2] {
     let (last, step) = (last_observed(window), window.frame_step());
     let regular: Vec<i64> = (1..=HORIZON as i64).map(|t| last + t * step).collect();

@@ -2,7 +2,7 @@
 //!
 //! A scene belongs to the window that starts at its first frame or, with 9 observed frames, at its second. A
 //! neighbour's forecast counts if no scene of the window has it as primary; pedestrians outside the window are ignored.
-//! Hypothesis k of a window is composed of the scenes.
+//! Hypothesis k of a window is composed of the forecasts k of its scenes.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;

@@ -13,8 +13,9 @@
 //!
 //! # Differences from the published code
 //! Social-Implicit fits a mixture of up to four Gaussians to 1,000 samples; here C and m are the moments of the
-//! hypotheses. AMV does not depend on the number of components; AMD agrees with theirs where they choose one. As in
-//! their code, but not in their paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world axes.
+//! hypotheses. AMV does not depend on the number of components; AMD agrees with theirs when they choose one component.
+//! As in their code, but not in their paper, AMV is the largest eigenvalue of the mean, which adds pedestrians in world
+//! axes.
 //!
 //! # References
 //! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness of Implicit
@@ -38,7 +39,7 @@ pub struct DistributionErrors {
 }
 
 impl DistributionErrors {
-    /// That of pedestrian `i`; `None` for forecasts of one hypothesis.
+    /// The errors of pedestrian `i`; `None` for forecasts of one hypothesis.
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         if scene.hypotheses() < 2 {
             return None;

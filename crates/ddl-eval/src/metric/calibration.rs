@@ -8,7 +8,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Bins of the reliability table, each with as many goals.
+/// Number of bins of the reliability table, each with the same number of goals.
 const BINS: usize = 10;
 /// Smallest probability in the log loss.
 const SMALLEST: f64 = 1e-6;
@@ -29,9 +29,9 @@ pub struct Calibration {
 /// Hypotheses of about the same probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CalibrationBin {
-    /// Their mean probability.
+    /// Mean probability of the hypotheses.
     pub predicted: f64,
-    /// Share of those that were nearest to the truth.
+    /// Share of the hypotheses that were nearest to the truth.
     pub observed: f64,
     /// Number of hypotheses.
     pub count: usize,

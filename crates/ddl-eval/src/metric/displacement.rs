@@ -11,11 +11,12 @@
 //! goal FDE = min_k |g_k - p(T)|             with the goals g_k
 //! ```
 //!
-//! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the end (`PECNet`,
-//! Y-Net) print `ADE@minFDE`. The expected error is that of a hypothesis drawn by its weight. The protocol `single`
-//! scores the [representative](Forecast::representative) hypothesis, not the most likely one. JADE and JFDE suit only
-//! models whose hypothesis `k` is one future of the scene. "Joint Metrics Matter" averages over scenes; here a scene
-//! counts with its number of pedestrians. A goal beyond the 12th frame is still compared with the last true position.
+//! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the endpoint
+//! (`PECNet`, Y-Net) print `ADE@minFDE`. The expected error is that of a hypothesis that is drawn with the probability
+//! of its weight. The protocol `single` scores the [representative](Forecast::representative) hypothesis, not the most
+//! likely one. JADE and JFDE suit only models whose hypothesis `k` is one future of the scene. "Joint Metrics Matter"
+//! averages over scenes; here a scene counts with its number of pedestrians. A goal beyond the 12th frame is still
+//! compared with the last true position.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al., "Social GAN", CVPR 2018
@@ -114,12 +115,12 @@ impl DisplacementErrors {
         self.fde(i).iter().copied().fold(f64::INFINITY, f64::min)
     }
 
-    /// FDE of the hypothesis of least ADE of pedestrian `i` (of equals, the first), metres.
+    /// FDE of the hypothesis of pedestrian `i` with the smallest ADE (of equal ones, the first), metres.
     pub fn fde_at_min_ade(&self, i: usize) -> f64 {
         self.fde(i)[least(self.ade(i))]
     }
 
-    /// ADE of the hypothesis of least FDE of pedestrian `i` (of equals, the first), metres.
+    /// ADE of the hypothesis of pedestrian `i` with the smallest FDE (of equal ones, the first), metres.
     pub fn ade_at_min_fde(&self, i: usize) -> f64 {
         self.ade(i)[least(self.fde(i))]
     }
@@ -155,7 +156,7 @@ fn least_scene_mean(errors: &DisplacementErrors, of: fn(&DisplacementErrors, usi
         .fold(f64::INFINITY, f64::min)
 }
 
-/// Distance of the nearest goal of pedestrian `i` from the true end, metres; `None` without goals.
+/// Distance of the nearest goal of pedestrian `i` from the true endpoint, metres; `None` without goals.
 pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let end = scene.window().end(i)?;
     (0..scene.hypotheses())

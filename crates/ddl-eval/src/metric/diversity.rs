@@ -5,7 +5,7 @@
 //! FPD_i = mean over pairs k < l of |x_k(T) - x_l(T)|                  metres
 //! ```
 //!
-//! Weights and truth do not enter, so noise is diverse too. Diversity needs several hypotheses.
+//! It does not depend on the weights and the truth, so noise is diverse too. Diversity needs several hypotheses.
 //!
 //! # References
 //! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020 (APD).
@@ -22,7 +22,7 @@ pub struct Diversity {
 }
 
 impl Diversity {
-    /// That of pedestrian `i`; `None` for forecasts of one hypothesis.
+    /// The diversity of pedestrian `i`; `None` for forecasts of one hypothesis.
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let (forecast, k) = (scene.forecast(), scene.hypotheses());
         if k < 2 {
@@ -36,7 +36,7 @@ impl Diversity {
                 let (mut sum, mut last) = (0.0, 0.0);
                 for (p, q) in pairs {
                     let (dx, dy) = (p[0] - q[0], p[1] - q[1]);
-                    // Squares of positions of pedestrians do not overflow.
+                    // The square of a position does not overflow, because coordinates are bounded.
                     last = (dx * dx + dy * dy).sqrt();
                     sum += last;
                     steps += 1;

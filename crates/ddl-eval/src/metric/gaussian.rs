@@ -31,7 +31,7 @@ impl Covariance {
         }
     }
 
-    /// The sum of two.
+    /// The sum of both covariances.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
@@ -95,12 +95,12 @@ impl PrincipalAxes {
     }
 }
 
-/// First and second moment of weighted points.
+/// Mean and covariance of weighted points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Moments {
     /// The mean, metres.
     pub mean: Position,
-    /// The covariance about it, square metres.
+    /// The covariance, square metres.
     pub covariance: Covariance,
 }
 

@@ -16,7 +16,8 @@
 //! mixture, H is s^2 times the identity.
 //!
 //! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, except
-//! for the smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it, where others fail or skip the frame.
+//! for the smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it. Other implementations fail or skip the
+//! frame in this case.
 //!
 //! Lower is better, and it may be negative. A forecast of one hypothesis has no density. The value depends strongly on
 //! the number of hypotheses: values for 1,000 samples and for 20 are not comparable.
@@ -41,8 +42,8 @@ pub const MIN_DEVIATION: f64 = 0.01;
 /// When the numbers of weights and points differ.
 ///
 /// # Numerics
-/// The sum of exponentials is taken relative to its largest term. Where all weight is on one point the covariance is
-/// 0/0; it counts as 0.
+/// The sum of exponentials is taken relative to its largest term. If all weight is on one point, the covariance is 0/0
+/// and is set to 0.
 pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();

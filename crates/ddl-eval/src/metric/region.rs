@@ -1,4 +1,4 @@
-//! The probability given to the true future, and the coverage of regions.
+//! The log loss of the weights, and the coverage of regions.
 
 use ddl_data::HORIZON;
 
@@ -18,12 +18,12 @@ const SMALLEST_WEIGHT: f64 = 1e-6;
 pub struct RegionScores {
     /// Share of the 12 true positions inside their regions, in [0, 1].
     pub coverage: [f64; LEVELS.len()],
-    /// Radius of a disc as large as the region of the last step, metres.
+    /// Radius of a disc with the area of the region at the last step, metres.
     pub end_radius: [f64; LEVELS.len()],
 }
 
 impl RegionScores {
-    /// Those of pedestrian `i`; `None` for forecasts without regions.
+    /// The scores of pedestrian `i`; `None` for forecasts without regions.
     pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
         let forecast = scene.forecast();
         forecast.regions()?;
@@ -39,8 +39,8 @@ impl RegionScores {
     }
 }
 
-/// -ln of the weight of the hypothesis that is nearest to the true endpoint with its goal, or with its last position
-/// without a goal; nats. `None` for forecasts of one hypothesis. Equal weights have ln K.
+/// -ln of the weight of the hypothesis whose goal is nearest to the true endpoint (without goals: whose last position
+/// is nearest), nats. `None` for forecasts of one hypothesis. For equal weights it is ln K.
 pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);

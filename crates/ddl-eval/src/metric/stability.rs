@@ -1,4 +1,4 @@
-//! Stability of rollouts: whether they go to their goals, checked on the output.
+//! Stability of rollouts: whether the forecast positions approach their goals.
 //!
 //! Phi(t) = |p(t) - g| is the distance to the goal, the Lyapunov function of DDL (its potential), from the last
 //! observed position (t = 0) to the 12th forecast frame. For each rollout, that is each hypothesis of each pedestrian:
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use super::displacement::{distance, minus, turn};
 use crate::Scene;
 
-/// Within this distance a pedestrian is at the goal, and a shorter step has no direction; metres.
+/// Distance (metres) within which a pedestrian is at the goal, and length below which a step has no direction.
 pub const GOAL_TOLERANCE: f64 = 1e-3;
 
 /// Behaviour of one rollout towards its goal.
@@ -119,9 +119,9 @@ mod tests {
 
     use super::*;
 
-    /// Descent of Phi, distance at the end and largest turn of rollouts: straight to the goal; past a goal at (0.6, 0)
-    /// by 0.4 m (nearer: 0.6 to 0.4) and further by 0.5 m, at 180 degrees to it; along a side of a 3-4-5 triangle, at
-    /// acos(0.6) to it; standing at the goal, where no step has a direction, and standing elsewhere.
+    /// Descent of Phi, distance at the end and largest turn of five rollouts: straight to the goal; past a goal at
+    /// (0.6, 0) by 0.4 m (still nearer: from 0.6 to 0.4) and further by 0.5 m, at 180 degrees to it; along a side of a
+    /// 3-4-5 triangle, at acos(0.6) to it; standing at the goal, where no step has a direction; and standing elsewhere.
     #[test]
     fn rollouts_by_hand() {
         let ahead: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();

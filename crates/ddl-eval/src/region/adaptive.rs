@@ -7,17 +7,18 @@ use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
 use super::tracked::{Outcomes, TrackedQuantiles};
 use crate::Forecast;
 
-/// Takes every forecast of one place in order of time, and gives each the regions that have kept their coverage so far.
+/// Adapts the regions of the forecasts of one place so that they keep their coverage. It takes every forecast, in order
+/// of time.
 ///
-/// The regions of a forecast `t` steps ahead are compared with the observed position `t` steps later, and change later
-/// regions from then on. Pedestrians outside the window of that frame are skipped. The result does not depend on the
-/// order of the pedestrians, or on later frames.
+/// The regions of a forecast `t` steps ahead are compared with the positions observed `t` steps later. The result
+/// changes all later regions. Pedestrians outside the window of that frame are skipped. The result does not depend on
+/// the order of the pedestrians, or on later frames.
 ///
 /// It begins with the table of the first forecast that has one. Forecasts without regions are unchanged.
 ///
 /// # State
-/// The [learned](Self::learned) shifts, a few numbers, which can be saved and [resumed](Self::resuming); and the
-/// forecasts of the last 4.8 s, which are not saved.
+/// It keeps the [learned](Self::learned) shifts, which can be saved and [resumed](Self::resuming), and the forecasts of
+/// the last 4.8 s, which are not saved.
 ///
 /// # Examples
 /// ```
@@ -41,18 +42,18 @@ use crate::Forecast;
 #[derive(Debug, Clone, Default)]
 pub struct AdaptiveRegions {
     learned: Option<TrackedQuantiles>,
-    /// The last frame, and the earlier ones with open forecasts; oldest first.
+    /// The last frame and earlier frames with pending forecasts, oldest first.
     pending: VecDeque<Pending>,
 }
 
-/// A forecast that waits for its outcomes.
+/// A forecast whose outcomes are not yet observed.
 #[derive(Debug, Clone)]
 struct Pending {
     /// The last frame observed.
     frame: i64,
     pedestrians: Vec<PedestrianId>,
     forecast: Forecast,
-    /// `[N][K]`: ln of the weight in weights of the likeliest hypothesis.
+    /// `[N][K]`: ln of the weight, relative to the weight of the most likely hypothesis.
     log_weights: Vec<f64>,
 }
 
@@ -71,13 +72,13 @@ impl AdaptiveRegions {
         self.learned.as_ref()
     }
 
-    /// Forgets the open forecasts, as after a restart of a tracker; the learned state stays.
+    /// Forgets the pending forecasts, as after a restart of a tracker. The learned state is kept.
     pub fn clear(&mut self) {
         self.pending.clear();
     }
 
-    /// Learns from the positions at the last observed frame of the window, and gives the forecast its new regions. A
-    /// frame that is not later than the one before [clears](Self::clear) the open forecasts first.
+    /// Learns from the positions at the last observed frame of the window, and gives the forecast its new regions. If
+    /// the frame is not later than the previous one, the pending forecasts are [cleared](Self::clear) first.
     ///
     /// # Panics
     /// When the forecast has fewer pedestrians than the window.
@@ -290,7 +291,7 @@ mod tests {
         assert_eq!(regions.learned().cloned(), learned);
         let _ = regions.adapt(&stream[1].0, stream[1].1.clone());
         assert_ne!(regions.learned().cloned(), learned);
-        // 4.8 s later no forecast is open.
+        // After 4.8 s a forecast is no longer pending.
         assert!(regions.pending.len() <= HORIZON);
     }
 }

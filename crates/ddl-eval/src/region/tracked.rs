@@ -10,8 +10,8 @@
 //! `missed` is the share of the `n` observed pedestrians outside their regions for this frame, `share` the time since
 //! the frame before in steps of 0.4 s, at most 1. As long as no shift reaches its bound, the shift after some frames is
 //! the sum of these moves. So the mean of `missed`, weighted by `w`, differs from `1 - a` by at most
-//! `LARGEST_SHIFT / (STEP sum w)`, for any motion of the pedestrians. Where quantiles of two levels cross they are
-//! sorted, and then this holds for the levels together.
+//! `LARGEST_SHIFT / (STEP sum w)`, for any motion of the pedestrians. If the quantiles of two levels cross, they are
+//! sorted; the bound then holds for the levels together.
 //!
 //! # References
 //! - Gibbs and Candes, *Adaptive Conformal Inference Under Distribution Shift*, 2021.
@@ -32,7 +32,7 @@ const STEP: f64 = 0.06;
 const LARGEST_WEIGHT: f64 = 3.0;
 /// ln 64: a quantile stays between 1/64 and 64 times that of the table, a radius between about 1/8 and 8 times.
 const LARGEST_SHIFT: f64 = 4.158_883_083_359_672;
-/// Smallest quantile that is multiplied, so that one of 0 can grow.
+/// Smallest quantile that is multiplied, so that a quantile of 0 can grow.
 const LEAST: f64 = 1e-3;
 
 /// A table of quantiles with their learned shifts.
@@ -200,7 +200,7 @@ mod tests {
         assert!(read(&text.replace("0.9", "1.5")).is_err());
     }
 
-    /// A frame: for each observed pedestrian whether it is missed, and the distance from the edge.
+    /// One frame: for each observed pedestrian, whether it is missed, and its distance from the edge.
     type Judged = Vec<(bool, f64)>;
 
     proptest! {
@@ -221,7 +221,7 @@ mod tests {
                 let judged: &Judged = judged;
                 let table = issued.pop_front().unwrap();
                 let edge = table.quantile(level, t).unwrap();
-                // Runs in which all miss or none misses move the quantile furthest.
+                // Runs in which all regions miss, or no region misses, move the quantile furthest.
                 let mood = (at / run) % 3;
                 let score = |&(coin, by): &(bool, f64)| {
                     let misses = if mood == 2 { coin } else { mood == 0 };

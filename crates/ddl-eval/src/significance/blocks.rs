@@ -105,7 +105,8 @@ mod tests {
         Window::new(recording, start, 10, id, track).unwrap()
     }
 
-    /// A step is 10 frames, so that a block is 500: windows from 0 and 499 share one, those from 500 and -1 do not.
+    /// A step is 10 frames, so a block is 500 frames: windows from 0 and 499 share a block; those from 500 and -1 are
+    /// in other blocks.
     #[test]
     fn windows_belong_to_the_block_they_start_in() {
         let starts = [("a", 0), ("a", 499), ("a", 500), ("a", -1), ("b", 0)];

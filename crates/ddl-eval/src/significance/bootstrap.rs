@@ -25,7 +25,8 @@ pub struct Interval {
     pub high: f64,
 }
 
-/// The plain mean over the folds of the mean error of each, with its 95 % percentile interval over resampled blocks, m.
+/// The unweighted mean over the folds of the mean error of each fold, with its 95 % percentile interval over resampled
+/// blocks, m.
 ///
 /// `folds[f]` are the blocks of fold f. In each of [`RESAMPLES`] resamples every fold draws as many of its blocks as it
 /// has, with replacement; its mean is that of the pedestrians in them. `None` without folds, or with a fold of fewer
@@ -68,7 +69,7 @@ pub(super) fn interval(folds: &[Vec<PartialSum>]) -> Option<Interval> {
                 .iter()
                 .map(|fold| {
                     let draw = (0..fold.len()).map(|_| fold[random.random_range(0..fold.len())]);
-                    // Every block has pedestrians, so that every resample has a mean.
+                    // Every block has pedestrians, so every resample has a mean.
                     mean(draw).unwrap_or(f64::NAN)
                 })
                 .collect();

@@ -31,8 +31,8 @@ pub struct DifferentWindowsError {
 
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
-/// The test: if the two were alike, both signs of the difference of a block would be equally likely. `None` without
-/// folds, or with a fold of fewer than [`MIN_BLOCKS`](super::MIN_BLOCKS) blocks.
+/// The null hypothesis of the test: both signs of the difference of a block are equally likely. `None` without folds,
+/// or with a fold of fewer than [`MIN_BLOCKS`](super::MIN_BLOCKS) blocks.
 ///
 /// # Errors
 /// The blocks of the two differ in number, recording or pedestrians.
@@ -76,7 +76,7 @@ pub fn paired_difference(
 }
 
 fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
-    // Sums in another order differ in their last bits but count as equal.
+    // Sums in another order differ in their last bits, but must count as equal.
     let as_large = observed.abs() * (1.0 - 1e-12);
     let mut random = generator();
     let mut at_least = 1;

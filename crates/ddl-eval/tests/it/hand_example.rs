@@ -88,8 +88,8 @@ fn misses_and_collisions() {
     check("missed by 0.5 m", s.miss_rate, 1.0 / 3.0);
     check("missed by 1 m", s.miss_rate_1m, 1.0 / 3.0);
     check("missed by 2 m", s.miss_rate_2m, 0.0);
-    // The representatives, of two the heavier: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from x = 12.72 to
-    // 7.22. C passes B at 0.1 m; A stays 0.94 m from C and more than 1 m from B.
+    // The representatives are the heavier of two hypotheses: A along y = 0.32, B at (10, 1.36), C along y = 1.26 from
+    // x = 12.72 to 7.22. C passes B at 0.1 m; A stays 0.94 m from C and more than 1 m from B.
     check("collisions", s.collision_rate, 2.0 / 3.0);
     // In truth A and C pass each other at 0.3 m, and B is 2.26 m from C.
     check("true collisions", s.true_collision_rate, 2.0 / 3.0);
@@ -137,13 +137,14 @@ fn diversity() {
     check("of the ends", s.end_diversity, (0.8 + 1.5 + 1.2) / 3.0);
 }
 
-/// Numbers of `hand_example()` in `tests/reference/distribution.py` (numpy 2.4.6, scipy 1.17.1), which has the offsets
-/// typed in anew and works with whole matrices.
+/// Numbers of `hand_example()` in `tests/reference/distribution.py` (numpy 2.4.6, scipy 1.17.1), which repeats the
+/// offsets and computes with matrices.
 #[test]
 fn the_distribution_as_computed_elsewhere() {
     let s = scores();
     check("KDE NLL", s.kde_nll, 8.296_237_304_878_993);
-    // Worked out with 40 digits: across their line two hypotheses are 1 cm wide, which magnifies what 16 digits leave.
+    // Computed with 40 digits: across the line of the two hypotheses the deviation is only 1 cm, which magnifies
+    // rounding errors.
     check("AMD", s.amd, 37.879_277_080_741_79);
     check("AMV", s.amv, 0.336_472_522_377_543_5);
 }

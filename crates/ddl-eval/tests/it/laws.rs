@@ -51,7 +51,7 @@ fn all_agree(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(close)
 }
 
-/// Some of the hypotheses of every pedestrian, with positions and goals moved; equal weights where not all are taken.
+/// Some of the hypotheses of every pedestrian, with positions and goals moved; equal weights unless all are taken.
 fn rebuilt(forecast: &Forecast, order: &[usize], by: impl Fn(Position) -> Position) -> Forecast {
     let (n, k) = (forecast.pedestrians(), order.len());
     let pairs = || (0..n).flat_map(|i| order.iter().map(move |&h| (i, h)));
@@ -187,8 +187,8 @@ proptest! {
         prop_assert_eq!(several, [None; 5]);
     }
 
-    /// All hypotheses on the truth: the narrowest distribution there is, (1 cm)^2 in all directions, with the truth at
-    /// its middle.
+    /// All hypotheses equal the truth: the narrowest possible distribution, (1 cm)^2 in all directions, with the truth
+    /// at its centre.
     #[test]
     fn certain_and_right_is_the_best_distribution((window, _) in any_scene(), k in 2..6_usize) {
         let n = window.len();
@@ -236,7 +236,7 @@ proptest! {
         };
         prop_assert_eq!(of(|c| matches!(c, Category::Motion(_))), s.pedestrians);
         prop_assert_eq!(of(|c| matches!(c, Category::Type(_))), s.pedestrians);
-        // So that the types' means, weighted by their pedestrians, are the totals.
+        // So the means of the types, weighted by their pedestrians, are the totals.
         let types = s.categories.iter().filter(|c| matches!(c.category, Category::Type(_)));
         let mean = types.map(|c| c.min_ade * c.pedestrians as f64).sum::<f64>();
         prop_assert!(all_agree(&[mean / s.pedestrians as f64], &[s.min_ade]));

@@ -257,7 +257,7 @@ fn missing_forecasts_and_forecasts_without_a_pedestrian_are_counted_and_named() 
         let alone = complaint(&text, ExternalFormat::JsonLines);
         assert!(alone.contains(expected), "{alone}");
     }
-    // If the others match, one that would match after a shift is no evidence against the frame.
+    // If the other forecasts match, one that would match after a shift is no evidence against the frame.
     let among_others = hint(&line(90, 5, &hypothesis(2.0)));
     assert!(!among_others.contains("first frame forecast"));
     let nothing = read(

@@ -61,7 +61,7 @@ after the last observed one are 80, 90 to 190
 "#;
     let both = first.clone() + &line(70, 5, &hypothesis(2.0));
     check_all(format, edits, |parts| {
-        // What both lines have is replaced in the second, but for a brace alone.
+        // The common start of both lines is replaced in the second, unless it is only a brace.
         let at = if parts[0] == "{" { 0 } else { first.len() };
         both[..at].to_owned() + &edited(&both[at..], parts[0], parts[1])
     });
@@ -71,7 +71,8 @@ after the last observed one are 80, 90 to 190
         &(first + &line(70, 5, &twice)),
         "2: 2 hypotheses, but 1 on line 1",
     );
-    // Fields of two hypotheses; what programs write for a goal of NaN is a list, and a bare null is no goal.
+    // Fields of two hypotheses. Some programs write a list of nulls for a goal of NaN, which is an error; a plain null
+    // means no goal.
     let pairs = r#"
 "weight":0.5, => => 1, hypotheses: all hypotheses of a pedestrian must have weights
 "weight":0.5, => "weight":NaN, => 1, hypotheses[1].weight: must be a finite number
@@ -124,7 +125,7 @@ yard => \n\n"yard",70,5,0,"1,80,2,0,ok\nyard => 16: a quote is not closed on thi
     check_all(format, edits, |parts| {
         first.clone() + &edited(&second, parts[0], parts[1])
     });
-    // Pedestrian, hypothesis and weight, rows for rows.
+    // Pedestrian, hypothesis and weight of each row.
     let sequences = r"
 3/0/1 5/0/1 3/0/1 => 26: line 2 already forecasts this pedestrian
 3/0/1 5/0/0.5 5/1/0.5 5/0/0.5 => 38, hypothesis: hypothesis 0 appeared before
