@@ -3,8 +3,9 @@
 //! ```text
 //! cargo run --release -p ddl-goal --example goals_of_a_pedestrian
 //! ```
-//! The library is synthetic: at a fork pedestrians walk on, bear left or bear right, at many speeds and in all
-//! directions. A new pedestrian, seen for 3.2 s (8 positions), begins to bear left; the goals are for 4.8 s later.
+//! The library is synthetic: at a fork, pedestrians walk straight on, turn left or turn right, at many speeds and in
+//! all directions. A new pedestrian, observed for 3.2 s (8 positions), begins to turn left. The goals are for 4.8 s
+//! later.
 #![expect(clippy::print_stdout, reason = "the example prints its result")]
 
 use std::error::Error;

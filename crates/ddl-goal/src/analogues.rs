@@ -22,7 +22,7 @@ const KEPT: usize = 100;
 #[derive(Clone, Debug)]
 pub(crate) struct Analogues {
     index: MotionIndex,
-    /// Deviation of each track from going straight on, in its own frame (m).
+    /// Deviation of the endpoint of each track from repeating its last step, in its own frame (m).
     deviations: Vec<[f64; 2]>,
     time_step: f64,
 }

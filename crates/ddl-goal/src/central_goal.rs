@@ -12,7 +12,7 @@ const STEADINESS: f64 = 0.3;
 const JITTER: f64 = 0.06;
 /// Mean change of the step (m) below which the motion is simply extrapolated.
 const EXACT: f64 = 0.005;
-/// Weight of the changes against the mean step: a pedestrian that moves less than this share of them stands.
+/// Share of the mean change of the step. A pedestrian whose mean step is shorter than this stands.
 const STANDING: f64 = 0.5;
 /// Independent errors of the positions give successive changes of the step the correlation -2/3.
 const OF_ERRORS: f64 = -2.0 / 3.0;

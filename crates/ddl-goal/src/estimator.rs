@@ -17,8 +17,8 @@ use crate::span::{QuerySpan, velocities};
 ///
 /// In [`RetrievalFrame::Heading`], the default, every pedestrian is described in its [`crate::HeadingFrame`] by its
 /// velocities, divided by its pace. The experts are the N most similar tracks of the library, or mirror images of
-/// tracks, weighted by similarity. K goals are chosen among the deviations of their endpoints from going straight on
-/// (`docs/method.md`).
+/// tracks, weighted by similarity. The deviations of their endpoints from repeating the last step are clustered to K
+/// goals (`docs/method.md`).
 ///
 /// In [`RetrievalFrame::World`], the published estimator, velocities are compared by the normalised soft-DTW distance
 /// (equations 4 and 5 of the paper), and k-means of the endpoints of the N nearest tracks (equation 6) gives K goals.

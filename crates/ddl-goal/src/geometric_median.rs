@@ -5,8 +5,8 @@ use crate::points::squared_distance;
 /// The iteration ends after a step shorter than this (m).
 const LAST_STEP: f64 = 1e-4;
 const MOST_STEPS: usize = 100;
-/// A given point is returned only if it is better than the iterated point by more than this share. Where the median is
-/// not unique, as between two equal points, rounding must not decide.
+/// A given point is returned only if it is better than the iterated point by more than this share. If the median is not
+/// unique, as between two equal points, rounding must not decide.
 const ROUNDING: f64 = 1e-9;
 
 /// The point with the least weighted mean distance to `points` (m): one of them, or a point between them.
@@ -15,9 +15,9 @@ const ROUNDING: f64 = 1e-9;
 /// `points`: at least one; `weights`: one per point, not negative, with a positive sum.
 ///
 /// # Numerics
-/// A point whose weight exceeds the pull of all others is the median, returned exactly. Otherwise Weiszfeld's iteration
-/// starts at the weighted mean, until a step is below 0.1 mm, for at most 100 steps. A given point is returned instead
-/// if it is better.
+/// A given point is the median if its weight exceeds the pull of all others; it is then returned exactly. Otherwise
+/// Weiszfeld's iteration starts at the weighted mean, and ends when a step is below 0.1 mm or after 100 steps. A given
+/// point is returned instead if it is better.
 ///
 /// # References
 /// E. Weiszfeld, "Sur le point pour lequel la somme des distances de n points donnés est minimum", 1937; H. W. Kuhn, "A
@@ -143,7 +143,7 @@ mod tests {
         }
     }
 
-    /// Every place between is equally good; the result is the middle, independent of rounding.
+    /// Every point between them is equally good; the result is the midpoint, independent of rounding.
     #[test]
     fn two_equal_points_meet_half_way() {
         let median = geometric_median(&[[0.1, 0.2], [3.1, 4.2]], &[0.5; 2]);

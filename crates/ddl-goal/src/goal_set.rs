@@ -102,7 +102,7 @@ impl GoalSet {
         Ok(Self::new(goals, choice.weights, Vec::new()))
     }
 
-    /// The goals (m, in the coordinates of the observed track), as many as clusters requested. Goals are repeated where
+    /// The goals (m, in the coordinates of the observed track), as many as clusters requested. Goals are repeated if
     /// the experts have fewer distinct endpoints.
     pub fn goals(&self) -> &[[f64; 2]] {
         &self.goals
@@ -112,7 +112,7 @@ impl GoalSet {
     ///
     /// It is the share of the experts whose transformed endpoint is nearest to the goal. Experts count by similarity
     /// ([`crate::RetrievalFrame::Heading`]) or equally ([`crate::RetrievalFrame::World`]). Of repeated goals, one has
-    /// the whole share and the others have 0.
+    /// the whole weight and the others have weight 0.
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
@@ -154,8 +154,8 @@ impl GoalSet {
     /// set.
     ///
     /// # Numerics
-    /// Exactly a goal if its weight outweighs all others, otherwise iterated until a step is below 0.1 mm, at most 100
-    /// times. No goal has a smaller mean distance.
+    /// The median is exactly a goal if the weight of that goal exceeds the pull of all others. Otherwise it is iterated
+    /// until a step is below 0.1 mm, at most 100 times. No goal has a smaller mean distance.
     pub fn median(&self) -> [f64; 2] {
         let estimated = self.estimated.as_ref().unwrap_or(&self.weights);
         let sharpened: Vec<f64> = estimated.iter().map(|weight| weight.powf(Self::SHARPNESS)).collect();
@@ -203,7 +203,8 @@ mod tests {
         }
     }
 
-    /// By hand: the roots of 0.64, 0.16 and 0.04 are in proportion 4 : 2 : 1; a tenth is divided equally.
+    /// By hand: the square roots of 0.64, 0.16 and 0.04 are in proportion 4 : 2 : 1; a tenth of the probability is
+    /// divided equally.
     #[test]
     fn tempered_weights_are_powers_and_a_share_for_all() {
         let goals = vec![[3.0, 1.0], [4.0, 1.0], [9.0, 1.0]];
@@ -228,7 +229,8 @@ mod tests {
         assert_eq!(set.most_likely(), 0);
     }
 
-    /// By hand: 0.45 is less than the rest, but 0.45^1.5 = 0.302 is more than 0.2^1.5 + 0.35^1.5 = 0.297.
+    /// By hand: 0.45 is less than the sum of the other weights, but 0.45^1.5 = 0.302 is more than 0.2^1.5 +
+    /// 0.35^1.5 = 0.297.
     #[test]
     #[expect(clippy::float_cmp, reason = "the median is exactly a goal")]
     fn the_median_uses_sharpened_weights() {

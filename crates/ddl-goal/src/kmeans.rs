@@ -8,16 +8,14 @@ use crate::lloyd::Lloyd;
 use crate::points::{Points, is_in_range};
 use crate::seeding::first_centres;
 
-/// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts, of which the one with the least inertia is
-/// used.
+/// k-means with greedy k-means++ seeding, Lloyd's iteration and restarts. The run with the smallest inertia is used.
 ///
 /// Inertia is the sum of the squared distances of the points to their centres (m²). A run ends when no point changes
-/// its cluster, when the sum of the squared movements of the centres is below `tolerance` times the mean variance of
-/// the coordinates, or after `max_iterations`: the rules and defaults of scikit-learn. A cluster that loses all its
-/// points is moved to the point farthest from its own centre. Equal points count as one with a multiplicity. If there
-/// are fewer distinct points than clusters, each is a centre and the first of them are repeated, so the number of
-/// centres is always the requested one. The result depends on the set of points and the seed, not on the order of the
-/// points.
+/// its cluster, or when the sum of the squared movements of the centres is below `tolerance` times the mean variance of
+/// the coordinates, or after `max_iterations`. These are the rules and defaults of scikit-learn. A cluster that loses
+/// all its points is moved to the point farthest from its own centre. Equal points count as one with a multiplicity. If
+/// there are fewer distinct points than clusters, each point is a centre and the first ones are repeated, so there are
+/// always `clusters` centres. The result depends on the set of points and the seed, not on the order of the points.
 #[derive(Clone, Debug)]
 pub(crate) struct KMeans {
     pub(crate) clusters: usize,

@@ -7,12 +7,12 @@ use crate::span::{QuerySpan, velocities};
 
 /// Components compared: 7 velocities ahead, the direction in the world (2), 7 velocities to the left.
 pub(crate) const COMPONENTS: usize = SIGNED + STEPS;
-/// The first component whose sign a mirror image changes; it changes all from here on.
+/// Index of the first component whose sign changes in a mirror image; the signs of all later ones change too.
 pub(crate) const SIGNED: usize = STEPS + 2;
 const STEPS: usize = 7;
-/// Factor between the weights of the squared differences of a step and of the next later step.
+/// Weight of the squared difference of a step, relative to that of the following step.
 const FADING: f64 = 0.5;
-/// Pace of a standing pedestrian (m/s): keeps the noise of standing pedestrians from counting as motion.
+/// Smallest pace (m/s), so that the noise of a standing pedestrian does not count as motion.
 const STANDING_PACE: f64 = 0.25;
 
 const DIRECTION: f64 = 0.2;
@@ -65,14 +65,14 @@ impl Motion {
         })
     }
 
-    /// Deviation of a place (m) from repeating the last step for a share of the time to the end, ahead and to the left
-    /// (m).
+    /// Deviation (m, ahead and to the left) of a position (m) from the position after repeating the last step for the
+    /// given share of the forecast.
     pub(crate) fn deviation(&self, place: [f64; 2], share: f64) -> [f64; 2] {
         let place = self.frame.to_frame(place);
         [0, 1].map(|d| place[d] - share * self.straight_on[d])
     }
 
-    /// The place (m) with a given deviation (m): the inverse of [`Motion::deviation`].
+    /// The position (m) with a given deviation (m): the inverse of [`Motion::deviation`].
     pub(crate) fn place(&self, deviation: [f64; 2], share: f64) -> [f64; 2] {
         let in_frame = [0, 1].map(|d| share * self.straight_on[d] + deviation[d]);
         self.frame.to_world(in_frame)

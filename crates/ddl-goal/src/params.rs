@@ -29,8 +29,8 @@ pub enum RetrievalFrame {
 /// | `restarts` | 10 | 10 | runs of k-means, of which the best is used, in the frame `World` only |
 /// | `seed` | 0 | 0 | seed of k-means, in the frame `World` only |
 ///
-/// In the frame `Heading` each track counts twice, as itself and as its mirror image. If these are fewer than
-/// `experts`, all are retrieved; in `World` a library with fewer tracks than `experts` is refused.
+/// In the frame `Heading` each track counts twice, as itself and as its mirror image. If there are fewer of these than
+/// `experts`, all are retrieved. In `World`, a library with fewer tracks than `experts` is refused.
 ///
 /// # Examples
 /// ```

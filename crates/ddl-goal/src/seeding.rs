@@ -7,8 +7,9 @@ use crate::points::{Points, squared_distance};
 
 /// Chooses `clusters` of the points as first centres.
 ///
-/// The first is drawn by multiplicity. Each further one is the best of 2 + ln K draws with probability proportional to
-/// the squared distance to the centres so far (times multiplicity); the best draw leaves the least sum of these.
+/// The first is drawn by multiplicity. Each further centre is the best of 2 + ln K draws, whose probability is
+/// proportional to the squared distance to the nearest centre so far (times multiplicity). The best draw leaves the
+/// smallest sum of these distances.
 ///
 /// # References
 /// Arthur & Vassilvitskii, *k-means++: the advantages of careful seeding*, SODA 2007 (the greedy variant of section 5).
@@ -82,8 +83,8 @@ mod tests {
     const SEEDS: u64 = 2000;
 
     /// By hand: the first centre is the heavy point at 0. The next is drawn twice: the point at 1 (squared distance
-    /// times weight 8) with probability 2/3, that at -2 with 1/3. The point at 1 is better (it leaves 4 m², the other
-    /// 8), so it is chosen unless both draws are the other. Four standard deviations of a share of so many draws are at
+    /// times weight 8) with probability 2/3, the point at -2 with 1/3. The point at 1 is better (it leaves 4 m², the
+    /// other 8), so it is chosen unless both draws are -2. Four standard deviations of the share over all draws are at
     /// most 0.045.
     #[test]
     fn the_next_centre_is_the_best_of_draws_by_squared_distance_and_weight() {

@@ -106,7 +106,7 @@ fn head(content: &[u8]) -> String {
     line + "\n"
 }
 
-/// The memory, if its content is possible.
+/// Checks the content, and returns the memory.
 fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     let error = |error: MemoryError| error.to_string();
     let mut memory = SceneMemory::new(stored.frame_step, stored.capacity).map_err(error)?;

@@ -10,7 +10,7 @@ use crate::MemoryError;
 use crate::piece::is_remembered;
 use crate::track::{RunningTrack, Track};
 
-/// Largest capacity in stretches; with the shortest tracks it takes 180 MB.
+/// Largest capacity in stretches; a memory of this size takes up to 180 MB.
 pub(crate) const LARGEST_CAPACITY: usize = 1 << 18;
 /// A full memory removes this fraction (1/n) of its capacity at once ...
 const FORGOTTEN_AT_ONCE: usize = 32;
@@ -24,14 +24,15 @@ const OLDEST: usize = 8;
 /// A stretch contains only positions of observed frames.
 ///
 /// - A missing step ends a run of stretches. A track ends after more than
-///   [`MAX_ABSENCE_STEPS`](crate::MAX_ABSENCE_STEPS) steps without a position. The same id later starts a new track.
+///   [`MAX_ABSENCE_STEPS`](crate::MAX_ABSENCE_STEPS) steps without a position; if the same id returns later, a new
+///   track begins.
 /// - Two stretches are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
 /// - A track is kept in runs of up to 8 stretches. A run is removed if its first and its last stretch are both similar
-///   to stretches of an earlier run of the same track (the run right before it does not count). Of the others the
+///   to stretches of an earlier run of the same track, except the run right before it. Of the remaining runs, the
 ///   latest [`MAX_RUNS`](crate::MAX_RUNS) are kept. So a pedestrian that stands for an hour takes the space of three
 ///   runs.
 /// - The memory holds at most `capacity` stretches. A full memory frees 1/32 of them among the oldest eighth of the
-///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, each time the
+///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, in both cases the
 ///   oldest first. If no track has ended, the longest one loses its oldest run.
 /// - In addition, it holds the pedestrians of the last 3.2 s.
 /// - The same frames give the same memory, for any order of the pedestrians within a frame.
@@ -82,7 +83,7 @@ impl Seen {
 }
 
 impl SceneMemory {
-    /// Default capacity in stretches: those of some hundreds to thousands of pedestrians.
+    /// Default capacity in stretches: enough for some hundreds to thousands of pedestrians.
     pub const DEFAULT_CAPACITY: usize = 20_000;
 
     /// An empty memory; `frame_step` is the number of raw frames per step of 0.4 s, such as 10 at 25 frames per second.
@@ -138,8 +139,8 @@ impl SceneMemory {
     /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
     /// A memory accepts the frames that [`LiveTracks`](ddl_data::LiveTracks) accepts. It ignores positions with x or y
-    /// beyond 1e7 m. If no two frames are one step apart, it holds no stretches, although [`summary`](Self::summary)
-    /// counts pedestrians. An example is every third frame of a camera with 10 frames per step.
+    /// beyond 1e7 m. If no two frames are one step apart (as for every third frame of a camera with 10 frames per
+    /// step), it holds no stretches, although [`summary`](Self::summary) counts pedestrians.
     ///
     /// # Errors
     /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. The memory is then unchanged.
@@ -175,8 +176,8 @@ impl SceneMemory {
         Ok(())
     }
 
-    /// Marks a restart of the camera or its tracker: all tracks end, and frames may begin at any number. Nothing is
-    /// forgotten.
+    /// Marks a restart of the camera or its tracker: all tracks end, and frames may begin at any number. The stretches
+    /// are kept.
     pub fn interrupt(&mut self) {
         self.end_tracks(|_| true);
         self.last_frame = None;

@@ -15,8 +15,8 @@ impl SceneMemory {
     /// The last of the 8 observed positions (m, one step of 0.4 s apart) is the present one. The squared distance of a
     /// stretch is `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`. Here `dp` is the difference of the eighth
     /// positions, `dv` that of the velocities over the last 3 of the 8 steps, and `de` that over the first 3. It is
-    /// computed in `f32`, to about 1e-5, and must be below [`FARTHEST`]. Of equally near pedestrians, those that have
-    /// left come first, in the order in which they left, then those present, by id.
+    /// computed in `f32`, to about 1e-5, and must be below [`FARTHEST`]. Pedestrians at equal distance are ordered:
+    /// first those that have left, in the order in which they left, then those present, by id.
     ///
     /// `own` is the id of this pedestrian, whose running track is left out. If a component of the motion is not finite,
     /// the result is empty.

@@ -1,4 +1,4 @@
-//! Replay of a recording: its windows, each with the tracks remembered at that moment.
+//! Replay of a recording: its windows, each with the tracks that the memory recalls at that time.
 
 use ddl_data::{OBSERVED, Recording, Window};
 
@@ -33,7 +33,7 @@ impl Playback {
 
 impl SceneMemory {
     /// The windows of one recording, each with at most `count` remembered tracks per pedestrian. Before each window,
-    /// this memory observes the recording up to the last observed frame of the window; nothing later is read.
+    /// this memory observes the recording up to the last observed frame of the window, and no later frame.
     ///
     /// With [`Playback::Backward`], observation begins at the last frame of the windows.
     ///
@@ -81,7 +81,7 @@ impl SceneMemory {
         window.with_remembered(|_| remembered.next().unwrap_or_default())
     }
 
-    /// Observes a whole recording. The next one observed counts as a recording of its own.
+    /// Observes a whole recording, and ends all tracks.
     ///
     /// # Errors
     /// [`MemoryError`] if the number of raw frames per step differs between recording and memory. The memory is then

@@ -1,11 +1,12 @@
-//! The stretches of one pedestrian, and the running track of one that may be seen again.
+//! The stretches of one pedestrian, and the running track of a pedestrian that may be seen again.
 
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};
 
 use crate::piece::{Motion, Piece, SHARED};
 
-/// A track ends after this many steps of 0.4 s (3.2 s) without a position. The same id later starts a new track.
+/// A track ends after this many steps of 0.4 s (3.2 s) without a position. If the same id returns later, a new track
+/// begins.
 pub const MAX_ABSENCE_STEPS: i64 = 8;
 /// Largest number of runs of 8 stretches kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
 pub const MAX_RUNS: usize = 32;
@@ -39,8 +40,8 @@ impl Track {
             .is_some_and(|motion| others.any(|other| other.is_alike(&motion)))
     }
 
-    /// Adds a piece. The previous last piece is removed if it repeats an earlier one; the one right before it does not
-    /// count. Returns the number of stretches removed.
+    /// Adds a piece. The previous last piece is removed if it repeats an earlier piece, except the one right before it.
+    /// Returns the number of stretches removed.
     fn add(&mut self, piece: Piece) -> usize {
         let gone = match &self.pieces[..] {
             [.., last] if last.len() == 0 => self.pieces.pop(),

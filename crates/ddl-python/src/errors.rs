@@ -20,7 +20,7 @@ pub(crate) fn raised(error: impl Into<ddl::DdlError>) -> PyErr {
     of_any(&error)
 }
 
-/// The same for errors from outside the facade.
+/// As [`raised`], for errors of the other crates.
 pub(crate) fn of_any(error: &(dyn Error + 'static)) -> PyErr {
     let mut cause = Some(error);
     while let Some(one) = cause {

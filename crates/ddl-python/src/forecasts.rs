@@ -28,7 +28,7 @@ impl Forecasted {
     }
 }
 
-/// The optional fields in the result for an empty window, the same as the forecaster gives for other windows.
+/// The optional fields of the result for an empty window: those that the forecaster gives for other windows.
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each tells whether one field is present")]
 pub(crate) struct EmptyFields {
@@ -112,7 +112,7 @@ pub(crate) fn parts<'py>(
     Ok(dict)
 }
 
-/// The observation that the forecast is made from, and the number of made-up positions.
+/// The observation, and the numbers of filled-in positions.
 fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
@@ -129,7 +129,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
     dict.set_item("made_up", array(py, made_up.collect(), [n, 2])?)
 }
 
-/// The same with pedestrians, frames and recording; `parts` frames of the window are one frame of the file.
+/// As [`parts`], with pedestrians, frames and recording; `parts` frames of the window are one frame of the file.
 pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,

@@ -19,8 +19,8 @@ struct Pool {
     threads: Arc<ThreadPool>,
 }
 
-/// The pool to compute on. A rayon worker that waits for part of its work runs other jobs of its pool meanwhile. Live
-/// frames have their own pool, so that they do not wait for a long call of another thread.
+/// The pool to compute on. A rayon worker that waits for a part of its work runs other jobs of its pool. So live frames
+/// have their own pool, in which they do not wait for a long call of another thread.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum User {
     Calls,
@@ -45,7 +45,7 @@ pub(crate) fn run<T: Send + 'static>(py: Python<'_>, work: impl FnOnce(&Stop) ->
     run_on(User::Calls, py, work, |_| Ok(()))
 }
 
-/// The same for live frames.
+/// As [`run`], on the pool for live frames.
 pub(crate) fn run_live<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,
@@ -53,7 +53,7 @@ pub(crate) fn run_live<T: Send + 'static>(
     run_on(User::Live, py, work, |_| Ok(()))
 }
 
-/// The same with progress; `tell` is called with the GIL every 50 ms, and may end the call by an exception.
+/// As [`run`], with progress: `tell` is called with the GIL every 50 ms, and may end the call with an exception.
 pub(crate) fn run_telling<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&Stop) -> T + Send + 'static,

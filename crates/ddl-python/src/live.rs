@@ -1,4 +1,4 @@
-//! Live forecasts of a watched place.
+//! Live forecasts of an observed place.
 
 use crate::arrays::points;
 use crate::errors::raised;
@@ -20,7 +20,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct Live(Slot);
 
-/// Empty while a call uses the watch. No lock is held during a forecast, so a worker thread never waits for its own
+/// `None` while a call uses the state. No lock is held during a forecast, so a worker thread never waits for its own
 /// lock.
 type Slot = Arc<Mutex<Option<Box<Watching>>>>;
 
@@ -47,7 +47,7 @@ impl Watching {
         if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
             && file.is_due()
         {
-            // The frame has been observed: a full disk must not lose its forecast.
+            // The frame has been observed, so a full disk must not discard its forecast.
             unwritten = file.write(place).err().map(|error| error.to_string());
         }
         Ok((forecast, unwritten))
@@ -65,14 +65,14 @@ impl Watching {
     }
 }
 
-/// Exclusive use of a watch. Dropping it returns the watch, also after a panic or an interrupted call.
+/// Exclusive use of the state. Dropping it returns the state, even after a panic or an interrupted call.
 struct Turn {
     slot: Slot,
     watching: Option<Box<Watching>>,
 }
 
 impl Turn {
-    /// Waits for the watch, after other calls.
+    /// Waits until other calls have returned the state.
     fn take(py: Python<'_>, slot: &Slot) -> PyResult<Self> {
         let watching = wait_for(py, || held(slot).take())?;
         Ok(Self {
@@ -81,7 +81,7 @@ impl Turn {
         })
     }
 
-    /// Never `None`: the watch is present until this is dropped.
+    /// Never `None`: the state is present until this is dropped.
     fn watching(&mut self) -> Option<&mut Watching> {
         self.watching.as_deref_mut()
     }

@@ -14,8 +14,8 @@ use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// A scene with its true future. Without a past, the motion is unknown, and each pedestrian stands at the start of its
-/// future.
+/// A scene with its true future. Without a past, each pedestrian stands at the first position of its future during the
+/// observation.
 fn window(
     start_frame: i64,
     truth: &PyReadonlyArray3<'_, f64>,

@@ -23,7 +23,7 @@ const BATCH: usize = 64;
 #[derive(Debug)]
 pub(crate) struct Model(pub(crate) Arc<Ddl>);
 
-/// How to forecast.
+/// The options of a forecast.
 #[derive(Debug, Clone, Copy)]
 struct Manner {
     one: bool,

@@ -9,7 +9,7 @@ use std::io::Write as _;
 pub(crate) fn main(py: Python<'_>, arguments: Vec<String>) -> u8 {
     py.detach(|| {
         let code = ddl_cli::run(arguments);
-        // Python's exit does not flush it. An error means that the reader has closed the output.
+        // Python's exit does not flush Rust's standard output. An error means that the reader has closed the output.
         let _ = std::io::stdout().flush();
         code
     })

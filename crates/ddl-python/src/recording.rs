@@ -19,7 +19,7 @@ use std::sync::Arc;
 #[derive(Debug, Clone)]
 pub(crate) struct Recording {
     pub(crate) tracks: Arc<Tracks>,
-    /// Number of its frames in a frame of the file; above 1 if 0.4 s is no whole number of frames.
+    /// Number of its frames per frame of the file; above 1 if 0.4 s is not a whole number of frames.
     pub(crate) parts: i64,
 }
 
@@ -211,7 +211,7 @@ impl Recording {
         Ok((frame, id, axis(0)?, axis(1)?))
     }
 
-    /// A fault that the speeds suggest, in words.
+    /// Text that describes a fault suggested by the speeds.
     fn doubt(&self) -> Option<String> {
         Some(self.tracks.speed_doubt()?.to_string())
     }

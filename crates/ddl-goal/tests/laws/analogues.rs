@@ -101,7 +101,7 @@ fn equal_analogues_weigh_the_same() {
     let params = GoalEstimatorParams::default().clusters(3);
     let library = [3.0, 0.0, -3.0].map(turned).to_vec();
     let set = estimator(params, library).estimate(&turned(0.0)).unwrap();
-    // Each is present with its mirror image.
+    // Each track is present with its mirror image.
     for weight in set.weights() {
         assert!((weight - 1.0 / 3.0).abs() < 1e-12, "{set:?}");
     }

@@ -44,7 +44,7 @@ fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEst
 }
 
 /// The published library lacks up to 256 random pedestrians of the last, incomplete batch, and a few windows at the
-/// ends of recordings. So a published distance is one of ours, at the same rank or a few ranks later, never before.
+/// ends of recordings. So each published distance is also found here, at the same rank or a few ranks later.
 #[test]
 fn expert_distances_are_the_published_ones() {
     const FURTHER: usize = 8;

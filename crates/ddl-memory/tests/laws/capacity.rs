@@ -1,4 +1,4 @@
-//! A full memory: never above its capacity, and it keeps the newest tracks.
+//! A full memory never exceeds its capacity, and keeps the newest tracks.
 
 use crate::{crowd::Crowd, memory_of, queries};
 use ddl_data::{OBSERVED, PedestrianId, Position};
@@ -39,7 +39,8 @@ fn observed(y: f64) -> [Position; OBSERVED] {
     std::array::from_fn(|t| [0.5 * t as f64, y])
 }
 
-/// Many take one path and one pedestrian takes another: of the many the oldest are removed, and the one stays.
+/// Many pedestrians take one path, and one pedestrian takes another. The oldest tracks on the common path are removed,
+/// and the other track stays.
 #[test]
 fn repeated_tracks_are_removed_first_oldest_first() {
     let mut memory = SceneMemory::new(1, 64).unwrap();
@@ -118,7 +119,7 @@ fn a_pedestrian_walking_about_for_hours_does_not_fill_a_memory() {
     assert_eq!(summary.extent, Some([[0.0, 0.0], [9_999.5, 3.0]]));
 }
 
-/// As many running tracks as pedestrians, and all pedestrians stay.
+/// All tracks are running, because all pedestrians stay.
 #[test]
 fn if_all_tracks_are_running_the_longest_is_shortened() {
     let mut crowd = Crowd::new(4, 30);

@@ -23,8 +23,8 @@ fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<Remembered>> {
         .collect()
 }
 
-/// Whether the answer of a memory after the frames before `end` depends on a later frame or shows one. `fed` creates
-/// the memory that answers.
+/// Whether the recall of a memory after the frames before `end` depends on a later frame or contains one. `fed` creates
+/// the memory.
 fn sees_the_future(fed: impl Fn(&Frames, usize) -> SceneMemory, frames: &Frames, end: usize) -> bool {
     let now = frames[..end].to_vec();
     let found = answers(&fed(frames, end), &now);
