@@ -11,7 +11,7 @@ pub struct StepReport {
     pub done: usize,
     /// Steps in an epoch.
     pub steps_per_epoch: usize,
-    /// Mean loss (square metres) since the last step that has one; `None` where the step does not read the loss.
+    /// Mean loss (square metres) since the last step that has one; `None` if the step does not read the loss.
     /// On CUDA only every sixteenth step and the last of an epoch read it.
     pub loss: Option<f64>,
     /// The report of the epoch, after its last step.
@@ -39,6 +39,7 @@ pub struct EpochReport {
 pub struct ProposalStep {
     /// Steps done, including this one.
     pub done: u64,
-    /// Running mean of the training distance (metres): at first of several nearest endpoints, at last of the nearest.
+    /// Running mean of the training distance (metres): at first of several nearest endpoints, at the end of the nearest
+    /// one.
     pub distance: f64,
 }

@@ -1,4 +1,4 @@
-//! The trait of a backbone, and the output layer behind it.
+//! The trait of a backbone, and the output layer after it.
 
 use crate::StarConfig;
 use crate::backend::{Backend, Memory};

@@ -113,7 +113,7 @@ impl KernelBackend {
         if let Some(tape) = &self.tape {
             tape.push(step);
         }
-        // Without the feature nothing calls the backward kernels, so the compiler leaves them out.
+        // Without the feature, the backward kernels are never called, so the compiler leaves them out.
         #[cfg(not(feature = "training"))]
         drop(step);
     }
@@ -148,7 +148,7 @@ impl KernelBackend {
         let rows = Rc::new(Rows::new(shape, numbers));
         let output = Rc::clone(&rows);
         self.record_backward(move |of_weights| {
-            // Without a gradient the loss does not depend on this output.
+            // If there is no gradient, the loss does not depend on this output.
             if let Some(gradient) = output.take_gradient() {
                 backward(&gradient, of_weights);
             }

@@ -20,7 +20,7 @@ pub trait Backend: Debug + Sized + 'static {
     type Tokens: Debug + Clone;
     /// Keys and values of tokens, for later queries; cloning is cheap.
     type KeyValues: Debug + Clone;
-    /// Visibility masks of one time step, or of one for each batch entry.
+    /// Visibility masks of one time step, or of one time step for each batch entry.
     type Seen: Debug + Clone;
 
     /// The number of batch entries B.

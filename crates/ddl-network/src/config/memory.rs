@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 pub struct MemoryConfig {
     /// Number of earlier pedestrians attended to: the most similar ones.
     pub remembered: usize,
-    /// Width of the code of an earlier pedestrian.
+    /// Width of the encoding of an earlier pedestrian.
     pub width: i64,
     /// Heads of the attention over earlier pedestrians.
     pub heads: i64,
@@ -20,7 +20,7 @@ pub struct MemoryConfig {
     pub hidden: i64,
     /// Number of hidden layers after the attention.
     pub layers: usize,
-    /// An earlier pedestrian at the squared distance d has the weight exp(-d / `fade`).
+    /// Scale of the weight exp(-d / `fade`) of an earlier pedestrian at the squared distance d.
     pub fade: f64,
     /// Sum of these weights at which the endpoints of the branch get half of the probability.
     pub half: f64,
@@ -77,7 +77,7 @@ impl MemoryConfig {
 pub struct MemoryTraining {
     /// Number of batches.
     pub steps: u64,
-    /// Share of the pedestrians of a batch that are given only a random part of the earlier pedestrians.
+    /// Share of the pedestrians of a batch that receive only a random part of the earlier pedestrians.
     pub partial: f64,
     /// Standard deviation of the offset added to the whole track of an earlier pedestrian (metres).
     pub jitter: f64,

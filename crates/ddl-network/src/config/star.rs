@@ -47,7 +47,7 @@ pub struct StarConfig {
     pub time_step: f64,
 }
 
-/// STAR is not written, because configurations of earlier versions have no field `backbone`.
+/// The backbone STAR is not written, because configurations of earlier versions have no field `backbone`.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
 fn is_star(backbone: &BackboneKind) -> bool {
     *backbone == BackboneKind::Star

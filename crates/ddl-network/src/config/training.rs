@@ -52,7 +52,7 @@ pub enum Objective {
 
 named!(Objective, "objective", NextStep => "next-step", Walk => "walk");
 
-/// Keeps the number of training steps within `u64`.
+/// Largest number of epochs, so that the number of training steps fits `u64`.
 const MOST_EPOCHS: usize = 1_000_000;
 
 /// Settings of the training.

@@ -232,8 +232,8 @@ impl<'a> Course<'a> {
     }
 
     /// Moves the pedestrians one step by the output of the network, `[H, P, outputs]`: factors (a, b, c) or vectors in
-    /// the pedestrians' frames. Afterwards the factors are in the frame of the world. `steps`: the number of steps
-    /// done, and of steps left including this one.
+    /// the pedestrians' frames. Afterwards the factors are in the frame of the world. `steps`: the numbers of steps
+    /// done and of steps left, including this one.
     pub(super) fn advance(&mut self, emitted: &mut [f32], steps: (usize, usize)) {
         self.before.copy_from_slice(&self.positions);
         if self.observation.config.variant.dynamics() {

@@ -26,7 +26,7 @@ impl NoiseSpread {
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
     ///
     /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n. L0 L0^T alone would
-    /// give too low speeds.
+    /// give speeds that are too low.
     pub(super) fn expected_factor(self, [a, b, c]: [f32; 3]) -> [f32; 3] {
         let first = (a * a + self.c11).max(SMALLEST_PIVOT).sqrt();
         let below = (a * b + self.c12) / first;

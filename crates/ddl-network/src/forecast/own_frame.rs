@@ -1,5 +1,6 @@
 //! A pedestrian's own frame. Its first axis points from the last observed position to the goal, and its unit of length
-//! depends on the pedestrian's speed. So a track trains all directions, and a runner has the inputs of a fast walk.
+//! depends on the pedestrian's speed. So a track trains all directions, and the inputs of a runner are like those of a
+//! fast walk.
 //!
 //! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: about 1 m up to walking speed, and
 //! about v / (2 m/s) metres far above it.

@@ -25,7 +25,7 @@ pub(super) struct PassLayers<'a> {
     pub(super) spread: Option<NoiseSpread>,
 }
 
-/// What all hypotheses of a batch share.
+/// The data that all hypotheses of a batch share.
 pub(super) struct Pass<'a> {
     layers: PassLayers<'a>,
     kernels: &'a Arc<Kernels>,
@@ -39,7 +39,7 @@ pub(super) struct Pass<'a> {
 /// The key-value caches after the observed time steps, and the features of the last one.
 type Observed = (Memory<KernelBackend>, Rc<Rows>);
 
-/// Some hypotheses of a pass on their way, on one thread.
+/// Some hypotheses of a pass, rolled out on one thread.
 struct Part<'a> {
     pass: &'a Pass<'a>,
     backend: KernelBackend,
@@ -110,7 +110,7 @@ fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
 impl Part<'_> {
     fn roll_out(&self) -> BatchRollout {
         let Pass { observation, batch, .. } = self.pass;
-        // Without goals among the inputs the observed time steps are the same for all hypotheses.
+        // If goals are not an input, the observed time steps are the same for all hypotheses.
         let count = self.hypotheses.len();
         let shared = observation.entries() == 1 && count > 1;
         let course = Course::new(observation, batch, self.hypotheses.clone());
@@ -142,7 +142,7 @@ impl Part<'_> {
         (memory, newest)
     }
 
-    /// Goes through the time steps to forecast.
+    /// Computes the time steps to forecast.
     fn walk(&self, mut course: Course<'_>, (mut memory, mut features): Observed) -> BatchRollout {
         let Pass {
             layers,
@@ -200,7 +200,7 @@ impl Part<'_> {
         Buffer::copy(&self.backend.linear(self.pass.layers.output, &inputs))
     }
 
-    /// The noise beside each pedestrian's features, `[H, P, noise]`: zeros where its expectation is added afterwards.
+    /// The noise input of each pedestrian, `[H, P, noise]`; zeros if the expectation is added afterwards.
     fn noise(&self) -> Rc<Rows> {
         let (width, batch) = (self.pass.noise_width, self.pass.batch);
         let hypotheses = self.hypotheses.clone();

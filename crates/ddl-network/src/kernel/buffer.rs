@@ -7,7 +7,7 @@ use ddl_simd::LANES;
 
 /// Number of free buffers that a thread keeps. For small batches the system's allocation takes as long as the work.
 const SPARE: usize = 64;
-/// Largest total size of the free buffers, in numbers (32 MiB). So the memory of a crowded frame is freed.
+/// Largest total size of the free buffers, in numbers (32 MiB), so that the memory of a crowded frame is freed.
 const SPARE_NUMBERS: usize = 1 << 23;
 
 struct Spares {
@@ -110,7 +110,7 @@ impl Drop for Buffer {
         if numbers.is_empty() {
             return;
         }
-        // At the end of a thread its free buffers are gone already.
+        // When a thread ends, its free buffers may already be dropped.
         let _ = SPARES.try_with(|spares| spares.borrow_mut().keep(numbers));
     }
 }

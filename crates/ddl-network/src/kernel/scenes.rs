@@ -103,8 +103,8 @@ impl Scenes {
                         list
                     };
                     let even = list(first);
-                    // The query that pads an odd number has the visibility of the other one, so that its weights are
-                    // finite.
+                    // If the number of queries is odd, a padding query has the visibility of the last one, so that its
+                    // weights are finite.
                     let odd = (first + 1 < size).then(|| list(first + 1));
                     scenes.push(&even, odd.as_deref().unwrap_or(&even));
                 }

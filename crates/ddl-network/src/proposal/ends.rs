@@ -5,8 +5,8 @@ use crate::{NetworkError, ProposalConfig};
 use ddl_data::{HORIZON, OBSERVED, Position, Remembered};
 use std::fmt::Debug;
 
-/// Unit of length of the last layer (m). Endpoints are within a few metres of the point to which the present velocity
-/// leads.
+/// Unit of length of the last layer (m). Endpoints are within a few metres of the extrapolation of the present
+/// velocity.
 pub const ENDPOINT_UNIT: f64 = 3.0;
 
 /// The input for one pedestrian: observed positions in the pedestrian's own frame (metres). The origin is its last

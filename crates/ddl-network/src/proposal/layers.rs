@@ -58,17 +58,17 @@ impl MemberAffine {
 /// Affine maps of an attention over other pedestrians: neighbours, or earlier pedestrians of the place.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AttentionLayers {
-    /// From the features of another pedestrian to its code.
+    /// From the features of another pedestrian to its encoding.
     pub code: [MemberAffine; 2],
     /// To the query of the pedestrian.
     pub query: MemberAffine,
-    /// From the code to the key.
+    /// From the encoding to the key.
     pub key: MemberAffine,
-    /// From the code to the value.
+    /// From the encoding to the value.
     pub value: MemberAffine,
 }
 
-/// Affine maps from a pedestrian's code and attention to its endpoints.
+/// Affine maps from a pedestrian's encoding and attention to its endpoints.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadoutLayers {
     /// Hidden layers, with residual connections between layers of the same width.
@@ -84,7 +84,7 @@ pub struct ReadoutLayers {
 /// All affine maps of the network.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ProposalLayers {
-    /// From a pedestrian's positions and velocities to its code.
+    /// From a pedestrian's positions and velocities to its encoding.
     pub own: MemberAffine,
     /// Attention over the neighbours.
     pub neighbours: AttentionLayers,
@@ -95,7 +95,7 @@ pub struct ProposalLayers {
     pub memory: Option<(AttentionLayers, ReadoutLayers)>,
 }
 
-/// Declares layers in sequence.
+/// Declares the layers one after the other.
 struct Declaring<'a> {
     layout: &'a mut Layout,
     members: usize,

@@ -98,8 +98,8 @@ impl MemberKernels {
 }
 
 impl ReadoutKernels {
-    /// The last hidden layer `[B, width]`, from the pedestrians' codes `[B, width]`, their attention `[B, ..]`, and the
-    /// amount of other pedestrians attended to `[B]`.
+    /// The last hidden layer `[B, width]`, from the pedestrians' encodings `[B, width]`, their attention `[B, ..]`, and
+    /// the amount of other pedestrians attended to `[B]`.
     fn hidden_layer(&self, code: Buffer, context: &Buffer, amounts: impl ExactSizeIterator<Item = f32>) -> Buffer {
         let pedestrians = amounts.len();
         let [width, near] = [&code, context].map(|rows| rows.len() / pedestrians);
@@ -134,8 +134,8 @@ impl ReadoutKernels {
 }
 
 impl AttentionKernels {
-    /// Attention of the pedestrians to the others, `[B, code width]`. The softmax has an additional score 0 whose value
-    /// is 0, so that a pedestrian can ignore the others.
+    /// Attention of the pedestrians to the others, `[B, encoding width]`. The softmax has an additional score 0 with
+    /// the value 0, so that a pedestrian can ignore the others.
     fn attend(&self, asking: &Buffer, others: &OthersRows) -> Buffer {
         let query = self.query.forward(asking);
         let near = query.len() / others.counts.len();

@@ -1,4 +1,5 @@
-//! The SHA-256 of the numbers in a weights file. It detects flipped bits, which mostly leave finite, plausible weights.
+//! The SHA-256 of the numbers in a weights file. It detects flipped bits, after which most weights are still finite and
+//! plausible.
 
 use safetensors::SafeTensors;
 use safetensors::tensor::TensorView;
@@ -27,7 +28,8 @@ pub fn tensors_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
     })
 }
 
-/// The numbers of a file are not those that were written. Its message continues a sentence that begins with the file.
+/// The numbers of a file are not those that were written. The message continues a sentence that begins with the name of
+/// the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \

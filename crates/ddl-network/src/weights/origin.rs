@@ -1,8 +1,8 @@
-//! The origin of a checkpoint. It detects a file that lies beside the wrong configuration.
+//! The origin of a checkpoint. It detects a file that does not belong to the configuration beside it.
 
 use std::collections::{BTreeMap, HashMap};
 
-/// Named facts that determine the numbers of a checkpoint: configuration, seed, data.
+/// Named settings that determine the numbers of a checkpoint: configuration, seed, data.
 ///
 /// They are written into the header of the file. A file of another origin is refused, even if all shapes fit.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -16,8 +16,8 @@ impl<N: Into<String>, V: Into<String>> FromIterator<(N, V)> for Origin {
 }
 
 impl Origin {
-    /// Describes the first fact, in the order of the names, in which this origin differs from `other`. `None` if they
-    /// are equal.
+    /// Describes the first setting, in the order of the names, in which this origin differs from `other`. `None` if
+    /// they are equal.
     pub fn difference(&self, other: &Self) -> Option<String> {
         let names = self.0.keys().chain(other.0.keys());
         let name = names.filter(|&name| self.0.get(name) != other.0.get(name)).min()?;

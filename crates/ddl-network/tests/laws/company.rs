@@ -1,4 +1,4 @@
-//! Interaction: forecasts of STAR depend on the other pedestrians, those of the perceptron do not.
+//! Forecasts of STAR depend on the other pedestrians, those of the perceptron do not.
 
 use super::scenes::{Question, WINDOWS, distance, recommended};
 use ddl_data::{HORIZON, Window};

@@ -1,4 +1,4 @@
-//! Four rows at a time: their sums share the few instructions that add across lanes.
+//! Four rows at a time. Their sums share the instructions that add across lanes.
 
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{DEPTH, Lanes, Simd, Vectors};

@@ -17,7 +17,7 @@ pub(super) enum Start<'a> {
     /// The same numbers in every row.
     Row(&'a [Lanes]),
     Zero,
-    /// The present contents.
+    /// The values already in memory.
     There,
 }
 

@@ -1,6 +1,6 @@
 //! The backward pass, parallel over groups of hidden units. The gradients of a unit's weights belong to a single group.
-//! So only gx, which is small (`rows * width` for each group), has to be added over the groups. The groups do not
-//! depend on the number of threads, and neither do the sums.
+//! So only gx, which is small (`rows * width` for each group), has to be summed over the groups. The groups, and so the
+//! sums, do not depend on the number of threads.
 
 use std::ops::DerefMut;
 

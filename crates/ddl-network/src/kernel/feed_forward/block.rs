@@ -147,7 +147,7 @@ impl BlockRows {
 impl Drop for BlockRows {
     fn drop(&mut self) {
         let blocks = std::mem::take(&mut self.blocks);
-        // At the end of a thread its free memory is gone already.
+        // When a thread ends, its free memory may already be dropped.
         let _ = SPARES.try_with(|spares| {
             let mut spares = spares.borrow_mut();
             if spares.len() < SPARE {

@@ -15,9 +15,9 @@ impl FeedForward {
     /// y for every row of x.
     /// `x` `[rows, width]` -> `y` `[rows, width]`, overwritten.
     ///
-    /// For finite sums, the error of an entry is at most (width + hidden + 8) 2^-24 times a sum. The sum is the formula
-    /// with the absolute values of all its terms and without `ReLU`. An entry depends neither on the number of threads
-    /// nor on the other rows.
+    /// For finite sums, the error of an entry is at most (width + hidden + 8) 2^-24 times the formula with the absolute
+    /// values of all its terms and without `ReLU`. An entry depends neither on the number of threads nor on the other
+    /// rows.
     ///
     /// In bf16, x, W1, W2 and the hidden activations are rounded first, with a relative error of at most 2^-9. Sums and
     /// biases are `f32`, and the bound above holds for the formula with rounded numbers.

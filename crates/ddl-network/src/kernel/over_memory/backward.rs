@@ -16,9 +16,9 @@ pub(super) struct MemoryBackward<'a> {
     pub(super) memory: &'a [KeyValue<'a>],
     pub(super) own: KeyValue<'a>,
     pub(super) mixed_gradient: &'a [f32],
-    /// Only of these rows.
+    /// The gradients of these rows only.
     pub(super) query_gradient: &'a mut [f32],
-    /// Only of these rows: the cached tokens, then the own token.
+    /// The gradients of these rows only: the cached tokens, then the own token.
     pub(super) token_gradients: Vec<KeyValueMut<'a>>,
 }
 

@@ -12,7 +12,7 @@ pub(super) struct MemoryForward<'a> {
     pub(super) query: &'a [f32],
     pub(super) memory: &'a [KeyValue<'a>],
     pub(super) own: KeyValue<'a>,
-    /// Only of these rows.
+    /// The mixed values of these rows only.
     pub(super) mixed: &'a mut [f32],
 }
 

@@ -39,7 +39,7 @@ impl<'a> KeyValueMut<'a> {
 /// Buffers for sixteen heads, reused by the next group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MemoryBuffers {
-    /// For each quad; scaled so that scores are exponents of two.
+    /// The query, one entry for each quad; scaled so that scores are exponents of two.
     pub(super) query: Vec<Quad>,
     /// For each quad.
     pub(super) mixed_gradient: Vec<Quad>,
