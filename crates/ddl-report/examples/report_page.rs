@@ -1,5 +1,6 @@
 //! Writes the report page of simulated crowds: `report_page FOLDER` makes `page.html`, `figures/*.svg` and their data
-//! (`report.json`, `moments.json`), and `viewer.html`, the player alone, with pedestrians that leave the view.
+//! (`report.json`, `moments.json`), and `viewer.html`, a page with only the player, with pedestrians that leave the
+//! view.
 //!
 //! The forecaster is a stand-in with 20 weighted goals, and the training curves are invented; the page names both as
 //! such.
@@ -17,10 +18,10 @@ use ddl_report::{
     page::{Page, Viewer},
 };
 
-/// Goals a pedestrian: turns and speeds of the fan.
+/// The goals of a pedestrian form a fan of these turns and speeds.
 const TURNS_DEG: [f64; 5] = [-38.0, -15.0, 0.0, 15.0, 38.0];
 const SPEEDS: [f64; 4] = [0.45, 0.8, 1.0, 1.2];
-/// Moments of the player alone.
+/// Number of windows on the page with only the player.
 const MOMENTS: usize = 8;
 
 #[derive(Clone, Copy)]
@@ -61,11 +62,11 @@ impl GoalSource for Fan {
     }
 }
 
-/// Starts with the observed velocity and bends to the goal, which it nearly reaches. If the future is visible, it takes
-/// the goal nearest the true endpoint, with 20 paths to it.
+/// A forecaster whose paths start with the observed velocity and bend to the goal, which they nearly reach. If the
+/// future is visible, it makes 20 paths to the goal nearest the true endpoint.
 struct Bending;
 
-/// A path from the current position and velocity to the goal; `bend` moves its middle aside, m.
+/// A path from the current position and velocity to the goal; `bend` moves its middle sideways (m).
 fn way(observed: &[Position], goal: Position, bend: f64) -> Vec<Position> {
     let (before, last) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
     let (dx, dy) = (goal[0] - last[0], goal[1] - last[1]);

@@ -1,4 +1,4 @@
-//! Selection of moments: evenly spread moments of a fold, and a typical case of each kind.
+//! Selection of windows to show (moments): evenly spread moments of a fold, and a typical case of each kind.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
@@ -16,15 +16,15 @@ use ddl_eval::{
     },
 };
 
-/// Evenly spread moments of each recording.
+/// Number of evenly spread moments of each recording.
 const MOMENTS_A_RECORDING: usize = 8;
-/// A converging pedestrian has moved at least this far and ends at most this far from its goal, m.
+/// Smallest displacement of a converging pedestrian, and largest distance of its end from its goal, m.
 const GONE: f64 = 2.0;
 const ARRIVED: f64 = 0.2;
-/// Least distance of pedestrians who keep distance: twice the radius of a pedestrian, m.
+/// Smallest distance of pedestrians that keep their distance: twice the radius of a pedestrian, m.
 const APART: f64 = 0.4;
 
-/// What a case shows.
+/// The subject of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -64,16 +64,16 @@ impl fmt::Display for Show {
     }
 }
 
-/// The reason to show a moment, and the pedestrians it is about.
+/// The reason to show a moment, and the pedestrians concerned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Pick {
     /// What it shows.
     pub show: Show,
-    /// Indices of the pedestrians it is about, in the order of the moment.
+    /// Indices of the pedestrians concerned, in the order of the moment.
     #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<usize>,
-    /// The rule that picked it, in words, with its numbers.
+    /// Text that states the rule of the choice, with its numbers.
     pub rule: String,
 }
 
@@ -88,7 +88,8 @@ impl Pick {
     }
 }
 
-/// Moments to show of the forecasts of one fold (one forecast for each window), in order of recording and time.
+/// Chooses moments to show from the forecasts of one fold (one forecast for each window), in order of recording and
+/// time.
 ///
 /// For each [`Show`] the moment of the pedestrian with the median minADE; for each recording 8 evenly spread moments.
 ///

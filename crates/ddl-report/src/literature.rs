@@ -12,7 +12,7 @@ use crate::document::Table;
 /// The folds of every table here, in the order of its columns.
 pub const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 
-/// What `literature.json` holds.
+/// The content of `literature.json`.
 pub static LITERATURE: LazyLock<Literature> =
     LazyLock::new(|| serde_json::from_str(include_str!("literature.json")).expect("the file is part of this crate"));
 
@@ -45,7 +45,7 @@ pub struct PublishedRow {
     pub method: String,
     /// Who published the method, and where.
     pub source: String,
-    /// Data convention of the measurement; `None` where it is neither or could not be verified.
+    /// Data convention of the measurement; `None` if it is another convention or could not be verified.
     pub convention: Option<Convention>,
     /// Caution for comparisons.
     pub remark: Option<String>,
@@ -154,7 +154,7 @@ fn published_table(rows: &[PublishedRow], digits: usize) -> Table {
     table
 }
 
-/// Table II of the DDL paper: what each component adds.
+/// Table II of the DDL paper: the contribution of each component.
 pub fn ablation_table() -> Table {
     let mut table = table_of_folds(&["variant", "goal shift", "dynamics"], &["mean"])
         .text_column("goal shift")
@@ -221,7 +221,7 @@ mod tests {
         }
     }
 
-    /// The number of rows of each table and convention, and the sums of all cells, typed separately from the papers.
+    /// The numbers of rows and the sums of all cells, entered from the papers independently of the file.
     #[test]
     fn the_file_holds_the_rows_of_the_papers() {
         let all = &*LITERATURE;

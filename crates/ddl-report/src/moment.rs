@@ -1,4 +1,4 @@
-//! One moment of a recording with its forecast, as data for galleries and the player.
+//! One window of a recording with its forecast (a moment), as data for galleries and the player.
 
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
 use serde::{Deserialize, Serialize};
@@ -46,12 +46,12 @@ pub struct MomentPedestrian {
     pub pedestrian: PedestrianName,
     /// 8 observed positions, m.
     pub observed: Vec<Position>,
-    /// True future: 12 positions, m, or only the first of them where no more were observed.
+    /// True future: 12 positions, m, or only the first of them if the pedestrian was not observed longer.
     pub truth: Vec<Position>,
-    /// Number of observed positions that were filled in; `None` where all were measured.
+    /// Number of observed positions that were filled in; `None` if all were measured.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub made_up: Option<CompletionCounts>,
-    /// Similarity of the observed motion to the training data, 0 to 1; `None` where the forecaster does not give it.
+    /// Similarity of the observed motion to the training data, 0 to 1; `None` if the forecaster does not give it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub familiarity: Option<f64>,
     /// K hypotheses.
@@ -153,7 +153,7 @@ impl Moment {
         }
     }
 
-    /// The same moment with reasons to show it.
+    /// Adds reasons to show the moment.
     #[must_use]
     pub fn picked(self, picks: Vec<Pick>) -> Self {
         Self { picks, ..self }

@@ -90,7 +90,7 @@ pub(crate) fn normal<R: Register, const G: usize>(register: R, exponents: [R::Fl
     by_rounding(register, exponents, &NORMAL)
 }
 
-/// [`Simd::exp2`](crate::Simd::exp2): P(0) = 1 and a biased exponent of 0 leave no bit at −127.
+/// [`Simd::exp2`](crate::Simd::exp2): the result at −127 is exactly 0, because P(0) = 1 and the biased exponent is 0.
 #[inline(always)]
 pub(crate) fn vanishing<R: Register, const G: usize>(register: R, exponents: [R::Floats; G]) -> [R::Floats; G] {
     by_rounding(register, exponents, &VANISHING)

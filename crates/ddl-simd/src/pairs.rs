@@ -3,14 +3,14 @@
 use crate::lanes::LANES;
 use crate::simd::Simd;
 
-/// Arithmetic on sixteen pairs of bf16 numbers at a time, together with that on `f32`.
+/// Arithmetic on sixteen pairs of bf16 numbers at a time, in addition to that on `f32`.
 ///
 /// A bf16 number is the upper half of an `f32`: the same range, with 8 significant bits. A pair is a 32-bit word; the
 /// first number is its lower half.
 ///
 /// # Numerics
-/// Exactly as the instructions of AVX-512 BF16: rounded to nearest, ties to even; subnormal arguments and results count
-/// as 0.
+/// The results are those of the AVX-512 BF16 instructions: rounded to nearest, ties to even; subnormal arguments and
+/// results count as 0.
 pub trait Pairs: Copy + Send + Sync {
     /// The arithmetic on `f32`.
     type Simd: Simd;
@@ -34,7 +34,7 @@ pub trait Pairs: Copy + Send + Sync {
     fn dot(self, a: Self::Words, b: Self::Words, sum: Floats<Self>) -> Floats<Self>;
 }
 
-/// Sixteen `f32` beside sixteen pairs.
+/// The type of sixteen `f32` that belongs to `P`.
 pub type Floats<P> = <<P as Pairs>::Simd as Simd>::Floats;
 
 /// A computation on pairs that is compiled once for each instruction set. The rules of [`Kernel`](crate::Kernel) apply.

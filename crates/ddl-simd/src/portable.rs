@@ -48,7 +48,7 @@ impl Register for Portable {
     type Wide = Wide;
     type Sixteen = Sixteen<Self, 4>;
     const WIDTH: usize = WIDTH;
-    // Without the instruction, a fused product is a slow call of the math library.
+    // On machines without the instruction, a fused product would be a slow call of the math library.
     const FUSED: bool = cfg!(any(target_feature = "fma", target_arch = "aarch64"));
 
     #[inline]
@@ -63,7 +63,7 @@ impl Register for Portable {
 
     #[inline(always)]
     fn run_tiled<K: TiledKernel>(self, kernel: K) {
-        // Half of the sixteen registers of most machines.
+        // The accumulators fill half of the sixteen registers of most machines.
         kernel.run::<Self::Sixteen, 2, 1>(Sixteen(self));
     }
 

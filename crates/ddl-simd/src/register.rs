@@ -39,11 +39,11 @@ pub trait Register: Copy + Send + Sync {
     /// Compiles `kernel` with this instruction set and runs it.
     fn run<K: RegisterKernel>(self, kernel: K) -> K::Output;
     fn sixteen(self) -> Self::Sixteen;
-    /// Runs `kernel` within a running one, with the [`Tile`](crate::Tile) size that fits the registers.
+    /// Runs `kernel` from within another kernel, with the [`Tile`](crate::Tile) size that fits the registers.
     fn run_tiled<K: TiledKernel>(self, kernel: K);
 
     fn splat(self, value: f32) -> Self::Floats;
-    /// The lanes `part * WIDTH ..` of a group.
+    /// The `WIDTH` lanes of a group from `part * WIDTH` on.
     fn load(self, from: &[f32; LANES], part: usize) -> Self::Floats;
     fn store(self, value: Self::Floats, into: &mut [f32; LANES], part: usize);
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
@@ -79,7 +79,7 @@ pub trait Register: Copy + Send + Sync {
     fn transpose(self, groups: [Self::Floats; 4]) -> [Self::Floats; 4];
     /// [`Simd::spread`] of a part.
     fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
-    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j over k; the farthest ones are added first.
+    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j over k; the lanes farthest apart are added first.
     fn sum_of_fours(self, a: Self::Floats) -> Self::Floats;
 
     fn count_from(self, first: u32) -> Self::Bits;
@@ -98,8 +98,8 @@ pub trait Register: Copy + Send + Sync {
     fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
     fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
-    /// The number whose representation is `bits` minus that of `a`: for the sum of the representations of b and 1 it is
-    /// b / a, or up to an eighth more.
+    /// The number whose representation is `bits` minus the representation of `a`. If `bits` is the sum of the
+    /// representations of b and 1, the result is b / a, or up to an eighth more.
     fn wide_opposite(self, a: Self::Wide, bits: u64) -> Self::Wide;
     /// `a` where it is above `limit`, 0 elsewhere.
     fn wide_zero_unless_above(self, a: Self::Wide, limit: Self::Wide) -> Self::Wide;
@@ -107,7 +107,7 @@ pub trait Register: Copy + Send + Sync {
     /// A group moved up by one lane, `first` before it.
     #[inline(always)]
     fn wide_below(self, lanes: &[f64; WIDE_LANES], first: f64) -> [f64; WIDE_LANES] {
-        // Taken apart and put together, so that they are moved within registers.
+        // Destructured and rebuilt, so that the lanes are moved within registers.
         let [a, b, c, d, e, f, g, _] = *lanes;
         [first, a, b, c, d, e, f, g]
     }

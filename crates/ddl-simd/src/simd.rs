@@ -17,7 +17,7 @@ pub trait Simd: Copy + Send + Sync {
     /// Sixteen words of 32 bits.
     type Bits: Copy;
 
-    /// Runs `kernel` within a running one, with the [`Tile`] size that fits the registers.
+    /// Runs `kernel` from within another kernel, with the [`Tile`] size that fits the registers.
     fn run_tiled<K: TiledKernel>(self, kernel: K);
 
     /// `value` in every lane.
@@ -36,7 +36,7 @@ pub trait Simd: Copy + Send + Sync {
     fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// √a.
     fn sqrt(self, a: Self::Floats) -> Self::Floats;
-    /// The larger of each two numbers; `b` where one is NaN.
+    /// The larger of each two numbers; `b` if one of them is NaN.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// a b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;

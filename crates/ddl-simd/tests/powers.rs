@@ -60,7 +60,7 @@ fn wide_ones_keep_the_error_bound_and_their_bits() {
     for i in 0..=steps {
         let exponents: Wide = std::array::from_fn(|l| {
             let at = (f64::from(i) + l as f64 / WIDE_LANES as f64) / f64::from(steps);
-            // Dense near 0, where the nearest candidates are.
+            // Dense near 0, where the exponents of the nearest candidates are.
             -COST_LIMIT_64 * at.min(1.0).powi(3)
         });
         let mut bits: Option<[u64; WIDE_LANES]> = None;

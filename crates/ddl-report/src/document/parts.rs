@@ -7,7 +7,7 @@ use super::table::Table;
 /// In every text, `words between backticks` are code; there is no other markup.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Document {
-    /// The first line: what a reader must know before the numbers.
+    /// The first line, such as the data convention of the numbers.
     pub lead: String,
     /// The title.
     pub title: String,
@@ -33,7 +33,7 @@ pub enum Part {
     Warning(String),
     /// A table.
     Table(Table),
-    /// Further parts, folded away in HTML.
+    /// Further parts, collapsed in HTML.
     Details {
         /// The visible line that names the content.
         summary: String,

@@ -33,7 +33,7 @@ impl Table {
         self
     }
 
-    /// The table with a caption: data convention, unit, what was averaged.
+    /// Adds a caption, which should name the data convention, the unit and what was averaged.
     #[must_use]
     pub fn captioned(self, caption: impl Into<String>) -> Self {
         Self {
@@ -71,12 +71,12 @@ impl Table {
     }
 }
 
-/// A cell in which `|` and line breaks do not end the column or the row.
+/// Escapes `|` and line breaks, which would end the column or the row.
 fn escape(cell: &str) -> String {
     cell.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
-/// A markdown table, its columns padded to one width each; without padding as `{:#}`.
+/// A Markdown table with padded columns; `{:#}` leaves the padding out.
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         if f.alternate() {
@@ -96,7 +96,7 @@ impl std::fmt::Display for Table {
             column.set_cell_alignment(side);
         }
         for (number, line) in table.lines().enumerate() {
-            // The rule under the header carries the alignment of the rendered table.
+            // The line under the header sets the alignment of the columns.
             let line = if number == 1 {
                 align_numbers(&line, &self.text)
             } else {

@@ -8,7 +8,7 @@ use super::{
     scale::{round_step, ticks},
 };
 
-/// Least width of the shown area, metres: that of a scene in which all pedestrians stand still.
+/// Smallest width of the shown area, metres, for scenes in which all pedestrians stand still.
 const LEAST_SPAN: f64 = 4.0;
 
 /// Sizes of one kind of plot, pixels.

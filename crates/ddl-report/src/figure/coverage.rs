@@ -16,9 +16,9 @@ pub struct CoveragePanel {
     pub name: String,
     /// Two notes beside the name, in the colours of the curves: fixed and adaptive.
     pub notes: [String; 2],
-    /// Of fixed regions: time (minutes, ascending) and share (0 to 1).
+    /// Coverage of fixed regions: time (minutes, ascending) and share (0 to 1).
     pub fixed: Vec<[f64; 2]>,
-    /// Of adaptive regions, which follow the observed errors.
+    /// Coverage of adaptive regions, in the same form.
     pub adaptive: Vec<[f64; 2]>,
 }
 

@@ -24,7 +24,7 @@ const BELOW_TITLE: f64 = 10.0;
 /// Size of the letters above a panel, and the height of a line of them.
 const LETTERS: f64 = 12.0;
 const LINE: f64 = 17.0;
-/// Most lines of a title, of a panel or of the picture.
+/// Largest number of lines of a title, of a panel or of the picture.
 const TITLE_LINES: usize = 2;
 
 /// Draws 1 to 9 pedestrians with their estimated goals, one panel for each, as the text of an SVG file.
@@ -126,7 +126,7 @@ impl<'a> GoalPanel<'a> {
         drawing.line("miss", plan.px(goal), plan.px(end));
         nearest_goal(drawing, plan.px(goal), weights[nearest]);
         drawing.path("seen", &plan.path(&self.observed));
-        // The true endpoint is drawn last: it is small, and the ticks of a goal that hits it are around it.
+        // The true endpoint is drawn last, because it is small and the ticks of a nearby goal surround it.
         pedestrian::track(drawing, plan, &self.observed, &self.truth);
     }
 }

@@ -24,9 +24,9 @@ pub(super) enum LegendEntry {
     Representative,
     OtherHypotheses,
     Note(&'static str),
-    /// Rings of hypotheses.
+    /// Rings at the goals of hypotheses.
     Goals(&'static str),
-    /// Rings whose area is the probability.
+    /// Rings whose area is proportional to the probability.
     WeightedGoals,
     NearestGoal,
     Experts,

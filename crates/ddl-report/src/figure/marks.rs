@@ -1,4 +1,4 @@
-//! Stars, arrows, and goals as rings whose area is their probability.
+//! Stars, arrows, and goals as rings whose area is proportional to their probability.
 
 use super::drawing::Drawing;
 

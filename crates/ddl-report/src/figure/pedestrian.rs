@@ -1,4 +1,4 @@
-//! The observed track and the forecast of one pedestrian, drawn alike in every picture.
+//! Draws the observed track and the forecast of one pedestrian, in the same way in every picture.
 
 use ddl_data::{OBSERVED, Position, TIME_STEP};
 

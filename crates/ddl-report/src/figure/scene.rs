@@ -12,7 +12,7 @@ use super::{
 };
 use crate::{Moment, MomentPedestrian};
 
-/// The region that is drawn holds the pedestrian with this probability at the end of the horizon.
+/// Probability that the drawn region contains the pedestrian at the end of the horizon.
 const LEVEL: f64 = 0.9;
 
 /// Draws the pedestrians of a window and their forecast as the text of an SVG file. The same input gives the same

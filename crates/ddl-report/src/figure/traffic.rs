@@ -54,7 +54,8 @@ impl Traffic {
     }
 }
 
-/// Points on the straight line between two positions, so dense that a square is missed only at its corner.
+/// Points on the straight line between two positions. They are so dense that a square is missed only if the line cuts
+/// its corner.
 fn between(from: Position, to: Position, side: f64) -> impl Iterator<Item = Position> {
     let apart = (to[0] - from[0]).hypot(to[1] - from[1]);
     let parts = if apart <= LONGEST_STEP {

@@ -21,10 +21,10 @@ const SCENE: [f64; 2] = [360.0, 300.0];
 const MARGIN: f64 = 22.0;
 /// Least width of the shown area, m.
 const LEAST_SPAN: f64 = 3.0;
-/// Heights of title and key of a file, px.
+/// Heights of title and legend of a file, px.
 const STRIPS: [f64; 2] = [30.0, 44.0];
 
-/// The pedestrians of the pick, and the others in grey; `alone` adds a title and a key, for a file.
+/// Draws the pedestrians of the pick, and the others in grey; `alone` adds a title and a legend, for a separate file.
 fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
     let title = format!("{}: {}, frame {}", pick.show, moment.recording, moment.frame);
     let above = if alone { STRIPS[0] } else { 0.0 };

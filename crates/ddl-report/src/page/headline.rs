@@ -87,7 +87,7 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> String {
     )
 }
 
-/// Rank of the line by minADE among lines with the same folds and equally many hypotheses, in words.
+/// Text with the rank of the line by minADE, among lines with the same folds and the same number of hypotheses.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
     let ranked: Vec<&StandingLine> = standing.comparable(subject).collect();
     let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {

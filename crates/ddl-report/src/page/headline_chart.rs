@@ -5,7 +5,7 @@ use crate::{
     page::standing::{Standing, StandingLine},
 };
 
-/// Most lines of the chart; the tables hold all.
+/// Largest number of lines of the chart; the tables contain all lines.
 pub(crate) const MOST_LINES: usize = 10;
 const LINE: f64 = 26.0;
 
@@ -70,7 +70,7 @@ impl Chart<'_> {
     }
 }
 
-/// The folds, then their mean where there are several.
+/// The folds, then their mean if there are several.
 fn columns(line: &StandingLine) -> Vec<Option<[f64; 2]>> {
     let several = line.folds.len() > 1;
     let mean = several.then_some(line.mean);
@@ -110,7 +110,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     let block = 56.0 + line_height * lines.len() as f64;
     let mut drawing = Drawing::new(width, 28.0 + block * names.len() as f64, title);
     chart.key(&mut drawing, [0.0, 12.0]);
-    // The mean comes first, because the folds may need scrolling.
+    // The mean comes first, because the folds may only be visible after scrolling.
     for (place, name) in names.iter().cycle().skip(names.len() - 1).take(names.len()).enumerate() {
         let at = (place + names.len() - 1) % names.len();
         let top = 28.0 + block * place as f64;

@@ -13,7 +13,7 @@
 //! made_up                           number of observed positions that were filled in; absent where it is 0
 //! ```
 //!
-//! Moments hold whole millimetres, so that the encoding is exact: `x / 1000` is the original number.
+//! Positions of moments are whole millimetres, so the encoding is exact: `x / 1000` is the original number.
 
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
@@ -56,7 +56,7 @@ struct PedestrianData<'a> {
     made_up: Option<CompletionCounts>,
 }
 
-/// The part of the true future that must be there.
+/// The part of the true future that is required.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Truth {
     /// All positions, because errors are shown.

@@ -1,4 +1,4 @@
-//! The page of a report.
+//! The HTML page of a report.
 
 use super::{
     error::PageError,
@@ -32,7 +32,7 @@ pub struct Page<'a> {
 }
 
 impl<'a> Page<'a> {
-    /// A page of the report alone.
+    /// A page with only the report, without moments and training curves.
     pub fn new(report: &'a Report) -> Self {
         let (moments, curves) = (&[], &[]);
         Self {

@@ -26,15 +26,15 @@ pub(super) struct StandingLine {
     pub(super) hypotheses: usize,
     /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.
     pub(super) folds: Vec<Option<[f64; 2]>>,
-    /// Plain mean of the folds, `None` unless all are there.
+    /// Unweighted mean of the folds; `None` unless all were measured.
     pub(super) mean: Option<[f64; 2]>,
     /// Pedestrians and windows scored, each fold once.
     pub(super) scored: [usize; 2],
 }
 
 impl Standing {
-    /// The forecaster that the report is about: the best trained one, but not its variations ("DDL", not "DDL without
-    /// an expert library"); without trained ones that of another program; otherwise the best one.
+    /// The forecaster that is the subject of the report: the best trained one, without its variations ("DDL", not "DDL
+    /// without an expert library"). If there is no trained one, it is that of another program, otherwise the best one.
     pub(super) fn subject(&self) -> Option<&StandingLine> {
         let trained = |line: &&StandingLine| line.conditions.epochs.is_some();
         let foreign = |line: &&StandingLine| line.conditions.selection.is_some();
@@ -49,7 +49,8 @@ impl Standing {
             .or(self.lines.first())
     }
 
-    /// The lines that can be ranked against `line`: equally many hypotheses, and every fold measured; the best first.
+    /// The lines that can be ranked against `to`, the best first: those with the same number of hypotheses and with
+    /// every fold measured.
     pub(super) fn comparable(&self, to: &StandingLine) -> impl Iterator<Item = &StandingLine> {
         let hypotheses = to.hypotheses;
         let is_comparable = move |line: &&StandingLine| line.mean.is_some() && line.hypotheses == hypotheses;
@@ -61,7 +62,7 @@ impl Standing {
 /// those of the published window rule on all test windows, if there are any.
 pub(super) fn standing(report: &Report) -> Option<Standing> {
     let groups = groups(report.rows());
-    // Groups are sorted by convention and rule; the first of equals is taken.
+    // Groups are sorted by convention and rule; of equal ones, the first is taken.
     let rank = |group: &&ResultGroup<'_>| {
         let other_rule = group.window_rule != WindowRule::Published;
         (order(group.protocol), group.convention, other_rule)

@@ -1,4 +1,4 @@
-//! A page with the player alone, for forecasts without known errors.
+//! A page with only the player, for forecasts without a known future.
 
 use super::{
     error::PageError,

@@ -1,5 +1,5 @@
 //! The same forecaster under every protocol: the effect of choosing with the truth.
-//! This is the only table with several protocols. It shows, and says, that their numbers are not comparable.
+//! This is the only table with several protocols. It states that their numbers are not comparable.
 
 use super::{
     cells::{NOTHING, errors},

@@ -13,8 +13,8 @@ pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in met
     non-interacting), then the kinds of interaction, of which a pedestrian may have several. The categories are \
     computed from the true future, after the forecasts are made.";
 
-/// One table with a line a category and a column a forecaster; nothing where no row knows its categories, or no fold is
-/// shared.
+/// One table with a line for each category and a column for each forecaster. Empty if no row has scores by category, or
+/// if the forecasters share no fold.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let known: Vec<(&TableLine<'_>, String)> = group
         .labelled()

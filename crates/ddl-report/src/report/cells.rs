@@ -32,7 +32,7 @@ pub(super) fn counts(mut counts: Vec<usize>) -> String {
     counts.join(" or ")
 }
 
-/// The folds of a number in words.
+/// Text that names the folds of a number.
 pub(super) fn folds(present: &[&str], all: &[&str]) -> String {
     if present.len() == all.len() {
         "all".to_owned()

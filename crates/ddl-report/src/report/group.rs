@@ -52,7 +52,7 @@ pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     groups
 }
 
-/// Order of protocols: the headline one first, the one that chooses with the truth last.
+/// Order of protocols: the headline protocol first, the one that chooses with the true future last.
 pub(crate) fn order(protocol: Protocol) -> usize {
     match protocol {
         Protocol::Fair => 0,
@@ -184,12 +184,12 @@ impl<'a> TableLine<'a> {
         seeds
     }
 
-    /// A metric on one fold, over the seeds.
+    /// A metric on one fold, with its spread over the seeds.
     pub(crate) fn on_fold(&self, fold: &str, of: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
         SeedSpread::of(&self.on(fold).map(|row| of(&row.scores)).collect::<Vec<_>>())
     }
 
-    /// The plain mean over the folds, over the seeds; `None` unless every seed has every fold.
+    /// The unweighted mean over the folds, with its spread over the seeds; `None` unless every seed has every fold.
     pub(crate) fn over_folds(&self, folds: &[&str], of: impl Fn(&Scores) -> f64) -> Option<SeedSpread> {
         let mean_of_seed = |seed: Option<u64>| {
             let on_fold = |fold: &&str| {
@@ -203,7 +203,7 @@ impl<'a> TableLine<'a> {
         SeedSpread::of(&means?)
     }
 
-    /// The conditions of the line in words: seeds, training, device, commit.
+    /// Text with the conditions of the line: seeds, training, device, commit.
     pub(crate) fn settings(&self) -> String {
         let c: &Conditions = self.conditions();
         let known = |text: &str| {

@@ -103,7 +103,7 @@ pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
     mean.unwrap_or_else(|| NOTHING.to_owned())
 }
 
-/// `None` where a fold lacks the metric.
+/// `None` if a fold lacks the metric.
 fn over_folds(line: &TableLine<'_>, folds: &[&str], of: fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
     let spread = line.over_folds(folds, |s| of(s).unwrap_or(f64::NAN));
     spread.filter(|spread| !spread.mean().is_nan())

@@ -96,7 +96,7 @@ impl Report {
         content::document(&self.title, &self.rows)
     }
 
-    /// The main numbers of a convention under its headline window rule; `None` where the report has no such results.
+    /// The main numbers of a convention under its headline window rule; `None` if the report has no such results.
     pub fn summary(&self, convention: Convention) -> Option<Summary> {
         summary::of(&self.rows, convention)
     }
@@ -135,7 +135,7 @@ impl Report {
         Self::new(read.title, read.rows)
     }
 
-    /// Its files, each with its name: `report.md`, `report.tex` (its tables for a paper) and `report.json`.
+    /// The names and contents of its files: `report.md`, `report.tex` (the tables for a paper) and `report.json`.
     ///
     /// # Errors
     /// As [`Report::to_json`].

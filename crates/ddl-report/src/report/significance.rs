@@ -17,8 +17,8 @@ pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 9
     first table, not part of the intervals. The intervals hold for other moments in the same places; for other places, \
     compare the folds.";
 
-/// Intervals of every line that has errors by block, and its differences from the first trained one of those with the
-/// most folds.
+/// Intervals of every line that has errors by block, and its difference from a reference line: the first trained line
+/// with the most folds.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let folds = group.folds();
     let lines: Vec<(MeasuredLine<'_>, String)> = group
@@ -74,12 +74,12 @@ pub(super) fn intervals(line: &TableLine<'_>, folds: &[&str]) -> [String; 2] {
 
 struct MeasuredLine<'a> {
     line: &'a TableLine<'a>,
-    /// The folds it has, each with its blocks.
+    /// The measured folds, each with its blocks.
     folds: Vec<(String, Vec<BlockErrors>)>,
 }
 
 impl<'a> MeasuredLine<'a> {
-    /// `None` where a row has no errors by block.
+    /// `None` if a row has no errors by block.
     fn of(line: &'a TableLine<'a>, folds: &[&str]) -> Option<Self> {
         let present = line.present(folds);
         let folds: Option<Vec<_>> = present
@@ -106,7 +106,7 @@ impl<'a> MeasuredLine<'a> {
     }
 }
 
-/// The difference and its p-value as two cells; `-` where folds or windows differ, or the lines are the same.
+/// The difference and its p-value as two cells; `-` if folds or windows differ, or if the lines are the same.
 fn difference(measured: &MeasuredLine<'_>, reference: &MeasuredLine<'_>, metric: BlockMetric) -> [String; 2] {
     let nothing = || [NOTHING.to_owned(), NOTHING.to_owned()];
     if std::ptr::eq(measured.line, reference.line) || measured.names() != reference.names() {

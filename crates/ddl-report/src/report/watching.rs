@@ -1,5 +1,5 @@
-//! The value of the memory of a recording over watching time: `online` forecasts beside those of the same model without
-//! it.
+//! The effect of the memory of a recording over the time of observation: `online` forecasts beside those of the same
+//! model without the memory.
 
 use super::group::{ResultGroup, TableLine, groups};
 use crate::document::{Part, Table};
@@ -141,7 +141,7 @@ fn is_same_model(line: &TableLine<'_>, other: &TableLine<'_>) -> bool {
             == (&its.forecaster, &its.variant, its.epochs, other.seeds())
 }
 
-/// Mean minFDE of each quarter of a recording (m); `None` for one in which no window starts.
+/// Mean minFDE of each quarter of a recording (m); `None` for a quarter in which no window starts.
 fn by_quarter(blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
     let first = blocks.iter().map(|block| block.block).min().unwrap_or(0);
     let last = blocks.iter().map(|block| block.block).max().unwrap_or(0);
@@ -152,7 +152,7 @@ fn by_quarter(blocks: &[BlockErrors]) -> [Option<f64>; QUARTERS] {
     })
 }
 
-/// Minutes since the first window, and the mean minFDE (m) of the blocks before.
+/// Minutes since the first window, and the mean minFDE (m) of the last [`SLIDING`] blocks.
 fn sliding(blocks: &[BlockErrors]) -> Vec<[f64; 2]> {
     let first = blocks.first().map_or(0, |block| block.block);
     let minutes = |block: &BlockErrors| (block.block - first + 1) as f64 * BLOCK_MINUTES;

@@ -12,7 +12,8 @@ use ddl_report::{
 
 /// Circles of the legend: 4 observed dots, a true end, 3 goals, and the nearest with its rim.
 const LEGEND_CIRCLES: usize = 4 + 1 + 3 + 2;
-/// Circles of a panel but for goals that are not the nearest: 8 observed dots, a true end, the nearest with its rim.
+/// Circles of a panel except goals that are not the nearest: 8 observed dots, a true end, the nearest goal with its
+/// rim.
 const PANEL_CIRCLES: usize = 8 + 1 + 2;
 
 fn walk(from: Position, step: Position) -> Vec<Position> {
@@ -62,7 +63,7 @@ fn every_role_is_drawn_and_named() {
     assert_eq!(count(&svg, "nearest goal 0.25 m off"), 2);
     let circles = LEGEND_CIRCLES + 2 * PANEL_CIRCLES + 4 + 19;
     assert_eq!(count(&svg, "<circle"), circles);
-    // Experts leave the last observed position as one line each; the legend has three.
+    // Each expert is one line from the last observed position; the legend has three.
     assert_eq!(count(&svg, "class=\"expert\""), 40 + 3);
     assert_eq!(svg, figure::goals("Goals & ends", &cases).unwrap());
 }

@@ -66,7 +66,7 @@ fn the_case_shown_is_the_median_one() {
     let error = |window: &Window, i: usize, forecast: &Forecast| {
         average_displacement(forecast.hypothesis(i, 0), window.future(i))
     };
-    // The oracle's lines all reach their goals; the cases are the pedestrians that move at least two metres.
+    // All lines of the oracle reach their goals, so the cases are the pedestrians that move at least two metres.
     let mut errors: Vec<f64> = Vec::new();
     let mut shown = None;
     for (window, forecast) in windows.iter().zip(&forecasts) {

@@ -30,8 +30,8 @@ fn measured(name: &str) -> &'static literature::BaselineReference {
     rows.find(|row| row.method == name).unwrap()
 }
 
-/// Deterministic ones agree to the 3 decimals that the reference is printed with. Over 20 seeds the deviation of
-/// angular noise is at most 0.0011 m (ADE) and 0.0026 m (FDE) on any fold, and the reference is one draw too.
+/// Deterministic baselines agree to the 3 decimals of the reference. Over 20 seeds, the deviation of angular noise is
+/// at most 0.0011 m (ADE) and 0.0026 m (FDE) on any fold; the reference is also one draw.
 #[test]
 fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
     let Some(folds) = folds() else { return };

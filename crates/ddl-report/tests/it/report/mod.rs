@@ -188,7 +188,7 @@ fn several_seeds_give_mean_and_deviation() {
     // Sample deviation of 0.2 and 0.4: 0.1414; of their doubles: 0.2828.
     assert_eq!(cells(line(&page, "| DDL "))[6], "0.300±0.141/0.600±0.283");
     assert!(page.contains("seeds 1, 2"));
-    // With a seed that lacks a fold, the fold keeps its cell but the mean is left out.
+    // If a seed lacks a fold, the fold keeps its cell, but the mean is left out.
     rows.pop();
     let page = markdown(rows);
     assert_eq!(cells(line(&page, "| DDL "))[5..], ["0.200/0.400", "-"]);
@@ -337,8 +337,8 @@ fn the_ablation_stands_beside_the_papers() {
     assert!(ablation.contains("Table II of the DDL paper"));
 }
 
-/// Over the pedestrians of the folds that all have: 30 and 10 who turn, of errors 0.1 and 0.5 m, are 0.2 m, and 0.3 m
-/// over the folds.
+/// Means are taken over the pedestrians of the folds that all forecasters share: 30 and 10 turning pedestrians with
+/// errors of 0.1 and 0.5 m give 0.2 m (the mean of the folds would be 0.3 m).
 #[test]
 fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
     let of = |(fold, pedestrians, min_ade): (&str, usize, f64)| {
@@ -415,7 +415,7 @@ fn watching_is_measured_by_quarters_against_the_same_model_without_it() {
     let (_, drawn) = named("watching-online").unwrap();
     assert_eq!(drawn.matches("curve c0").count(), 1 + 5);
     assert!(drawn.contains("0.400 m") && !drawn.contains("NaN"));
-    // It is in the section of its protocol, and left out without results to compare with.
+    // The table is in the section of its protocol, and is left out if there are no results to compare with.
     assert!(!markdown(online).contains("watching time"));
     assert!(!markdown(alone).contains("watching time"));
 }
