@@ -1,10 +1,11 @@
-//! Which of many recorded pedestrians moved like this one? The nearest in soft-DTW, with weights.
+//! Finds the pedestrians of a library that moved like a given one: the nearest in soft-DTW, with weights.
 //!
 //! ```text
 //! cargo run --release -p ddl-softdtw --example nearest_neighbours
 //! ```
-//! Two thousand pedestrians are made up; the query turns left a little later than any of them. The 5 nearest are
-//! printed with their distances d (m²/s²) and the weights exp(-(d - smallest d) / temperature), divided by their sum.
+//! The library has two thousand synthetic pedestrians; the query turns left a little later than any of them. The 5
+//! nearest are printed with their distances d (m²/s²) and the weights exp(-(d - smallest d) / temperature), divided by
+//! their sum.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 use std::error::Error;
@@ -16,11 +17,11 @@ const STEPS: u32 = 7;
 /// Distance (m²/s²) over which a weight falls by the factor e.
 const TEMPERATURE: f64 = 0.005;
 
-/// How somebody moves, and how fast (m/s).
+/// The motion of a synthetic pedestrian, and its speed (m/s).
 struct Pedestrian {
     manner: &'static str,
     speed: f64,
-    /// Seconds until the manner begins to show.
+    /// Seconds until the pedestrian begins to turn or change its speed.
     onset: f64,
 }
 
@@ -90,7 +91,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
 
-    // The search is exact: evaluating every pair finds the same.
+    // The search is exact: evaluating every pair gives the same result.
     let mut all: Vec<(f64, usize)> = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
         all.push((dtw.normalised(&query.velocities(), candidate)?, i));

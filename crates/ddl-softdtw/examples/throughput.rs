@@ -1,11 +1,12 @@
-//! Time of a pair (query × candidate) of the search for the 100 nearest, one query at a time on one thread, and in a
+//! Time per pair (query × candidate) of the search for the 100 nearest: one query at a time on one thread, and in a
 //! batch.
 //!
 //! ```text
 //! cargo run --release --example throughput -- [steps] [queries] [portable|avx2|avx512]
 //! ```
-//! Instructions of a pair: count those of the program for two numbers of queries (`perf stat -e instructions:u`, or
-//! `valgrind --tool=callgrind` without AVX-512), and divide the difference by that of the numbers of pairs.
+//! To count the instructions per pair, run the program with two numbers of queries (`perf stat -e instructions:u`, or
+//! `valgrind --tool=callgrind` without AVX-512). Divide the difference of the instructions by the difference of the
+//! numbers of pairs.
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
 #[path = "../benches/recordings/mod.rs"]

@@ -1,4 +1,4 @@
-//! The backward recursion: the expected alignment of two sequences, and the gradients it gives.
+//! The backward recursion: the expected alignment of two sequences, and the gradients from it.
 #![expect(
     clippy::inline_always,
     reason = "the lanes stay in registers only when what works on them is inlined"
@@ -24,15 +24,15 @@ impl<W: Weight> StepRecord<W> for Steps<W> {
     }
 }
 
-/// What a strip leaves to the strip above. Entry c + 7 is column c.
+/// Results of a strip that the strip above it needs. Entry c + 7 is column c.
 struct Below<W: Weight, const D: usize> {
     /// 2^−t S of the row below.
     row: Vec<W::One>,
-    /// The gradients of the columns, as far as the rows below have a part in them.
+    /// The contributions of the rows below to the gradients of the columns.
     of_columns: Vec<[f64; D]>,
 }
 
-/// Compiled for each instruction set, as the value is.
+/// Compiled for each instruction set, like the value.
 pub(crate) struct Backwards<'a, 'b, T, const D: usize>(pub(crate) &'a Grid<'b, T, D>);
 
 impl<T: Scalar, const D: usize> RegisterKernel for Backwards<'_, '_, T, D> {
@@ -48,7 +48,7 @@ impl<T: Scalar, const D: usize> RegisterKernel for Backwards<'_, '_, T, D> {
 }
 
 impl<T: Scalar, const D: usize> Grid<'_, T, D> {
-    /// The value and its gradients, or `None` where the log domain must be used (as [`Grid::value`]).
+    /// The value and its gradients, or `None` if the log domain must be used (as [`Grid::value`]).
     ///
     /// With S(i, j), the sum of exp(−cost/γ) over the paths from cell (i, j) to the last one, without its own cost,
     ///
@@ -66,7 +66,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         let mut steps = Steps(Vec::with_capacity(self.steps()));
         let columns = Slanted::of(self.columns);
         let total = self.run::<S, W>(simd, start, &columns, &mut steps)?;
-        // S starts from the power of two that gives R(n, m) times it the exponent that shares are computed with.
+        // S starts from a power of two. Its product with R(n, m) has the exponent that shares are computed with.
         let (significand, exponent) = total;
         let seed = TOTAL - (start + exponent);
         let length = self.columns.len() + 2 * (STRIP - 1);
@@ -74,7 +74,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
             row: vec![W::NONE_ONE; length],
             of_columns: vec![[0.0; D]; length],
         };
-        // Every path ends in the last cell, as if it went on along the diagonal.
+        // Every path ends in the last cell, as if it continued along the diagonal.
         below.row[self.columns.len() + STRIP - 1] = W::power(seed);
         let mut of_rows = vec![[0.0; D]; self.rows.len()];
         let mut steps = steps.0.as_slice();
@@ -90,7 +90,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 Cost::Euclidean => retreat(simd, Length, &strip, own, &columns, (significand, TOTAL), &mut below),
             };
             for lane in 0..STRIP {
-                // Lanes above the first row belong to no row.
+                // Lanes above the first row do not belong to a row.
                 if let Some(row) = (index * STRIP + lane).checked_sub(spare) {
                     of_rows[row] = of_lanes.map(|component| component[lane]);
                 }
@@ -130,7 +130,7 @@ fn retreat<S: Register, W: Weight, M: Metric, const D: usize>(
     let row = &mut below.row[..end + STRIP];
     let of_columns = &mut below.of_columns[..end + STRIP];
     let mut of_rows = [[0.0; STRIP]; D];
-    // Of the columns that the lanes are at: a column passes through the lanes from the last to the first.
+    // Gradients of the columns at which the lanes are. A column passes through the lanes from the last to the first.
     let mut of_lanes = [[0.0; STRIP]; D];
     for lane in 1..STRIP {
         for (of_lanes, of_column) in of_lanes.iter_mut().zip(of_columns[end + STRIP - lane]) {
@@ -147,7 +147,7 @@ fn retreat<S: Register, W: Weight, M: Metric, const D: usize>(
         (cells, diagonal) = (reached, down);
         row[d + STRIP - 1] = cells.first();
         let expected = W::shares(simd, forward, &sum, total);
-        // Beyond the first and the last column nothing is expected.
+        // Beyond the first and the last column the expected alignment is 0.
         let slopes = metric.slopes(simd, &strip.x, columns.window(d));
         let arriving = of_columns[d];
         let leaving = &mut of_columns[d + STRIP - 1];

@@ -1,4 +1,4 @@
-//! Which cells of the alignment a warping path may pass: the Sakoe-Chiba band.
+//! The Sakoe-Chiba band, which limits the cells that a warping path may pass.
 
 use std::ops::RangeInclusive;
 
@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 ///
 /// For sequences of equal length that is |i − j| ≤ radius. For unequal lengths the diagonal is the straight line from
 /// the first pair to the last, and the radius counts steps of the shorter sequence. Half a step is always allowed, so
-/// no band is too narrow for a path, and the band of (y, x) is the transposed band of (x, y).
+/// every band contains a path. The band of (y, x) is the transposed band of (x, y).
 ///
 /// # References
 /// Sakoe & Chiba, *Dynamic programming algorithm optimization for spoken word recognition*, IEEE TASSP 26 (1978).
@@ -37,7 +37,7 @@ impl Band {
         if rows == 1 {
             return 0..=last;
         }
-        // 2 |i (m − 1) − j (n − 1)| ≤ reach, solved for j. A radius beyond both lengths is as good as none.
+        // 2 |i (m − 1) − j (n − 1)| ≤ reach, solved for j. A radius above both lengths does not limit the paths.
         let longer = wide(rows.max(columns));
         let reach = (2 * wide(self.radius).min(longer)).max(1) * (longer - 1);
         let centre = 2 * wide(row) * wide(last);

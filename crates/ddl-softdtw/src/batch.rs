@@ -11,18 +11,18 @@ use wide::{Visit, WidePairs};
 mod forward_backward;
 mod wide;
 
-/// Largest proven error of log2 of a score that `f32` may have: beyond it a pair is evaluated in `f64`.
+/// Largest proven error of log2 of a score that is accepted in `f32`. Pairs with a larger error are evaluated in `f64`.
 const WIDEST_ERROR: f64 = 2e-4;
 
-/// Sequences y prepared for `D_γ(x, y)` and its gradient with respect to x, for one x after the other: barycentres,
-/// losses.
+/// Sequences y prepared for `D_γ(x, y)` and its gradient with respect to x, for many x in succession, as for
+/// barycentres and losses.
 ///
 /// # Numerics
 /// Sixteen pairs at once in `f32`, for γ > 0 and the squared cost. The proven error of a value is at most 1.4e-4 γ; for
 /// velocities of pedestrians (γ = 1 m²/s², eight steps) values and gradients are within 1e-5 of those of [`SoftDtw`].
-/// Values beyond about 57 γ (39 γ without fused multiplication), sequences of more than 32 steps or too large for the
-/// bound are evaluated in `f64`; by [`SoftDtw`] itself those beyond about 570 γ or 180 steps, a band, the Euclidean
-/// cost, γ = 0.
+/// Pairs are evaluated in `f64` if their value is above about 57 γ (39 γ without fused multiplication), if a sequence
+/// has more than 32 steps, or if it is too large for the bound. [`SoftDtw`] evaluates pairs above about 570 γ or 180
+/// steps, and all pairs with a band, with the Euclidean cost or with γ = 0.
 ///
 /// Everything runs on the calling thread. The last bits of a pair depend on the instruction set and on the other
 /// sequences.
@@ -84,10 +84,10 @@ impl<const D: usize> SoftDtwBatch<D> {
         })
     }
 
-    /// The same batch evaluated with another instruction set than the fastest of the machine.
+    /// Sets another instruction set than the fastest of the machine.
     ///
     /// # Errors
-    /// [`SearchError::InstructionSet`] when the machine lacks it.
+    /// [`SearchError::InstructionSet`] if the machine lacks the instruction set.
     pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, SearchError> {
         let dispatch = Dispatch::new(set).ok_or(SearchError::InstructionSet { set })?;
         Ok(Self { dispatch, ..self })
@@ -98,7 +98,7 @@ impl<const D: usize> SoftDtwBatch<D> {
         self.sequences.len()
     }
 
-    /// Never true: a batch without sequences cannot be built.
+    /// Always false: a batch has at least one sequence.
     pub fn is_empty(&self) -> bool {
         self.sequences.is_empty()
     }
@@ -114,8 +114,8 @@ impl<const D: usize> SoftDtwBatch<D> {
         Ok(results)
     }
 
-    /// [`SoftDtwBatch::values_and_gradients`] into memory that is kept from one x to the next. After an error `results`
-    /// holds nothing of use.
+    /// [`SoftDtwBatch::values_and_gradients`] into memory that is reused from one x to the next. After an error, the
+    /// contents of `results` are unspecified.
     ///
     /// # Errors
     /// As [`SoftDtwBatch::values_and_gradients`].
@@ -141,7 +141,7 @@ impl<const D: usize> SoftDtwBatch<D> {
     ///
     /// # Errors
     /// [`SearchError::Weights`] for a wrong number of weights, [`SearchError::Weight`] for one that is not finite, and
-    /// [`SoftDtwError::Overflow`] for a sum that is not; otherwise as [`SoftDtwBatch::values_and_gradients`].
+    /// [`SoftDtwError::Overflow`] for a sum that is not finite; otherwise as [`SoftDtwBatch::values_and_gradients`].
     pub fn weighted_sum(&self, x: &[[f64; D]], weights: &[f64]) -> Result<(f64, Vec<[f64; D]>), SearchError> {
         if weights.len() != self.len() {
             return Err(SearchError::Weights {
@@ -170,7 +170,7 @@ impl<const D: usize> SoftDtwBatch<D> {
         }
     }
 
-    /// Evaluates every pair, in an order that depends on the inputs alone.
+    /// Evaluates every pair, in an order that depends only on the inputs.
     fn each_pair(&self, x: &[[f64; D]], mut visit: impl Visit<D>) -> Result<(), SearchError> {
         check(x, SequenceRole::X)?;
         let mut left = Vec::new();
@@ -178,7 +178,7 @@ impl<const D: usize> SoftDtwBatch<D> {
             Some(blocks) => self.narrow_pairs(blocks, x, &mut left, &mut visit),
             None => left.extend(0..self.len()),
         }
-        // Eight pairs of one length go together.
+        // Eight pairs of the same length are evaluated together.
         left.sort_by_key(|&index| (self.sequences[index].len(), index));
         let mut beyond = Vec::new();
         let mut wide = WidePairs::new(self.dtw, self.dispatch);

@@ -1,10 +1,11 @@
-//! Sequences in groups of sixteen, one a lane, in `f32`, scaled and shifted so that squared differences are log2 units.
+//! Sequences in groups of sixteen, one per lane, in `f32`. They are scaled and shifted so that squared differences are
+//! in log2 units.
 
 use std::ops::Range;
 
 use ddl_simd::{LANES, Lanes};
 
-/// What a free lane holds instead of the place of a sequence.
+/// Marks a free lane, in place of the index of a sequence.
 pub(crate) const FREE: usize = usize::MAX;
 
 /// Scaling and shifting of steps before they are rounded to `f32`.
@@ -12,7 +13,8 @@ pub(crate) const FREE: usize = usize::MAX;
 pub(crate) struct Narrowing<const D: usize> {
     /// √(log2 e / γ): squared differences are then costs in log2 units.
     pub(crate) scale: f64,
-    /// Mean of all steps, subtracted before rounding: differences do not notice, the rounding error does.
+    /// Mean of all steps. It is subtracted before rounding, which leaves differences unchanged and reduces the rounding
+    /// error.
     shift: [f64; D],
 }
 
@@ -58,7 +60,7 @@ pub(crate) struct Blocks<const D: usize> {
     pub(crate) longest: usize,
     /// Blocks of sequences of one length each, one after the other.
     pub(crate) runs: Vec<BlockRun>,
-    /// Which sequence is in a lane of a block, or [`FREE`].
+    /// The index of the sequence in each lane of each block, or [`FREE`].
     pub(crate) members: Vec<[usize; LANES]>,
     samples: Vec<Step<D>>,
 }
@@ -66,7 +68,7 @@ pub(crate) struct Blocks<const D: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct BlockRun {
     pub(crate) steps: usize,
-    /// The blocks, as places in [`Blocks::members`].
+    /// The blocks, as a range of indices into [`Blocks::members`].
     pub(crate) blocks: Range<usize>,
     first: usize,
 }
@@ -115,7 +117,7 @@ impl<const D: usize> Blocks<D> {
         self.members.push(lanes);
     }
 
-    /// The steps of `blocks` (places in [`Blocks::members`]) of a run, one block after the other.
+    /// The steps of `blocks` (indices into [`Blocks::members`]) of a run, block by block.
     pub(crate) fn samples(&self, run: &BlockRun, blocks: &Range<usize>) -> &[Step<D>] {
         let step = |block: usize| run.first + (block - run.blocks.start) * run.steps;
         &self.samples[step(blocks.start)..step(blocks.end)]

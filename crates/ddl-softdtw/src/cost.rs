@@ -9,7 +9,7 @@ use ddl_simd::Register;
 use crate::exp2::{Lanes, STRIP};
 use crate::scalar::{Scalar, widened};
 
-/// Distance between two steps, the entries of the cost matrix Δ(x, y).
+/// Distance between two steps: an entry of the cost matrix Δ(x, y).
 ///
 /// For sequences in metres (or m/s) the squared cost is in m² (or m²/s²), and gamma has the unit of the cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -34,14 +34,14 @@ impl Cost {
     }
 }
 
-/// A cost as a type, so that the loops over cells know it.
+/// A cost as a type, so that the loops over cells are compiled for it.
 pub(crate) trait Metric: Copy {
     fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64;
 
     /// Derivative of the cost with respect to `a`; that with respect to `b` is its negative.
     fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D];
 
-    /// Slopes are so many times what [`slopes`](Self::slopes) says.
+    /// Factor between the derivatives of the cost and the results of [`slopes`](Self::slopes).
     const SLOPE: f64;
 
     /// The costs of several pairs of steps, component by component: each has the bits of [`between`](Self::between).
@@ -114,7 +114,7 @@ impl Metric for Length {
         }
     }
 
-    /// At `a == b` there is no derivative; 0 is the subgradient of least norm.
+    /// At `a == b` there is no derivative; 0 is the subgradient with the smallest norm.
     fn slope<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
         let length = self.between(a, b);
         std::array::from_fn(|k| if length > 0.0 { (a[k] - b[k]) / length } else { 0.0 })
@@ -148,7 +148,7 @@ impl Metric for Length {
     }
 }
 
-/// Squares overflow above 1e154 and lose digits below 1e-154: there the differences are scaled first.
+/// Squares overflow above 1e154 and lose digits below 1e-154; in these cases the differences are scaled first.
 #[inline(always)]
 fn is_plain(squared: f64) -> bool {
     (1e-280..=1e280).contains(&squared)

@@ -1,4 +1,4 @@
-//! The decision among the candidates that a sieve has left, in `f64`: the set, its order and the distances.
+//! The final selection among the candidates of a sieve, in `f64`: the set, its order and the distances.
 
 use rayon::prelude::*;
 
@@ -24,7 +24,7 @@ pub(crate) struct Candidates<'a, F> {
 }
 
 impl<F> Candidates<'_, F> {
-    /// The `wanted` nearest of those at `indices`, nearest first, ties by index; `self_query` is D(x, x).
+    /// The `wanted` nearest of the candidates at `indices`, nearest first, ties by index. `self_query` is D(x, x).
     pub(crate) fn nearest<'y, const D: usize>(
         &self,
         query: &[[f64; D]],
@@ -67,7 +67,7 @@ impl<F> Candidates<'_, F> {
     }
 }
 
-/// D(y, y) of `count` candidates, computed as the values of a decision are: the distance of equal sequences is 0.
+/// D(y, y) of `count` candidates, computed like the values in [`nearest`], so that equal sequences have distance 0.
 pub(crate) fn self_values<'y, const D: usize>(
     values: &PairValues,
     count: usize,
@@ -81,7 +81,7 @@ pub(crate) fn self_values<'y, const D: usize>(
     chunks.collect()
 }
 
-/// Leaves the `wanted` nearest (all, if there are fewer), in order, ties by index.
+/// Keeps only the `wanted` nearest (all if there are fewer), sorted, ties by index.
 fn nearest_first(found: &mut Vec<Neighbour>, wanted: usize) {
     let order = |a: &Neighbour, b: &Neighbour| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index));
     if wanted < found.len() {

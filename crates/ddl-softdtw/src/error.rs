@@ -24,7 +24,7 @@ impl fmt::Display for SequenceRole {
     }
 }
 
-/// Why a soft-DTW value or gradient could not be computed.
+/// A soft-DTW value or gradient cannot be computed.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
@@ -47,7 +47,7 @@ pub enum SoftDtwError {
     Overflow,
 }
 
-/// Why a search could not be prepared or answered.
+/// A search cannot be prepared or answered.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]

@@ -6,15 +6,14 @@
 
 use ddl_simd::Register;
 
-/// Cells computed together: neighbours on an antidiagonal, one a row.
+/// Number of cells computed together: neighbours on an antidiagonal, one per row.
 pub(crate) const STRIP: usize = 8;
 pub(crate) type Lanes = [f64; STRIP];
 
-/// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which then sits in the low bits of the
-/// sum.
+/// Adding and subtracting 1.5 · 2^52 rounds a number below 2^51 to an integer, which is in the low bits of the sum.
 pub(crate) const ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-/// (2^−f − 1) / f on [−1/2, 1/2]: the polynomial of degree 10 for which 2^−f has the least largest relative error,
+/// (2^−f − 1) / f on [−1/2, 1/2]: the polynomial of degree 10 for which 2^−f has the smallest maximum relative error,
 /// 4.3e-17.
 const POLYNOMIAL: [f64; 11] = [
     -0.693_147_180_559_945_7,
@@ -38,7 +37,7 @@ pub(crate) fn exp2_minus<S: Register>(simd: S, t: S::Wide) -> (S::Wide, S::Wide)
     let minus = simd.wide_sub(rounding, t);
     let f = simd.wide_sub(t, simd.wide_sub(rounding, minus));
     let ff = simd.wide_mul(f, f);
-    // Even and odd powers apart: half the latency of one chain.
+    // Even and odd powers are summed separately, which halves the latency of a single chain.
     let mut sums = [simd.wide_splat(POLYNOMIAL[10]), simd.wide_splat(POLYNOMIAL[9])];
     for (i, coefficient) in POLYNOMIAL.into_iter().enumerate().take(9).rev() {
         let product = simd.wide_mul(sums[i % 2], ff);
@@ -80,7 +79,7 @@ mod tests {
             let t = f64::from(i) * 1.234_567e-3;
             let (whole, power) = Dispatch::detect().run_on_registers(Minus(t));
             assert!(whole == whole.round() && (t - whole).abs() <= 0.5);
-            // The library's own exp2 errs by up to half a unit in the last place more.
+            // The exp2 of the library adds an error of up to half a unit in the last place.
             worst = worst.max((power / (whole - t).exp2() - 1.0).abs());
         }
         assert!((5e-17..3.4e-16).contains(&worst), "{worst:e}");

@@ -1,4 +1,4 @@
-//! The gradient of soft-DTW: how much each cell of the alignment counts, times the slope of its cost.
+//! The gradient of soft-DTW: the expected alignment of each cell times the derivative of its cost.
 
 use crate::error::{SequenceRole, SoftDtwError};
 use crate::log_domain::Gradients;
@@ -18,9 +18,10 @@ impl SoftDtw {
     /// As [`SoftDtw::value`]; also [`SoftDtwError::Overflow`] when a component of the gradient leaves the range of `T`.
     ///
     /// # Numerics
-    /// Nothing cancels: with the bound b on the error of the value ([`SoftDtw`]), E(i, j) has a relative error of at
-    /// most 3 b / γ as long as that is small. The value is that of [`SoftDtw::value`] to the last bit. γ = 0 gives the
-    /// gradient along one best path (a subgradient), and the Euclidean cost counts 0 where `x_i = y_j`.
+    /// All terms are positive, so nothing cancels. With the bound b on the error of the value ([`SoftDtw`]), E(i, j)
+    /// has a relative error of at most 3 b / γ, if that is small. The value is that of [`SoftDtw::value`] to the last
+    /// bit. γ = 0 gives the gradient along one best path (a subgradient). The Euclidean cost contributes 0 if
+    /// `x_i = y_j`.
     ///
     /// # References
     /// Cuturi & Blondel (2017), algorithm 2.
@@ -35,7 +36,7 @@ impl SoftDtw {
         Ok((rounded(value)?, narrowed(&of_x)?))
     }
 
-    /// `D_γ(x, y)`, its gradient with respect to `x` and its gradient with respect to `y`, at the price of one.
+    /// `D_γ(x, y)` with its gradients with respect to `x` and to `y`, at the cost of one gradient.
     ///
     /// # Shapes
     /// The gradients have the shapes of `x` and of `y`.
@@ -56,7 +57,7 @@ impl SoftDtw {
 
     /// The normalised value and its gradient with respect to `x` (see [`SoftDtw::normalised`]).
     ///
-    /// D(x, x) depends on `x` through both of its arguments: its half enters with the gradient of the first argument
+    /// D(x, x) depends on `x` through both arguments, so half of it contributes the gradient of the first argument
     /// once.
     ///
     /// # Errors
@@ -71,7 +72,7 @@ impl SoftDtw {
         let (value, mut gradient, _) = self.gradients_unchecked(x, y);
         let value = finite(value)?;
         if self.gamma() == 0.0 {
-            // D(x, x) is 0 whatever x.
+            // D(x, x) is 0 for every x.
             return Ok((rounded(value)?, narrowed(&gradient)?));
         }
         let (self_x, own, _) = self.gradients_unchecked(x, x);
@@ -82,7 +83,7 @@ impl SoftDtw {
         Ok((rounded(value)?, narrowed(&gradient)?))
     }
 
-    /// The value and both gradients of checked sequences; not finite where they exceed the range of `f64`.
+    /// The value and both gradients of checked sequences; not finite if they exceed the range of `f64`.
     fn gradients_unchecked<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Gradients<D> {
         let grid = self.grid(x, y);
         let gradients = grid.gradients().unwrap_or_else(|| grid.log_domain_gradients());
@@ -94,8 +95,7 @@ impl SoftDtw {
         }
     }
 
-    /// [`SoftDtw::value_and_gradient`] by the recursion as it is written down: slow, and what tests hold the fast one
-    /// to.
+    /// [`SoftDtw::value_and_gradient`] by the textbook recursion in the log domain: slow, the reference for tests.
     #[doc(hidden)]
     pub fn log_domain_gradient<T: Scalar, const D: usize>(
         &self,

@@ -11,14 +11,14 @@ use crate::cost::{Cost, Length, Metric as _, Squared};
 use crate::exp2::{Lanes, STRIP};
 use crate::scalar::{Scalar, widened};
 
-/// Plain numbers: no R exceeds 2^`LARGEST`, and no t.
+/// For plain numbers: R is at most 2^`LARGEST`, and t at most `LARGEST`.
 const LARGEST: f64 = 1018.0;
 /// log2(1 + √2), rounded up.
 const PATHS: f64 = 1.271_553_303_2;
 /// 1018 − 17 − 128: see [`crate::wavefront`].
 const ROOM: f64 = 873.0;
 
-/// Two checked sequences and what is asked of them: row i is step i of one, column j step j of the other.
+/// Two checked sequences and the parameters of their soft-DTW: row i is step i of one, column j step j of the other.
 pub(crate) struct Grid<'a, T, const D: usize> {
     pub(crate) rows: &'a [[T; D]],
     pub(crate) columns: &'a [[T; D]],
@@ -27,15 +27,15 @@ pub(crate) struct Grid<'a, T, const D: usize> {
     pub(crate) band: Option<Band>,
 }
 
-/// Consecutive rows that advance together, one a lane, each one column behind the row above it: in step d of the strip
-/// lane l is at column d − l.
+/// Consecutive rows that advance together, one per lane, each one column behind the row above it. In step d of the
+/// strip, lane l is at column d − l.
 pub(crate) struct Strip<const D: usize> {
     /// The rows' steps, component by component. Lanes above the first row repeat it.
     pub(crate) x: [Lanes; D],
     /// First and last step in which some lane is at a column of the grid (and of the band).
     pub(crate) start: usize,
     pub(crate) end: usize,
-    /// First and last step in which each lane is in the band; for a grid without one they hold nothing.
+    /// First and last step in which each lane is in the band; not used without a band.
     pub(crate) first: Lanes,
     pub(crate) last: Lanes,
     /// The lane of row 0, in the strip that holds it: every path starts there, in step `start`.
@@ -87,19 +87,19 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         strip
     }
 
-    /// What makes t of a cost.
+    /// The factor from a cost to t: log2(e) / γ.
     pub(crate) fn scale(&self) -> f64 {
         std::f64::consts::LOG2_E / self.gamma
     }
 
-    /// The exponent of R(0, 0) with which plain numbers hold all of R, if there is one ([`crate::wavefront`]).
+    /// The exponent of R(0, 0) with which plain numbers can hold every R, if there is one ([`crate::wavefront`]).
     pub(crate) fn plain_start(&self) -> Option<f64> {
         let (n, m) = (self.rows.len(), self.columns.len());
         let paths = PATHS * (n + m + 2 * STRIP) as f64;
         let start = (LARGEST - paths).floor();
         let room = start - paths + ROOM;
         let bound = self.cost_bound() * self.scale();
-        // A bound of all t is cheaper than their sum along a path of n cells, and often enough.
+        // A bound of all t is cheaper to compute than their sum along a path of n cells, and often sufficient.
         let fits = bound <= LARGEST && (bound * n as f64 <= room || self.diagonal_cost() * self.scale() <= room);
         fits.then_some(start)
     }
@@ -120,7 +120,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         sum
     }
 
-    /// The largest cost that two steps can have: that of the corners of the box around all of them.
+    /// A bound of the cost of two steps: that of opposite corners of the box around all steps.
     fn cost_bound(&self) -> f64 {
         let mut low = widened(&self.rows[0]);
         let mut high = low;
@@ -143,18 +143,17 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     }
 }
 
-/// A number for each component of each column, component by component and from the last column to the first, so that
-/// what the lanes of a strip are at lies side by side. Before the first and after the last column there is room for the
-/// slanted ends of a strip.
+/// The columns component by component, from the last column to the first, so that the values for the lanes of a strip
+/// are adjacent. Before the first and after the last column there is room for the slanted ends of a strip.
 pub(crate) struct Slanted {
     numbers: Vec<f64>,
-    /// Numbers a component.
+    /// Number of values per component.
     stride: usize,
 }
 
 impl Slanted {
-    /// The steps of the columns; beyond the ends the first or the last one. Cells there are computed and not used:
-    /// nothing in them overflows unless it does within the grid.
+    /// The steps of the columns; beyond the ends the first or the last step is repeated. Cells there are computed but
+    /// not used, and do not overflow unless a cell of the grid does.
     #[inline(always)]
     pub(crate) fn of<T: Scalar, const D: usize>(columns: &[[T; D]]) -> Self {
         let stride = columns.len() + 2 * (STRIP - 1);
@@ -173,7 +172,7 @@ impl Slanted {
         slanted
     }
 
-    /// What the lanes are at in step `d` of a strip, component by component: lane l at column d − l.
+    /// The values for the lanes in step `d` of a strip, component by component: lane l is at column d − l.
     #[inline(always)]
     pub(crate) fn window<const D: usize>(&self, d: usize) -> [&Lanes; D] {
         let mut window = [&[0.0; STRIP]; D];

@@ -1,5 +1,5 @@
-//! The recursion as it is written down, in the log domain: what γ = 0 and extreme ratios of cost to γ need, and the
-//! oracle that the fast recursion is held to.
+//! The textbook recursion in the log domain. It is used for γ = 0 and for extreme ratios of cost to γ, and is the
+//! reference for tests of the fast recursion.
 
 use crate::cost::{Cost, Length, Metric, Squared};
 use crate::grid::Grid;
@@ -23,7 +23,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         }
     }
 
-    /// The value and its gradients; the gradients hold NaN or infinities where they exceed the range of `f64`.
+    /// The value and its gradients; the gradients hold NaN or infinity if they exceed the range of `f64`.
     pub(crate) fn log_domain_gradients(&self) -> Gradients<D> {
         let mut ways = Vec::new();
         match self.cost {
@@ -46,7 +46,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         smallest
     }
 
-    /// The recursion over all cells of the band, row by row; `smallest` is given the three ways into each.
+    /// The recursion over all cells of the band, row by row. `smallest` receives the values of the three predecessors
+    /// of each cell.
     fn rows(&self, metric: impl Metric, mut smallest: impl FnMut(f64, f64, f64) -> f64) -> f64 {
         // One row is kept: before cell (i, j) is written, row[j] still holds r(i−1, j).
         let mut row = vec![f64::INFINITY; self.columns.len()];
@@ -68,7 +69,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 diagonal = up;
             }
             if first > 0 {
-                // Not in the band of this row, whatever the row above left there.
+                // This cell is not in the band of the row; it may still hold a value of the row above.
                 row[first - 1] = f64::INFINITY;
             }
         }
@@ -79,7 +80,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     fn back(&self, metric: impl Metric, ways: &[Ways]) -> (Vec<[f64; D]>, Vec<[f64; D]>) {
         let mut of_rows = vec![[0.0; D]; self.rows.len()];
         let mut of_columns = vec![[0.0; D]; self.columns.len()];
-        // Entry j + 1 is what the row below sends to column j; entry 0 catches what leaves to the left of column 0.
+        // Entry j + 1 is the contribution of the row below to column j; entry 0 receives contributions to the left of
+        // column 0.
         let mut below = vec![0.0; self.columns.len() + 1];
         below[self.columns.len()] = 1.0;
         let mut end = ways.len();
@@ -99,7 +101,8 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                         of_columns[j][k] -= expected * slope[k];
                     }
                 }
-                // What (i, j + 1) sends along its diagonal meets here what (i, j) sends up.
+                // Column j of the row above receives the diagonal contribution of (i, j + 1) and the upward
+                // contribution of (i, j).
                 below[j + 1] = to_diagonal + expected * up;
                 to_diagonal = expected * diagonal;
                 from_right = expected * left;

@@ -1,32 +1,33 @@
-//! How far the recursion in the exponential domain can be trusted: its range and its rounding error, in `f32` and
-//! `f64`.
+//! Accuracy of the recursion in the exponential domain: its range and its rounding error, in `f32` and `f64`.
 //!
-//! Everything here is in log2 units: a score Z stands for the soft-DTW value −γ ln 2 · log2(Z / start).
+//! All quantities are in log2 units: a score Z represents the soft-DTW value −γ ln 2 · log2(Z / start).
 
 use ddl_simd::{COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64};
 
-/// Added to a sum of predecessors in `f32`, on any machine: times 2^−[`COST_LIMIT`] it is a normal number.
+/// Added to a sum of predecessors in `f32` on machines without fused multiplication, and at least the floor of other
+/// machines. Its product with 2^−[`COST_LIMIT`] is a normal number.
 pub(crate) const FLOOR: f32 = 0.25;
-/// The same where products are fused, 2^−100: one that is added to it is not rounded to a denormal number on the way.
+/// Added on machines with fused multiplication: 2^−100. A product that is added to it is not first rounded to a
+/// denormal number.
 pub(crate) const FUSED_FLOOR: f32 = f32::from_bits((127 - 100) << 23);
-/// Added to every sum of predecessors, 2^−120: times 2^−900 it is still a normal number.
+/// Added to every sum of predecessors in `f64`: 2^−120. Its product with 2^−900 is a normal number.
 pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
 
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
-/// A margin beyond this (log2 units) would let nearly everything through the sieve.
+/// Largest margin (log2 units). With a larger one, the sieve would keep nearly every candidate.
 const WIDEST_MARGIN: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
 struct Format {
     longest: usize,
     cost_limit: f64,
-    /// Added to every sum of predecessors, at most.
+    /// Largest number that is added to a sum of predecessors.
     floor: f64,
-    /// log2 of the largest number, less two bits for rounding and for the sums of three terms.
+    /// log2 of the largest number, minus two for rounding and for the sums of three terms.
     top: f64,
-    /// log2 of the largest start of a backward recursion: sums of differences times this do not overflow.
+    /// log2 of the largest start of a backward recursion, for which sums of differences do not overflow.
     largest_seed: i16,
-    /// A score must exceed the error of clamping and flooring by 2 to this power to count as accurate.
+    /// log2 of the factor by which an accurate score must exceed the error of clamp and floor.
     headroom: f64,
 }
 
@@ -54,7 +55,7 @@ pub(crate) struct Range {
     format: Format,
     /// log2 of the number of warping paths (a Delannoy number), which bounds Z / start.
     paths_log2: f64,
-    /// log2 of the number of paths from any cell to the last one, all cells together.
+    /// log2 of the number of paths from a cell to the last one, summed over all cells.
     tails_log2: f64,
     /// log2 of the start value of the recursion: as large as the number of paths allows.
     start_log2: i16,
@@ -92,9 +93,9 @@ impl Range {
         self.start_log2
     }
 
-    /// The smallest score (log2, start included) that the clamp on costs and the floor on sums leave accurate. Each of
-    /// the at most `paths` paths gains at most 2^−`cost_limit` by the clamp, and each cell passes on at most `floor`
-    /// times the number of paths from it to the last cell.
+    /// The smallest score (log2, start included) that is accurate despite the clamp on costs and the floor on sums.
+    /// Each of the at most `paths` paths gains at most 2^−`cost_limit` by the clamp, and each cell passes on at most
+    /// `floor` times the number of paths from it to the last cell.
     pub(crate) fn smallest_accurate_log2(&self) -> f64 {
         let start = f64::from(self.start_log2);
         let clamp = start + self.paths_log2 - self.format.cost_limit;
@@ -102,14 +103,14 @@ impl Range {
         clamp.max(floor) + 1.0 + self.format.headroom
     }
 
-    /// log2 of what a backward recursion β starts from, which sums the paths from a cell to the last one.
+    /// log2 of the start of the backward recursion β, which sums the paths from a cell to the last one.
     pub(crate) fn seed_log2(&self) -> i16 {
         self.start_log2.min(self.format.largest_seed)
     }
 
     /// The smallest score (log2, start included) for which the expected alignment α β / (seed · score) of each of n m
-    /// `cells` is accurate as well. The floor that a cell adds to β meets at most α = 2^`top` there: over all cells it
-    /// changes the expected alignment by at most cells · floor · 2^`top` / (seed · score).
+    /// `cells` is also accurate. The floor that a cell adds to β is multiplied by at most α = 2^`top`. Over all cells
+    /// it changes the expected alignment by at most cells · floor · 2^`top` / (seed · score).
     pub(crate) fn smallest_aligned_log2(&self, cells: usize) -> f64 {
         let floors = (cells as f64 * self.format.floor).log2() + self.format.top;
         let smallest = floors + self.format.headroom - f64::from(self.seed_log2());
@@ -117,10 +118,11 @@ impl Range {
     }
 
     /// Bound on the error of log2(score) in `f32` for scores of at least `score_log2` (start included), for inputs of
-    /// absolute value up to `largest` and dimension `dimension`. Paths whose cost C exceeds `paths + (start − score) +
-    /// 30` hold less than 2^−30 of the score. For the others, with input errors e = largest · u, the squared
-    /// differences of a path of P cells err by at most 4 e √(P·dim·C) + 4 e² P dim (inputs) + (dim + 3) u C (rounding),
-    /// by the Cauchy-Schwarz inequality; each cell adds the error of exp2 and four roundings.
+    /// absolute value up to `largest` and dimension `dimension`. Paths whose cost C exceeds
+    /// `paths + (start − score) + 30` contribute less than 2^−30 of the score. For the others, let e = largest · u be
+    /// the input error. By the Cauchy-Schwarz inequality, the squared differences of a path of P cells have an error of
+    /// at most 4 e √(P·dim·C) + 4 e² P dim (inputs) + (dim + 3) u C (rounding). Each cell adds the error of exp2 and
+    /// four roundings.
     pub(crate) fn error_log2(&self, score_log2: f64, largest: f64, dimension: usize) -> f64 {
         let (path, dimension) = (self.longest_path, dimension as f64);
         let cost = self.cost_log2(score_log2);
@@ -133,33 +135,35 @@ impl Range {
         costs + cells + tails
     }
 
-    /// Width of the band below the n-th score that may hold members of the true n best, or `None` when it would be so
-    /// wide that the sieve is of no use. Both the n-th score and a candidate's may err, hence twice the error; that of
-    /// the `f64` values is added, so that what is ruled out is further than the n-th neighbour in computed values too.
+    /// Width of the band below the n-th score that may hold members of the true n best; `None` if it is so wide that
+    /// the sieve is useless. It is twice the error, because the n-th score and that of a candidate may both be wrong.
+    /// The error of the `f64` values is added, so that excluded candidates are farther than the n-th neighbour in
+    /// computed values too.
     pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
-        // A candidate just inside the band scores a little lower than the n-th: one unit covers it.
+        // A candidate just inside the band has a slightly lower score than the n-th; one unit covers the difference.
         let score_log2 = score_log2 - 1.0;
         let refined = wide_error_log2(self.longest_path, self.cost_log2(score_log2), dim);
         let margin = 2.0 * (self.error_log2(score_log2, largest, dim) + refined);
         (margin <= WIDEST_MARGIN).then_some(margin)
     }
 
-    /// Paths of a larger cost hold less than 2^−30 of a score.
+    /// Cost above which paths contribute less than 2^−30 of a score.
     fn cost_log2(&self, score_log2: f64) -> f64 {
         self.paths_log2 + (f64::from(self.start_log2) - score_log2).max(0.0) + 30.0
     }
 }
 
-/// Bound on the error of a value in log2 units, for warping paths of up to `path` cells and a `cost` that holds all but
-/// 2^−30 of the sum. Each squared difference is rounded twice, their sum, its root and its scaling D + 1 times, and the
-/// scale was rounded twice; each cell adds the error of exp2 and four roundings, and the logarithm one.
+/// Bound on the error of a value in log2 units, for warping paths of up to `path` cells. Paths of at most `cost` must
+/// contribute all but 2^−30 of the sum. Each squared difference is rounded twice; their sum, its root and its scaling
+/// are rounded D + 1 times; and the scale was rounded twice. Each cell adds the error of exp2 and four roundings, and
+/// the logarithm one rounding.
 pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
     const UNIT: f64 = f64::EPSILON / 2.0;
     let costs = (dimension as f64 + 6.0) * UNIT * cost;
     costs + (path * (EXP2_ERROR_64 + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
 }
 
-/// What an instruction set adds to a sum of predecessors in `f32`.
+/// The number that an instruction set adds to a sum of predecessors in `f32`.
 pub(crate) fn floor(dispatch: Dispatch) -> f32 {
     if dispatch.is_fused() { FUSED_FLOOR } else { FLOOR }
 }

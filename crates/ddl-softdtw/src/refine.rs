@@ -1,5 +1,5 @@
 //! Values of many pairs in `f64`, eight at a time in the exponential domain. The value of a pair does not depend on its
-//! neighbours, the instruction set or the number of threads: every operation is rounded by itself, in one order.
+//! neighbours, the instruction set or the number of threads: every operation is rounded separately, in a fixed order.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -9,10 +9,10 @@ use crate::cost::Cost;
 use crate::range::{Range, WIDE_FLOOR};
 use crate::value::SoftDtw;
 
-/// Outside of these the squares of the differences may leave the range of `f64` where their cost does not.
+/// Range of γ. Outside of it, the squares of differences may leave the range of `f64` although their cost does not.
 pub(crate) const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
-/// Cells whose similarities are computed together, so that the processor is kept busy.
+/// Number of cells whose similarities are computed together, to hide the latency of the operations.
 pub(crate) const WIDE_GROUP: usize = 4;
 
 pub(crate) type WideLanes = [f64; WIDE_LANES];
@@ -20,7 +20,7 @@ pub(crate) type WideLanes = [f64; WIDE_LANES];
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PairValue {
     Known(f64),
-    /// It is at least this: too large for the range of the recursion.
+    /// A lower bound: the value is too large for the range of the recursion.
     AtLeast(f64),
 }
 
@@ -33,7 +33,7 @@ pub(crate) struct PairValues {
 }
 
 type Both<'a, const D: usize> = (&'a [[f64; D]], &'a [[f64; D]]);
-/// A pair that waits for its block: its place in the answer, and both sequences.
+/// A pair that waits for its block: its index in the result, and both sequences.
 type Pair<'a, const D: usize> = (usize, &'a [[f64; D]], &'a [[f64; D]]);
 
 impl PairValues {
@@ -67,7 +67,7 @@ impl PairValues {
         values
     }
 
-    /// `D_γ` of every pair of checked sequences, from the log domain where the exponential one does not reach.
+    /// `D_γ` of every pair of checked sequences; pairs beyond the range of the exponential domain use the log domain.
     pub(crate) fn all<const D: usize>(&self, pairs: &[Both<'_, D>]) -> Vec<f64> {
         let known = self.of(pairs.iter().copied());
         let value = |(pair, known): (&Both<'_, D>, _)| match known {
@@ -88,7 +88,7 @@ impl PairValues {
         working.y.resize(y.len(), [[0.0; WIDE_LANES]; D]);
         working.row.resize(y.len(), [0.0; WIDE_LANES]);
         for lane in 0..WIDE_LANES {
-            // Free lanes repeat the last pair: nothing in them can be slow or out of range.
+            // Free lanes repeat the last pair, so that they are not slower or out of range.
             let (_, x, y) = pairs[lane.min(pairs.len() - 1)];
             spread(x, lane, &mut working.x);
             spread(y, lane, &mut working.y);
@@ -108,10 +108,10 @@ impl PairValues {
         let start = f64::from(range.start_log2());
         let smallest = range.smallest_accurate_log2();
         if sum >= smallest.exp2() {
-            // Dividing by a power of two is exact, and the logarithm of the quotient loses no digits to the start.
+            // Dividing by a power of two is exact, so the start value costs the logarithm no digits.
             PairValue::Known(-gamma * (sum * (-start).exp2()).ln())
         } else {
-            // Clamp and floor only add to the sum; one unit covers its rounding.
+            // Clamp and floor can only increase the sum; one unit covers its rounding.
             let reach = (start - smallest) * std::f64::consts::LN_2 - 1.0;
             PairValue::AtLeast(gamma * reach)
         }

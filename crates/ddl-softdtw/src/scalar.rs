@@ -1,4 +1,4 @@
-//! The numbers a sequence may consist of: `f32` and `f64`.
+//! The number types of sequences: `f32` and `f64`.
 
 mod sealed {
     pub trait SealedScalar {}
@@ -6,8 +6,8 @@ mod sealed {
     impl SealedScalar for f64 {}
 }
 
-/// Component of a step: `f32` or `f64`. Everything is computed in `f64` and rounded once at the end: sealed, as that
-/// claim is proved for these two.
+/// Component of a step: `f32` or `f64`. All results are computed in `f64` and rounded once at the end. The trait is
+/// sealed, because this is proved only for these two types.
 pub trait Scalar: sealed::SealedScalar + Copy + PartialEq + std::fmt::Debug + Send + Sync + 'static {
     /// The same number as `f64`, exactly.
     fn widened(self) -> f64;

@@ -9,16 +9,16 @@ use crate::sieve::CandidateSieve;
 use crate::value::{SoftDtw, check, finite};
 use ddl_simd::{Dispatch, InstructionSet};
 
-/// Queries that go through the candidates together.
+/// Number of queries that are compared with the candidates together.
 const TOGETHER: usize = 8;
 
-/// Candidates prepared for repeated search; `D` components a step.
+/// Candidates prepared for repeated search; a step has `D` components.
 #[derive(Clone, Debug)]
 pub struct SearchIndex<const D: usize> {
     dtw: SoftDtw,
-    /// All steps of all candidates in f64, one candidate after the other.
+    /// All steps of all candidates in `f64`, candidate by candidate.
     steps: Vec<[f64; D]>,
-    /// Where candidate i begins in `steps`; one more entry ends the last.
+    /// Index in `steps` at which candidate i begins; one more entry for the end of the last.
     offsets: Vec<usize>,
     self_values: Vec<f64>,
     sieve: Option<CandidateSieve<D>>,
@@ -32,8 +32,8 @@ impl<const D: usize> SearchIndex<D> {
     /// Candidates of at least one step each; their lengths may differ.
     ///
     /// # Errors
-    /// [`SearchError::NoCandidates`] for an empty list, [`SearchError::Candidate`] for an empty candidate, one that is
-    /// not finite or whose D(y, y) cannot be represented.
+    /// [`SearchError::NoCandidates`] for an empty list, [`SearchError::Candidate`] for a candidate that is empty, not
+    /// finite, or whose D(y, y) exceeds the range of `f64`.
     pub fn build<S>(dtw: &SoftDtw, candidates: &[S]) -> Result<Self, SearchError>
     where
         S: AsRef<[[f64; D]]> + Sync,
@@ -70,17 +70,16 @@ impl<const D: usize> SearchIndex<D> {
         Ok(index)
     }
 
-    /// The same index searched with another instruction set than the fastest of the machine: the same results to the
-    /// last bit.
+    /// Sets another instruction set than the fastest of the machine. The results have the same bits.
     ///
     /// # Errors
-    /// [`SearchError::InstructionSet`] when the machine lacks it.
+    /// [`SearchError::InstructionSet`] if the machine lacks the instruction set.
     pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, SearchError> {
         let dispatch = Dispatch::new(set).ok_or(SearchError::InstructionSet { set })?;
         Ok(Self { dispatch, ..self })
     }
 
-    /// The instruction set that searches run with.
+    /// The instruction set of the searches.
     pub fn instruction_set(&self) -> InstructionSet {
         self.dispatch.instruction_set()
     }
@@ -90,12 +89,12 @@ impl<const D: usize> SearchIndex<D> {
         self.offsets.len() - 1
     }
 
-    /// Never true: an index without candidates cannot be built.
+    /// Always false: an index has at least one candidate.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The distance that is searched in.
+    /// The distance of the search.
     pub fn soft_dtw(&self) -> SoftDtw {
         self.dtw
     }
@@ -113,8 +112,8 @@ impl<const D: usize> SearchIndex<D> {
         Ok(found.pop().unwrap_or(Ok(Vec::new()))?)
     }
 
-    /// [`SearchIndex::nearest`] for many queries, in parallel over the current `rayon` pool; the number of threads
-    /// changes nothing.
+    /// [`SearchIndex::nearest`] for many queries, in parallel on the current `rayon` pool. The result does not depend
+    /// on the number of threads.
     ///
     /// # Errors
     /// [`SearchError::BatchQuery`] for the first query that is not valid.
@@ -126,7 +125,7 @@ impl<const D: usize> SearchIndex<D> {
             let queries: Vec<_> = queries.iter().map(AsRef::as_ref).collect();
             self.search(&queries, n)
         };
-        // Collected first: a parallel collect into a Result would report whichever error came first in time.
+        // Collected first, because a parallel collect into a `Result` could return the error of any query.
         let found: Vec<_> = queries.par_chunks(TOGETHER).flat_map(together).collect();
         found
             .into_iter()

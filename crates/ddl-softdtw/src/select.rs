@@ -1,4 +1,5 @@
-//! Running selection of the largest scores, with a band below the n-th for those that may belong to the best.
+//! Running selection of the largest scores, with a band below the n-th score for candidates that may belong to the
+//! best.
 
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scored {
@@ -6,13 +7,13 @@ pub(crate) struct Scored {
     pub(crate) candidate: usize,
 }
 
-/// Keeps every score that can still lie within `slack` of the `wanted`-th largest.
+/// Keeps every score that may be at least `slack` times the `wanted`-th largest.
 #[derive(Debug)]
 pub(crate) struct Selection {
     wanted: usize,
     /// Factor below 1: a score of at least `slack` times the n-th is kept.
     slack: f64,
-    /// What a score must reach: `slack` times the n-th largest seen so far, which only grows.
+    /// Smallest score that is kept: `slack` times the n-th largest so far. It only grows.
     threshold: f32,
     capacity: usize,
     kept: Vec<Scored>,
@@ -42,7 +43,7 @@ impl Selection {
         self.kept.push(Scored { score, candidate });
         if self.kept.len() >= self.capacity {
             self.compact(self.slack);
-            // Many ties may survive: more room, so that compacting stays rare.
+            // Many ties may be kept; a larger capacity keeps compaction rare.
             self.capacity = self.capacity.max(2 * self.kept.len());
         }
     }
@@ -59,14 +60,14 @@ impl Selection {
         Some(nth.score)
     }
 
-    /// What is left after the last compaction, with a margin that may be narrower than that of the selection.
+    /// The scores that remain after a last compaction, with a margin that may be narrower than that of the selection.
     pub(crate) fn finish(mut self, margin_log2: f64) -> Vec<Scored> {
         self.compact((-margin_log2).exp2().max(self.slack));
         self.kept
     }
 
-    /// The candidates that may be among the best, or `None` when too few were offered, the last of them scores less
-    /// than `smallest_log2`, or no margin can be told for its score (log2).
+    /// The candidates that may be among the best. `None` if too few were offered, if the score of the last one is below
+    /// `smallest_log2`, or if there is no margin for its score (log2).
     pub(crate) fn survivors(
         mut self,
         smallest_log2: f64,
@@ -83,7 +84,7 @@ impl Selection {
     fn compact(&mut self, slack: f64) {
         if let Some(nth) = self.nth() {
             let threshold = (f64::from(nth) * slack) as f32;
-            // Rounded down, so that the band is never narrower than asked.
+            // Rounded down, so that the band is not narrower than requested.
             self.threshold = self.threshold.max(threshold.next_down());
             let threshold = self.threshold;
             self.kept.retain(|scored| scored.score >= threshold);

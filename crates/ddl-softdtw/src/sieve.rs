@@ -1,4 +1,4 @@
-//! The sieve of a search: `f32` scores that rule out nearly every candidate, and rule out none wrongly.
+//! The sieve of a search: `f32` scores that exclude nearly every candidate, and never one of the nearest.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -11,7 +11,8 @@ use crate::range::{FLOOR, Range, floor};
 use crate::recursion::{GROUP, recursion};
 use crate::select::Selection;
 
-/// Blocks that several queries go through before the next ones: they and the working memory fit into the second cache.
+/// Number of blocks that several queries process before the next blocks. They and the working memory fit the
+/// second-level cache.
 const TILE: usize = 256;
 
 /// The candidates in blocks, with the weights that normalise their scores.
@@ -31,7 +32,7 @@ struct Search<const D: usize> {
 }
 
 impl<const D: usize> CandidateSieve<D> {
-    /// The sieve of candidates of known D(y, y), or `None` when `f32` cannot hold them whatever the query.
+    /// The sieve of candidates of known D(y, y), or `None` if `f32` cannot hold them for any query.
     pub(crate) fn build(gamma: f64, candidates: &[&[[f64; D]]], self_values: &[f64]) -> Option<Self> {
         let blocks = Blocks::new(gamma, candidates);
         let range = Range::narrow(FLOOR, 1, blocks.longest)?;
@@ -56,7 +57,8 @@ impl<const D: usize> CandidateSieve<D> {
         })
     }
 
-    /// For each query the candidates that may be among the `wanted` nearest, or `None` when `f32` cannot tell.
+    /// For each query, the candidates that may be among the `wanted` nearest, or `None` if `f32` is not accurate
+    /// enough.
     pub(crate) fn survivors(
         &self,
         dispatch: Dispatch,
@@ -89,7 +91,7 @@ impl<const D: usize> CandidateSieve<D> {
             .collect()
     }
 
-    /// A query before its first block, or `None` when no score of it could be trusted.
+    /// The state of a query before its first block, or `None` if its scores would not be accurate.
     fn search(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
         let range = Range::narrow(floor(dispatch), query.len(), self.blocks.longest)?;
         let narrowing = &self.blocks.narrowing;
@@ -133,9 +135,11 @@ impl<const D: usize> RegisterKernel for CandidateSweep<'_, D> {
 
     #[inline(always)]
     fn run<S: Register>(mut self, simd: S) {
-        // The row stays in registers where its length is known to the compiler: the lengths that pedestrians have.
+        // The row stays in registers if the compiler knows its length, so the lengths of pedestrians are compiled
+        // separately.
         match self.steps {
-            // As many similarities, a row and the coefficients do not fit into the few registers of the smallest sets.
+            // This many similarities, a row and the coefficients do not fit the few registers of the smallest
+            // instruction sets.
             7 if S::WIDTH < 8 => self.fixed::<S, 7, GROUP>(simd),
             8 if S::WIDTH < 8 => self.fixed::<S, 8, GROUP>(simd),
             7 => self.fixed::<S, 7, 7>(simd),
@@ -159,7 +163,7 @@ impl<const D: usize> CandidateSweep<'_, D> {
         }
     }
 
-    /// The scores of block `b`, offered where they reach the threshold.
+    /// Computes the scores of block `b`, and offers those that reach the threshold.
     #[inline(always)]
     fn block<S: Register, const G: usize>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::Floats]) {
         let mut scores = [0.0; LANES];

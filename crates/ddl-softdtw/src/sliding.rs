@@ -23,25 +23,25 @@ use sieve::WindowSieve;
 pub use window::WindowNeighbour;
 use window::{WindowPlace, places_of, running_sums};
 
-/// Windows of a query that are searched for together; a longer query is cut.
+/// Number of windows of a query that are searched together; a longer query is split.
 const QUERY_WINDOWS: usize = 64;
 
-/// All windows of one length of many tracks, prepared for repeated search; `D` components a step.
+/// All windows of one length of many tracks, prepared for repeated search; a step has `D` components.
 ///
-/// The candidates are the windows of `length` consecutive steps of longer tracks, from every step on. Neighbouring
-/// windows share nearly all they are computed from; a query track with all its windows
-/// ([`SlidingIndex::nearest_windows`]) shares on both sides, a single window ([`SlidingIndex::nearest`]) on one. The
-/// answer is that of a [`SearchIndex`](crate::SearchIndex) of the same windows, many times faster.
+/// The candidates are all windows of `length` consecutive steps of longer tracks. Neighbouring windows share most of
+/// their computation. For all windows of a query track ([`SlidingIndex::nearest_windows`]) both sides share it, for a
+/// single window ([`SlidingIndex::nearest`]) only the candidates do. The result is that of a
+/// [`SearchIndex`](crate::SearchIndex) of the same windows, many times faster.
 ///
 /// # Numerics
-/// Set, order and distances are decided in `f64`, to a relative error of the sum over the paths below 1e-12 (2e-12 for
-/// windows of 180 steps): results are exact up to ties within that error times γ and do not depend on the number of
-/// threads or the instruction set.
+/// Set, order and distances are computed in `f64`. The relative error of the sum over the paths is below 1e-12 (2e-12
+/// for windows of 180 steps). Results are exact up to ties within that error times γ, and do not depend on the number
+/// of threads or the instruction set.
 #[derive(Clone, Debug)]
 pub struct SlidingIndex<const D: usize> {
     dtw: SoftDtw,
     length: usize,
-    /// All steps of all tracks in f64, one track after the other.
+    /// All steps of all tracks in `f64`, track by track.
     steps: Vec<[f64; D]>,
     first_steps: Vec<usize>,
     places: Vec<WindowPlace>,
@@ -51,13 +51,13 @@ pub struct SlidingIndex<const D: usize> {
 }
 
 impl<const D: usize> SlidingIndex<D> {
-    /// Prepares all windows of `length` steps with at least `tail` more steps behind them in their track.
+    /// Prepares all windows of `length` steps that are followed by at least `tail` more steps of their track.
     ///
     /// # Shapes
     /// Tracks of any length: shorter ones than `length + tail` have no window.
     ///
     /// # Errors
-    /// A window of 0 steps, no window in any track, a track that is not finite.
+    /// `length` is 0, no track has a window, or a track is not finite.
     pub fn build<T>(dtw: &SoftDtw, tracks: &[T], length: usize, tail: usize) -> Result<Self, SlidingError>
     where
         T: AsRef<[[f64; D]]> + Sync,
@@ -102,26 +102,26 @@ impl<const D: usize> SlidingIndex<D> {
         Ok(index)
     }
 
-    /// The same index, searched with the instructions of `set` instead of the fastest of this machine.
+    /// Sets another instruction set than the fastest of the machine.
     ///
     /// # Errors
-    /// [`SlidingError::InstructionSet`] when this machine lacks them.
+    /// [`SlidingError::InstructionSet`] if the machine lacks the instruction set.
     pub fn with_instruction_set(mut self, set: InstructionSet) -> Result<Self, SlidingError> {
         self.dispatch = Dispatch::new(set).ok_or(SlidingError::InstructionSet { set })?;
         Ok(self)
     }
 
-    /// The instructions that a search uses.
+    /// The instruction set of the searches.
     pub fn instruction_set(&self) -> InstructionSet {
         self.dispatch.instruction_set()
     }
 
-    /// Number of windows that are searched.
+    /// Number of windows.
     pub fn len(&self) -> usize {
         self.places.len()
     }
 
-    /// Never true: an index without windows cannot be built.
+    /// Always false: an index has at least one window.
     pub fn is_empty(&self) -> bool {
         self.places.is_empty()
     }
@@ -131,16 +131,16 @@ impl<const D: usize> SlidingIndex<D> {
         self.length
     }
 
-    /// The distance that is searched in.
+    /// The distance of the search.
     pub fn soft_dtw(&self) -> SoftDtw {
         self.dtw
     }
 
-    /// The `n` windows nearest to the window `query` (or all of them), nearest first, ties by track and offset.
+    /// The `n` windows nearest to the window `query` (all if there are fewer), nearest first, ties by track and offset.
     ///
     /// # Errors
-    /// A query that is not finite or not of the length of a window, or a distance to be returned beyond the range of
-    /// `f64`.
+    /// The query is not finite or does not have the length of a window, or a distance to be returned exceeds the range
+    /// of `f64`.
     pub fn nearest(&self, query: &[[f64; D]], n: usize) -> Result<Vec<WindowNeighbour>, SlidingError> {
         if query.len() != self.length {
             return Err(SlidingError::QueryLength {
@@ -154,7 +154,7 @@ impl<const D: usize> SlidingIndex<D> {
 
     /// For every window of the track `query`, from its first step on, the `n` windows nearest to it.
     ///
-    /// A query shorter than a window has none.
+    /// The result is empty for a query shorter than a window.
     ///
     /// # Errors
     /// As [`SlidingIndex::nearest`].
@@ -174,7 +174,7 @@ impl<const D: usize> SlidingIndex<D> {
     where
         T: AsRef<[[f64; D]]> + Sync,
     {
-        // Collected first: a parallel collect into a Result would report whichever error came first in time.
+        // Collected first, because a parallel collect into a `Result` could return the error of any query.
         let found: Vec<_> = queries
             .par_iter()
             .map(|query| self.search_track(query.as_ref(), n))
@@ -246,7 +246,7 @@ impl<const D: usize> SlidingIndex<D> {
         }
     }
 
-    /// A window that was found, by track and offset: windows are numbered by these, so ties were broken by them.
+    /// Track and offset of a window. Windows are numbered in this order, so ties are broken by track and offset.
     fn window_neighbour(&self, found: &Neighbour) -> WindowNeighbour {
         let WindowPlace { track, offset } = self.places[found.index];
         WindowNeighbour {

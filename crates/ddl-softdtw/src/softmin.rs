@@ -1,8 +1,8 @@
 //! The smoothed minimum of three numbers and its weights.
 
-/// Smoothed minimum −γ ln(e^(−a/γ) + e^(−b/γ) + e^(−c/γ)); the plain minimum for γ = 0. Nothing overflows; `+inf`
-/// entries count for nothing. The order of the sum does not depend on the order of the arguments, so that soft-DTW is
-/// symmetric to the last bit.
+/// Smoothed minimum −γ ln(e^(−a/γ) + e^(−b/γ) + e^(−c/γ)); the plain minimum for γ = 0. It does not overflow, and
+/// `+inf` entries contribute nothing. The order of the sum does not depend on the order of the arguments, so soft-DTW
+/// is symmetric to the last bit.
 pub(crate) fn softmin(a: f64, b: f64, c: f64, gamma: f64) -> f64 {
     let (low, middle, high) = sorted(a, b, c);
     if gamma == 0.0 || low == f64::INFINITY {

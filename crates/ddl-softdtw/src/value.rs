@@ -6,7 +6,7 @@ use crate::error::{SequenceRole, SoftDtwError};
 use crate::grid::Grid;
 use crate::scalar::Scalar;
 
-/// Soft-DTW with a fixed smoothing γ and cost, and a band if one is wanted.
+/// Soft-DTW with a fixed smoothing γ and cost, and an optional band.
 ///
 /// ```text
 /// r(i, j) = δ(x_i, y_j) + min_γ( r(i−1, j−1), r(i−1, j), r(i, j−1) ),   r(0, 0) = 0
@@ -17,15 +17,15 @@ use crate::scalar::Scalar;
 /// [`SoftDtw::normalised`]. Sequences consist of `f32` or `f64`; γ is an `f64` in both cases.
 ///
 /// # Numerics
-/// With u = 2^−53, D components a step and lengths n and m, the computed value v errs by at most
+/// With u = 2^−53, D components per step and lengths n and m, the error of the computed value v is at most
 ///
 /// ```text
 /// (D + 12) u ( |v| + γ (n + m) )      as a rule,
 /// (D + 2 (n + m)) u |v|               for γ = 0 and where some cost exceeds γ · 3.1e15 / (n + m)
 /// ```
 ///
-/// (and, for `f32`, by the rounding of the result). No finite input gives NaN, and the only overflow, a true value
-/// beyond the range of the number type, is an error. `D(x, y)` and `D(y, x)` agree to the last bit.
+/// (for `f32`, plus the rounding of the result). Finite input never gives NaN. A value beyond the range of the number
+/// type is an error. `D(x, y)` and `D(y, x)` agree to the last bit.
 ///
 /// # References
 /// Cuturi & Blondel, *Soft-DTW: a differentiable loss function for time-series*, ICML 2017, algorithm 1; DDL paper,
@@ -63,7 +63,7 @@ impl SoftDtw {
         }
     }
 
-    /// The same over the warping paths within `band` only, which takes a time in proportion to its width.
+    /// Restricts the warping paths to `band`. The time of a value is then proportional to the width of the band.
     ///
     /// Searches and batches evaluate pair by pair with a band, which takes up to a hundred times as long.
     #[must_use]
@@ -84,7 +84,7 @@ impl SoftDtw {
         self.cost
     }
 
-    /// The band warping paths are kept in, if any.
+    /// The band of the warping paths, if any.
     pub fn band(&self) -> Option<Band> {
         self.band
     }
@@ -104,7 +104,7 @@ impl SoftDtw {
 
     /// `D_γ(x, y) − (D_γ(x, x) + D_γ(y, y)) / 2`, in the unit of the cost: exactly 0 for `x == y`.
     ///
-    /// The band, if there is one, holds in all three terms.
+    /// The band, if there is one, applies to all three terms.
     ///
     /// # Errors
     /// As [`SoftDtw::value`].
@@ -115,7 +115,7 @@ impl SoftDtw {
         rounded(normalise(value, self.self_value(x), self.self_value(y)))
     }
 
-    /// Whether the kernels that compute many pairs in vector lanes apply: they know neither bands nor other costs.
+    /// Whether the kernels that compute many pairs in vector lanes apply. They support neither bands nor other costs.
     pub(crate) fn suits_lanes(&self) -> bool {
         self.gamma > 0.0 && self.cost == Cost::SquaredEuclidean && self.band.is_none()
     }
@@ -135,7 +135,7 @@ impl SoftDtw {
         grid.value().unwrap_or_else(|| grid.log_domain_value())
     }
 
-    /// The grid of two checked sequences, the shorter one along the rows of memory.
+    /// The grid of two checked sequences, with the shorter one as columns.
     pub(crate) fn grid<'a, T, const D: usize>(&self, x: &'a [[T; D]], y: &'a [[T; D]]) -> Grid<'a, T, D> {
         let (rows, columns) = if x.len() < y.len() { (y, x) } else { (x, y) };
         Grid {
@@ -147,7 +147,7 @@ impl SoftDtw {
         }
     }
 
-    /// [`SoftDtw::value`] by the recursion as it is written down: slow, and what tests hold the fast one to.
+    /// [`SoftDtw::value`] by the textbook recursion in the log domain: slow, the reference for tests.
     #[doc(hidden)]
     pub fn log_domain_value<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Result<f64, SoftDtwError> {
         check(x, SequenceRole::X)?;
@@ -157,7 +157,7 @@ impl SoftDtw {
 }
 
 pub(crate) fn normalise(value: f64, self_x: f64, self_y: f64) -> f64 {
-    // Halves are taken first: the sum of two self terms could overflow where the result does not.
+    // Each term is halved first, because the sum of both could overflow although the result does not.
     value - (0.5 * self_x + 0.5 * self_y)
 }
 
@@ -174,7 +174,7 @@ pub(crate) fn rounded<T: Scalar>(value: f64) -> Result<T, SoftDtwError> {
     }
 }
 
-/// At least one step, and finite components only.
+/// Checks that the sequence has at least one step and only finite components.
 pub(crate) fn check<T: Scalar, const D: usize>(steps: &[[T; D]], sequence: SequenceRole) -> Result<(), SoftDtwError> {
     if steps.is_empty() {
         return Err(SoftDtwError::EmptySequence { sequence });

@@ -1,4 +1,4 @@
-//! How the recursion holds R, the sum of exp(−cost/γ) over paths: as a plain number, or with an exponent of its own.
+//! Representations of R, the sum of exp(−cost/γ) over paths: a plain number, or a number with a separate exponent.
 #![expect(
     clippy::inline_always,
     reason = "the lanes stay in registers only when what works on them is inlined"
@@ -10,31 +10,33 @@ use crate::exp2::{Lanes, ROUNDING, STRIP, exp2_minus};
 
 /// Exponent of a cell that no path reaches: far below every other, far from overflow.
 const NOTHING: f64 = -1_152_921_504_606_846_976.0; // −2^60
-/// An addend 2^700 below the largest counts as that far below: it does not change the sum, and stays a normal number.
+/// Smallest exponent of an addend, relative to the largest. Such an addend does not change the sum, and is a normal
+/// number.
 const FARTHEST: f64 = -700.0;
-/// No plain number is below half of this, 2^−1018: products of denormal numbers would take a hundred times as long.
+/// Bits of 2^−1018. Plain numbers are at least half of it, because products of denormal numbers would take a hundred
+/// times as long.
 const FLOOR: u64 = (1023 - 1018) << 52;
-/// A share of about this, 2^−142, or less counts as 0.
+/// Shares of about this, 2^−142, or less are set to 0.
 const NEGLIGIBLE: f64 = f64::from_bits((1023 - 142) << 52);
 
-/// The exponent of the total that [`Plain`] computes shares of.
+/// The exponent of the total in shares of [`Plain`] numbers.
 pub(crate) const TOTAL: f64 = 145.0;
 
 const ONE: u64 = 1.0_f64.to_bits();
 const FRACTION: u64 = u64::MAX >> 12;
 
-/// R of the cells of one antidiagonal of a strip. Both kinds round in the same places, so they give the same bits
-/// wherever the plain one suffices.
+/// R of the cells of one antidiagonal of a strip. Both representations round at the same points, so they give the same
+/// bits if the plain one suffices.
 pub(crate) trait Weight: Copy {
     /// R of one cell.
     type One: Copy;
     /// 2^−t of each cell.
     type Factor: Copy;
-    /// Whether t may be of any size.
+    /// Whether t may have any size.
     const UNBOUNDED: bool;
-    /// No path.
+    /// R = 0: no path reaches the cells.
     const NONE: Self;
-    /// No path, for one cell.
+    /// R = 0, for one cell.
     const NONE_ONE: Self::One;
 
     /// A power of two.
@@ -53,11 +55,11 @@ pub(crate) trait Weight: Copy {
 
     fn last(&self) -> Self::One;
 
-    /// 0 in the lanes that are not `inside`, where t is 0.
+    /// 2^−t; 0 in the lanes that are not `inside`, whose t is 0.
     fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self::Factor;
 
-    /// The sum of the three ways into each cell (or out of it), and `factor` times that. The first way is the diagonal
-    /// one. The others are added first: so (y, x) gives the same bits as (x, y).
+    /// The sum over the three predecessors (or successors) of each cell, and `factor` times this sum. The first one is
+    /// the diagonal. The other two are added first, so that (y, x) gives the same bits as (x, y).
     fn cells<S: Register>(simd: S, ways: [&Self; 3], factor: &Self::Factor) -> (Self, Self);
 
     /// The same numbers with every significand in [1, 2).
@@ -68,7 +70,7 @@ pub(crate) trait Weight: Copy {
     /// Significand and exponent.
     fn parts(one: Self::One) -> (f64, f64);
 
-    /// a b / total, 0 where that is negligible. The plain kind asks for a total from 2^[`TOTAL`] to twice that.
+    /// a b / total, 0 if it is negligible. The plain representation requires a total from 2^[`TOTAL`] to twice that.
     fn shares<S: Register>(simd: S, a: &Self, b: &Self, total: (f64, f64)) -> Lanes;
 }
 
@@ -186,7 +188,7 @@ impl Weight for Scaled<Lanes> {
         (sum, cells)
     }
 
-    // Not inlined, and by value: it is rare, and behind a reference the lanes would not stay in registers.
+    // Not inlined, because it is rare. By value, because the lanes would not stay in registers behind a reference.
     #[inline(never)]
     fn normalised(mut self) -> Self {
         for l in 0..STRIP {
@@ -293,7 +295,7 @@ impl Weight for Plain {
         let (mut sum, mut cells) = (Self::NONE, Self::NONE);
         for part in 0..S::PARTS {
             let factor = simd.wide_load(factor, part);
-            // FLOOR / factor within a factor of 2. The diagonal is not what is waited for.
+            // FLOOR / factor within a factor of 2. It is added to the diagonal, which is not on the critical path.
             let floor = simd.wide_opposite(factor, FLOOR + ONE);
             let others = simd.wide_add(simd.wide_load(&diagonal.0, part), floor);
             let (up, left) = (simd.wide_load(&up.0, part), simd.wide_load(&left.0, part));
@@ -342,7 +344,7 @@ fn alone(lane: usize, one: f64, none: f64) -> Lanes {
     lanes
 }
 
-/// number · 2^shift for an integer shift. The low bits of the sum are the shift; moved to the place of the exponent
+/// number · 2^shift for an integer shift. The low bits of the sum are the shift; moved to the position of the exponent,
 /// they multiply by 2^shift.
 #[inline(always)]
 fn shifted(number: f64, shift: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! The stated error bounds, against values in 60 decimal digits (`reference/high_precision.py` made them).
+//! The stated error bounds, against values of 60 decimal digits from `reference/high_precision.py`.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use ddl_softdtw::{Band, Cost, SoftDtw};
@@ -23,7 +23,7 @@ struct Case {
     radius: Option<usize>,
     value: f64,
     normalised: Option<f64>,
-    /// Of all steps of x, or of its first and last two.
+    /// The gradient of all steps of x, or of its first two and last two.
     gradient: Vec<Vec<f64>>,
 }
 
@@ -61,7 +61,7 @@ fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
     }
     assert!(ratio <= 1.0, "case {number}: {value} {}", case.value);
 
-    // The oracle has its own rounding, which grows with the length of a path.
+    // The reference has its own rounding errors, which grow with the length of a path.
     let slow = dtw.log_domain_value(&x, &y).unwrap();
     let slack = (1.0 + n + m) * bound(case.value);
     assert!((slow - case.value).abs() <= slack, "case {number}: {slow}");

@@ -8,7 +8,7 @@ mod recordings;
 use ddl_softdtw::{Cost, SearchIndex, SoftDtw};
 use recordings::{Walk, Windows};
 
-/// Real windows, or `None` (with the reason printed) where they may be absent.
+/// Real windows, or `None` (with the reason printed) if they may be absent.
 fn windows(steps: usize) -> Option<Windows> {
     let windows = Windows::load(steps);
     if windows.source == "real" {
@@ -20,7 +20,7 @@ fn windows(steps: usize) -> Option<Windows> {
     None
 }
 
-/// Distances of all candidates, sorted, and the one of each.
+/// The sorted distances of all candidates, and the distance of each candidate.
 fn oracle(dtw: &SoftDtw, query: &Walk, candidates: &[Walk]) -> (Vec<f64>, Vec<f64>) {
     let each: Vec<f64> = candidates.iter().map(|y| dtw.normalised(query, y).unwrap()).collect();
     let mut sorted = each.clone();
@@ -39,7 +39,7 @@ fn the_hundred_nearest_are_those_of_the_oracle() {
         let index = SearchIndex::build(&dtw, &windows.candidates).unwrap();
         let mut worst = 0.0_f64;
         let mut queries = windows.some_queries(12);
-        // People who stand are the hardest: thousands of candidates are nearly equal.
+        // Standing pedestrians are the hardest case, because thousands of candidates are nearly equal.
         let speed = |walk: &Walk| walk.iter().map(|v| v[0].hypot(v[1])).sum::<f64>();
         queries.extend(
             windows

@@ -65,7 +65,7 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         let dtw = SoftDtw::new(gamma, Cost::Euclidean).unwrap();
         compare(dtw, &candidates, &queries, 20);
     }
-    // Far queries saturate f32, data far from the origin or huge does not fit it.
+    // Far queries saturate f32; huge data and data far from the origin do not fit it.
     for (scale, by) in [(1.0, 5.0), (8.0, 0.0)] {
         compare(squared(1.0), &candidates, &mapped(&queries, scale, by), 20);
     }
@@ -73,7 +73,7 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         let (candidates, queries) = (mapped(&candidates, scale, by), mapped(&queries, scale, by));
         compare(squared(1.0), &candidates, &queries, 20);
     }
-    // Longer than f32 has paths for.
+    // So long that the number of paths exceeds the range of f32.
     let long: Vec<Walk> = (0..60).map(|i| numbers.pedestrian(30 + i % 5)).collect();
     compare(squared(1.0), &long, &[numbers.pedestrian(31)], 10);
 }
@@ -89,7 +89,7 @@ fn instruction_sets_threads_and_company_change_nothing() {
     candidates.extend((0..900).map(|i| numbers.standing(7 + i % 2)));
     let mut queries: Vec<Walk> = (0..8).map(|i| numbers.pedestrian(3 + i)).collect();
     queries.extend((0..8).map(|_| numbers.standing(8)));
-    // One too far for the sieve, one too far for the exponential domain.
+    // One query is too far for the sieve, and one too far for the exponential domain.
     queries.push(vec![[12.0, 0.0]; 8]);
     queries.push(vec![[90.0, 0.0]; 8]);
     for (gamma, cost) in [
@@ -132,7 +132,7 @@ fn bad_input_is_refused_by_name() {
     let dtw = squared(1.0);
     let none: [Walk; 0] = [];
     let index = SearchIndex::build(&dtw, &[vec![[0.0]], vec![[1e160]]]).unwrap();
-    // A candidate out of reach is no obstacle until it has to be returned.
+    // A candidate whose distance overflows is an error only if it must be returned.
     assert_eq!(index.nearest(&[[0.5]], 1).unwrap()[0].index, 0);
     assert_eq!(index.nearest(&[[0.5]], 0), Ok(vec![]));
     assert_eq!((index.len(), index.is_empty()), (2, false));

@@ -1,4 +1,4 @@
-//! The sliding search against a plain search of the same windows, which it has to agree with to the last bit.
+//! The sliding search must agree with a plain search of the same windows to the last bit.
 
 #![expect(clippy::print_stdout, reason = "says why nothing is compared")]
 
@@ -11,7 +11,7 @@ use walks::{Numbers, Track, mapped, squared};
 
 type Nearest = Vec<WindowNeighbour>;
 
-/// The windows of `length` steps with `tail` more behind them: track, offset, steps.
+/// The windows of `length` steps that are followed by `tail` more steps: track, offset, steps.
 fn windows<const D: usize>(tracks: &[Track<D>], (length, tail): (usize, usize)) -> Vec<(usize, usize, &[[f64; D]])> {
     let mut windows = Vec::new();
     for (track, steps) in tracks.iter().enumerate() {
@@ -22,7 +22,7 @@ fn windows<const D: usize>(tracks: &[Track<D>], (length, tail): (usize, usize)) 
     windows
 }
 
-/// All windows of all queries, with every instruction set; how many neighbours there were.
+/// Compares all windows of all queries, with every instruction set. Returns the number of neighbours.
 fn compare<const D: usize>(
     dtw: SoftDtw,
     tracks: &[Track<D>],
@@ -70,7 +70,7 @@ fn long_tracks_and_long_queries_are_cut_without_a_trace() {
         .map(|steps| numbers.pedestrian::<2>(steps))
         .to_vec();
     compare(squared(1.0), &tracks, &[numbers.pedestrian(150)], (8, 0), 10);
-    // Everyone stands: all distances are 0.
+    // All pedestrians stand, so all distances are 0.
     tracks.iter_mut().flatten().for_each(|step| *step = [0.0; 2]);
     compare(squared(1.0), &tracks, &[vec![[0.0; 2]; 9]], (8, 0), 40);
 }
@@ -87,7 +87,7 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         let dtw = SoftDtw::new(gamma, Cost::Euclidean).expect("valid");
         compare(dtw, &tracks, &queries, (8, 0), 20);
     }
-    // Far queries saturate f32, data far from the origin or huge does not fit it.
+    // Far queries saturate f32; huge data and data far from the origin do not fit it.
     for (scale, by) in [(1.0, 5.0), (8.0, 0.0), (1.0, 40.0), (1e3, 0.0), (1e60, 0.0)] {
         compare(squared(1.0), &tracks, &mapped(&queries, scale, by), (8, 0), 20);
     }
@@ -95,7 +95,7 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         let (tracks, queries) = (mapped(&tracks, scale, by), mapped(&queries, scale, by));
         compare(squared(1.0), &tracks, &queries, (8, 0), 20);
     }
-    // Longer than f32 has paths for, and longer than f64 has.
+    // So long that the number of paths exceeds the range of f32, and so long that it exceeds the range of f64.
     let (tracks, query) = (numbers.pedestrians::<2>(4, 300), numbers.pedestrian::<2>(201));
     compare(squared(1.0), &tracks, &[query[..40].to_vec()], (36, 0), 5);
     compare(squared(1.0), &tracks, &[query], (200, 0), 5);
@@ -132,7 +132,7 @@ fn bad_input_is_refused_by_name() {
     let mut query = vec![[0.0]; 20];
     query[17] = [f64::NAN];
     let batch = [vec![], query.clone()];
-    // A window out of reach is no obstacle until it has to be returned.
+    // A window whose distance overflows is an error only if it must be returned.
     let far = SlidingIndex::build(&dtw, &[vec![[0.0]; 8], vec![[1e160]; 8]], 8, 0).expect("valid");
     assert_eq!(far.nearest(&[[0.5]; 8], 1).expect("near")[0].track, 0);
     for (error, message) in [

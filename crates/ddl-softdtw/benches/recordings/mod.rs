@@ -1,4 +1,4 @@
-//! Windows to measure with: of the real recordings where they are, of synthetic pedestrians otherwise.
+//! Windows for the benchmarks: of the real recordings if available, otherwise of synthetic pedestrians.
 
 #[path = "../../tests/recorded/mod.rs"]
 mod recorded;
@@ -9,7 +9,7 @@ use ddl_data::{Recording, WindowRule};
 
 pub(crate) type Walk = Vec<[f64; 2]>;
 
-/// The recording that queries are taken from, and candidates from all others.
+/// The recording of the queries; candidates are from all others.
 const QUERIES: &str = "eth";
 
 pub(crate) struct Windows {

@@ -10,10 +10,10 @@ use ddl_simd::{LANES, Lanes, Register, RegisterKernel};
 use crate::blocks::Step;
 use crate::recursion::{GROUP, cell, similarities_of_row, weigh};
 
-/// Added to α / R(n, m), 2^−120: what β makes of it is nothing against the seed of β.
+/// Added to α / R(n, m): 2^−120. Its product with β is negligible relative to the seed of β.
 const NEGLIGIBLE: f32 = f32::from_bits((127 - 120) << 23);
 
-/// What is computed for a block, and the memory it takes, kept from one block to the next.
+/// The results for a block and the working memory, which is reused for the next block.
 #[derive(Debug)]
 pub(super) struct Working<const D: usize> {
     /// R(n, m), start value included.
@@ -46,7 +46,7 @@ pub(super) struct ForwardBackward<'a, const D: usize> {
     pub(super) block: &'a [Step<D>],
     /// Start value of the recursion, a power of two.
     pub(super) start: f32,
-    /// What β is at the end of the paths, a power of two.
+    /// The value of β at the end of the paths, a power of two.
     pub(super) seed: f32,
     pub(super) working: &'a mut Working<D>,
 }
@@ -58,7 +58,7 @@ impl<const D: usize> RegisterKernel for ForwardBackward<'_, D> {
     fn run<S: Register>(mut self, simd: S) {
         self.working.resize(self.x.len(), self.block.len());
         let zero = simd.splat(0.0);
-        // Rows stay in registers where their length is known to the compiler.
+        // Rows stay in registers if the compiler knows their length.
         if let Ok(block) = <&[Step<D>; 7]>::try_from(self.block) {
             self.parts::<S, 7>(simd, block, &mut [zero; 7]);
         } else if let Ok(block) = <&[Step<D>; 8]>::try_from(self.block) {
@@ -79,7 +79,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
         }
     }
 
-    /// The recursion, which leaves K and α of every cell behind.
+    /// The recursion; it stores K and α of every cell.
     #[inline(always)]
     fn forward<S: Register, const G: usize>(
         &mut self,
@@ -130,7 +130,7 @@ impl<const D: usize> ForwardBackward<'_, D> {
         let m = block.len();
         // row[j] holds K β of cell (i + 1, j).
         row.fill(zero);
-        // What the last cell is given stands for the end of the paths.
+        // The last cell receives the seed as the end of the paths.
         let mut end = simd.splat(self.seed);
         let rows = k.chunks_exact(m).zip(alpha.chunks_exact(m));
         let steps = self.x.iter().zip(gradient);

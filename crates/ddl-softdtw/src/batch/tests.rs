@@ -39,7 +39,7 @@ fn worst_errors(dtw: &SoftDtw, xs: &[Vec<[f64; 2]>], ys: &[Vec<[f64; 2]>]) -> (f
 #[test]
 fn pedestrians_are_within_the_stated_bounds() {
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
-    // One step against thirty has thirty differences in one component.
+    // For one step against thirty, a component of the gradient sums thirty differences.
     for (lengths, bound) in [(&[8][..], 1e-5), (&[7], 1e-5), (&[1, 2, 5, 12, 30], 5e-5)] {
         let (xs, ys) = (walks(9, lengths, 1.0), walks(333, lengths, 1.0));
         let (value, gradient) = worst_errors(&dtw, &xs, &ys);
@@ -50,7 +50,7 @@ fn pedestrians_are_within_the_stated_bounds() {
 
 #[test]
 fn what_leaves_the_range_is_evaluated_in_f64() {
-    // Some pairs within the range, some beyond it, where f32 alone would be wrong by more than 1.
+    // Some pairs are within the range, others beyond it; there f32 alone would have errors of more than 1.
     let far = walks(60, &[8], 4.0);
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
     let values: Vec<f64> = far.iter().map(|y| dtw.value(&far[37], y).unwrap()).collect();
@@ -58,7 +58,7 @@ fn what_leaves_the_range_is_evaluated_in_f64() {
     let (value, gradient) = worst_errors(&dtw, &far[30..40], &far);
     // The sequences are four times as long as a pedestrian's, and so are their errors.
     assert!(value < 4e-5 && gradient < 4e-5, "{value:e} {gradient:e}");
-    // Only the nearest pairs of the first fit f32; the last three do not even fit the exponential domain.
+    // Only the nearest pairs of the first case fit f32; the last three cases do not fit the exponential domain either.
     for (gamma, cost, scale, length, bound) in [
         (1e-2, Cost::SquaredEuclidean, 1.0, 8, 1e-6),
         (1.0, Cost::SquaredEuclidean, 1.0, 40, 1e-10),
@@ -121,7 +121,8 @@ fn bad_input_is_refused_by_name() {
 
 #[test]
 fn cells_far_from_every_path_leave_nothing_in_a_gradient() {
-    // The cheapest path costs 552 γ; a path through the huge difference must not count, whatever its size.
+    // The cheapest path costs 552 γ. A path through the huge difference must not contribute, for any size of the
+    // difference.
     let dtw = SoftDtw::new(1.0, Cost::SquaredEuclidean).unwrap();
     for huge in [1e5, 1e10, 1e40, 1e100, 1e300] {
         let (x, y) = (vec![[huge], [23.5]], vec![[huge], [0.0], [23.5]]);

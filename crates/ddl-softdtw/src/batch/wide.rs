@@ -1,4 +1,4 @@
-//! Values and gradients of eight pairs in `f64` and the exponential domain: what is beyond `f32`.
+//! Values and gradients of eight pairs in `f64` and the exponential domain, for pairs beyond the range of `f32`.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -9,10 +9,10 @@ use crate::refine::{GAMMAS, WIDE_GROUP, WideLanes, spread};
 use crate::value::SoftDtw;
 
 /// Largest difference of two components, in √γ, 2^20. The clamp on costs leaves up to 2^−57 of the alignment in a cell
-/// that no path should pass: the gradient counts that times the difference.
+/// that no path should pass. The gradient contains the product of this share and the difference.
 const FARTHEST: f64 = 1_048_576.0;
 
-/// Takes the place of a sequence, the value and the gradient of the pair.
+/// Receives the index of a sequence, and the value and gradient of the pair.
 pub(super) trait Visit<const D: usize>: FnMut(usize, f64, &[[f64; D]]) {}
 impl<const D: usize, F: FnMut(usize, f64, &[[f64; D]])> Visit<D> for F {}
 
@@ -41,7 +41,8 @@ impl<const D: usize> WidePairs<D> {
         }
     }
 
-    /// Evaluates `x` against up to eight of `sequences`, all of one length; what is out of range goes to `beyond`.
+    /// Evaluates `x` against up to eight of `sequences`, all of the same length. Indices of pairs out of range are
+    /// added to `beyond`.
     pub(super) fn evaluate(
         &mut self,
         x: &[[f64; D]],

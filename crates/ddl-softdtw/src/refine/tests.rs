@@ -53,7 +53,8 @@ fn known_values_keep_their_error_bound_and_their_bits() {
                     // Eight steps have fewer than 2^16 paths.
                     let spread = exact.max(0.0) / gamma * std::f64::consts::LOG2_E + 16.0 + 30.0;
                     let bound = wide_error_log2(path, spread, 2) * std::f64::consts::LN_2;
-                    // The oracle rounds as well: an exponential, a logarithm and a sum in every cell of the path.
+                    // The reference has rounding errors too: an exponential, a logarithm and a sum in every cell of the
+                    // path.
                     let oracle = 4.0 * unit * path * (spread + 1.0);
                     worst = worst.max((value - exact).abs() / gamma / (bound + oracle));
                 }

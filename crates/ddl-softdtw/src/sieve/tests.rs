@@ -27,7 +27,7 @@ fn each_set() -> impl Iterator<Item = Dispatch> {
     InstructionSet::available().into_iter().filter_map(Dispatch::new)
 }
 
-/// Scores of all candidates: with nothing to select among, everything is kept.
+/// Scores of all candidates: a selection that wants more than there are keeps all of them.
 fn scores(sieve: &CandidateSieve<2>, dispatch: Dispatch, query: &[[f64; 2]]) -> (Search<2>, Vec<f32>) {
     let count = sieve.blocks.members.as_flattened().len();
     let mut search = sieve.search(dispatch, query, count).expect("in range");
@@ -80,7 +80,7 @@ fn scores_keep_their_error_bound() {
 fn few_survive_where_f32_can_tell_and_nothing_is_decided_where_it_cannot() {
     let near = walks(4000, 8, 0.0);
     let sieve_of_near = sieve(1.0, &near).2.expect("fits f32");
-    // A common offset is no obstacle: it is subtracted before rounding.
+    // A common offset does no harm, because it is subtracted before rounding.
     let offset = walks(4000, 8, 1e5);
     let sieve_of_offset = sieve(1.0, &offset).2.expect("fits f32");
     // The hundred nearest of the last query are too far for the range.

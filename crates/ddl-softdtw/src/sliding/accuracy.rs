@@ -1,31 +1,32 @@
-//! How far the `f32` sums of [`crate::sliding::kernel`] can be trusted.
+//! Accuracy of the `f32` sums of [`crate::sliding::kernel`].
 
 use crate::range::{self, Range};
 
-/// Largest cost of a cell, log2 units: a larger one counts as this.
+/// Largest cost of a cell (log2 units). Larger costs are clamped to it.
 pub(super) const COST_CEILING: f32 = 86.0;
-/// Added to every cell of the recursion, 2^−39: times 2^−`COST_CEILING` it is still a normal number.
+/// Added to every cell of the recursion: 2^−39. Its product with 2^−`COST_CEILING` is a normal number.
 pub(super) const FLOOR: f32 = f32::from_bits((127 - 39) << 23);
 
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
-/// A score must exceed the error of ceiling and floor by this factor (2^24) to count as accurate.
+/// log2 of the factor by which an accurate score must exceed the error of ceiling and floor.
 const HEADROOM_LOG2: f64 = 24.0;
 
-/// Range and error of the scores of windows of one length. All in log2 units, on the scale of [`Range`].
+/// Range and error of the scores of windows of one length, in log2 units on the scale of [`Range`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Accuracy {
     range: Range,
-    /// The smallest score that the ceiling on costs and the floor of the cells leave accurate.
+    /// The smallest score that is accurate despite the ceiling on costs and the floor of the cells.
     smallest_log2: f64,
     /// Relative roundings of a score beyond those that [`Range`] counts.
     extra_log2: f64,
 }
 
 impl Accuracy {
-    /// For windows of `length` steps, or `None` when they are too long for `f32`. With F(m) the paths from the first
-    /// cell of a pair to m, the last cell of the row where the pair is cut, and B(m) those from there to its last cell,
-    /// a score is the sum of F(m) B(m) over m. Each factor is raised by at most `FLOOR` times the paths between any
-    /// cell and its far end; the ceiling raises each path by at most 2^−`COST_CEILING`.
+    /// For windows of `length` steps, or `None` if they are too long for `f32`. A pair of windows is cut at a row. Let
+    /// F(m) be the sum over the paths from the first cell of the pair to m, their last cell in that row, and B(m) the
+    /// sum over the paths from there to the last cell of the pair. The score is the sum of F(m) B(m) over m. Each
+    /// factor is increased by at most `FLOOR` times the number of paths between any cell and its far end; the ceiling
+    /// increases each path by at most 2^−`COST_CEILING`.
     pub(super) fn of(length: usize) -> Option<Self> {
         let range = Range::narrow(range::FLOOR, length, length)?;
         let table = PathTable::new(length);
@@ -51,7 +52,7 @@ impl Accuracy {
         }
         let ceiling = start + table.paths[length - 1][length - 1].log2() - f64::from(COST_CEILING);
         let smallest_log2 = ceiling.max(worst.log2()) + 1.0 + HEADROOM_LOG2;
-        // One rounding of F B, one each for the at most `length` additions, two for the weight.
+        // One rounding of F B, one for each of at most `length` additions, and two for the weight.
         let extra_log2 = (length as f64 + 3.0) * UNIT * std::f64::consts::LOG2_E;
         Some(Self {
             range,
@@ -60,7 +61,7 @@ impl Accuracy {
         })
     }
 
-    /// What the paths before and behind the cut start from: their product is the start of [`Range`].
+    /// The start values of the paths before and after the cut. Their product is the start of [`Range`].
     pub(super) fn starts(&self) -> (f32, f32) {
         let (front, back) = halves(self.range.start_log2());
         (f32::from(front).exp2(), f32::from(back).exp2())

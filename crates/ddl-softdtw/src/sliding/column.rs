@@ -41,8 +41,9 @@ pub(super) fn similarities<S: Register, const D: usize, const M: usize>(
     }
 }
 
-/// The next column of a recursion: `state` holds the column before it, `edge` enters the first row from outside. Row r
-/// of the recursion is row r of `k`, or with `UPWARDS` the r-th of its last `rows` from the end.
+/// Computes the next column of a recursion. `state` holds the previous column, and `edge` is the predecessor of the
+/// first row. Row r of the recursion is row r of `k`; with `UPWARDS` it is the r-th of its last `rows`, counted from
+/// the end.
 #[inline(always)]
 fn advance<S: Register, const M: usize, const UPWARDS: bool>(
     setting: Setting<S>,
@@ -61,7 +62,7 @@ fn advance<S: Register, const M: usize, const UPWARDS: bool>(
     state[0] = up;
     for r in 1..rows {
         let (k, left) = (k[row(r)], state[r]);
-        // `up` is the one that is waited for: it comes last.
+        // `up` is the result of the previous cell and available last, so it is added last.
         let others = simd.mul_add(k, simd.add(left, diagonal), floor);
         up = simd.mul_add(k, up, others);
         state[r] = up;
@@ -90,7 +91,7 @@ pub(super) fn advance_back<S: Register, const M: usize>(
     back: &mut Column<S, M>,
     backs: &mut [Column<S, M>; M],
 ) {
-    // Row c is left downwards from m itself or diagonally.
+    // A path leaves row c straight down from m, or diagonally.
     let edge = if q < 2 { setting.back } else { setting.zero };
     advance::<S, M, false>(setting, setting.rows - 1, k, back, edge);
     backs[q] = *back;

@@ -1,11 +1,11 @@
-//! What can be wrong with the tracks, the windows or a query.
+//! Errors of sliding searches.
 
 use thiserror::Error;
 
 use crate::error::SoftDtwError;
 use ddl_simd::InstructionSet;
 
-/// Why a sliding search could not be prepared or answered.
+/// A sliding search cannot be prepared or answered.
 #[derive(Clone, Debug, Error, PartialEq)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]

@@ -1,9 +1,9 @@
-//! From the scores of the kernel to the selections of the windows of a query.
+//! Passes the scores of the kernel to the selections of the windows of a query.
 
 use crate::select::Selection;
 use ddl_simd::{LANES, Lanes};
 
-/// The selections of a query and what a score must reach to be of interest to those of the current block.
+/// The selections of a query, and the thresholds of scores for the windows of the current block.
 pub(super) struct Hits<'a> {
     selections: &'a mut [Selection],
     /// Windows that start before the block.
@@ -26,7 +26,7 @@ impl<'a> Hits<'a> {
         }
     }
 
-    /// Turns to the block whose first row starts window `first`.
+    /// Begins the block whose first row starts window `first`.
     #[inline]
     pub(super) fn open(&mut self, first: usize) {
         self.first = first;
@@ -39,7 +39,7 @@ impl<'a> Hits<'a> {
         }
     }
 
-    /// Takes the scores of one window of each piece, for each k those that `reached` has a bit for.
+    /// Offers the scores of one window of each piece: for each k, those whose bit is set in `reached`.
     #[inline(never)]
     pub(super) fn offer(&mut self, reached: &[u32], scores: &[[f32; LANES]], first_lane: usize, window: usize) {
         let last = self.first + self.thresholds.len() - 1;
@@ -59,7 +59,7 @@ impl<'a> Hits<'a> {
     }
 }
 
-/// At least the smallest normal number: the score 0 of a place without a window is of no interest.
+/// At least the smallest normal number, because the score 0 marks an entry without a window.
 fn least(selection: &Selection) -> f32 {
     selection.threshold().max(f32::MIN_POSITIVE)
 }

@@ -1,18 +1,18 @@
 //! Scores of all windows of a query track against all windows of a group of pieces.
 //!
-//! K(i, j) = 2^−|x(i) − y(j)|² is computed once for each step i of the query and each step j of a piece, and serves
-//! every pair of windows that holds both. Neighbouring pairs share more than that. Let `length` rows of the query be a
-//! block and c its last row. Every window that starts in the block crosses row c, so that its sum over all warping
-//! paths splits at the last cell m = (c, j) a path has in that row:
+//! K(i, j) = 2^−|x(i) − y(j)|² is computed once for each step i of the query and each step j of a piece, for all pairs
+//! of windows that contain both steps. Neighbouring pairs share even more. Let `length` rows of the query be a block,
+//! and c its last row. Every window that starts in the block crosses row c. So its sum over all warping paths can be
+//! split at the last cell m = (c, j) of a path in that row:
 //!
 //! ```text
 //! Z(s, t) = Σ over j of F(j, s) B(j, t)
 //! F(j, s) = Σ over paths s → m,   B(j, t) = Σ over paths m → t that leave row c at once
 //! ```
 //!
-//! (F counts the cells s to m, B those behind m). One recursion from m backwards gives F(j, s) for every first cell s
-//! at once, one forwards gives B(j, t) for every last cell t: a pair of windows costs two columns of cells and a sum of
-//! `length` products. All terms are positive, so that nothing cancels.
+//! (F includes the cells from s to m, B the cells after m.) One recursion backwards from m gives F(j, s) for every
+//! first cell s, and one forwards gives B(j, t) for every last cell t. So a pair of windows costs two columns of cells
+//! and a sum of `length` products. All terms are positive, so nothing cancels.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -30,7 +30,7 @@ pub(super) struct WindowSweep<'a, const D: usize, const M: usize, const EXACT: b
     /// Steps of the query, at least one window.
     pub(super) query: &'a [[f32; D]],
     pub(super) starts: (f32, f32),
-    /// Takes the scores; one for each window of the query.
+    /// The selections that receive the scores, one for each window of the query.
     pub(super) selections: &'a mut [Selection],
 }
 
@@ -101,8 +101,8 @@ impl<const D: usize, const M: usize, const EXACT: bool> RegisterKernel for Windo
     }
 }
 
-/// Scores of the windows that start in the rows of `memory.above`. F(j) is computed side by side with B(j + 1): each is
-/// a chain of dependent operations, two keep the processor busy.
+/// Scores of the windows that start in the rows of `memory.above`. F(j) is computed together with B(j + 1), because
+/// each is a chain of dependent operations and two chains hide the latency.
 #[inline(always)]
 fn pairs<S: Register, const M: usize>(
     setting: Setting<S>,
@@ -140,8 +140,8 @@ fn pairs<S: Register, const M: usize>(
     }
 }
 
-/// Adds F(j) B(j) for the pairs whose window of the pieces begins in column j − l to their sums, and compares what is
-/// complete.
+/// Adds F(j) B(j) to the sums of the pairs whose window of the pieces begins in column j − l, and offers the complete
+/// sums.
 #[inline(always)]
 fn add_products<S: Register, const M: usize>(
     setting: Setting<S>,
@@ -169,7 +169,7 @@ fn add_products<S: Register, const M: usize>(
         }
     }
     if l == rows - 1 {
-        // Windows that end in row c end in m: nothing lies behind it.
+        // Windows that end in row c end in m, so B has no cells.
         sum[rows - 1] = simd.mul(front[rows - 1], setting.back);
         compare(setting, window, sum, hits);
     }
@@ -203,7 +203,7 @@ fn last_window<S: Register, const M: usize>(setting: Setting<S>, memory: &SweepM
     let Setting { simd, rows, .. } = setting;
     let windows = hits.weights.len();
     for window in (0..windows).step_by(2) {
-        // Two at a time: one chain of dependent operations would leave the processor waiting.
+        // Two at a time, because a single chain of dependent operations would not hide the latency.
         let next = (window + 1).min(windows - 1);
         let (mut state, mut next_state) = ([setting.zero; M], [setting.zero; M]);
         for l in 0..rows {

@@ -1,10 +1,10 @@
-//! Where the windows of all tracks lie: pieces of tracks, one to a lane, sixteen to a group.
+//! Layout of the windows of all tracks: pieces of tracks, one per lane, sixteen in a group.
 
 use ddl_simd::{LANES, Lanes};
 
 use crate::blocks::{Narrowing, Step};
 
-/// Most windows of a piece: longer tracks are cut, so that the similarities of a group stay in the cache.
+/// Largest number of windows of a piece. Longer tracks are cut, so that the similarities of a group stay in the cache.
 const LONGEST_PIECE: usize = 64;
 
 /// The windows of all tracks in `f32`, scaled and shifted.
@@ -28,11 +28,11 @@ struct PieceGroup {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GroupView<'a, const D: usize> {
-    /// Steps of the pieces; what lies behind the end of a shorter piece is 0.
+    /// Steps of the pieces; 0 after the end of a shorter piece.
     pub(super) samples: &'a [Step<D>],
     /// 2^(D(y, y) / 2) of each window, with D in log2 units; 0 where there is no window.
     pub(super) weights: &'a [Lanes],
-    /// Identity of the first window of each lane; those of a lane are consecutive.
+    /// Number of the first window of each lane; the windows of a lane are consecutive.
     pub(super) first_windows: &'a [usize; LANES],
 }
 
@@ -125,7 +125,7 @@ impl<const D: usize> WindowLayout<D> {
     }
 }
 
-/// The windows of all tracks in pieces, those of one track as equal as they can be.
+/// Divides the windows of all tracks into pieces. The pieces of a track have nearly equal lengths.
 fn pieces(windows: &[usize]) -> Vec<Piece> {
     let mut pieces = Vec::new();
     let mut first_window = 0;

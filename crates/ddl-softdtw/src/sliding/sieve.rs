@@ -1,4 +1,4 @@
-//! The sieve of a sliding search: `f32` scores that rule out nearly every window, and rule out none wrongly.
+//! The sieve of a sliding search: `f32` scores that exclude nearly every window, and never one of the nearest.
 
 use crate::select::Selection;
 use crate::sliding::accuracy::Accuracy;
@@ -9,7 +9,7 @@ use ddl_simd::Dispatch;
 /// Longest window of the general kernel.
 const LONGEST: usize = 32;
 
-/// The windows of all tracks, and what their scores are worth.
+/// The windows of all tracks, and the accuracy of their scores.
 #[derive(Clone, Debug)]
 pub(super) struct WindowSieve<const D: usize> {
     layout: WindowLayout<D>,
@@ -17,15 +17,15 @@ pub(super) struct WindowSieve<const D: usize> {
 }
 
 impl<const D: usize> WindowSieve<D> {
-    /// The sieve of a layout, or `None` when `f32` cannot hold its windows whatever the query.
+    /// The sieve of a layout, or `None` if `f32` cannot hold its windows for any query.
     pub(super) fn new(layout: WindowLayout<D>) -> Option<Self> {
         let accuracy = Accuracy::of(layout.length())?;
         accuracy.margin_log2(accuracy.smallest_accurate_log2(), layout.largest_with(&[]), D)?;
         Some(Self { layout, accuracy })
     }
 
-    /// For each window of `query` the windows that may be among its `wanted` nearest, or `None` when `f32` cannot tell.
-    /// `query` has at least the steps of a window.
+    /// For each window of `query`, the windows that may be among its `wanted` nearest, or `None` if `f32` is not
+    /// accurate enough. `query` must have at least the steps of a window.
     pub(super) fn survivors(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Vec<Option<Vec<usize>>> {
         let windows = query.len() + 1 - self.layout.length();
         let largest = self.layout.largest_with(query);
@@ -109,7 +109,7 @@ mod tests {
                 let sieve = sieve.expect("fits f32");
                 let query = &walks(1, 3 * length + 2, 0.3)[0];
                 let queries = query.len() + 1 - length;
-                // A selection that wants more than there are keeps everything.
+                // A selection that wants more windows than there are keeps all of them.
                 let all = || Selection::new(windows.len() + 1, 0.0);
                 let mut selections: Vec<_> = (0..queries).map(|_| all()).collect();
                 sieve.sweep(dispatch, query, &mut selections);

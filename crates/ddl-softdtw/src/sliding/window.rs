@@ -1,4 +1,4 @@
-//! Where windows are: a track and the first step in it.
+//! Positions of windows: a track and the first step in it.
 
 /// A window of a track found by a search.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,7 +21,7 @@ pub(super) fn places_of((track, &windows): (usize, &usize)) -> impl Iterator<Ite
     (0..windows).map(move |offset| WindowPlace { track, offset })
 }
 
-/// Sums of all numbers before each of `numbers`, and of all.
+/// The sums of the numbers before each of `numbers`, and the total.
 pub(super) fn running_sums(numbers: impl Iterator<Item = usize>) -> Vec<usize> {
     let mut sums = vec![0];
     sums.extend(numbers.scan(0, |sum, number| {

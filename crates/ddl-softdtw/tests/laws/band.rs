@@ -1,4 +1,4 @@
-//! What the Sakoe-Chiba band must do to soft-DTW.
+//! Properties of soft-DTW with a Sakoe-Chiba band.
 
 use ddl_softdtw::{Cost, SearchIndex, SlidingIndex, SoftDtw, SoftDtwBatch};
 use proptest::prelude::*;
@@ -35,7 +35,7 @@ proptest! {
     }
 }
 
-/// The kernels that compute many pairs at once know no band: where there is one, they must not be used.
+/// The kernels that compute many pairs at once do not support bands, so they must not be used with a band.
 #[test]
 fn batches_and_searches_keep_to_the_band() {
     let track: Sequence = (0..60)

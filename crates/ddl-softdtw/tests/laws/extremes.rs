@@ -1,4 +1,4 @@
-//! Extreme and wrong input: huge and tiny numbers, long sequences, what is refused.
+//! Extreme and invalid input: huge and tiny numbers, long sequences, and errors.
 
 use ddl_softdtw::{Cost, SoftDtw, SoftDtwError};
 use proptest::prelude::*;
@@ -56,7 +56,7 @@ fn the_number_of_paths_may_leave_the_range_of_f64() {
     let oracle = smooth.log_domain_value(&zeros(1500), &zeros(1200)).unwrap();
     assert!(value < -2300.0);
     assert!((value - oracle).abs() < 1e-9, "{value} {oracle}");
-    // And half a power of two lost in each of 2 · 1400 cells does not either.
+    // Half a power of two lost in each of 2 · 1400 cells does not underflow either.
     let half = vec![[std::f64::consts::LN_2.sqrt() * 0.7]; 1400];
     let value = smooth.value(&half, &zeros(1400)).unwrap();
     let oracle = smooth.log_domain_value(&half, &zeros(1400)).unwrap();
@@ -79,7 +79,7 @@ fn a_path_of_thousands_of_cells_along_one_row_and_one_column_is_not_lost() {
         .collect();
     let expected = 2.0 * f64::from(steps - 1) * off * off;
     let value = dtw(gamma, Cost::SquaredEuclidean).value(&x, &y).unwrap();
-    // Every other path is dearer by at least 90.
+    // Every other path costs at least 90 more.
     assert!((value - expected).abs() < 1e-9, "{value} {expected}");
 }
 
@@ -99,7 +99,7 @@ fn bad_input_is_refused_by_name() {
     assert_eq!(message(dtw.value(&[[0.0], [f64::NAN]], &[[0.0]])), expected);
     assert!(dtw.value_and_gradient(&[[0.0]], &[[f64::INFINITY]]).is_err());
     assert_eq!(dtw.value(&[[1e200]], &[[-1e200]]), Err(SoftDtwError::Overflow));
-    // In f64 this is a number, in f32 it is not.
+    // The value is finite in f64, but not in f32.
     assert_eq!(dtw.value(&[[3e38_f32]], &[[0.0]]), Err(SoftDtwError::Overflow));
     let straight = SoftDtw::new(1.0, Cost::Euclidean).unwrap();
     assert_eq!(straight.value(&[[3e38_f32]], &[[0.0]]), Ok(3e38));

@@ -1,4 +1,4 @@
-//! What soft-DTW must satisfy whatever the sequences.
+//! Properties of soft-DTW for all sequences.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
@@ -33,8 +33,8 @@ fn banded(gamma: f64, cost: Cost, radius: Option<usize>) -> SoftDtw {
     radius.map_or(free, |radius| free.with_band(Band::new(radius)))
 }
 
-/// The costs of all warping paths from cell (i, j) to the last one that stay in the band, if there is one, each walked
-/// to its end.
+/// The costs of all warping paths from cell (i, j) to the last one that stay in the band (if there is one), by
+/// enumeration.
 fn costs_of_paths(
     (cost, radius): (Cost, Option<usize>),
     (x, y): (&[[f64; 2]], &[[f64; 2]]),
@@ -123,7 +123,7 @@ proptest! {
         x in sequence(3.0, 9), y in sequence(3.0, 9), radius in radius(6), gamma in 0.05..3.0_f64, cost in cost(),
     ) {
         let dtw = banded(gamma, cost, radius);
-        // Where two steps nearly coincide the Euclidean cost has a kink that finite differences step over.
+        // If two steps nearly coincide, finite differences would cross the kink of the Euclidean cost.
         let kink = x.iter().any(|a| y.iter().any(|b| Cost::Euclidean.between(a, b) < 1e-2));
         prop_assume!(cost == Cost::SquaredEuclidean || !kink);
         let (_, of_x, of_y) = dtw.value_and_gradients(&x, &y)?;

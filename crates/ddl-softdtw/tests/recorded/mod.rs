@@ -16,7 +16,7 @@ pub(crate) fn differences(positions: &[[f64; 2]]) -> Track {
     positions.windows(2).map(velocity).collect()
 }
 
-/// Velocities (m/s) of every pedestrian of a recording over every stretch without a gap, in order of pedestrian and
+/// Velocities (m/s) of every pedestrian of a recording over every interval without a gap, in order of pedestrian and
 /// time.
 fn velocities(recording: &Recording) -> Vec<Track> {
     let mut tracks = Vec::new();

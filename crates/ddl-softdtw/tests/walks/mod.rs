@@ -1,4 +1,4 @@
-//! Made-up pedestrians.
+//! Synthetic pedestrians.
 
 #![allow(dead_code, reason = "each program needs a part")]
 
@@ -27,7 +27,7 @@ impl Numbers {
         ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// Velocities (m/s) of a pedestrian who keeps a heading with some sway, and stands still for some of the steps.
+    /// Velocities (m/s) of a pedestrian that keeps its heading with some noise, and stands still in some steps.
     pub(crate) fn pedestrian<const D: usize>(&mut self, steps: usize) -> Track<D> {
         let mean: [f64; D] = std::array::from_fn(|_| 2.0 * self.next() - 1.0);
         let stop = (self.next() * 2.0 * steps as f64) as usize;
@@ -47,7 +47,7 @@ impl Numbers {
         (0..count).map(|_| pedestrian()).collect()
     }
 
-    /// Velocities of someone who stands: half of them exactly 0, the rest a multiple of a millimetre a second.
+    /// Velocities of a standing pedestrian: half of them exactly 0, the others multiples of 1 mm/s.
     pub(crate) fn standing(&mut self, steps: usize) -> Track<2> {
         let height = if self.next() < 0.5 { 0.0 } else { 4.0 };
         let mut jitter = || (self.next() * height).floor() * 1e-3;
