@@ -1,4 +1,4 @@
-//! One changed byte at any place of a file causes an error, or does not change the result.
+//! One changed byte anywhere in a file causes an error, or does not change the result.
 
 use ddl::{Ddl, DdlError, DeviceChoice, Forecaster as _};
 use ddl_tests::chance::Chance;

@@ -7,7 +7,7 @@ use std::fs::File;
 use std::process::Stdio;
 use std::time::Duration;
 
-/// Pedestrians per square metre: a dense crowd that still walks.
+/// Pedestrians per square metre: a dense crowd in which pedestrians can still walk.
 const DENSITY: f64 = 0.5;
 const GIB: u64 = 1 << 30;
 

@@ -48,8 +48,8 @@ fn a_closed_output_ends_every_command_quietly() {
     );
 }
 
-/// Stopped at any moment: an output is complete or absent, and only training prints a message, because it saves its
-/// state.
+/// A command is stopped at any moment. Its output is complete or absent, and only training prints a message, because it
+/// saves its state.
 #[test]
 fn a_signal_ends_a_command_quietly() {
     let place = Place::with_model();

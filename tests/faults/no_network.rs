@@ -1,4 +1,4 @@
-//! Every command works without a network, with the same bytes: it fetches nothing and sends nothing.
+//! Every command gives the same bytes without a network, because it fetches nothing and sends nothing.
 
 use super::EVALUATE;
 use ddl_tests::figures;

@@ -68,7 +68,7 @@ fn a_second_training_in_the_same_directory_is_refused() {
     let mut first = place.start(&format!("{TRAIN} --progress json"));
     let mut lines = BufReader::new(first.stdout.take().unwrap()).lines();
     lines.next().unwrap().unwrap();
-    // It must not continue meanwhile.
+    // The first training must not continue meanwhile.
     processes::signal(first.id(), "STOP");
     for _ in 0..3 {
         place.fails(TRAIN, &["run run:", "another process", "choose another"]);

@@ -1,6 +1,6 @@
-//! Forecasts of arbitrary observations: standing, strolling, running, turning, noisy, with gaps. No forecast is faster
-//! than a pedestrian can be, each arrives, every certificate holds with its bounds, and none is worse than straight
-//! lines to the same goals.
+//! Forecasts of arbitrary observations: standing, strolling, running, turning, noisy, with gaps. Every forecast keeps
+//! the top speed and arrives, every certificate holds with its bounds, and no forecast is worse than straight lines to
+//! the same goals.
 
 use ddl::data::{Completion, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use std::sync::LazyLock;
 
 const CASES: u32 = 1000;
-/// Pedestrians forecast together; each of them is a case.
+/// Number of pedestrians that are forecast together; each of them is a test case.
 const TOGETHER: usize = 25;
 const TIME_STEP: f64 = 0.4;
 

@@ -1,4 +1,4 @@
-//! Many cameras in one process: each is answered as if it were alone.
+//! Many cameras in one process: the forecasts of each are the same as if it were alone.
 
 use ddl::data::{Completion, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
@@ -22,7 +22,7 @@ fn name(scene: &str) -> SceneName {
     SceneName::new(scene).unwrap()
 }
 
-/// What a stream is answered: the frame, and the bits of its forecast.
+/// The forecasts of a stream: the frame, and the bits of its forecast.
 type Answers = Vec<(i64, Vec<u64>)>;
 
 fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
@@ -34,7 +34,7 @@ fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
     answers.collect()
 }
 
-/// Frames of three scenes, and in which order they come and are forecast.
+/// Frames of three scenes, and the order in which they arrive and are forecast.
 fn streams() -> impl Strategy<Value = (Vec<Vec<Seen>>, Vec<(usize, bool)>, usize)> {
     let walk = |(scene, frame): (usize, i64), id: i64| {
         let t = frame as f64;
@@ -97,7 +97,7 @@ fn check_interleaved(
         let expected = alone(model, frames);
         let of_latest = answers_of_latest.remove(name).unwrap_or_default();
         dropped += expected.len() - of_latest.len();
-        // What is answered is what would be answered without the drops, and the last frame is answered.
+        // The forecasts are those without dropped frames, and the last frame is forecast.
         let all: BTreeMap<_, _> = expected.iter().cloned().collect();
         prop_assert!(of_latest.iter().all(|(frame, bits)| all.get(frame) == Some(bits)));
         if let (Some(last), Some((frame, _))) = (expected.last(), frames.last())
@@ -126,7 +126,7 @@ proptest! {
     }
 }
 
-/// Refuses windows in which somebody stands at x = 99.
+/// A forecaster that refuses windows with a pedestrian at x = 99.
 struct Picky;
 
 impl Forecaster for Picky {
@@ -154,7 +154,7 @@ fn a_failure_of_one_scene_is_its_own() {
     let made = scenes.forecast(&Picky, 100);
     let made: Vec<_> = made.iter().map(|made| made.forecast.is_ok()).collect();
     assert_eq!(made, [true, false, true]);
-    // and so is a frame that cannot be taken
+    // A frame that cannot be observed is also an error.
     let error = scenes.observe(Some(&name("a")), 3, []).unwrap_err();
     assert!(matches!(error, DdlError::Live(_)), "{error}");
     let seen = [(PedestrianId(1), [0.0, 0.0])];
@@ -175,7 +175,7 @@ fn what_is_kept_is_bounded() {
         error.contains("more than 2000") && error.contains("10 minutes"),
         "{error}"
     );
-    // A frame is waited for no longer.
+    // Scenes without a frame are forgotten at once.
     let mut scenes = scenes.forgetting_after(Duration::ZERO);
     scenes.observe(Some(&name("more")), 0, []).unwrap();
     assert_eq!(scenes.len(), 1);
@@ -219,7 +219,7 @@ fn each_scene_remembers_its_place() {
 
 const LINE: &str = "forecast - --model run --threads 1 --frame-step 10";
 
-/// Recordings of two scenes, whose lines come a frame of each in turn, the second one two frames later.
+/// Recordings of two scenes, whose frames alternate; the second scene begins two frames later.
 fn recordings() -> [(&'static str, Vec<Row>); 2] {
     let three = own_tracks::three_pedestrians(12);
     let crowd = own_tracks::of_scene("plaza", 0..100).into_iter();
@@ -237,7 +237,7 @@ fn interleaved(line: impl Fn(&str, &Row) -> String) -> String {
     let mut queues = recordings().map(|(scene, rows)| (scene, VecDeque::from(rows)));
     while queues.iter().any(|(_, rows)| !rows.is_empty()) {
         for (scene, rows) in &mut queues {
-            // Not at the end of a frame: lines of a scene stand between those of another.
+            // The parts do not end with frames, so lines of one scene are between those of a frame of the other.
             for row in rows.drain(..rows.len().min(4)) {
                 text += &line(scene, &row);
             }
@@ -360,7 +360,7 @@ fn each_scene_has_a_memory_file_of_its_own() {
     let text = HEADER.to_owned() + &interleaved(as_csv);
     let forgetful = place.run_on(&text, &format!("{LINE} --one")).succeeds();
     let finished = place.run_on(&text, &format!("{LINE} --one --memory memories"));
-    // What is wrong with one file is told, and its scene is forecast without.
+    // The fault of one memory file is reported, and its scene is forecast without memory.
     assert_eq!(finished.code, Some(1), "{finished:?}");
     assert_eq!(
         finished
@@ -382,7 +382,7 @@ fn each_scene_has_a_memory_file_of_its_own() {
         for &(frame, id, x, y) in &recordings()[scene].1 {
             frames.entry(frame).or_default().push((PedestrianId(id), [x, y]));
         }
-        // The second scene was watched twice.
+        // The second scene was observed twice.
         if scene == 0 {
             for (frame, people) in frames {
                 alone.observe(frame, people).unwrap();
@@ -427,7 +427,7 @@ fn a_scene_that_falls_silent_blocks_no_other() {
     let mut input = child.stdin.take().unwrap();
     let mut output = BufReader::new(child.stdout.take().unwrap());
     input.write_all(HEADER.as_bytes()).unwrap();
-    // Never whole, until the end.
+    // The frame is complete only at the end of the input.
     for frame in [0, 10] {
         input
             .write_all(as_csv("silent", &(frame, 1, 0.0, 0.0)).as_bytes())

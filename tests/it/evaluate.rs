@@ -63,7 +63,7 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     assert_eq!(line.is_none(), protocol.hypotheses() == 1);
     if let Some(line) = line {
         assert_eq!(stability(line).certified, None);
-        // The goals depend on the run, so another seed has other lines.
+        // The goals depend on the run, so another seed gives other lines.
         assert_eq!(line.conditions.seed, Some(5));
         let recipe = line.conditions.recipe.as_deref().unwrap();
         assert!(recipe.starts_with("goals "), "{recipe}");

@@ -8,7 +8,8 @@ use std::path::Path;
 /// The sample recording of the repository, which an example makes.
 const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
-/// Crate, example and arguments, and what its output must hold. One that is given a name of a picture draws it.
+/// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
+/// it.
 const EXAMPLES: [(&str, &[&str]); 11] = [
     (
         "ddl-forecast forecast_csv",
@@ -61,8 +62,8 @@ const EXAMPLES: [(&str, &[&str]); 11] = [
     ),
 ];
 
-/// Those that are not run here: `cargo xtask page` runs `report_page`; the others measure recordings for minutes, some
-/// of other places.
+/// Examples that are not run here: `cargo xtask page` runs `report_page`; the others need minutes for recordings, some
+/// of them of other places.
 const ELSEWHERE: [&str; 5] = [
     "ddl-forecast calibrate",
     "ddl-forecast elsewhere",

@@ -7,7 +7,7 @@ use ddl_eval::metric::stability::RolloutStability;
 use ddl_tests::recordings;
 use nalgebra::Vector2;
 
-/// A pedestrian that gets no further than this in 4.8 s stands (m).
+/// A pedestrian that moves less than this in 4.8 s stands (m).
 const STANDING: f64 = 1.0;
 
 fn distance(a: Position, b: Position) -> f64 {
@@ -30,8 +30,8 @@ fn never_further_from_its_end(path: &[Position]) -> Vec<Position> {
     path.iter().map(moved).collect()
 }
 
-/// Whether the distance to the endpoint falls at every step until it is reached, and then stays 0. This is the verdict
-/// of the certificate for any metric.
+/// Whether the distance to the endpoint falls at every step until it is reached, and then stays 0. A certificate holds
+/// under the same condition, for any metric.
 fn certified(path: &[Position]) -> bool {
     let positions: Vec<_> = path.iter().map(|&p| Vector2::from(p)).collect();
     let metrics = vec![CholeskyMetric::planar(1.0, 0.0, 1.0, PUBLISHED_SIGMA).unwrap(); HORIZON];

@@ -1,5 +1,5 @@
-//! Forecasts and the future: forecasts have the same bits for any future under `fair`, `single` and `online`, and
-//! forecasters that need the future are refused.
+//! Under `fair`, `single` and `online`, forecasts have the same bits for any future, and forecasters that need the
+//! future are refused.
 
 use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
@@ -67,7 +67,7 @@ fn never_sees_the_future(forecaster: &dyn Forecaster) {
     }
 }
 
-/// The goals of an estimator that is given whole tracks and selects the positions to read itself.
+/// The goals of an estimator that receives whole tracks and itself selects the positions to read.
 struct EstimatedGoals(GoalEstimator);
 
 impl EstimatedGoals {
@@ -113,7 +113,7 @@ fn no_variant_of_the_model_sees_the_future() {
     }
 }
 
-/// Uses the published goals if there is a future to read, and others if there is none; only its forecasts show this.
+/// Uses the published goals if there is a future, and other goals otherwise. Only its forecasts reveal this.
 struct PublishedWhenItCan([EstimatedGoals; 2]);
 
 impl Forecaster for PublishedWhenItCan {

@@ -179,7 +179,7 @@ fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
     ] {
         let line = "forecast - --model run --whole --frame-step 10 --format jsonl";
         let finished = place.run_on(&format!("{good}{bad}"), line);
-        // Frame 80, which the invalid line ends, is answered too.
+        // Frame 80, which the invalid line ends, is also forecast.
         assert_eq!((finished.stdout.lines().count(), finished.code), (6, Some(1)));
         let told = &finished.stderr;
         assert!(

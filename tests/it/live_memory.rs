@@ -70,7 +70,7 @@ fn a_memory_of_another_place_is_refused() {
         let kept = live.memory().unwrap();
         let refused = live.refused_memory();
         assert_eq!(refused.is_some(), is_refused, "{name}: {refused:?}");
-        // The observed place is remembered, the other one is not.
+        // The memory holds the observed place, not the other one.
         let least = if is_refused { 1 } else { memory.stretches() };
         assert!(kept.stretches() > least, "{name}");
         if let Some(other) = refused {

@@ -50,7 +50,7 @@ fn a_packed_run_has_the_results_of_the_run_without_its_library() {
     assert_eq!(found.scores.pedestrians, expected.scores.pedestrians);
     assert!((found.scores.min_ade - expected.scores.min_ade).abs() < ROUNDING);
     assert!((found.scores.min_fde - expected.scores.min_fde).abs() < ROUNDING);
-    // The rows of the run differ only in the library; if they were equal, the comparison would be void.
+    // The rows of the run differ only in the library. They must differ, otherwise the comparison would prove nothing.
     let whole = row(&of_run, "DDL");
     assert!((whole.scores.min_fde - expected.scores.min_fde).abs() > 1e-6);
     let lines = row(&of_packed, "straight line to the estimated goals");

@@ -12,7 +12,7 @@ const PACKED: &str = "DDL without an expert library";
 const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 const PACK: &str = "pack --benchmark . --out models";
 
-/// A finished benchmark of these folds, with a drawn model as each run, and made-up results.
+/// A finished benchmark of these folds, with a drawn model as each run, and invented results.
 fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
     let place = Place::empty();
     let (all, fair) = (crowd::dataset(), [Protocol::Fair]);

@@ -36,7 +36,7 @@ fn rows(recording: &Recording, frames: usize) -> Vec<Row> {
         .collect()
 }
 
-/// Share of the later positions inside the regions of a line, for lines from that frame on.
+/// Share of the later positions that are inside the regions of a line, for lines from that frame on.
 fn held(lines: &[Line], recording: &Recording, from: i64) -> f64 {
     let (mut inside, mut seen) = (0, 0);
     for line in lines.iter().filter(|line| line.observed_until >= from) {

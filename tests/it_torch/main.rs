@@ -28,7 +28,7 @@ fn the_example_of_training_runs() {
     let here = std::path::Path::new(".");
     let output = ddl_tests::example::run("ddl-star", "training_steps", here, "1 0.1");
     assert_eq!(output.succeeds(), "1 steps, dropout 0.1\n");
-    // An example that is added is run from then on.
+    // A new example is run automatically.
     let folder = ddl_tests::guide::checkout().join("crates/ddl-star");
     assert_eq!(ddl_tests::example::all_of(&folder).len(), 1);
 }

@@ -28,8 +28,8 @@ fn first_row(report: &Value) -> (f64, u64) {
     (min_ade.as_f64().unwrap(), pedestrians.as_u64().unwrap())
 }
 
-/// The errors on the validation part, by which the best epoch is chosen; the number of the first epoch, and of the best
-/// one.
+/// The errors on the validation part, and the numbers of the first and the best epoch. The best epoch is chosen by
+/// these errors.
 fn errors(run: &RunDirectory) -> (Vec<f64>, usize) {
     let epochs = run.metrics().unwrap();
     let errors: Vec<f64> = epochs.iter().map(|e| e.validation.unwrap()).collect();
@@ -54,12 +54,12 @@ fn own_recordings_are_used_for_training_and_evaluation() {
     let epoch = format!("run/epochs/{best:03}.safetensors");
     assert_eq!(place.read("run/model.safetensors"), place.read(&epoch));
 
-    // The evaluation reports the number by which the epoch was chosen.
+    // The evaluation reports the error by which the epoch was chosen.
     let report = place.json("evaluate --model run --data mine --validation --protocol fair --threads 1 --json");
     let conditions = &report["rows"][0]["conditions"];
     assert_eq!(conditions["convention"], "own");
     assert_eq!(conditions["selection"], "epoch of the least validation error");
-    // Few enough that all of them were evaluated after each epoch.
+    // There are so few that all of them were evaluated after each epoch.
     let (min_ade, pedestrians) = first_row(&report);
     assert!((50..=1000).contains(&pedestrians), "{pedestrians}");
     assert!((min_ade - errors[best - 1]).abs() < 1e-9, "{min_ade} {errors:?}");
@@ -91,7 +91,7 @@ fn training_recordings_are_refused_as_test_data(place: &Place) {
     for data in ["mine", "mine/lobby.csv", "renamed.csv"] {
         place.fails(&evaluate(data), &["was trained on"]);
     }
-    // A file of that name that is only cut, resampled or rounded would not be a test.
+    // A file of that name that was only cut, resampled or rounded must not be used as test data.
     let text = place.text("mine/yard.csv");
     let (cut, _) = text.trim_end().rsplit_once('\n').unwrap();
     place.write("other/yard.csv", cut);

@@ -1,7 +1,7 @@
-//! What a page says a command answers, compared with what it answered.
+//! Comparison of the output of a command on a page with its real output.
 
-/// Where the shown lines and the answer differ; `None` where they agree. A shown line `...` stands for any lines that
-/// are left out. Blanks at both ends of a line, and empty lines, do not count.
+/// The first difference between the shown lines and the output; `None` if they agree. A shown line `...` stands for any
+/// lines that are left out. Blanks at both ends of a line, and empty lines, do not count.
 pub fn difference(shown: &[String], answer: &str) -> Option<String> {
     let is_there = |line: &&str| !line.is_empty();
     let shown: Vec<&str> = shown.iter().map(|line| line.trim()).collect();
@@ -35,7 +35,7 @@ fn agree(part: &[&str], lines: &[&str]) -> bool {
 
 fn explain(part: &[&str], lines: &[&str], anywhere: bool) -> String {
     let differs = |(shown, line): &(&&str, &&str)| !line_agrees(shown, line);
-    // A part that may stand anywhere is compared from where it begins.
+    // A part that may be anywhere is compared from its first line on.
     let begins = |line: &&str| anywhere && line_agrees(part[0], line);
     let lines = &lines[lines.iter().position(begins).unwrap_or(0)..];
     match part.iter().zip(lines).find(differs) {
@@ -44,8 +44,9 @@ fn explain(part: &[&str], lines: &[&str], anywhere: bool) -> String {
     }
 }
 
-/// Whether two lines agree: their words are equal, and numbers with a decimal point differ by no more than one unit of
-/// the last place that is shown, or 1e-5: processors with other vector instructions round differently.
+/// Whether two lines agree: their words are equal, and numbers with a decimal point differ by at most one unit of the
+/// last shown digit, or 1e-5. The tolerance is needed because processors with other vector instructions round
+/// differently.
 fn line_agrees(shown: &str, line: &str) -> bool {
     let (mut shown, mut line) = (shown, line);
     loop {
@@ -70,7 +71,7 @@ fn line_agrees(shown: &str, line: &str) -> bool {
     }
 }
 
-/// Bytes of the number at the beginning of a text: digits, and a decimal point among them.
+/// Length in bytes of the number at the beginning of a text: digits with a decimal point.
 fn number_length(text: &str) -> usize {
     let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
     let whole = digits(text);

@@ -2,7 +2,7 @@
 
 use ddl_eval::Forecast;
 
-/// Every number of a forecast as bits: shape, then weights, verdicts of certificates, positions and goals.
+/// Every number of a forecast as bits: shape, then weights, whether certificates hold, positions and goals.
 pub fn of(forecast: &Forecast) -> Vec<u64> {
     let (pedestrians, hypotheses) = (forecast.pedestrians(), forecast.hypotheses());
     let mut bits = vec![pedestrians as u64, hypotheses as u64];

@@ -34,8 +34,8 @@ impl Chance {
         let within = Duration::from_micros(self.below(part.as_micros() as u64));
         part * index + within
     }
-    /// Places in a file: some of the first sixteen bytes, and others anywhere. Half of those are in the first
-    /// kilobytes, where headers are.
+    /// Positions in a file: some of the first sixteen bytes, and others anywhere. Half of the others are in the first
+    /// kilobytes, which hold the header.
     pub fn places(&mut self, length: usize, count: usize) -> Vec<usize> {
         let heads = (0..16.min(length)).step_by(if count < 16 { 5 } else { 1 });
         let limits = [length, length.min(4096)].into_iter().cycle().take(count);

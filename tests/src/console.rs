@@ -9,7 +9,7 @@ pub struct Command {
     pub line: usize,
     /// The typed text, without the prompt; several lines if it continues after `> `.
     pub typed: String,
-    /// The lines below it: what is answered, with lines `...` for what is left out.
+    /// The lines below it: the output, with `...` for lines that are left out.
     pub answered: Vec<String>,
 }
 

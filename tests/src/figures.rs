@@ -1,4 +1,4 @@
-//! Figures of the tests of faults, written to a file on request.
+//! Results of the tests of faults, written to a file on request.
 
 use std::fmt::Display;
 use std::fs::OpenOptions;

@@ -11,7 +11,7 @@ pub type Row = (i64, i64, f64, f64);
 pub const FRAME_STEP: i64 = 10;
 
 /// Coordinates are multiples of this, about a millimetre, as from a tracker. It is a power of two, so that moving the
-/// origin of the map by whole metres rounds nothing.
+/// origin of the map by whole metres needs no rounding.
 const RESOLUTION: f64 = 1.0 / 1024.0;
 
 /// Three pedestrians for `frames` frames of 0.4 s: one walks east, one walks towards it, one hardly moves.

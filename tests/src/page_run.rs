@@ -11,25 +11,25 @@ use tempfile::TempDir;
 /// Interrupts a command after a few seconds.
 const GLANCE: &str = "timeout --preserve-status --signal INT 3";
 
-/// How far a command is run.
+/// The extent to which a command is run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Depth {
-    /// To its end; its exit code and its answer must agree with the page.
+    /// To its end; its exit code and its output must agree with the page.
     Whole,
     /// Started without recordings and interrupted after a moment: its arguments must be valid.
     Begun,
 }
 
-/// What is wrong with a command of a page.
+/// A fault of a command on a page.
 #[derive(Debug)]
 pub struct Problem {
-    /// In words.
+    /// Text that describes the fault.
     pub text: String,
-    /// What was answered, where the page shows something else and nothing more is wrong.
+    /// The output, if the only fault is that the page shows other output.
     pub answer: Option<String>,
 }
 
-/// What a reader of the page has before the first command.
+/// The folder that a reader of the page has before the first command.
 #[derive(Debug)]
 pub struct PageFolder {
     folder: TempDir,
@@ -60,12 +60,12 @@ impl PageFolder {
         Self { folder, bin, datasets }
     }
 
-    /// Where the commands run.
+    /// The folder in which the commands run.
     pub fn path(&self) -> &Path {
         self.folder.path()
     }
 
-    /// Runs commands in one shell; what is wrong is returned, by the place of the command.
+    /// Runs commands in one shell. Returns the faults, each with the index of its command.
     pub fn run(&self, commands: &[(&Command, Depth)]) -> Vec<(usize, Problem)> {
         let notes = tempfile::tempdir().expect("a temporary folder can be made");
         let empty = tempfile::tempdir().expect("a temporary folder can be made");
@@ -139,7 +139,7 @@ fn read(command: &Command, at: &Path) -> Option<Finished> {
     })
 }
 
-/// What is wrong, and the answer where the page shows another.
+/// The fault of a command, with the output if the page shows another one.
 fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<(String, Option<String>)> {
     let code = finished.code?;
     if depth == Depth::Begun {
@@ -151,7 +151,7 @@ fn problem(finished: &Finished, command: &Command, depth: Depth) -> Option<(Stri
     if code != expected {
         return Some((format!("exit code {code}, not {expected}"), None));
     }
-    // A command that is shown without an answer is not compared.
+    // A command that is shown without output is not compared.
     if command.answered.iter().all(String::is_empty) {
         return None;
     }

@@ -26,7 +26,7 @@ impl Place {
         Self::with_variant(Variant::Full)
     }
 
-    /// The same with a model of another variant.
+    /// As [`with_model`](Self::with_model), with a model of another variant.
     pub fn with_variant(variant: Variant) -> Self {
         let place = Self::empty();
         folder_contents::write(drawn_model::contents(variant), &place.at("run"));

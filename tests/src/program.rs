@@ -10,7 +10,7 @@ use std::time::SystemTime;
 const VARIABLES: [&str; 3] = ["DDL_DATASETS", "DDL_COMMIT", "RUST_LOG"];
 
 /// The program with the arguments of a command line, separated by blanks, to be run in `folder`. Inherited variables
-/// that could change a result are removed, and backtraces are enabled, so that an error that prints one is noticed.
+/// that could change a result are removed. Backtraces are enabled, so that an error that prints one is noticed.
 pub fn command(folder: &Path, command_line: &str) -> Command {
     undisturbed(path(), folder, command_line)
 }

@@ -1,4 +1,4 @@
-//! The real recordings, where they are available.
+//! The real recordings, if they are available.
 
 use crate::skip::skip;
 use ddl_data::{Convention, locate};

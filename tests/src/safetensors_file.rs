@@ -5,7 +5,7 @@ use serde_json::Value;
 /// Header and numbers of a file.
 ///
 /// # Errors
-/// The defect, in words.
+/// Text that describes the defect.
 pub fn parts(bytes: &[u8]) -> Result<(Value, &[u8]), String> {
     let (length, rest) = bytes
         .split_first_chunk::<8>()

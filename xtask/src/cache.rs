@@ -18,7 +18,7 @@ pub(crate) fn folder() -> Result<PathBuf> {
     Ok(base.join("ddl"))
 }
 
-/// Puts a folder into the cache, complete or not at all. `make` is given a temporary folder beside it and returns the
+/// Puts a folder into the cache, complete or not at all. `make` receives a temporary folder beside it, and returns the
 /// finished folder inside. A damaged folder in its place is removed.
 pub(crate) fn fill(
     folder: &Path,

@@ -17,7 +17,7 @@ use crate::workspace::program_on_path;
 
 pub(crate) const NODES: [&str; 2] = ["n1", "n2"];
 
-/// Largest number of tasks in an array; the benchmark has more.
+/// Largest number of tasks in an array. The benchmark has more tasks.
 pub(crate) const LONGEST_ARRAY: usize = 4;
 
 const PACKAGES: [&str; 3] = ["slurmctld", "slurmd", "munge"];

@@ -1,5 +1,5 @@
-//! Rules that no other tool checks: names and lengths of files, columns, words, links between files, inherited lints,
-//! and that neither a recording nor a path of somebody's machine is tracked.
+//! Rules that no other tool checks: names and lengths of files, columns, words, links between files, and inherited
+//! lints. Recordings and paths of a developer's machine must not be tracked.
 
 mod columns;
 mod links;
@@ -22,7 +22,7 @@ const HARD_LIMIT: usize = 500;
 const EMPTY_NAMES: [&str; 9] = [
     "utils", "util", "common", "helpers", "helper", "misc", "stuff", "tools", "shared",
 ];
-/// What `datasets` holds: descriptions, and a simulated recording that its test makes again.
+/// The content of `datasets`: descriptions, and a simulated recording that a test generates again.
 const DESCRIPTIONS: [&str; 4] = ["README.md", "manifest.toml", "folds.json", "sample.csv"];
 // Spelled in pieces, so that this file does not find itself.
 const HOME_FOLDERS: [&str; 3] = [concat!("/ho", "me/"), concat!("/ro", "ot/"), concat!("/Use", "rs/")];
@@ -69,7 +69,7 @@ fn check(workspace: &Workspace) -> Result<Findings> {
         let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
         let said = named.into_iter().map(|what| format!("{}: {what}", file.display()));
         findings.faults.extend(said);
-        // Binary files have no lines to check.
+        // Only text files have lines to check.
         if let Ok(text) = std::str::from_utf8(&bytes) {
             check_text(file, text, &mut findings);
             findings.faults.extend(links::faults(file, text, &files));

@@ -85,7 +85,7 @@ impl Workspace {
         command
     }
 
-    /// The same as [`Workspace::cargo`], for callers that need pipes.
+    /// As [`Workspace::cargo`], for callers that need pipes.
     pub(crate) fn cargo_process(&self) -> Command {
         let mut command = Command::new(cargo_program());
         command.current_dir(&self.root);

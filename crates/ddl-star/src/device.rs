@@ -1,4 +1,4 @@
-//! The device that the network computes on, and opening CUDA where it is available.
+//! The device that the network computes on. CUDA is opened if it is available.
 
 use crate::StarError;
 use ddl_network::DeviceChoice;
@@ -83,8 +83,8 @@ fn load_cuda() -> Result<(), String> {
     {
         use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
         // SAFETY: loading the library runs its initialisers, which register the CUDA backend with the libtorch already
-        // in this process; it is the matching build (same release), is opened once, before any tensor exists, and is
-        // never unloaded.
+        // in this process; the library is the matching build (same release), is opened once, before any tensor exists,
+        // and is never unloaded.
         #[allow(unsafe_code)]
         let library = unsafe { Library::open(Some("libtorch_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
         match library {

@@ -6,7 +6,8 @@ use ddl_network::NetworkError;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum StarError {
-    /// An invalid configuration, shape, weight or file, as every implementation of the networks reports it.
+    /// An invalid configuration, shape, weight or file. All implementations of the networks report it with the same
+    /// error.
     #[error(transparent)]
     Network(#[from] NetworkError),
     /// The requested device is unavailable.
@@ -31,7 +32,7 @@ pub enum StarError {
         quantity: &'static str,
         /// The value of that quantity.
         value: f64,
-        /// First window of the batch, as recording@frame.
+        /// First window of the batch, in the form `recording@frame`.
         windows: String,
     },
     /// The loss of the proposal network or its gradient is not finite.

@@ -147,7 +147,7 @@ fn a_custom_backbone_is_trained_and_forecasts_without_libtorch() {
     };
     let difference = apart(&ours, &forecasts(&*exact.into_forecaster()).unwrap());
     assert!(difference < 1e-3, "{difference} m");
-    // the learned weights shape the forecasts
+    // The learned weights change the forecasts.
     let change = apart(&ours, &before);
     assert!(change > 1e-2, "{change} m");
 }

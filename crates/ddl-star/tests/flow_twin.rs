@@ -17,7 +17,7 @@ const HORIZON: i64 = 12;
 /// Top speed, own velocity and share of bounded steps, and whether metrics are in m/s.
 type Bounds = (f64, [f64; 2], f64, bool);
 
-/// A plain Euler step, or one within bounds with that much time left.
+/// A plain Euler step, or a step within bounds with the given remaining time.
 fn tensor_step(
     p: &Tensor,
     goal: &Tensor,
@@ -136,7 +136,7 @@ fn gradients_of_a_chain(
         positions = tensor_step(&positions, &goals, &factors.get(t), (dt, bounds));
         path.push(positions.shallow_clone());
     }
-    // the offset gives the loss a slope at the goals
+    // The offset gives the loss a gradient at the goals.
     let loss = (Tensor::stack(&path, 0) - &goals - 0.5).square().sum(kind);
     loss.backward();
     [starts.grad(), factors.grad()]
@@ -199,6 +199,6 @@ fn gradients_reach_back_to_the_first_step() {
     );
     assert!(are_numbers(&start) && are_numbers(&shape), "{start} {shape}");
     assert!(shape.get(0).abs().max().double_value(&[]) > 1e-3, "{shape}");
-    // the last step ends at the goal, whatever the network emits
+    // The last step ends at the goal for any output of the network.
     assert!(shape.get(HORIZON - 1).abs().max().double_value(&[]) < 1e-12, "{shape}");
 }

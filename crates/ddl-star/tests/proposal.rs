@@ -129,7 +129,7 @@ fn it_learns_where_pedestrians_go_on_a_fork() {
 
 #[test]
 fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
-    // All observed motions are alike; pedestrians turn where earlier ones have turned.
+    // All observed motions are the same; pedestrians turn to the side to which earlier ones have turned.
     let angle = |i: i32| f64::from(i % 2 * 2 - 1) * TAU / 6.0;
     let examples: Vec<ProposalExample> = (0..60)
         .map(|i| {

@@ -51,7 +51,7 @@ fn every_variant_learns() {
     for variant in Variant::ALL {
         let losses = losses(trainer(variant, 25));
 
-        // The noise of a step makes single epochs jump, so the best of the last ones counts.
+        // Because of the noise, the loss of single epochs varies, so the best of the last ones is used.
         let best = losses[17..].iter().copied().fold(f64::INFINITY, f64::min);
         assert!(best < 0.5 * losses[0], "{variant}: {losses:?}");
     }
@@ -86,8 +86,8 @@ fn path_trainer(epochs: usize, jitter: f64) -> Trainer {
 fn paths_to_goals_are_learned() {
     // Exact positions: jitter would add to the loss of so few pedestrians.
     let losses = losses(path_trainer(45, 0.0));
-    // Training starts at the neutral motion. Its endpoints are 0.36 m off, because the goals are, so the path can
-    // follow the true one only in part: training removes a third of the error.
+    // Training starts at the neutral motion. Its endpoints are 0.36 m off, like the goals, so the path can follow the
+    // true one only in part. Training removes a third of the error.
     let last = losses[44];
     assert!(last < 0.72 * losses[0] && last < 0.22, "{losses:?}");
 }
@@ -141,7 +141,7 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
 
 #[test]
 fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
-    // At the end of the network, which libtorch computes, and at its beginning, from where it has to pass through
+    // NaN at the end of the network, which libtorch computes, and at its beginning, from which it must pass through the
     // kernels.
     for bias in [
         "output_layer.bias",

@@ -1,4 +1,4 @@
-//! Draws the forecast of one moment of a recording, with what then happened: the picture of the README is
+//! Draws the forecast at one frame of a recording, with the true future. This command draws the picture of the README:
 //!
 //! ```text
 //! cargo run --release -p ddl-forecast --example draw_forecast -- datasets/sample.csv 15 docs/forecast.svg

@@ -36,7 +36,7 @@ const FOLDS: [&str; 5] = [
     "--fold zara2",
 ];
 
-/// Whether a command is one of those.
+/// Whether a command has this page and beginning.
 pub fn begins(page: &str, command: &Command, (of, start): (&str, &str)) -> bool {
     page == of && command.typed.starts_with(start)
 }
@@ -76,7 +76,7 @@ pub(super) fn whole_or_begun(page: &str, command: &Command) -> Depth {
     }
 }
 
-/// For pages on which no command is run to its end.
+/// The depth for pages on which all commands are only started.
 pub fn begun(_: &str, _: &Command) -> Depth {
     Depth::Begun
 }

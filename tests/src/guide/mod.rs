@@ -1,6 +1,6 @@
-//! Commands that the documentation shows: whatever [`class`] does not name runs to its end and must answer as its page
-//! says. Calls of `cargo xtask` are held to its arguments by a test of xtask (`xtask/src/command/docs.rs`). With the
-//! variable `DDL_WRITE_SHOWN` the answers of a page are written anew where they differ.
+//! Commands that the documentation shows. Commands that [`class`] does not name run to their end, and must print what
+//! their page shows. A test of xtask checks the arguments of `cargo xtask` (`xtask/src/command/docs.rs`). With the
+//! variable `DDL_WRITE_SHOWN`, output on a page that differs is replaced.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

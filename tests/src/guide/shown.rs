@@ -1,4 +1,4 @@
-//! Answers of commands, written into their page.
+//! Writes the output of commands into their page.
 
 use crate::console::Command;
 
@@ -8,7 +8,7 @@ pub(super) fn replaced<'a>(page: &str, answers: impl Iterator<Item = (&'a Comman
     let mut lines: Vec<&str> = page.lines().collect();
     let answers: Vec<_> = answers.collect();
     for (command, answer) in answers.into_iter().rev() {
-        // A command has as many lines as it was typed in.
+        // A command takes as many lines as its typed text.
         let start = command.line - 1 + command.typed.lines().count();
         let shown = &command.answered;
         let answer: Vec<&str> = answer.lines().collect();

@@ -1,4 +1,4 @@
-//! `cargo xtask check`: what is quick to check while working.
+//! `cargo xtask check`: the quick checks.
 
 use anyhow::Result;
 
@@ -9,6 +9,6 @@ use crate::workspace::Workspace;
 pub(super) fn run(workspace: &Workspace) -> Result<()> {
     ci::format(workspace)?;
     tidy::run(workspace)?;
-    // With the code for libtorch, which this feature compiles where libtorch is not there.
+    // The feature `doc-only` also compiles the code for libtorch, without libtorch.
     ci::lints(workspace, "ddl-cli/torch,ddl-cli/doc-only")
 }

@@ -48,7 +48,7 @@ pub(crate) fn check(workspace: &Workspace) -> Result<()> {
     let mut faults = Vec::new();
     println!("package             files  compressed");
     let packages = metadata["packages"].as_array().into_iter().flatten();
-    // An empty list is `publish = false`.
+    // `publish = false` is an empty list here.
     for package in packages.filter(|package| package["publish"].is_null()) {
         let text = |field: &str| {
             package[field]

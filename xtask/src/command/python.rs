@@ -50,7 +50,7 @@ impl Arguments {
 
 /// The first half of the check in `ci`.
 pub(super) fn build_wheel(workspace: &Workspace) -> Result<()> {
-    // The profile of the tests, so that what they need is built once.
+    // The profile of the tests, so that dependencies are built only once.
     make(workspace, &workspace.path(FOLDER), "dev").map(drop)
 }
 

@@ -40,7 +40,7 @@ impl Arguments {
         if self.no_torch {
             return Ok(());
         }
-        // The other side: what libtorch adds.
+        // The tests that need libtorch.
         let packages = ["-p", "ddl-star", "-p", "ddl-forecast", "-p", "ddl-cli"];
         let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
         cargo_test(workspace, &arguments, &self.rest)?;

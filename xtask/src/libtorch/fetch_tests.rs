@@ -1,4 +1,4 @@
-//! Which folders are trusted, and what remains after a failed set-up.
+//! Tests of which folders are trusted, and of the files left by a failed set-up.
 
 use super::*;
 

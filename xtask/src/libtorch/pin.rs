@@ -67,7 +67,7 @@ pub(super) const WHEELS: [Wheel; 3] = [
     },
 ];
 
-/// Space that the unpacked libraries take, in bytes (495 MB measured), with a margin.
+/// Disk space of the unpacked libraries in bytes (495 MB measured), with a margin.
 pub(super) const LAID_OUT_BYTES: u64 = 560_000_000;
 
 /// Name of the folder in a cache, which may hold several versions.

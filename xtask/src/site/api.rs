@@ -33,7 +33,7 @@ pub(super) fn libraries(metadata: &Value) -> Vec<Library> {
                 };
                 targets.iter().find(is)
             };
-            // The library of a program is there for the program alone.
+            // The library of a program serves only the program.
             if of_kind("bin").is_some() {
                 return None;
             }
@@ -58,7 +58,7 @@ pub(super) fn build(workspace: &Workspace, libraries: &[Library], made: &Path, o
         let folder = made.join(&library.module);
         fs::create_dir_all(&folder).with_context(|| format!("{} cannot be made", folder.display()))?;
     }
-    // The whole interface, on a machine without libtorch.
+    // The complete interface, also on a machine without libtorch.
     let features = "ddl-cli/torch,ddl-cli/doc-only";
     let arguments = [
         "doc",

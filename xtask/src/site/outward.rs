@@ -1,5 +1,5 @@
-//! Links and includes of the book that lead to other files of the repository: on the site the README of a crate is the
-//! first page of its interface, and any other file lies in the folder `files`.
+//! Links and includes of the book that lead to other files of the repository. On the site, the README of a crate is the
+//! first page of its interface; all other files are in the folder `files`.
 
 use std::fs;
 use std::path::Path;
@@ -10,10 +10,10 @@ use super::api::Library;
 use super::check;
 
 const FILES: &str = "files";
-/// How mdBook includes a file; it would look beside the copy of the book.
+/// mdBook's directive that includes a file. mdBook would look for the file beside the copy of the book.
 const INCLUDE: &str = "{{#include ../";
 
-/// Copies the book to `to`, with its links out of it changed, and what they lead to into the site.
+/// Copies the book to `to`, with its outward links changed, and copies their targets to the site.
 pub(super) fn copy_book(book: &Path, to: &Path, libraries: &[Library], site: &Path) -> Result<()> {
     let root = book.parent().context("the book lies in the workspace")?;
     for file in check::files_below(book)? {
@@ -59,7 +59,7 @@ fn copy_file(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// A page with its links changed, and the files that are to be copied: their paths and their names in the folder.
+/// A page with its links changed, and the files to copy: their paths and their names in the folder.
 fn changed(page: &str, libraries: &[Library]) -> (String, Vec<(String, String)>) {
     let mut parts = page.split("](../");
     let mut text = parts.next().unwrap_or_default().to_owned();

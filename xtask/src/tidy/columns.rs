@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-/// What a screen shows side by side with another file.
+/// Largest number of columns; two files of this width fit side by side on a screen.
 const COLUMNS: usize = 120;
 /// Blocks whose lines are printed by a program.
 const PRINTED: [&str; 3] = ["console", "text", "json"];
@@ -28,7 +28,7 @@ fn numbered<'a>(lines: impl Iterator<Item = &'a str>, mut is_long: impl FnMut(&s
     long.map(|(number, _)| number).collect()
 }
 
-/// Rows of tables, what a program prints, and the targets of links may be longer.
+/// Rows of tables, printed output and link targets may be longer.
 fn in_markdown(text: &str) -> Vec<usize> {
     let (mut is_inside, mut is_printed) = (false, false);
     numbered(text.lines(), |line| {

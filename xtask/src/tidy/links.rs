@@ -1,6 +1,6 @@
-//! Links between files of the repository are relative. A crate's README is read in a registry and as the first page of
-//! the crate's interface, too: it links to items of the crate alone, and names other files in words. Links inside
-//! `docs/` are checked on the site as well (`cargo xtask docs`).
+//! Links between files of the repository are relative. A crate's README is also shown in a registry and as the first
+//! page of the crate's interface. So it links only to items of the crate, and names other files without links. Links
+//! inside `docs/` are also checked on the site (`cargo xtask docs`).
 
 use std::path::{Component, Path, PathBuf};
 
@@ -24,7 +24,7 @@ pub(super) fn faults(file: &Path, text: &str, files: &[PathBuf]) -> Vec<String> 
 fn fault(file: &Path, target: &str, files: &[PathBuf]) -> Option<&'static str> {
     let target = target.split('#').next().unwrap_or_default();
     let is_there = |path: &Path| files.iter().any(|file| file.starts_with(path));
-    // In a crate's README a path without a slash or an ending is an item of the crate.
+    // In a crate's README, a path without a slash and without an extension is an item of the crate.
     let in_crate = file.starts_with("crates");
     let is_page = Path::new(target).extension().is_some_and(|end| end == "md");
     let is_path = target.contains('/') || is_page || !in_crate;

@@ -1,4 +1,4 @@
-//! How long the documentation may be, in bytes.
+//! Limits of the length of the documentation, in bytes.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ pub(super) struct Sizes {
 }
 
 impl Sizes {
-    /// What is wrong with the length of one file.
+    /// The fault of one file that is too long.
     pub(super) fn fault(&mut self, file: &Path, text: &str) -> Option<String> {
         let is_page = file.starts_with("docs") && file.extension().is_some_and(|end| end == "md");
         let bytes = if is_page { written(text) } else { text.len() };
@@ -32,15 +32,15 @@ impl Sizes {
         (bytes > limit).then(|| format!("{name}: {bytes} bytes; at most {limit}"))
     }
 
-    /// What is wrong with the pages together.
+    /// The fault if all pages together are too long.
     pub(super) fn fault_of_all(&self) -> Option<String> {
         let bytes = self.pages;
         (bytes > ALL_PAGES).then(|| format!("docs: {bytes} bytes of pages; at most {ALL_PAGES}"))
     }
 }
 
-/// Bytes of a page without what a command generates: the text between two comments, `<!-- ... generated ... -->` and
-/// `<!-- ... end ... -->`, and the answers of shown commands, which a test compares with the real ones.
+/// Bytes of a page without generated parts. These are the text between the comments `<!-- ... generated ... -->` and
+/// `<!-- ... end ... -->`, and the output of shown commands, which a test compares with the real output.
 fn written(text: &str) -> usize {
     let (mut is_generated, mut is_console) = (false, false);
     let counted = text.lines().filter(|line| {

@@ -1,10 +1,10 @@
-//! Words and phrases that no text of the repository uses: one word for one thing, and no riddles.
+//! Words and phrases that no text of the repository may use.
 
 use std::path::Path;
 
-/// Files that are read by people.
+/// Extensions of the checked files.
 const READ: [&str; 9] = ["md", "rs", "py", "toml", "html", "js", "css", "ipynb", "cff"];
-/// What is not written, and what is written instead. Spelled in pieces, so that this file does not find itself.
+/// Forbidden phrases and their replacements. Spelled in pieces, so that this file does not find itself.
 const PHRASES: [(&str, &str); 15] = [
     (concat!("wal", "ker"), "pedestrian"),
     (concat!("wal", "kers"), "pedestrians"),
@@ -25,10 +25,10 @@ const PHRASES: [(&str, &str); 15] = [
     (concat!("by", " heart"), "overfits"),
     (concat!("of the", " house"), "of the workspace"),
 ];
-/// Marks of comments and quotations, which may stand between two words of a phrase.
+/// Markers of comments and quotations, which may separate two words of a phrase.
 const MARKS: [&str; 7] = ["//", "///", "//!", "#", ">", "*", "|"];
 
-/// Where a text uses one of them.
+/// The positions at which a text uses one of the phrases.
 pub(super) fn faults(file: &Path, text: &str) -> Vec<String> {
     let extension = file.extension().and_then(|extension| extension.to_str());
     if !extension.is_some_and(|extension| READ.contains(&extension)) {
@@ -53,7 +53,7 @@ pub(super) fn faults(file: &Path, text: &str) -> Vec<String> {
     faults
 }
 
-/// The words of a text in small letters, each with its line. A name in code is as many words as it has parts.
+/// The words of a text in lower case, each with its line. A name in code is split into its parts.
 fn words(text: &str) -> Vec<(usize, String)> {
     let mut words = Vec::new();
     for (number, line) in (1..).zip(text.lines()) {
@@ -69,7 +69,7 @@ fn words(text: &str) -> Vec<(usize, String)> {
                 if letter.is_alphanumeric() {
                     part.extend(letter.to_lowercase());
                 } else if ".;:!?,\"".contains(letter) {
-                    // A phrase ends with its sentence, and with the string that holds it.
+                    // A phrase does not extend over the end of a sentence or of a string.
                     words.push((number, String::new()));
                 }
             }

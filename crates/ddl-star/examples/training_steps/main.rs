@@ -7,8 +7,8 @@
 //! $ cargo run --release -p ddl-star --example training_steps -- STEPS DROPOUT
 //! ```
 //!
-//! With the library made of `operations.cpp` it counts what libtorch does in a step (docs/performance.md). Views and
-//! allocations do not count. Half the difference of three steps and one is a step:
+//! With the preloaded library from `operations.cpp` it counts the operations of libtorch in a step
+//! (docs/performance.md), without views and allocations. A step is half the difference between three steps and one:
 //!
 //! ```console
 //! $ eval "$(cargo xtask env)"

@@ -7,7 +7,7 @@ use tch::Tensor;
 /// Attention of every pedestrian over its neighbours. Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or
 /// B -> `[B, P, width]`.
 pub(super) fn among_pedestrians(qkv: &Tensor, heads: i64, seen: &SeenNeighbours, dropout: f64) -> Tensor {
-    // Row by row: see `Packing`.
+    // Scenes are packed into rows: see `Packing`.
     let (entries, width) = (qkv.size()[0], qkv.size()[2] / 3);
     let rows = seen.in_rows(qkv);
     let (count, length) = (rows.size()[0], rows.size()[1]);

@@ -118,7 +118,8 @@ impl Backend for TorchBackend {
     }
 
     fn key_values(&self, layer: EncoderLayer, x: &Rc<Tensor>) -> Rc<Tensor> {
-        // Project the query too: the gradient of a slice of the weights would be as large as the whole at every token.
+        // The query is projected too, because the gradient of a slice of the weights would have the size of all weights
+        // at every token.
         Rc::new(self.affine(x, layer.tensor))
     }
 

@@ -5,8 +5,8 @@ use tch::{Kind, Tensor};
 
 /// Sets each entry to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
-/// On the CPU the generator makes 64 bits at a time, and libtorch uses them all for one decision. Here they serve four
-/// decisions of 16 bits each: the same distribution, with p rounded to 1/65536.
+/// On the CPU the generator makes 64 bits at a time, and libtorch uses them all for one decision. Here they are used
+/// for four decisions of 16 bits each. The distribution is the same, with p rounded to a multiple of 1/65536.
 pub(crate) fn dropout(x: Tensor, p: f64, mode: Mode) -> Tensor {
     if mode == Mode::Evaluate || p == 0.0 {
         return x;
@@ -20,7 +20,7 @@ pub(crate) fn dropout(x: Tensor, p: f64, mode: Mode) -> Tensor {
     let mut random = Tensor::empty([words], (Kind::Int64, x.device()));
     let _ = random.random_from_(i64::MIN, None);
     let dropped = (p * 65_536.0).round();
-    // 16 random bits lie in [-32768, 32767]; the lowest `dropped` values drop the entry
+    // 16 random bits lie in [-32768, 32767]; the lowest `dropped` values drop the entry.
     let keep = random
         .view_dtype(Kind::Int16)
         .narrow(0, 0, count)
@@ -45,7 +45,7 @@ mod tests {
         let zeros = dropped.eq(0.0).to_kind(Kind::Double);
         let share = zeros.mean(None::<Kind>).double_value(&[]);
         assert!((share - 0.1).abs() < 2e-3, "{share}");
-        // every column has its share: all lanes of the 64 bits are equal
+        // Every column has the same share of zeros, because the four parts of the 64 bits are equally distributed.
         let columns = zeros.mean_dim([0i64].as_slice(), false, None::<Kind>);
         let worst = (columns - 0.1).abs().max().double_value(&[]);
         assert!(worst < 0.06, "{worst}"); // standard error 0.0095

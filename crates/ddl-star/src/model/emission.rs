@@ -99,8 +99,8 @@ impl NoiseCovariance {
 
     /// The Cholesky factor of E[L L^T] when noise adds W n to (a, b, c).
     ///
-    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n. L0 alone would be too
-    /// slow.
+    /// The output is linear in the noise, so E[L L^T] = L0 L0^T + E[D D^T] with D built from W n. L0 L0^T alone would
+    /// give speeds that are too low.
     /// Shapes: `mean` `[.., 3]` -> `[.., 3]`.
     fn expected_factor(&self, mean: &Tensor) -> Tensor {
         let l = |i: i64| mean.narrow(-1, i, 1);

@@ -1,4 +1,4 @@
-//! The differentiable twin of `ddl-dynamics`: one step of v = -P grad Phi on tensors. A test compares the two.
+//! The flow of `ddl-dynamics` on tensors, with derivatives: one step of v = -P grad Phi. A test compares the two.
 
 use ddl_dynamics::{MotionBounds, StepTime};
 use tch::Tensor;
@@ -165,7 +165,7 @@ fn away(positions: &Tensor, goals: &Tensor) -> (Tensor, Tensor) {
     let offset = positions - goals;
     let distance = offset.norm_scalaropt_dim(2, [-1i64].as_slice(), true);
     // At the goal, divide by infinity: u and its derivative are then 0. A small divisor would make the derivative huge,
-    // and that of a few steps at the goal NaN.
+    // and the derivative of several steps at the goal NaN.
     let at_goal = distance.lt(SMALLEST_NORM);
     let u = offset / distance.masked_fill(&at_goal, f64::INFINITY);
     (distance, u)

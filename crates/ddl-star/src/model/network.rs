@@ -95,8 +95,8 @@ impl TorchNetwork {
         self.kind
     }
 
-    /// The weights in the form of the kernels; `None` where kernels cannot compute: on other devices than the CPU, or
-    /// in f64.
+    /// The weights in the form of the kernels; `None` if the kernels cannot compute it: on other devices than the CPU,
+    /// or in f64.
     pub(crate) fn kernels(&self) -> Result<Option<Arc<Kernels>>, StarError> {
         if (self.device, self.kind) != (Device::Cpu, Kind::Float) {
             return Ok(None);

@@ -105,7 +105,7 @@ mod tests {
                     places[places.len() - 1] / packing.length()
                 );
             }
-            // any two rows together hold more than fits in one row
+            // Any two rows together hold more pedestrians than fit into one row.
             let half_full = packing.rows().saturating_sub(1) * packing.length();
             prop_assert!(half_full < 2 * pedestrians);
         }

@@ -10,7 +10,7 @@ use ddl_network::{
 };
 use tch::Kind;
 
-/// Windows of very different numbers of pedestrians, including a single one, or the single one only.
+/// Windows with very different numbers of pedestrians, including one with a single pedestrian; or only the latter.
 fn scenes() -> [Vec<Window>; 3] {
     let dataset = Dataset::simulated(1);
     let windows = dataset.recordings()[0].windows(WindowRule::Complete);
@@ -153,11 +153,11 @@ type Question = (
 
 /// Several goals or several noise vectors, with the whole metric or shares of it.
 fn questions(rule: StepRule) -> Vec<Question> {
-    // Close to the goal, rounding decides the direction of a plain step: those goals are far away.
+    // Close to the goal, rounding decides the direction of a plain step, so goals for plain steps are far away.
     let beyond = if rule == StepRule::Euler { 20.0 } else { 0.0 };
     let [_, many, alone] = scenes();
     let mut questions = Vec::new();
-    // In map coordinates f32 resolves half a metre: positions must be taken relative to the scene first.
+    // In map coordinates f32 resolves half a metre, so positions must first be made relative to the scene.
     let on_a_map = |window: &Window| window.map_positions(|_, _, [x, y]| [x + 691_608.0, y + 5_334_763.0]);
     for windows in [many.iter().map(on_a_map).collect(), alone] {
         let draws = Noise::Draws { count: 3, seed: 5 };
@@ -204,7 +204,7 @@ fn apart(ours: &[WindowRollout], known: &[WindowRollout]) -> f64 {
         ours.into_iter().zip(known)
     });
     let differences = pairs.map(|(ours, known)| (ours - known).abs());
-    // NaN is the largest.
+    // `total_cmp` orders NaN as the largest value.
     differences.max_by(f64::total_cmp).unwrap()
 }
 

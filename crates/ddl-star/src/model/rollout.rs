@@ -85,8 +85,8 @@ impl TorchNetwork {
 
     /// Forecast positions: 8 observed frames, then every forecast is the input of the next step.
     ///
-    /// Neighbours are those of the last observed frame throughout. H = G hypotheses with one goal each, or H = number
-    /// of noise vectors for a single goal (G = 1).
+    /// At all forecast steps the neighbours are those of the last observed frame. H = G hypotheses with one goal each,
+    /// or H = number of noise vectors for a single goal (G = 1).
     ///
     /// # Shapes
     /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions `[horizon, H, P,
@@ -138,8 +138,8 @@ impl TorchNetwork {
         let course = self.course(batch, goals, rule);
         let centred = backend.given(&centre(batch, &observed));
         let scene = backbone.scene(backend, &centred, &backend.seen(batch, 0..OBSERVED));
-        // The observed frames differ between hypotheses only by the goal that they are relative to: `relative` has one
-        // batch entry for each distinct reference.
+        // The observed frames of the hypotheses differ only in the goal that they are relative to, so `relative` has
+        // one batch entry for each distinct reference.
         let mut memory = Memory::default();
         let mut features = Vec::new();
         for (t, scene) in backend.each_entry(&scene).iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Affine maps that are applied many times in a pass, with the gradients of their weights from all uses at once. The
-//! gradient of the output of every use is kept, and dW = G^T X is one product over the rows of all uses. On CUDA,
-//! separate gradients at each of 19 frames would mostly cost launches.
+//! gradient of the output of every use is kept, and dW = G^T X is one product over the rows of all uses. On CUDA, the
+//! time of separate gradients at each of 19 frames would mostly be kernel launches.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;
@@ -80,7 +80,7 @@ impl SharedWeights {
 fn shares(uses: &[Use], of_outputs: Vec<Tensor>) -> Result<BTreeMap<usize, Tensor>, TchError> {
     let mut by_weight: BTreeMap<usize, UsedRows> = BTreeMap::new();
     for (of, gradient) in uses.iter().zip(of_outputs) {
-        // The loss does not depend on every use: the memory of the last frame, for example, is never read.
+        // The loss may not depend on a use. For example, the memory of the last frame is never read.
         if !gradient.defined() {
             continue;
         }

@@ -38,21 +38,21 @@ struct ProposalProgress {
 pub struct ProposalTrainer {
     network: TorchProposals,
     adam: Adam,
-    /// Always open: every step is checked before it is taken.
+    /// Always open, because every step is checked before the update.
     gate: FiniteGate,
     /// Running mean of the weights, which becomes the result.
     average: Tensor,
     /// Views of the examples, then of the reversed ones.
     views: Views,
     future: Tensor,
-    /// Number of examples that are not reversed.
+    /// Number of examples in the original direction of time.
     onward: usize,
     training: ProposalTraining,
     progress: ProposalProgress,
 }
 
 impl ProposalTrainer {
-    /// Prepares training on the examples and on `reversed` ones, with time running backwards; there may be none.
+    /// Prepares training on the examples, and on `reversed` ones, whose time runs backwards (may be empty).
     ///
     /// # Errors
     /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] without examples.
@@ -179,7 +179,8 @@ impl ProposalTrainer {
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
         self.ensure_finite(step, &rows, [("loss", distance), ("gradient norm", norm_value)])?;
         let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, all);
-        // Members are trained independently: the norm of all their gradients grows with the root of their number.
+        // Members are trained independently, so the norm of all their gradients grows with the square root of their
+        // number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
         self.adam.step(parameters, &gradient, &norm, clip, rate, &self.gate);
         let _guard = tch::no_grad_guard();
@@ -210,7 +211,7 @@ impl ProposalTrainer {
             return Ok(());
         };
         let row = rows.int64_value(&[0, 0]) as usize;
-        // the reversed examples come after the others
+        // The reversed examples come after the others.
         let reversed = row >= self.onward;
         let example = if reversed { row - self.onward } else { row };
         Err(StarError::ProposalNonFinite {

@@ -16,9 +16,9 @@ const PROGRESS: &str = "progress";
 /// Additional content of the file: the counters of a training, as `progress`, and vectors of the size of the weights.
 #[derive(Debug)]
 pub(crate) struct Extra<'a> {
-    /// The first one is the number of steps.
+    /// Counters of the training; the first one is the number of steps.
     pub(crate) progress: Vec<f64>,
-    /// By name.
+    /// Vectors with their names.
     pub(crate) vectors: Vec<(&'static str, &'a Tensor)>,
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn load(
     let (weights, first, second) = (find(WEIGHTS)?, find(FIRST_MOMENT)?, find(SECOND_MOMENT)?);
     let names = extra.vectors.iter();
     let others = names.map(|(name, _)| find(name)).collect::<Result<Vec<_>, _>>()?;
-    // Adam divides by the root of its second moment: a negative one would give NaN.
+    // Adam divides by the root of its second moment, so a negative value would give NaN.
     if second.lt(0.0).any().int64_value(&[]) != 0 {
         let problem = format!("{SECOND_MOMENT} holds negative numbers; delete it and run the same training again");
         return Err(NetworkError::checkpoint(path, problem).into());

@@ -2,7 +2,7 @@
 
 use tch::{Device, Kind, Tensor};
 
-/// Open until it sees a value that is not finite, then shut until it is reopened; evaluated on the device.
+/// It is open until it sees a value that is not finite, then shut until it is reopened. It is evaluated on the device.
 #[derive(Debug)]
 pub(crate) struct FiniteGate {
     /// Scalar, 1 or 0.
@@ -19,7 +19,7 @@ impl FiniteGate {
     /// Shuts the gate if a value is not finite.
     pub(crate) fn watch(&mut self, numbers: &Tensor) {
         let _guard = tch::no_grad_guard();
-        // 0 x is 0 for finite x only.
+        // 0 x is 0 only for finite x.
         let finite = (numbers * 0.0).eq(0.0).all();
         self.open *= finite;
     }

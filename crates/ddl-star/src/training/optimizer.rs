@@ -30,8 +30,8 @@ impl Adam {
         self.steps = steps;
     }
 
-    /// One step against `gradient`, whose norm is `norm`, clipped to norm `clip`. Behind a shut gate neither the
-    /// parameters nor the moments change, whatever the gradient is, but the step counts. Shapes: `gradient` has
+    /// One step against `gradient`, whose norm is `norm`, clipped to norm `clip`. If the gate is shut, the parameters
+    /// and moments do not change for any gradient, but the step is counted. Shapes: `gradient` has
     /// [`Parameters::count`] entries; `norm` is a scalar.
     ///
     /// # Numerics

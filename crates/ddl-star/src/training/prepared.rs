@@ -27,7 +27,7 @@ pub(crate) struct TrainingBatch {
 }
 
 impl TrainingBatch {
-    /// The same with all positions transformed by the images of the axes, the rows of `images` `[2, 2]`.
+    /// The batch with all positions transformed by the images of the axes, the rows of `images` `[2, 2]`.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {
             scenes: self.scenes.turned(images),

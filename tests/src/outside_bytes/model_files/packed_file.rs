@@ -74,7 +74,7 @@ fn forge(tensors: &mut Vec<HalfTensor>, choices: &mut Choices<'_>) {
         0 => drop(tensors.remove(index)),
         1 => {
             let mut twin = tensors[index].clone();
-            // The writer of such files accepts each name once.
+            // The writer of such files accepts each name only once.
             while tensors.iter().any(|tensor| tensor.name == twin.name) {
                 twin.name.push('x');
             }

@@ -10,7 +10,7 @@ use super::{names_file, with_file};
 
 /// The valid files, and the path for edits of them.
 struct Sound {
-    /// Without the tensors that only its networks need.
+    /// The file without the tensors that only its networks need.
     small: PackedFile,
     whole: PackedFile,
     path: PathBuf,

@@ -13,7 +13,8 @@ pub(super) struct Sound<T> {
     pub(super) with: T,
     pub(super) path: PathBuf,
     whole: Vec<u8>,
-    /// In the layout of earlier versions, without the SHA-256 of its numbers: this tests the code behind that check.
+    /// The file in the layout of earlier versions, without the SHA-256 of its numbers. It tests the code after that
+    /// check.
     without: Vec<u8>,
     _folder: TempDir,
 }
