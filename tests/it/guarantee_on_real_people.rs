@@ -63,8 +63,9 @@ impl Pedestrian {
     }
 }
 
-/// For each fold: the number of pedestrians, their mean displacement (mm), and of those that walk, the share whose
-/// distance falls at every step (%) and the share with a step of more than 90 degrees away from the endpoint (%).
+/// For each fold: the number of pedestrians and their mean displacement (mm). Of the walking pedestrians: the share
+/// whose distance falls at every step (%), and the share with a step of more than 90 degrees away from the endpoint
+/// (%).
 const EXPECTED: [(&str, usize, [f64; 3]); 5] = [
     ("eth", 2_511, [2.0, 93.0, 1.7]),
     ("hotel", 1_026, [9.0, 97.0, 1.7]),

@@ -45,8 +45,8 @@ impl Window {
     /// `start_frame` is the raw frame of the first position, `frame_step` the number of raw frames per step.
     ///
     /// # Errors
-    /// If there are no pedestrians, the numbers of ids and tracks differ, an id is repeated, the tracks are not all of
-    /// 8 or all of 20 positions, a position is not finite, or frames are out of range.
+    /// If there are no pedestrians, if the numbers of ids and tracks differ, or if an id is repeated. If the tracks are
+    /// not all of 8 or all of 20 positions, if a position is not finite, or if frames are out of range.
     pub fn new(
         recording: impl Into<Arc<str>>,
         start_frame: i64,

@@ -12,10 +12,12 @@ use crate::{error::ForecastShapeError, region::RegionTable};
 /// future.
 ///
 /// # Shapes
-/// positions `[N][K][12]` in metres, weights `[N][K]` (sum 1 for each pedestrian), goals `[N][K]` in metres; certified
-/// `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds; spread `[N][12]` in metres:
-/// standard deviation of a pedestrian around the hypothesis that it follows; familiarity `[N]`, 0 to 1: similarity of
-/// the observed motion to the training data.
+/// - positions `[N][K][12]`, in metres
+/// - weights `[N][K]`; they sum to 1 for each pedestrian
+/// - goals `[N][K]`, in metres
+/// - certified `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds
+/// - spread `[N][12]`, in metres: standard deviation of a pedestrian around the hypothesis that it follows
+/// - familiarity `[N]`, 0 to 1: similarity of the observed motion to the training data
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
     pedestrians: usize,

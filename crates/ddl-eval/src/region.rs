@@ -7,10 +7,10 @@
 //! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln(w_k / max w)        no unit
 //! ```
 //!
-//! The region of a level is the set of positions whose score is at most `q`, the quantile of this level of the scores
-//! of true positions in separate calibration recordings (split-conformal prediction). It is one disc around each
-//! hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, and no disc if the root is not real. The coverage holds on
-//! average over places like those of the calibration.
+//! The region of a level is the set of positions whose score is at most `q`. Here `q` is the quantile of this level of
+//! the scores of true positions in separate calibration recordings (split-conformal prediction). It is one disc around
+//! each hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, and no disc if the root is not real. The coverage
+//! holds on average over places like those of the calibration.
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
@@ -174,8 +174,9 @@ impl Forecast {
         (left >= 0.0).then(|| self.spread(i, t).map(|spread| spread * (2.0 * left).sqrt()))?
     }
 
-    /// The region that contains pedestrian `i`, `t` + 1 steps ahead, with the probability `level`: at most one disc for
-    /// each hypothesis, and always one for the most likely; `None` beyond the range of the table, and without regions.
+    /// The region that contains pedestrian `i`, `t` + 1 steps ahead, with the probability `level`. It has at most one
+    /// disc for each hypothesis, and always one for the most likely. `None` beyond the range of the table, and without
+    /// regions.
     pub fn region(&self, i: usize, t: usize, level: f64) -> Option<Vec<Disc>> {
         self.regions()?.quantile(level, t)?;
         let disc = |k: usize| {

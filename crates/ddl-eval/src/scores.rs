@@ -95,7 +95,7 @@ impl Scores {
     /// The result does not depend on the number of threads.
     ///
     /// # Errors
-    /// There are no windows, a window has no future, a forecast does not belong to its window, or the forecasts differ
+    /// There are no windows, a window has no future, or a forecast does not belong to its window. The forecasts differ
     /// in their number of hypotheses, in having goals or in having certificates.
     pub fn evaluate(windows: &[Window], forecasts: &[Forecast]) -> Result<Self, EvaluationError> {
         Self::evaluate_among(windows, windows, forecasts)

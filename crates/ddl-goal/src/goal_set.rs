@@ -130,8 +130,8 @@ impl GoalSet {
         self
     }
 
-    /// The same goals with flatter or steeper weights: each weight is raised to `power` (positive) and divided by the
-    /// sum; then the share `uniform` (0 to 1) of the probability is divided equally among all goals. The order and the
+    /// The same goals with flatter or steeper weights. Each weight is raised to `power` (positive) and divided by the
+    /// sum. Then the share `uniform` (0 to 1) of the probability is divided equally among all goals. The order and the
     /// [`median`](Self::median) do not change.
     #[must_use]
     pub fn tempered(mut self, power: f64, uniform: f64) -> Self {

@@ -1,9 +1,9 @@
 #![doc = include_str!("../README.md")]
 //!
 //! A forecast without noise samples ([`Noise::Expected`]) uses the expectation of `L L^T` over the noise. With zero
-//! noise instead, the forecast motion would be too slow. With [`StepRule::Bounded`] no step passes the goal. Where the
-//! goal can be reached at the pedestrian's top speed, no step is faster than that speed and the last one ends on the
-//! goal, up to the rounding of `f32`. A [`WindowRollout`] carries the factors (a, b, c) of every step, with which the
+//! noise instead, the forecast motion would be too slow. With [`StepRule::Bounded`] no step passes the goal. If the
+//! goal can be reached at the pedestrian's top speed, no step is faster than that speed, and the last step ends on the
+//! goal up to the rounding of `f32`. A [`WindowRollout`] carries the factors (a, b, c) of every step, with which the
 //! path can be integrated again in `f64`.
 //!
 //! ## Propose endpoints

@@ -55,10 +55,10 @@
 //! So the results, including the distances, have the same bits for every instruction set, every number of threads and
 //! every batch of queries. A candidate that equals the query is at distance 0.
 //!
-//! Some searches evaluate every candidate in `f64`, which is slower: those with a band, with the Euclidean cost, with
-//! sequences of more than 32 steps, or with data so large that the bound is useless. So do searches whose n-th
-//! neighbour is further than about 57 γ (47 γ without fused multiplication). For γ = 0 all values are computed in the
-//! log domain.
+//! Some searches evaluate every candidate in `f64`, which is slower. These are searches with a band, with the Euclidean
+//! cost, with sequences of more than 32 steps, or with data so large that the bound is useless. The same holds if the
+//! n-th neighbour is farther than about 57 γ (47 γ without fused multiplication). For γ = 0 all values are computed in
+//! the log domain.
 //!
 //! The kernels are written once and compiled for three instruction sets (`ddl-simd`): AVX-512, AVX2 with fused
 //! multiplication, and the baseline of the target. The instruction set is chosen when an index is built;

@@ -82,9 +82,9 @@ fn load_cuda() -> Result<(), String> {
     #[cfg(target_os = "linux")]
     {
         use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
-        // SAFETY: loading the library runs its initialisers, which register the CUDA backend with the libtorch already
-        // in this process; the library is the matching build (same release), is opened once, before any tensor exists,
-        // and is never unloaded.
+        // SAFETY: loading the library runs its initialisers, which register the CUDA backend with the libtorch in this
+        // process. The library is the matching build (same release). It is opened once, before any tensor exists, and
+        // never unloaded.
         #[allow(unsafe_code)]
         let library = unsafe { Library::open(Some("libtorch_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
         match library {

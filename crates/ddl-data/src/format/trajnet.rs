@@ -158,7 +158,7 @@ fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>
     };
     let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
     let pedestrian = match track.p {
-        // A quoted pedestrian is a word, whatever its characters.
+        // A quoted pedestrian is a word, even if it holds only digits.
         Some(Value::String(word)) if !word.trim().is_empty() => PedestrianField::Word(word.trim().into()),
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
         other => {

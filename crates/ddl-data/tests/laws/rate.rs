@@ -158,7 +158,7 @@ fn scenes_of_trajnet_state_the_frame_rate() {
     let median = steps.recording.summary().median_speed.unwrap();
     assert!((median - 1.3).abs() < 1e-9, "{median}");
 
-    // The usual files, with frames 0.4 s apart whatever their numbers, are left unchanged.
+    // The usual files, with frames 0.4 s apart and any frame numbers, are left unchanged.
     let usual = read(&scene(r#", "fps": 2.5"#));
     let steps = usual.resampled_to_steps(usual.stated_frame_time().unwrap()).unwrap();
     assert_eq!((steps.recording, steps.resampled), (usual, false));

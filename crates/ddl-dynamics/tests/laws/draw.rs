@@ -133,8 +133,7 @@ fn metric<T: Real, const D: usize>((entries, sigma): &MetricDraw) -> CholeskyMet
 }
 
 /// Sine of the largest angle between a flow and the direction to its goal (Wielandt's form of the Kantorovich
-/// inequality), and the smallest factor by which a step to the closest point of the line of motion reduces the
-/// distance.
+/// inequality). A step to the closest point of the line of motion multiplies the distance by at most this number.
 pub(crate) fn deviation_sine<T: Real>(range: EigenvalueRange<T>) -> T {
     (range.largest - range.smallest) / (range.largest + range.smallest)
 }

@@ -119,9 +119,10 @@ mod tests {
 
     use super::*;
 
-    /// Descent of Phi, distance at the end and largest turn of five rollouts: straight to the goal; past a goal at
-    /// (0.6, 0) by 0.4 m (still nearer: from 0.6 to 0.4) and further by 0.5 m, at 180 degrees to it; along a side of a
-    /// 3-4-5 triangle, at acos(0.6) to it; standing at the goal, where no step has a direction; and standing elsewhere.
+    /// Descent of Phi, distance at the end and largest turn of five rollouts. The first goes straight to the goal. The
+    /// second passes a goal at (0.6, 0) by 0.4 m (still nearer: from 0.6 to 0.4), then goes on by 0.5 m, at 180 degrees
+    /// to it. The third goes along a side of a 3-4-5 triangle, at acos(0.6) to the goal. The fourth stands at the goal,
+    /// where no step has a direction, and the fifth stands elsewhere.
     #[test]
     fn rollouts_by_hand() {
         let ahead: Vec<_> = (1..=12).map(|t| [f64::from(t) / 4.0, 0.0]).collect();

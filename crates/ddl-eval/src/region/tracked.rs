@@ -204,8 +204,8 @@ mod tests {
     type Judged = Vec<(bool, f64)>;
 
     proptest! {
-        /// An adversary that knows the region cannot move the weighted mean beyond the bound, as long as the scores
-        /// stay within a factor of 7 of the table's quantile: then no shift reaches its bound.
+        /// An adversary that knows the region cannot move the weighted mean beyond the bound, if the scores stay within
+        /// a factor of 7 of the table's quantile. Then no shift reaches its bound.
         #[test]
         fn the_share_missed_is_bounded_for_any_stream(
             level in 0.05..0.95f64,

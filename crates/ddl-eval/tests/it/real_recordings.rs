@@ -21,8 +21,8 @@ fn recordings() -> Option<Dataset> {
     }
 }
 
-/// Pedestrians of each type, I to IV, and of each sub-kind of III, counted with numpy from the definitions in the
-/// docstrings, with angles by arctan2 and the filter in matrix form.
+/// Number of pedestrians of each type, I to IV, and of each sub-kind of III. They were counted with numpy from the
+/// definitions in the documentation, with angles by arctan2 and the filter in matrix form.
 #[test]
 fn pedestrians_are_of_the_types_counted_independently() {
     let Some(dataset) = recordings() else { return };

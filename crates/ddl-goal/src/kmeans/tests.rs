@@ -130,8 +130,8 @@ proptest! {
         }
     }
 
-    /// A run ends at the first iteration in which the centres move by at most the tolerance: the sum of their squared
-    /// movements, divided by the mean variance of the two coordinates.
+    /// A run ends at the first iteration in which the movement of the centres is at most the tolerance. The movement is
+    /// the sum of their squared displacements, divided by the mean variance of the two coordinates.
     #[test]
     fn a_run_ends_at_the_tolerance(
         points in prop::collection::vec(prop::array::uniform2(-10.0..10.0_f64), 60..120),

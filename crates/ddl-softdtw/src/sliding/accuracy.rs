@@ -23,10 +23,10 @@ pub(super) struct Accuracy {
 
 impl Accuracy {
     /// For windows of `length` steps, or `None` if they are too long for `f32`. A pair of windows is cut at a row. Let
-    /// F(m) be the sum over the paths from the first cell of the pair to m, their last cell in that row, and B(m) the
-    /// sum over the paths from there to the last cell of the pair. The score is the sum of F(m) B(m) over m. Each
-    /// factor is increased by at most `FLOOR` times the number of paths between any cell and its far end; the ceiling
-    /// increases each path by at most 2^−`COST_CEILING`.
+    /// m be the last cell of a path in that row. F(m) is the sum over the paths from the first cell of the pair to m,
+    /// and B(m) the sum over the paths from m to the last cell of the pair. The score is the sum of F(m) B(m) over m.
+    /// Each factor is increased by at most `FLOOR` times the number of paths between any cell and its far end; the
+    /// ceiling increases each path by at most 2^−`COST_CEILING`.
     pub(super) fn of(length: usize) -> Option<Self> {
         let range = Range::narrow(range::FLOOR, length, length)?;
         let table = PathTable::new(length);

@@ -54,9 +54,9 @@ impl GoalFrame {
     /// 3]` holds (a, b, c) of L = [[a, 0], [b, c]]; the result holds those of L'.
     ///
     /// # Numerics
-    /// If the first row of R^T L vanishes (L singular, its null space along the world's x axis), the square of the
-    /// first pivot is raised to 1e-12 m/s, and the second row is lost: the pedestrian stands, and P is still positive
-    /// definite.
+    /// The first row of R^T L is zero if L is singular with its null space along the x axis of the world. Then the
+    /// square of the first pivot is raised to 1e-12 m/s, and the second row is lost: the pedestrian stands, and P is
+    /// still positive definite.
     pub(crate) fn factors_to_world(&self, factors: &Tensor) -> Tensor {
         let l = |i: i64| factors.narrow(-1, i, 1);
         let (a, b, c) = (l(0), l(1), l(2));
