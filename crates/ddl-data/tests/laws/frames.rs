@@ -31,8 +31,8 @@ fn of_frames(frames: Vec<Frame>) -> Seen {
     frames.into_iter().map(|frame| (frame.number, frame.people)).collect()
 }
 
-/// Checks that a written recording is read back with its rows in any order. Formats that can be read frame by frame
-/// are also read in that way.
+/// Checks that a written recording is read back with its rows in any order. Formats that can be read frame by frame are
+/// also read in that way.
 fn check(recording: &Recording) {
     let mut rows = recording.observations().to_vec();
     rows.reverse();
