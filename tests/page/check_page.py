@@ -298,7 +298,7 @@ def check_viewer(opened):
             assert opened.page.locator(selector).first.is_visible() == measured, (selector, measured)
         said = f"observed for {len(pedestrian['truth'])} of the 12" in opened.text("#convention-words")
         assert said != measured, opened.text("#convention-words")
-        assert "which stands for all" in opened.text("#certificate-words")
+        assert "the representative one" in opened.text("#certificate-words")
 
     pedestrians = moments[chosen]["pedestrians"]
     shown(pedestrians[int(opened.page.locator("#choose-pedestrian").input_value())], True)
@@ -456,7 +456,7 @@ def main():
                         check_looks(opened, viewport["width"])
                         if size == "wide" and scheme == "light":
                             spent = opened.page.evaluate("window.ddlPlayer.measure(50)")
-                            print(f"{name}: a picture with everyone's hypotheses takes {spent:.1f} ms")
+                            print(f"{name}: a picture with the hypotheses of all pedestrians takes {spent:.1f} ms")
                         if arguments.screenshots:
                             arguments.screenshots.mkdir(parents=True, exist_ok=True)
                             opened.page.screenshot(

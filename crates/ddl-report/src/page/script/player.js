@@ -168,7 +168,7 @@ function makePlayer(moments) {
   function showVerdict() {
     const who = pedestrian();
     const chosen = chosenHypothesis();
-    const stands = chosen === who.representative && who.hypotheses.length > 1 ? ", which stands for all" : "";
+    const stands = chosen === who.representative && who.hypotheses.length > 1 ? ", the representative one" : "";
     byId("certificate-words").textContent = `Hypothesis ${chosen + 1}${stands}: ${verdictWords(who, who.hypotheses[chosen])}.`;
   }
 
