@@ -102,7 +102,7 @@ fn among_pillars() -> Result<Followed<impl Flow<f64, 2>>, DynamicsError> {
 pub(crate) fn draw() -> Result<String, DynamicsError> {
     let legend = [
         (58.0, STABLE, "\u{25CF} steps of 0.4 s"),
-        (190.0, STABLE, "\u{2014} other pedestrians"),
+        (190.0, STABLE, "\u{2014} other starts"),
         (330.0, GOAL, "\u{25EF} goal"),
         (410.0, "#B0578D", "\u{2013} \u{2013} path shown"),
         (540.0, INK, "\u{25CF} pillar, in its margin"),
