@@ -28,8 +28,9 @@ impl Task {
         // A file that another test's process may hold open cannot be executed, so a function stands in for the program.
         put("scontrol.sh", "scontrol() { echo \"$*\" > \"$folder/asked\"; }\n");
         let script = "folder=$PWD; . ./scontrol.sh; . ./task.sh";
-        let script = Command::new("sh")
-            .args(["-c", script])
+        // A shell cannot trap a signal that was ignored when it began, as in a background job.
+        let script = Command::new("env")
+            .args(["--default-signal=INT", "sh", "-c", script])
             .args("task.sh 1000 . sh program benchmark".split(' '))
             .current_dir(folder.path())
             .envs([("SLURM_ARRAY_TASK_ID", "7"), ("SLURM_JOB_ID", "42"), ("code", "")])
