@@ -212,11 +212,11 @@ fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines
 /// single forecast leads to the median of the goals.
 #[test]
 fn filled_in_positions_are_not_evidence() {
-    let mut tracks = LiveTracks::new().with_completion(Completion::USUAL);
+    let mut tracks = LiveTracks::new().with_completion(Completion::DEFAULT);
     let pedestrian = PedestrianId(7);
     assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);
     let window = tracks.push(1, [(pedestrian, [0.1, 0.0])]).unwrap().unwrap();
-    assert_eq!(window.made_up(0).padded, 6);
+    assert_eq!(window.completion_counts(0).padded, 6);
     for model in builtin() {
         let windows = std::slice::from_ref(&window);
         let median = model.goal_model().goals(windows).unwrap()[0][0].median();

@@ -26,7 +26,7 @@ fn name(scene: &str) -> SceneName {
 type Answers = Vec<(i64, Vec<u64>)>;
 
 fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
-    let mut live = LiveForecaster::new(model).with_completion(Completion::USUAL);
+    let mut live = LiveForecaster::new(model).with_completion(Completion::DEFAULT);
     let answers = frames.iter().filter_map(|(frame, people)| {
         let now = live.push(*frame, people.iter().copied()).unwrap()?;
         Some((now.frame(), bits::of(&now.forecast)))
@@ -62,7 +62,7 @@ fn check_interleaved(
 ) -> Result<(), TestCaseError> {
     let names = ["hall", "yard", "gate"].map(name);
     let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
-    let mut scenes = LiveScenes::new().with_completion(Completion::USUAL);
+    let mut scenes = LiveScenes::new().with_completion(Completion::DEFAULT);
     let mut latest = scenes.clone().latest_only();
     let mut answers = BTreeMap::<SceneName, Answers>::new();
     let mut answers_of_latest = answers.clone();

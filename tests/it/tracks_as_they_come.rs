@@ -42,7 +42,7 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
     // The second pedestrian arrives at frame 60; the third is not seen at 40 and 50.
     rows.retain(|&(frame, id, ..)| !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame)));
     let (lines, told) = forecast(&rows, "--certificate --last");
-    let note = "of 3 forecasts 1 are of pedestrians observed at fewer than 8 time steps, and 1 over filled holes";
+    let note = "of 3 forecasts 1 are of pedestrians observed at fewer than 8 time steps, and 1 over filled gaps";
     assert!(told.contains(note), "{told}");
     let found: Vec<_> = lines.iter().map(made_up).collect();
     assert_eq!(found, [[90, 1, 0, 0], [90, 2, 4, 0], [90, 3, 0, 2]]);

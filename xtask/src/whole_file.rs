@@ -8,6 +8,6 @@ use anyhow::{Context, Result};
 pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     path.parent()
         .map_or(Ok(()), fs::create_dir_all)
-        .and_then(|()| ddl_data::write_whole(path, bytes))
+        .and_then(|()| ddl_data::write_atomically(path, bytes))
         .with_context(|| format!("{} cannot be written", path.display()))
 }

@@ -30,8 +30,8 @@ impl Clock {
         }
     }
 
-    pub(crate) fn of_doubt(self, doubt: PlausibilityWarning) -> PlausibilityWarning {
-        match doubt {
+    pub(crate) fn of_warning(self, warning: PlausibilityWarning) -> PlausibilityWarning {
+        match warning {
             PlausibilityWarning::Jump(mut fastest) => {
                 fastest.frame = self.nearest(fastest.frame);
                 PlausibilityWarning::Jump(fastest)

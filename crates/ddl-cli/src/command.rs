@@ -229,7 +229,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         let files = recordings::files(&[data.to_owned()], units)?;
         let read = recordings::read(&files, units)?;
         recordings::tell_notes(&read);
-        recordings::warn_of_doubts(&read);
+        recordings::warn_of_implausible(&read);
         return Ok(Dataset::own(read.into_iter().map(|of| of.recording).collect())?);
     }
     if units.are_given() {

@@ -114,23 +114,23 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 }
 
 /// Warns of suspicious speeds: with wrong units, training and evaluation are meaningless.
-pub(crate) fn warn_of_doubts(read: &[ResampledRecording]) {
-    let doubtful = read.iter().filter_map(|of| {
-        let doubt = of.recording.speed_doubt()?;
-        Some((of.recording.name(), words(&of.clock.of_doubt(doubt))))
+pub(crate) fn warn_of_implausible(read: &[ResampledRecording]) {
+    let warnings = read.iter().filter_map(|of| {
+        let warning = of.recording.speed_warning()?;
+        Some((of.recording.name(), words(&of.clock.of_warning(warning))))
     });
-    tell_grouped("warning", doubtful);
+    tell_grouped("warning", warnings);
 }
 
-pub(crate) fn warn_of(doubt: &PlausibilityWarning) {
-    tell(format_args!("warning: {}", words(doubt)));
+pub(crate) fn warn_of(warning: &PlausibilityWarning) {
+    tell(format_args!("warning: {}", words(warning)));
 }
 
-pub(crate) fn words(doubt: &PlausibilityWarning) -> String {
-    let options = match doubt {
+pub(crate) fn words(warning: &PlausibilityWarning) -> String {
+    let options = match warning {
         PlausibilityWarning::Fast { .. } => " (--homography, --fps)",
         PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps)",
         _ => "",
     };
-    format!("{doubt}{options}")
+    format!("{warning}{options}")
 }

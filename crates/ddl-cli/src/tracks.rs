@@ -23,7 +23,7 @@ pub(crate) struct Tracks {
     pub(crate) units: Units,
     /// Only pedestrians observed at each of the last 8 time steps
     ///
-    /// By default, pedestrians observed at 2 or more of them are forecast too. Holes of up to 2 steps are filled on a
+    /// By default, pedestrians observed at 2 or more of them are forecast too. Gaps of up to 2 steps are filled on a
     /// straight line; positions before the first observation are padded at the mean observed velocity. The columns
     /// `padded` and `filled` count such positions.
     #[arg(long, requires = "file")]
@@ -46,7 +46,7 @@ pub(crate) struct Observed {
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
     /// A fault that the speeds suggest, such as wrong units or a wrong rate, which give meaningless forecasts.
-    pub(crate) doubt: Option<PlausibilityWarning>,
+    pub(crate) warning: Option<PlausibilityWarning>,
     whole: bool,
 }
 
@@ -67,7 +67,7 @@ impl Tracks {
         if self.whole {
             Completion::NONE
         } else {
-            Completion::USUAL
+            Completion::DEFAULT
         }
     }
 
@@ -111,12 +111,12 @@ impl Tracks {
                 frames(clock.number(recording.frame_step()))
             ));
         }
-        let doubt = recording
-            .speed_doubt()
-            .filter(|doubt| !matches!(doubt, PlausibilityWarning::NoSteps { .. }))
-            .map(|doubt| clock.of_doubt(doubt));
-        if let Some(doubt) = &doubt {
-            recordings::warn_of(doubt);
+        let warning = recording
+            .speed_warning()
+            .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
+            .map(|warning| clock.of_warning(warning));
+        if let Some(warning) = &warning {
+            recordings::warn_of(warning);
         }
         if self.last {
             windows.drain(..windows.len() - 1);
@@ -125,7 +125,7 @@ impl Tracks {
             recording,
             windows,
             clock,
-            doubt,
+            warning,
             whole: self.whole,
         })
     }
@@ -136,14 +136,14 @@ impl Observed {
     pub(crate) fn tell_what_is_made_up(&self) {
         let windows = self.windows.iter();
         let all: Vec<CompletionCounts> = windows
-            .flat_map(|window| (0..window.len()).map(|i| window.made_up(i)))
+            .flat_map(|window| (0..window.len()).map(|i| window.completion_counts(i)))
             .collect();
-        let late = all.iter().filter(|made_up| made_up.padded > 0).count();
-        let holes = all.iter().filter(|made_up| made_up.filled > 0).count();
-        if late + holes > 0 {
+        let late = all.iter().filter(|counts| counts.padded > 0).count();
+        let gaps = all.iter().filter(|counts| counts.filled > 0).count();
+        if late + gaps > 0 {
             tell(format_args!(
                 "note: of {} forecasts {late} are of pedestrians observed at fewer than {OBSERVED} time steps, and \
-                 {holes} over filled holes (columns padded and filled); --whole leaves them out",
+                 {gaps} over filled gaps (columns padded and filled); --whole leaves them out",
                 all.len()
             ));
         }

@@ -79,7 +79,7 @@ fn show(file: &Path, bytes: &[u8], frames_a_second: f64) -> Result<(), Box<dyn E
         "  {} windows with a known future, for training and evaluation",
         recording.windows(WindowRule::Complete).len()
     );
-    let windows = recording.completed_windows(Completion::USUAL);
+    let windows = recording.completed_windows(Completion::DEFAULT);
     let Some(last) = windows.last() else {
         println!("  no pedestrian can be forecast");
         return Ok(());
@@ -90,13 +90,13 @@ fn show(file: &Path, bytes: &[u8], frames_a_second: f64) -> Result<(), Box<dyn E
         last.frames()[OBSERVED - 1]
     );
     for (i, pedestrian) in last.pedestrians().iter().enumerate() {
-        let ([x, y], made_up) = (last.observed(i)[OBSERVED - 1], last.made_up(i));
+        let ([x, y], counts) = (last.observed(i)[OBSERVED - 1], last.completion_counts(i));
         println!(
             "    pedestrian {pedestrian} at ({x:.2}, {y:.2}) m; of 8 positions {} observed, {} filled in, {} padded \
              at the start",
-            made_up.seen(),
-            made_up.filled,
-            made_up.padded
+            counts.seen(),
+            counts.filled,
+            counts.padded
         );
     }
     Ok(())

@@ -15,8 +15,8 @@ const LEAST_SEEN: usize = 2;
 /// - A *gap* of a few frames is filled on the straight line between the positions before and after it.
 /// - An observation that *begins late* is padded at its start, with the mean velocity of the rest.
 ///
-/// The last position is always an observed one. [`Window::made_up`](crate::Window::made_up) counts the positions filled
-/// in.
+/// The last position is always an observed one.
+/// [`Window::completion_counts`](crate::Window::completion_counts) counts the positions filled in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Completion {
     least_seen: usize,
@@ -29,8 +29,9 @@ impl Completion {
         least_seen: OBSERVED,
         longest_gap: 0,
     };
-    /// Forecasts pedestrians seen at least twice, and fills gaps of up to 2 frames.
-    pub const USUAL: Self = Self {
+    /// Forecasts pedestrians seen at least twice, and fills gaps of up to 2 frames: the default of `ddl` and of the
+    /// Python package. A [`LiveTracks`](crate::LiveTracks) without a completion fills in nothing.
+    pub const DEFAULT: Self = Self {
         least_seen: LEAST_SEEN,
         longest_gap: LONGEST_GAP,
     };
@@ -82,8 +83,8 @@ impl Completion {
             positions[place] = if after.0 == frame {
                 after.1
             } else {
-                let hole = before.filter(|_| self.longest_gap > 0);
-                let Some(before) = hole.filter(|(seen, _)| after.0 - seen <= longest) else {
+                let gap = before.filter(|_| self.longest_gap > 0);
+                let Some(before) = gap.filter(|(seen, _)| after.0 - seen <= longest) else {
                     break;
                 };
                 filled += 1;
@@ -118,7 +119,7 @@ pub struct CompletionCounts {
 
 impl CompletionCounts {
     /// Whether all 8 positions were seen.
-    pub fn is_nothing(self) -> bool {
+    pub fn is_complete(self) -> bool {
         self == Self::default()
     }
 
@@ -135,6 +136,6 @@ impl CompletionCounts {
 pub enum CompletionError {
     #[error("a forecast needs 2 to 8 positions that were seen, not {found}")]
     LeastSeen { found: usize },
-    #[error("holes of up to 2 frames can be filled, not of {found}")]
+    #[error("gaps of up to 2 frames can be filled, not of {found}")]
     LongestGap { found: usize },
 }

@@ -56,7 +56,7 @@ impl Dataset {
     /// as a fold, which has the recording's name.
     ///
     /// # Errors
-    /// If there are no recordings, if two have the same name, or if one is called `none` ([`Fold::WHOLE`]).
+    /// If there are no recordings, if two have the same name, or if one is called `none` ([`Fold::NO_HELD_OUT`]).
     ///
     /// # Examples
     /// ```
@@ -83,7 +83,7 @@ impl Dataset {
                     "two recordings are called {name:?}; give one of the files another name"
                 ));
             }
-            if name == Fold::WHOLE {
+            if name == Fold::NO_HELD_OUT {
                 return problem(format!(
                     "a recording is called {name:?}, which is the name of the fold without a test recording; \
                      rename the file"
@@ -130,10 +130,10 @@ impl Dataset {
         }
     }
 
-    /// The fold that leaves no recording out: it trains on all and tests on none. Its name is [`Fold::WHOLE`].
+    /// The fold that leaves no recording out: it trains on all and tests on none. Its name is [`Fold::NO_HELD_OUT`].
     #[must_use]
     pub fn whole(&self) -> Fold<'_> {
-        Fold::new(Fold::WHOLE, &[], &self.recordings, None)
+        Fold::new(Fold::NO_HELD_OUT, &[], &self.recordings, None)
     }
 
     /// The fold of this name: it tests on its recordings and trains on all others.

@@ -40,7 +40,7 @@ pub struct SocialGanSplit {
 
 impl<'a> Fold<'a> {
     /// Name of the fold that leaves no recording out ([`Dataset::whole`](crate::Dataset::whole)).
-    pub const WHOLE: &'static str = "none";
+    pub const NO_HELD_OUT: &'static str = "none";
 
     pub(crate) fn new(
         name: &'a str,

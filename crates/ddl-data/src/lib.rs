@@ -16,16 +16,16 @@
 //! let ground: Homography = "0.01 0 0\n0 0.01 0\n0 0 1".parse()?;
 //! let recording = ground.to_ground(&parse_recording(film.as_bytes(), "film.csv", Format::Table)?)?;
 //! let steps = recording.resampled_to_steps(0.1)?.recording; // 4 frames a step
-//! let windows = steps.completed_windows(Completion::USUAL);
+//! let windows = steps.completed_windows(Completion::DEFAULT);
 //! let last = windows.last().ok_or("no window")?;
 //! assert!((last.observed(0)[0][0] - 0.12 * (39.0 - 28.0)).abs() < 1e-9);
-//! assert_eq!(last.made_up(0).filled, 1); // frame 15, on the way from 12 to 17
+//! assert_eq!(last.completion_counts(0).filled, 1); // frame 15, on the way from 12 to 17
 //!
 //! // The same tracks frame by frame, as from a live tracker.
-//! let mut tracks = LiveTracks::with_frame_step(4)?.with_completion(Completion::USUAL);
+//! let mut tracks = LiveTracks::with_frame_step(4)?.with_completion(Completion::DEFAULT);
 //! let mut frames = FrameReader::new(film.as_bytes(), "camera");
 //! while let Some(frame) = frames.next_frame()? {
-//!     if let Some(window) = tracks.push(frame.number, frame.people)? {
+//!     if let Some(window) = tracks.push(frame.number, frame.pedestrians)? {
 //!         assert_eq!(window.frames()[7], frame.number);
 //!     }
 //! }
@@ -64,11 +64,11 @@
 //! [`Fold::training_split`] keeps the last part of each training recording for validation.
 //! [`Fold::social_gan_split`] reproduces the published folders `train`, `val` and `test` of Social-GAN, row by row.
 
+mod atomic_file;
 mod augment;
 mod completion;
 mod convention;
 mod dataset;
-mod doubt;
 mod error;
 mod fold;
 pub mod format;
@@ -77,6 +77,7 @@ mod live;
 mod locate;
 mod names;
 mod neighbours;
+mod plausibility;
 mod rate;
 mod recording;
 mod remembered;
@@ -86,14 +87,13 @@ pub mod simulate;
 mod summary;
 mod track;
 mod unknown_name;
-mod whole_file;
 mod window;
 
+pub use atomic_file::{remove_temporary_files, write_atomically};
 pub use augment::Rotation;
 pub use completion::{Completion, CompletionCounts, CompletionError};
 pub use convention::Convention;
 pub use dataset::Dataset;
-pub use doubt::{Fastest, PlausibilityWarning};
 pub use error::{DataError, FormatError, RecordingError, WindowError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
@@ -101,14 +101,14 @@ pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
 pub use locate::{DATASETS_VARIABLE, locate};
 pub use names::{PedestrianName, PedestrianNames};
-pub use neighbours::{NEIGHBOUR_HALF_WIDTH, Neighbours, Places};
+pub use neighbours::{NEIGHBOUR_HALF_WIDTH, Neighbours, SpatialIndex};
+pub use plausibility::{Fastest, PlausibilityWarning};
 pub use rate::{RateError, ResampledRecording, whole_frame_step};
 pub use recording::Recording;
 pub use remembered::Remembered;
 pub use rule::WindowRule;
 pub use scene_name::{SceneName, SceneNameError};
-pub use summary::{Hole, Summary};
+pub use summary::{Gap, Summary};
 pub use track::{COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW};
 pub use unknown_name::UnknownName;
-pub use whole_file::{remove_half_written, write_whole};
 pub use window::Window;

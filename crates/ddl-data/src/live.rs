@@ -201,13 +201,13 @@ impl LiveTracks {
     #[must_use]
     pub fn window(&self) -> Option<Window> {
         let last = self.last_frame?;
-        let (mut ids, mut positions, mut made_up) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut ids, mut positions, mut counts) = (Vec::new(), Vec::new(), Vec::new());
         for pedestrian in self.pedestrians.iter().filter(|pedestrian| pedestrian.is_at(last)) {
             let seen = pedestrian.seen.iter().copied();
             if let Some((observed, missed)) = self.completion.observation(seen, self.frame_step) {
                 ids.push(pedestrian.id);
                 positions.extend(observed);
-                made_up.push(missed);
+                counts.push(missed);
             }
         }
         if ids.is_empty() {
@@ -217,7 +217,7 @@ impl LiveTracks {
         let (step, frames) = (self.frame_step, frames.collect());
         let window = Window::cut(Arc::clone(&self.name), step, frames, ids, positions);
         let names = self.names.clone();
-        Some(window.with_names(names).with_made_up(made_up))
+        Some(window.with_names(names).with_completion_counts(counts))
     }
 }
 
@@ -230,7 +230,7 @@ impl Recording {
     }
 
     /// The [`observed_windows`](Self::observed_windows) with incomplete observations filled in as the completion
-    /// allows; [`Window::made_up`] counts the filled-in positions.
+    /// allows; [`Window::completion_counts`] counts the filled-in positions.
     #[must_use]
     pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
         let mut tracks = LiveTracks::of(self).with_completion(completion);

@@ -9,7 +9,7 @@ pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
 
 /// A spatial index of places (m). The time of a query grows with the number of results, not with the number of places.
 #[derive(Debug, Clone)]
-pub struct Places {
+pub struct SpatialIndex {
     tree: RTree<Place>,
 }
 
@@ -24,7 +24,7 @@ pub struct Neighbours {
     ends: Vec<usize>,
 }
 
-impl Places {
+impl SpatialIndex {
     /// An index of these positions (m, finite). A place is identified by its index in `positions`.
     #[must_use]
     pub fn new(positions: &[Position]) -> Self {
@@ -79,7 +79,7 @@ impl Neighbours {
     /// The box is aligned with the axes: as in the published code, neighbours are found before a scene is rotated.
     #[must_use]
     pub fn within_box(positions: &[Position], half_width_m: f64) -> Self {
-        let places = Places::new(positions);
+        let places = SpatialIndex::new(positions);
         let (mut near, mut ends) = (Vec::new(), Vec::with_capacity(positions.len()));
         for (i, &position) in positions.iter().enumerate() {
             let first = near.len();

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::doubt::{self, Fastest, PlausibilityWarning, Speeds};
+use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
 use crate::{Completion, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP, WindowRule};
 
 /// Summary of a recording, in steps of 0.4 s.
@@ -16,7 +16,7 @@ use crate::{Completion, Observation, PedestrianId, PedestrianName, Position, Rec
 /// let summary = Recording::new("yard", 10, walk.collect())?.summary();
 /// assert_eq!((summary.pedestrians, summary.to_learn_from, summary.to_forecast), (1, 1, 19));
 /// assert_eq!((summary.seconds, summary.median_speed), (7.6, Some(1.25)));
-/// assert!(summary.doubts().is_empty());
+/// assert!(summary.warnings().is_empty());
 /// # Ok::<(), ddl_data::RecordingError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -57,9 +57,9 @@ pub struct Summary {
     /// Number of gaps: a pedestrian was not seen for some steps and then again.
     pub holes: usize,
     /// The longest gap.
-    pub longest_hole: Option<Hole>,
+    pub longest_hole: Option<Gap>,
     /// Number of observations from which a pedestrian can be forecast, seen at 2 or more of 8 steps
-    /// ([`Completion::USUAL`]).
+    /// ([`Completion::DEFAULT`]).
     pub to_forecast: usize,
     /// Of these, the number seen at all 8 steps.
     pub seen_whole: usize,
@@ -72,7 +72,7 @@ pub struct Summary {
 /// A gap in the observations of one pedestrian.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[non_exhaustive]
-pub struct Hole {
+pub struct Gap {
     /// The pedestrian that was not seen.
     pub pedestrian: PedestrianName,
     /// The raw frame of the last observation before the gap.
@@ -84,7 +84,7 @@ pub struct Hole {
 impl Summary {
     /// Plausibility warnings; empty for a plausible recording.
     #[must_use]
-    pub fn doubts(&self) -> Vec<PlausibilityWarning> {
+    pub fn warnings(&self) -> Vec<PlausibilityWarning> {
         let speeds = Speeds {
             frame_step: self.frame_step,
             steps: self.steps,
@@ -95,9 +95,9 @@ impl Summary {
         };
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
         speeds
-            .doubt()
+            .warning()
             .into_iter()
-            .chain(doubt::unseen(self.unseen))
+            .chain(plausibility::unseen(self.unseen))
             .chain(learning.then_some(PlausibilityWarning::NothingToLearnFrom))
             .collect()
     }
@@ -120,9 +120,9 @@ impl Recording {
         let speeds = self.speeds(&tracks);
         let step = self.frame_step();
         let pairs = tracks.values().flat_map(|track| track.windows(2));
-        let holes: Vec<Hole> = pairs
+        let gaps: Vec<Gap> = pairs
             .filter(|pair| pair[1].frame - pair[0].frame > step)
-            .map(|pair| Hole {
+            .map(|pair| Gap {
                 pedestrian: self.names().of(pair[0].pedestrian),
                 after: pair[0].frame,
                 seconds: (pair[1].frame - pair[0].frame) as f64 * TIME_STEP / step as f64,
@@ -154,9 +154,9 @@ impl Recording {
             brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
             unseen: self.unseen(&tracks),
-            holes: holes.len(),
-            longest_hole: holes.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
-            to_forecast: pedestrians(&self.completed_windows(Completion::USUAL)),
+            holes: gaps.len(),
+            longest_hole: gaps.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
+            to_forecast: pedestrians(&self.completed_windows(Completion::DEFAULT)),
             seen_whole: pedestrians(&self.observed_windows()),
             windows: windows.len(),
             to_learn_from: pedestrians(&windows),

@@ -34,7 +34,7 @@ pub struct Window {
     /// Pedestrian-major: pedestrian i has `positions[i * T..(i + 1) * T]`.
     positions: Vec<Position>,
     /// One entry per pedestrian, or empty if nothing was filled in.
-    made_up: Vec<CompletionCounts>,
+    completion_counts: Vec<CompletionCounts>,
     /// One list per pedestrian, or empty if nothing is remembered.
     remembered: Vec<Vec<Remembered>>,
 }
@@ -107,7 +107,7 @@ impl Window {
             pedestrians,
             names: PedestrianNames::default(),
             positions,
-            made_up: Vec::new(),
+            completion_counts: Vec::new(),
             remembered: Vec::new(),
         }
     }
@@ -129,10 +129,10 @@ impl Window {
         ids.position(|&id| self.names.names(id, name))
     }
 
-    pub(crate) fn with_made_up(mut self, made_up: Vec<CompletionCounts>) -> Self {
-        debug_assert!(made_up.is_empty() || made_up.len() == self.len());
-        let whole = made_up.iter().all(|made_up| made_up.is_nothing());
-        self.made_up = if whole { Vec::new() } else { made_up };
+    pub(crate) fn with_completion_counts(mut self, counts: Vec<CompletionCounts>) -> Self {
+        debug_assert!(counts.is_empty() || counts.len() == self.len());
+        let whole = counts.iter().all(|counts| counts.is_complete());
+        self.completion_counts = if whole { Vec::new() } else { counts };
         self
     }
 
@@ -141,9 +141,9 @@ impl Window {
     ///
     /// # Panics
     /// If `i >= len()`.
-    pub fn made_up(&self, i: usize) -> CompletionCounts {
+    pub fn completion_counts(&self, i: usize) -> CompletionCounts {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
-        self.made_up.get(i).copied().unwrap_or_default()
+        self.completion_counts.get(i).copied().unwrap_or_default()
     }
 
     /// The same window with remembered tracks of similar earlier pedestrians of the place, given by pedestrian index.
@@ -255,7 +255,7 @@ impl Window {
         let remembered = self.remembered.clone();
         Self {
             remembered,
-            ..window.with_made_up(self.made_up.clone())
+            ..window.with_completion_counts(self.completion_counts.clone())
         }
     }
 
@@ -267,7 +267,7 @@ impl Window {
 
     /// The window restricted to some of its pedestrians; `None` if none remain.
     #[must_use]
-    pub fn keeping(&self, mut keep: impl FnMut(usize) -> bool) -> Option<Window> {
+    pub fn filter_pedestrians(&self, mut keep: impl FnMut(usize) -> bool) -> Option<Window> {
         let kept: Vec<usize> = (0..self.len()).filter(|&i| keep(i)).collect();
         if kept.is_empty() {
             return None;
@@ -275,7 +275,7 @@ impl Window {
         let pedestrians = kept.iter().map(|&i| self.pedestrians[i]).collect();
         let positions = kept.iter().flat_map(|&i| self.track(i)).copied().collect();
         let window = self.of_same(self.frames.clone(), pedestrians, positions);
-        let window = window.with_made_up(kept.iter().map(|&i| self.made_up(i)).collect());
+        let window = window.with_completion_counts(kept.iter().map(|&i| self.completion_counts(i)).collect());
         Some(window.with_remembered(|i| self.remembered(kept[i]).to_vec()))
     }
 

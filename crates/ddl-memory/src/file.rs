@@ -7,7 +7,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read as _};
 use std::path::Path;
 
-use ddl_data::{PedestrianId, checked_frame, write_whole};
+use ddl_data::{PedestrianId, checked_frame, write_atomically};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
@@ -51,7 +51,7 @@ impl SceneMemory {
         let content = serde_json::to_vec(&stored).map_err(std::io::Error::from);
         let written = content.and_then(|content| {
             let head = head(&content).into_bytes();
-            write_whole(path, &[head, content].concat())
+            write_atomically(path, &[head, content].concat())
         });
         written.map_err(|source| MemoryError::Write {
             path: path.to_owned(),

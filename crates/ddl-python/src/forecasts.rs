@@ -116,9 +116,9 @@ pub(crate) fn parts<'py>(
 fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
-    let made_up = rows.iter().flat_map(|row| {
-        let made_up = window.zip(*row).map(|(window, i)| window.made_up(i));
-        made_up.map_or([0; 2], |made_up| [made_up.padded as i64, made_up.filled as i64])
+    let counts = rows.iter().flat_map(|row| {
+        let counts = window.zip(*row).map(|(window, i)| window.completion_counts(i));
+        counts.map_or([0; 2], |counts| [counts.padded as i64, counts.filled as i64])
     });
     let past = rows.iter().flat_map(|row| match window.zip(*row) {
         Some((window, i)) => window.observed(i).to_vec(),
@@ -126,7 +126,7 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
     });
     let past = array(py, numbers(past.collect()), [n, OBSERVED, 2])?;
     dict.set_item("past", past)?;
-    dict.set_item("made_up", array(py, made_up.collect(), [n, 2])?)
+    dict.set_item("made_up", array(py, counts.collect(), [n, 2])?)
 }
 
 /// As [`parts`], with pedestrians, frames and recording; `parts` frames of the window are one frame of the file.

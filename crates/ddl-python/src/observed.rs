@@ -50,5 +50,5 @@ impl Observed {
 
 /// Fills gaps and pads late beginnings, as the program does, unless only whole observations count.
 pub(crate) fn completion(whole: bool) -> Completion {
-    if whole { Completion::NONE } else { Completion::USUAL }
+    if whole { Completion::NONE } else { Completion::DEFAULT }
 }

@@ -213,7 +213,7 @@ impl Recording {
 
     /// Text that describes a fault suggested by the speeds.
     fn doubt(&self) -> Option<String> {
-        Some(self.tracks.speed_doubt()?.to_string())
+        Some(self.tracks.speed_warning()?.to_string())
     }
 }
 

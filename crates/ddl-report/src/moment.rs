@@ -180,12 +180,12 @@ fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize
             certified: forecast.certified(i, k),
         }
     };
-    let made_up = window.made_up(i);
+    let counts = window.completion_counts(i);
     MomentPedestrian {
         pedestrian: window.name(i),
         observed: positions(window.observed(i)),
         truth: positions(truth),
-        made_up: (made_up != CompletionCounts::default()).then_some(made_up),
+        made_up: (counts != CompletionCounts::default()).then_some(counts),
         familiarity: forecast.familiarity(i).map(round),
         hypotheses: (0..forecast.hypotheses()).map(hypothesis).collect(),
     }

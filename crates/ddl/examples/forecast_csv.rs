@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let recording = parse_recording(&table, name, Format::Table)?;
     // Pedestrians with short or incomplete observations are forecast as well.
-    let windows = recording.completed_windows(Completion::USUAL);
+    let windows = recording.completed_windows(Completion::DEFAULT);
     let window = windows.last().ok_or("no pedestrian was observed twice")?;
 
     ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread is enough
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         forecast.hypotheses()
     );
     for (i, pedestrian) in window.pedestrians().iter().enumerate() {
-        let ([x, y], seen) = (window.observed(i)[7], window.made_up(i).seen());
+        let ([x, y], seen) = (window.observed(i)[7], window.completion_counts(i).seen());
         println!("pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, observed at {seen} of 8 time steps");
         // Hypotheses are in the order of their weights, the largest first.
         for k in 0..3.min(forecast.hypotheses()) {

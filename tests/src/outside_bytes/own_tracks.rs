@@ -32,7 +32,7 @@ pub fn read(bytes: &[u8]) {
 fn cut(recording: &Recording) {
     let last = recording.frames().last().copied();
     let whole = recording.completed_windows(Completion::NONE);
-    let completed = recording.completed_windows(Completion::USUAL);
+    let completed = recording.completed_windows(Completion::DEFAULT);
     assert!(whole.len() <= completed.len() && completed.len() <= recording.frames().len());
     for window in &completed {
         assert_eq!(window.steps(), OBSERVED);

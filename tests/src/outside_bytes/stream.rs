@@ -15,12 +15,12 @@ pub fn read(bytes: &[u8]) {
     assert_eq!(answers(FrameReader::new(pieces, "tracker"), text.len()), whole);
     let mut scenes = BTreeMap::new();
     for frame in whole.iter().flatten() {
-        let unseen = || LiveTracks::new().with_completion(Completion::USUAL);
+        let unseen = || LiveTracks::new().with_completion(Completion::DEFAULT);
         let tracks = scenes.entry(&frame.scene).or_insert_with(unseen);
         let last = tracks.last_frame();
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");
         assert_eq!(frame.is_first, last.is_none());
-        let pedestrians = || frame.people.iter().copied();
+        let pedestrians = || frame.pedestrians.iter().copied();
         assert!(pedestrians().all(|(_, place)| place.iter().all(|c| c.abs() <= ddl_data::COORDINATE_LIMIT)));
         let window = tracks
             .push(frame.number, pedestrians())

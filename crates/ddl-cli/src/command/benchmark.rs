@@ -26,7 +26,7 @@ use crate::telling::{human, tell};
 use anyhow::{Context as _, bail, ensure};
 use choice::Choice;
 use clap::{Args, ValueEnum};
-use ddl::data::remove_half_written;
+use ddl::data::remove_temporary_files;
 use ddl::report::Report;
 use ddl::{DdlError, RunLock};
 use display::Display;
@@ -119,7 +119,7 @@ impl Benchmark {
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
         let claimed = RunLock::take(&out)?;
         // The folders of tasks are left alone, because a process of an earlier benchmark may still write there.
-        remove_half_written(&out);
+        remove_temporary_files(&out);
         match self.executor {
             Executor::Local => self.run_here(&plan, &out),
             Executor::Slurm => self.run_on_slurm(&plan, &out, claimed),
@@ -219,7 +219,7 @@ impl Benchmark {
 
     fn collect(&self, out: &Path) -> anyhow::Result<()> {
         let _claimed = RunLock::take(out)?;
-        remove_half_written(out);
+        remove_temporary_files(out);
         let plan = Plan::read(out)?;
         if let Some(checkout) = &self.publish {
             publish::check(checkout, &plan)?;

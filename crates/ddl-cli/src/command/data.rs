@@ -143,8 +143,10 @@ fn many(count: usize, one: &str, more: &str) -> String {
 fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Value> {
     let mut facts = serde_json::to_value(summary)?;
     facts["file"] = file.display().to_string().into();
-    let doubts = summary.doubts().into_iter();
-    facts["doubts"] = doubts.map(|doubt| recordings::words(&clock.of_doubt(doubt))).collect();
+    let warnings = summary.warnings().into_iter();
+    facts["doubts"] = warnings
+        .map(|warning| recordings::words(&clock.of_warning(warning)))
+        .collect();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
         ("last_frame", summary.last_frame),
@@ -152,8 +154,8 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     ] {
         facts[name] = serde_json::to_value(clock.number(frame))?;
     }
-    if let Some(hole) = &summary.longest_hole {
-        facts["longest_hole"]["after"] = serde_json::to_value(clock.number(hole.after))?;
+    if let Some(gap) = &summary.longest_hole {
+        facts["longest_hole"]["after"] = serde_json::to_value(clock.number(gap.after))?;
     }
     if let Some(fastest) = &summary.fastest {
         facts["fastest"]["frame"] = serde_json::to_value(clock.number(fastest.frame))?;
@@ -196,12 +198,12 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         "  to forecast: {} of 8 steps, {} of them seen at all 8; {} in the tracks{}",
         many(s.to_forecast, "pedestrian-window", "pedestrian-windows"),
         s.seen_whole,
-        many(s.holes, "hole", "holes"),
-        s.longest_hole.as_ref().map_or_else(String::new, |hole| format!(
+        many(s.holes, "gap", "gaps"),
+        s.longest_hole.as_ref().map_or_else(String::new, |gap| format!(
             ", the longest {:.1} s (pedestrian {} after frame {})",
-            hole.seconds,
-            hole.pedestrian,
-            clock.nearest(hole.after)
+            gap.seconds,
+            gap.pedestrian,
+            clock.nearest(gap.after)
         )),
     )?;
     writeln!(
@@ -210,8 +212,8 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         many(s.to_learn_from, "pedestrian-window", "pedestrian-windows"),
         many(s.windows, "window", "windows")
     )?;
-    for doubt in s.doubts() {
-        writeln!(out, "  doubtful: {}", recordings::words(&clock.of_doubt(doubt)))?;
+    for warning in s.warnings() {
+        writeln!(out, "  doubtful: {}", recordings::words(&clock.of_warning(warning)))?;
     }
     Ok(())
 }

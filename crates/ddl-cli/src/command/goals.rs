@@ -136,7 +136,7 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
     for (window, sets) in observed.windows.iter().zip(sets) {
         let last = observed.clock.number(window.frames()[OBSERVED - 1]);
         for (i, set) in sets.iter().enumerate() {
-            let made_up = window.made_up(i);
+            let counts = window.completion_counts(i);
             for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate() {
                 let [x, y] = position.map(table_metres);
                 writer.serialize(Row {
@@ -146,8 +146,8 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
                     weight: *weight,
                     x,
                     y,
-                    padded: made_up.padded,
-                    filled: made_up.filled,
+                    padded: counts.padded,
+                    filled: counts.filled,
                 })?;
             }
         }

@@ -61,7 +61,7 @@ fn summary(goals: &GoalModel, trained: &str) -> String {
     let config = goals.config();
     let data = &config.data;
     let left_out = match data.fold.as_str() {
-        Fold::WHOLE => String::new(),
+        Fold::NO_HELD_OUT => String::new(),
         scene => format!(", without {scene}"),
     };
     format!(

@@ -258,7 +258,7 @@ impl Train {
                 "nothing to train on: give your own recordings (--data FOLDER), or the scene of ETH/UCY to leave out \
                  (--fold eth, hotel, univ, zara1 or zara2)"
             ),
-            (None | Some(Convention::Own), None) => Ok((Convention::Own, Fold::WHOLE.to_owned())),
+            (None | Some(Convention::Own), None) => Ok((Convention::Own, Fold::NO_HELD_OUT.to_owned())),
             (Some(convention), None) => {
                 let known: Vec<&str> = convention.fold_names().collect();
                 bail!(

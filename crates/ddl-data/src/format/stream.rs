@@ -39,7 +39,7 @@ pub struct Frame {
     /// The raw frame number.
     pub number: i64,
     /// Pedestrians and their positions (m), in the order of the lines.
-    pub people: Vec<(PedestrianId, Position)>,
+    pub pedestrians: Vec<(PedestrianId, Position)>,
     /// The names of pedestrians that are not named by numbers.
     pub names: PedestrianNames,
 }
@@ -315,7 +315,7 @@ impl<R: BufRead> FrameReader<R> {
                 scene: name,
                 is_first,
                 number: seen.frame,
-                people: Vec::new(),
+                pedestrians: Vec::new(),
                 names: PedestrianNames::default(),
             },
             lines: BTreeMap::new(),
@@ -323,7 +323,7 @@ impl<R: BufRead> FrameReader<R> {
         });
         growing.words.extend(word.map(|word| (pedestrian, word)));
         growing.lines.insert(pedestrian, line);
-        growing.frame.people.push((pedestrian, seen.position));
+        growing.frame.pedestrians.push((pedestrian, seen.position));
         self.unfinished += 1;
         Ok(before)
     }
@@ -397,7 +397,7 @@ impl<R: BufRead> FrameReader<R> {
         let scene = self.scenes.get_mut(name)?;
         let growing = scene.current.take()?;
         scene.last = Some(growing.frame.number);
-        self.unfinished -= growing.frame.people.len();
+        self.unfinished -= growing.frame.pedestrians.len();
         Some(Frame {
             names: PedestrianNames::new(growing.words),
             ..growing.frame

@@ -74,11 +74,11 @@ fn by_search(
         places.push([0, 1].map(|axis| first[axis] - share * (last[axis] - first[axis])));
     }
     places.reverse();
-    let made_up = CompletionCounts {
+    let counts = CompletionCounts {
         padded: OBSERVED - found,
         filled: found - seen,
     };
-    Some((places.try_into().unwrap(), made_up))
+    Some((places.try_into().unwrap(), counts))
 }
 
 fn bits(track: &[Position]) -> Vec<[u64; 2]> {
@@ -106,14 +106,14 @@ proptest! {
                 .filter_map(|(id, track)| {
                     let track: BTreeMap<i64, Position> = track.iter().copied().collect();
                     track.get(&frame)?;
-                    let (places, made_up) = by_search(&track, frame, least, gap as i64)?;
-                    Some((PedestrianId(id), bits(&places), made_up))
+                    let (places, counts) = by_search(&track, frame, least, gap as i64)?;
+                    Some((PedestrianId(id), bits(&places), counts))
                 })
                 .collect();
             let window = windows.next_if(|window| window.frames()[OBSERVED - 1] == frame);
             let found: Vec<_> = window.map_or(Vec::new(), |window| {
                 let ids = window.pedestrians().iter().enumerate();
-                ids.map(|(i, &id)| (id, bits(window.observed(i)), window.made_up(i))).collect()
+                ids.map(|(i, &id)| (id, bits(window.observed(i)), window.completion_counts(i))).collect()
             });
             prop_assert_eq!(found, expected, "frame {}", frame);
         }
@@ -131,21 +131,21 @@ fn only_window(frames: &[i64], completion: Completion) -> Option<Window> {
 
 #[test]
 fn holes_of_two_frames_are_filled_and_longer_ones_are_not() {
-    let made_up = |frames: &[i64]| {
-        only_window(frames, Completion::USUAL).map(|window| {
-            let CompletionCounts { padded, filled } = window.made_up(0);
-            (padded, filled, window.made_up(0).seen())
+    let counts = |frames: &[i64]| {
+        only_window(frames, Completion::DEFAULT).map(|window| {
+            let CompletionCounts { padded, filled } = window.completion_counts(0);
+            (padded, filled, window.completion_counts(0).seen())
         })
     };
-    assert_eq!(made_up(&[0, 4, 8, 12, 16, 20, 24, 28]), Some((0, 0, 8)));
-    assert_eq!(made_up(&[0, 4, 8, 20, 24, 28]), Some((0, 2, 6)));
-    assert_eq!(made_up(&[0, 4, 20, 24, 28]), Some((5, 0, 3)));
-    assert_eq!(made_up(&[0, 12, 24, 28]), Some((0, 4, 4)));
-    assert_eq!(made_up(&[20, 28]), Some((5, 1, 2)));
-    assert_eq!(made_up(&[28]), None);
+    assert_eq!(counts(&[0, 4, 8, 12, 16, 20, 24, 28]), Some((0, 0, 8)));
+    assert_eq!(counts(&[0, 4, 8, 20, 24, 28]), Some((0, 2, 6)));
+    assert_eq!(counts(&[0, 4, 20, 24, 28]), Some((5, 0, 3)));
+    assert_eq!(counts(&[0, 12, 24, 28]), Some((0, 4, 4)));
+    assert_eq!(counts(&[20, 28]), Some((5, 1, 2)));
+    assert_eq!(counts(&[28]), None);
     // Between two steps: this position does not count as an observation.
-    assert_eq!(made_up(&[22, 28]), None);
-    assert_eq!(made_up(&[18, 22, 28]), None);
+    assert_eq!(counts(&[22, 28]), None);
+    assert_eq!(counts(&[18, 22, 28]), None);
 }
 
 #[test]
@@ -156,7 +156,7 @@ fn parameters_out_of_range_are_refused() {
     }
     assert_eq!(Completion::new(2, 3), Err(CompletionError::LongestGap { found: 3 }));
     assert_eq!(Completion::new(8, 0), Ok(Completion::NONE));
-    assert_eq!(Completion::new(2, 2), Ok(Completion::USUAL));
+    assert_eq!(Completion::new(2, 2), Ok(Completion::DEFAULT));
     let frames = [0, 4, 8, 20, 24, 28];
     assert!(only_window(&frames, Completion::new(7, 2).unwrap()).is_none());
     assert!(only_window(&frames, Completion::new(6, 2).unwrap()).is_some());

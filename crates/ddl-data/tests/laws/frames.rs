@@ -28,7 +28,10 @@ fn of_whole(recording: &Recording) -> Seen {
 }
 
 fn of_frames(frames: Vec<Frame>) -> Seen {
-    frames.into_iter().map(|frame| (frame.number, frame.people)).collect()
+    frames
+        .into_iter()
+        .map(|frame| (frame.number, frame.pedestrians))
+        .collect()
 }
 
 /// Checks that a written recording is read back with its rows in any order. Formats that can be read frame by frame are
@@ -110,7 +113,7 @@ fn after_an_error_the_next_line_is_read() {
     let wrong = |reader: &mut FrameReader<&[u8]>| reader.next_frame().unwrap_err().to_string();
     assert!(wrong(&mut reader).contains("line 1: the line is longer"));
     assert!(wrong(&mut reader).contains("line 3"));
-    let pedestrians = reader.next_frame().unwrap().unwrap().people;
+    let pedestrians = reader.next_frame().unwrap().unwrap().pedestrians;
     let pedestrians: Vec<i64> = pedestrians.iter().map(|(id, _)| id.0).collect();
     assert_eq!(pedestrians, [1, 3]);
     assert!(wrong(&mut reader).contains("line 6"));
@@ -130,7 +133,7 @@ fn a_constant_frame_number_does_not_fill_the_memory() {
         assert!(error.starts_with(&expected), "{error}");
     }
     let full = reader.next_frame().unwrap().unwrap();
-    assert_eq!((full.number, full.people.len()), (0, 100_000));
+    assert_eq!((full.number, full.pedestrians.len()), (0, 100_000));
     assert_eq!(reader.next_frame().unwrap().unwrap().number, 1);
 }
 
@@ -174,7 +177,7 @@ proptest! {
             let alone = frames((head.to_owned() + &lines.collect::<String>()).as_bytes()).unwrap();
             let seen = |frames: &[Frame]| -> Vec<_> {
                 let people = |frame: &Frame| -> Vec<_> {
-                    let people = frame.people.iter();
+                    let people = frame.pedestrians.iter();
                     people.map(|&(id, place)| (frame.names.of(id), place)).collect()
                 };
                 frames.iter().map(|frame| (frame.number, frame.is_first, people(frame))).collect()
@@ -254,7 +257,7 @@ fn an_empty_line_ends_the_frame_of_the_scene_before_it() {
     let read = frames(text.as_bytes()).unwrap();
     let read = read
         .iter()
-        .map(|frame| (frame.scene.as_ref().unwrap().as_str(), frame.people.len()));
+        .map(|frame| (frame.scene.as_ref().unwrap().as_str(), frame.pedestrians.len()));
     assert_eq!(read.collect::<Vec<_>>(), [("b", 1), ("a", 2)]);
 }
 

@@ -38,7 +38,7 @@ fn errors_change_nothing() {
 /// forgotten at once, or slightly later where gaps are filled.
 #[test]
 fn pedestrians_that_left_are_forgotten() {
-    for (completion, most) in [(Completion::NONE, 10), (Completion::USUAL, 12)] {
+    for (completion, most) in [(Completion::NONE, 10), (Completion::DEFAULT, 12)] {
         let mut tracks = LiveTracks::new().with_completion(completion);
         let mut windows = 0_usize;
         for frame in 0..40_000_i64 {
@@ -77,7 +77,7 @@ fn extreme_frame_numbers_are_handled() {
     let step = 1 << 31;
     let mut tracks = LiveTracks::with_frame_step(step)
         .unwrap()
-        .with_completion(Completion::USUAL);
+        .with_completion(Completion::DEFAULT);
     let (first, last) = (1 - (1 << 53), (1 << 53) - 1);
     for frame in [first, first + step, last - 2 * step, last] {
         let one = [(PedestrianId(1), [0.0, 1e308])];
@@ -85,7 +85,7 @@ fn extreme_frame_numbers_are_handled() {
         assert_eq!(window.is_some(), frame == first + step || frame == last);
     }
     // The velocity of these positions is NaN.
-    let mut tracks = LiveTracks::new().with_completion(Completion::USUAL);
+    let mut tracks = LiveTracks::new().with_completion(Completion::DEFAULT);
     for (frame, x) in [(0, -1e308), (1, 1e308)] {
         assert_eq!(tracks.push(frame, [(PedestrianId(1), [x, 0.0])]), Ok(None));
     }

@@ -24,7 +24,7 @@ fn pedestrians_may_be_words() {
         let found: Vec<String> = (0..4).map(|i| window.name(i).to_string()).collect();
         assert_eq!(found, names, "{format}");
         assert!((0..4).all(|i| window.named(&window.name(i)) == Some(i)));
-        let completed = &recording.completed_windows(Completion::USUAL)[1];
+        let completed = &recording.completed_windows(Completion::DEFAULT)[1];
         assert_eq!(completed.name(3), PedestrianName::Word("1e3".to_owned()));
         // A duplicate is reported with its word.
         let twice = text.clone() + text.lines().last().unwrap();
@@ -38,7 +38,7 @@ fn pedestrians_may_be_words() {
         let mut read = 0;
         while let Some(frame) = frames.next_frame().unwrap() {
             let found: Vec<String> = frame
-                .people
+                .pedestrians
                 .iter()
                 .map(|(id, _)| frame.names.of(*id).to_string())
                 .collect();
@@ -55,7 +55,7 @@ fn a_number_in_a_stream_stays_a_number_when_words_come() {
     let mut frames = FrameReader::new(text.as_bytes(), "tracker");
     let mut first = Vec::new();
     while let Some(frame) = frames.next_frame().unwrap() {
-        first.push(frame.people[0].0);
+        first.push(frame.pedestrians[0].0);
     }
     assert_eq!(first, [PedestrianId(17); 4]);
 }

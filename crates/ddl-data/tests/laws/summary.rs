@@ -9,26 +9,26 @@ fn walk(metres_a_frame: f64) -> Vec<Observation> {
         .collect()
 }
 
-fn doubts(seen: Vec<Observation>) -> Vec<PlausibilityWarning> {
-    Recording::new("yard", 1, seen).unwrap().summary().doubts()
+fn warnings(seen: Vec<Observation>) -> Vec<PlausibilityWarning> {
+    Recording::new("yard", 1, seen).unwrap().summary().warnings()
 }
 
 #[test]
-fn implausible_speeds_are_doubted() {
+fn implausible_speeds_give_warnings() {
     // 1.3 m/s in steps of 0.4 s.
-    assert_eq!(doubts(walk(0.52)), []);
+    assert_eq!(warnings(walk(0.52)), []);
     // The same walk at 25 frames per second, and in pixels.
-    assert!(matches!(doubts(walk(0.052))[..], [PlausibilityWarning::Slow { brisk }] if brisk < 0.14));
-    assert!(matches!(doubts(walk(30.0))[..], [PlausibilityWarning::Fast { median }] if median > 70.0));
-    // A standing pedestrian causes no doubt, even with the noise of a tracker.
-    assert_eq!(doubts(walk(0.001)), []);
+    assert!(matches!(warnings(walk(0.052))[..], [PlausibilityWarning::Slow { brisk }] if brisk < 0.14));
+    assert!(matches!(warnings(walk(30.0))[..], [PlausibilityWarning::Fast { median }] if median > 70.0));
+    // A standing pedestrian causes no warning, even with the noise of a tracker.
+    assert_eq!(warnings(walk(0.001)), []);
 }
 
 #[test]
-fn degrees_are_doubted() {
+fn degrees_give_warnings() {
     // A walk through a park in degrees of latitude.
     assert!(matches!(
-        doubts(walk(5e-6))[..],
+        warnings(walk(5e-6))[..],
         [PlausibilityWarning::Still { farthest }] if farthest < 1e-3
     ));
 }
@@ -43,8 +43,8 @@ fn missing_detections_are_reported() {
         .collect();
     let summary = Recording::new("film", 10, seen).unwrap().summary();
     assert!((summary.unseen - 0.1).abs() < 0.002, "{}", summary.unseen);
-    let [PlausibilityWarning::Unseen { share }, ..] = summary.doubts()[..] else {
-        panic!("{:?}", summary.doubts());
+    let [PlausibilityWarning::Unseen { share }, ..] = summary.warnings()[..] else {
+        panic!("{:?}", summary.warnings());
     };
     assert_eq!(share.to_bits(), summary.unseen.to_bits());
     let whole = Recording::new("yard", 1, walk(0.5)).unwrap().summary();
@@ -57,12 +57,12 @@ fn a_track_that_jumps_is_reported_with_its_frame() {
     for observation in &mut seen[40..] {
         observation.position[1] += 20.0;
     }
-    let doubts = doubts(seen);
-    let [PlausibilityWarning::Jump(fastest)] = &doubts[..] else {
-        panic!("{doubts:?}");
+    let warnings = warnings(seen);
+    let [PlausibilityWarning::Jump(fastest)] = &warnings[..] else {
+        panic!("{warnings:?}");
     };
     assert_eq!((&fastest.pedestrian, fastest.frame), (&PedestrianId(1).into(), 40));
-    assert!(doubts[0].to_string().contains("pedestrian 1 jumps at frame 40"));
+    assert!(warnings[0].to_string().contains("pedestrian 1 jumps at frame 40"));
 }
 
 #[test]
@@ -71,11 +71,11 @@ fn holes_and_training_samples_are_counted() {
     seen.remove(50);
     let summary = Recording::new("yard", 1, seen).unwrap().summary();
     assert_eq!((summary.holes, summary.pedestrians, summary.frames), (1, 1, 99));
-    let hole = summary.longest_hole.unwrap();
-    assert_eq!((&hole.pedestrian, hole.after), (&PedestrianId(1).into(), 49));
-    assert!((hole.seconds - 0.8).abs() < 1e-12);
+    let gap = summary.longest_hole.unwrap();
+    assert_eq!((&gap.pedestrian, gap.after), (&PedestrianId(1).into(), 49));
+    assert!((gap.seconds - 0.8).abs() < 1e-12);
     // 50 and 49 positions in a row: 31 and 30 windows of 20.
     assert_eq!(summary.to_learn_from, 61);
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
-    assert_eq!(few.summary().doubts(), [PlausibilityWarning::NothingToLearnFrom]);
+    assert_eq!(few.summary().warnings(), [PlausibilityWarning::NothingToLearnFrom]);
 }

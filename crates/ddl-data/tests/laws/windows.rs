@@ -1,7 +1,7 @@
 //! Laws of windows, neighbours and rotations, on made-up recordings.
 
 use ddl_data::{
-    Neighbours, OBSERVED, Observation, PedestrianId, Places, Position, Recording, Remembered, Rotation, Window,
+    Neighbours, OBSERVED, Observation, PedestrianId, Position, Recording, Remembered, Rotation, SpatialIndex, Window,
     WindowError, WindowRule,
 };
 use proptest::prelude::*;
@@ -112,7 +112,7 @@ proptest! {
         let positions: Vec<Position> = grid.iter()
             .map(|cell| cell.map(|x| origin + unit * f64::from(x)))
             .collect();
-        let places = Places::new(&positions);
+        let places = SpatialIndex::new(&positions);
         for (i, here) in positions.iter().enumerate() {
             let distance = |j: &usize| {
                 let there = positions[*j];
@@ -175,9 +175,12 @@ fn invalid_windows_are_refused() {
 fn changing_positions_changes_nothing_else() {
     let tracks = vec![(0..20).map(|t| [f64::from(t), 0.0]).collect(), vec![[5.0, 5.0]; 20]];
     let window = Window::new("r", 100, 6, ids(4..6), tracks).unwrap();
-    let alone = window.keeping(|i| i == 1).unwrap();
+    let alone = window.filter_pedestrians(|i| i == 1).unwrap();
     assert_eq!(alone.pedestrians(), ids(5..6));
-    assert_eq!((alone.track(0), window.keeping(|_| false)), (window.track(1), None));
+    assert_eq!(
+        (alone.track(0), window.filter_pedestrians(|_| false)),
+        (window.track(1), None)
+    );
     let later = |_, step, [x, y]: Position| {
         if step >= OBSERVED { [x + 1.0, y] } else { [x, y] }
     };
@@ -229,7 +232,7 @@ fn remembered_tracks_stay_with_their_pedestrian() {
         .with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
     assert_eq!(remembering.remembered(2), [remembered(2); 2]);
     assert_eq!(remembering.without_future().remembered(2), [remembered(2); 2]);
-    let kept = remembering.keeping(|i| i != 1).unwrap();
+    let kept = remembering.filter_pedestrians(|i| i != 1).unwrap();
     assert_eq!(kept.remembered(0), []);
     assert_eq!(kept.remembered(1), [remembered(2); 2]);
     // Reversal drops it, because it would lie in the future.

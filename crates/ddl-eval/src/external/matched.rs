@@ -132,7 +132,7 @@ impl ExpectedForecasts<'_> {
             pedestrians: all,
         };
         for (window, slots) in self.windows.iter().zip(self.slots) {
-            let Some(kept) = window.keeping(|i| slots[i].is_some()) else {
+            let Some(kept) = window.filter_pedestrians(|i| slots[i].is_some()) else {
                 continue;
             };
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();

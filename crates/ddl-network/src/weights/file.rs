@@ -5,7 +5,7 @@ use super::layout::Layout;
 use super::learned::Weights;
 use super::origin::Origin;
 use crate::NetworkError;
-use ddl_data::write_whole;
+use ddl_data::write_atomically;
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
 use std::io::Read as _;
@@ -156,7 +156,7 @@ pub fn write_tensors(tensors: &[StoredTensor], origin: &Origin, path: &Path) -> 
         .map_err(broken)?;
     let header = origin.to_header(&tensors_digest(views.iter().cloned()));
     let bytes = safetensors::serialize(views, Some(header)).map_err(broken)?;
-    write_whole(path, &bytes).map_err(NetworkError::io(path))
+    write_atomically(path, &bytes).map_err(NetworkError::io(path))
 }
 
 /// Reads the tensors of a file of this origin with at most `most_bytes` bytes of numbers.

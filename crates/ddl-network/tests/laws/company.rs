@@ -13,7 +13,7 @@ fn furthest(backbone: BackboneKind) -> [f64; 2] {
     for window in WINDOWS.iter().take(12).filter(|window| window.len() > 1) {
         let together = &question.ask(&network, &[window])[0];
         let alone: Vec<Window> = (0..window.len())
-            .map(|i| window.keeping(|other| other == i).unwrap())
+            .map(|i| window.filter_pedestrians(|other| other == i).unwrap())
             .collect();
         let alone: Vec<&Window> = alone.iter().collect();
         let of_pedestrian =

@@ -44,7 +44,7 @@ class Forecast:
     """k weighted hypotheses of the next 4.8 s for each of n pedestrians.
 
     ``valid`` is False for pedestrians that cannot be forecast: those not observed in the last frame, or observed only
-    once since the last hole of more than 2 steps. Their rows are NaN.
+    once since the last gap of more than 2 steps. Their rows are NaN.
 
     Attributes
     ----------
@@ -61,9 +61,9 @@ class Forecast:
     spread : (n, 12) or None
         Standard deviation around the right hypothesis, metres.
     past : (n, 8, 2)
-        The observation with holes filled and late beginnings padded, metres.
+        The observation with gaps filled and late beginnings padded, metres.
     made_up : (n, 2)
-        How many of the 8 positions are made up: before the first that counts, and in holes.
+        How many of the 8 positions are made up: before the first that counts, and in gaps.
     certificates : Certificates or None
         The evidence, with ``certificates=True``.
     ids, frame, frames, recording

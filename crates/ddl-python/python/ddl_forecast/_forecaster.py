@@ -82,8 +82,8 @@ class Forecaster:
         Parameters
         ----------
         past
-            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not observed. Holes
-            of up to 2 positions are filled on a straight line; positions before a longer hole are ignored. A
+            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not observed. Gaps
+            of up to 2 positions are filled on a straight line; positions before a longer gap are ignored. A
             pedestrian is forecast if the last position and at least one other remain; earlier positions are padded at
             the mean velocity.
         neighbours

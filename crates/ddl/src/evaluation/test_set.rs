@@ -221,7 +221,7 @@ impl TestSet {
         let windows = fold.training_split(rule, fraction).validation;
         let rules = vec![(rule, (0..windows.len()).collect())];
         let fold_name = match fold.name() {
-            Fold::WHOLE => convention.name(),
+            Fold::NO_HELD_OUT => convention.name(),
             left_out => left_out,
         };
         let part = Self {

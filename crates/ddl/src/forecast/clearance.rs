@@ -1,5 +1,5 @@
 use crate::error::DdlError;
-use ddl_data::{HORIZON, Places, Position};
+use ddl_data::{HORIZON, Position, SpatialIndex};
 use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
 use nalgebra::Vector2;
 use serde::{Deserialize, Serialize};
@@ -49,7 +49,7 @@ pub(crate) struct Others {
     clearance: Clearance,
     likeliest: Vec<[Position; HORIZON]>,
     /// The positions of all pedestrians at the end of each step.
-    places: Vec<Places>,
+    places: Vec<SpatialIndex>,
 }
 
 impl Others {
@@ -57,7 +57,7 @@ impl Others {
         let at = |t: usize| -> Vec<Position> { likeliest.iter().map(|path| path[t]).collect() };
         Self {
             clearance,
-            places: (0..HORIZON).map(|t| Places::new(&at(t))).collect(),
+            places: (0..HORIZON).map(|t| SpatialIndex::new(&at(t))).collect(),
             likeliest,
         }
     }
@@ -75,7 +75,7 @@ impl Others {
     ) -> Result<ObstacleSchedule<f64, 2>, DynamicsError> {
         let distance = (goal[0] - start[0]).hypot(goal[1] - start[1]);
         let reach = 4.0 * distance + self.clearance.0 + Clearance::MARGIN;
-        let step = |(t, places): (usize, &Places)| {
+        let step = |(t, places): (usize, &SpatialIndex)| {
             let mut near: Vec<usize> = places.within_box(start, reach).collect();
             near.sort_unstable();
             let others = near.into_iter().filter(|&j| j != i);

@@ -92,7 +92,8 @@ impl<M> LiveForecaster<M> {
         })
     }
 
-    /// Fills in incomplete observations as the completion allows. [`Window::made_up`] counts the filled-in positions.
+    /// Fills in incomplete observations as the completion allows. [`Window::completion_counts`] counts the filled-in
+    /// positions.
     #[must_use]
     pub fn with_completion(mut self, completion: Completion) -> Self {
         self.watch.tracks = self.watch.tracks.with_completion(completion);

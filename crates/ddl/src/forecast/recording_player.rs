@@ -34,14 +34,14 @@ impl<'a> RecordingPlayer<'a> {
     }
 
     /// The page, from one forecast for each window in [`shown`](Self::shown). `name` is the title of the recording,
-    /// `doubt` describes a fault of it, and `frame` converts a frame number of the recording to one of its file.
+    /// `warning` describes a fault of it, and `frame` converts a frame number of the recording to one of its file.
     ///
     /// # Errors
     /// [`DdlError::Evaluation`] or [`DdlError::Page`] if a forecast does not fit its window, or if there are none.
     pub fn to_html(
         &self,
         forecasts: &[&Forecast],
-        (name, doubt): (&str, Option<&str>),
+        (name, warning): (&str, Option<&str>),
         frame: impl Fn(i64) -> i64,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
@@ -52,11 +52,11 @@ impl<'a> RecordingPlayer<'a> {
             Ok(moment)
         });
         let moments: Vec<Moment> = moments.collect::<Result<_, EvaluationError>>()?;
-        let doubt = doubt.map(|doubt| format!("Doubtful: {doubt} "));
+        let warning = warning.map(|warning| format!("Doubtful: {warning} "));
         let lead = format!(
             "{}{} of {} moments of {name}: the observed path of each pedestrian, its forecast for the next 4.8 s, and \
              its true path as far as it was observed.",
-            doubt.unwrap_or_default(),
+            warning.unwrap_or_default(),
             shown.len(),
             self.windows.len()
         );

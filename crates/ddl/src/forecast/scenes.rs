@@ -179,7 +179,7 @@ impl LiveScenes {
         {
             scene.watch.clear();
         }
-        self.add(frame.scene, frame.number, frame.people, frame.names)
+        self.add(frame.scene, frame.number, frame.pedestrians, frame.names)
     }
 
     fn add(

@@ -1,6 +1,6 @@
 //! The input of a proposal network for the pedestrians of a window.
 
-use ddl_data::{OBSERVED, Places, Position, Remembered, Window};
+use ddl_data::{OBSERVED, Position, Remembered, SpatialIndex, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, length_unit};
 
@@ -17,7 +17,7 @@ pub(crate) struct Seen {
 /// seconds).
 pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<Seen>, TrackError> {
     let last = window.hypotheses_at(OBSERVED - 1);
-    let places = Places::new(&last);
+    let places = SpatialIndex::new(&last);
     (0..window.len())
         .map(|i| {
             let frame = HeadingFrame::new(window.observed(i))?;

@@ -22,7 +22,7 @@ use crate::goals::recipe::GoalRecipe;
 use crate::model::builtin::BuiltinModel;
 use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::lock::RunLock;
-use ddl_data::{remove_half_written, write_whole};
+use ddl_data::remove_temporary_files;
 use ddl_network::EpochReport;
 use ddl_report::Moment;
 use serde::{Serialize, de::DeserializeOwned};
@@ -204,7 +204,7 @@ impl RunDirectory {
             return Err(DdlError::run(&self.0, problem));
         }
         for folder in [&self.0, &epochs] {
-            remove_half_written(folder);
+            remove_temporary_files(folder);
         }
         if !has_config {
             write_json(&self.config_file(), config)?;
@@ -328,5 +328,5 @@ fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String
 /// # Errors
 /// When the file cannot be written; an earlier one is unchanged.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), DdlError> {
-    write_whole(path, bytes).map_err(|error| DdlError::io(path, error))
+    ddl_data::write_atomically(path, bytes).map_err(|error| DdlError::io(path, error))
 }

@@ -10,12 +10,12 @@ pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     }
 }
 
-/// The fold of that name. For own recordings this includes the fold that leaves none out ([`Fold::WHOLE`]).
+/// The fold of that name. For own recordings this includes the fold that leaves none out ([`Fold::NO_HELD_OUT`]).
 ///
 /// # Errors
 /// When it is missing; the message lists the existing folds.
 pub fn fold_by_name<'a>(dataset: &'a Dataset, name: &str) -> Result<Fold<'a>, DataError> {
-    if dataset.convention() == Convention::Own && name == Fold::WHOLE {
+    if dataset.convention() == Convention::Own && name == Fold::NO_HELD_OUT {
         Ok(dataset.whole())
     } else {
         dataset.fold(name)

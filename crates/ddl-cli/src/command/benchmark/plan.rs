@@ -5,7 +5,7 @@ use super::cost;
 use super::method::Method;
 use super::profile::{Optimiser, Profile};
 use anyhow::{Context as _, bail, ensure};
-use ddl::data::{Convention, write_whole};
+use ddl::data::{Convention, write_atomically};
 use ddl::{DeviceChoice, Protocol};
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -233,7 +233,7 @@ impl Plan {
             }
         }
         let text = serde_json::to_vec_pretty(self)?;
-        write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
+        write_atomically(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 
     pub(crate) fn read(folder: &Path) -> anyhow::Result<Self> {

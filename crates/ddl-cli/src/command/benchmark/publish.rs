@@ -7,7 +7,7 @@ use super::record::Record;
 use super::section;
 use crate::telling::human;
 use anyhow::{Context as _, ensure};
-use ddl::data::{Convention, write_whole};
+use ddl::data::{Convention, write_atomically};
 use ddl::report::{Report, Summary};
 use std::collections::BTreeSet;
 use std::fs;
@@ -67,7 +67,7 @@ pub(super) fn publish(checkout: &Path, plan: &Plan, report: &Report, making: &Ma
         .summary(convention)
         .context("the report has no results that the page shows")?;
     let page = with_section(checkout, convention, &text(plan, &summary, making))?;
-    write_whole(&checkout.join(PAGE), page.as_bytes()).with_context(|| format!("cannot write {PAGE}"))
+    write_atomically(&checkout.join(PAGE), page.as_bytes()).with_context(|| format!("cannot write {PAGE}"))
 }
 
 fn with_section(checkout: &Path, convention: Convention, text: &str) -> anyhow::Result<String> {

@@ -3,7 +3,7 @@
 use super::plan::Task;
 use super::processor;
 use anyhow::Context as _;
-use ddl::data::write_whole;
+use ddl::data::write_atomically;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::Path;
@@ -36,6 +36,6 @@ impl Record {
             processor: Some(processor::name()),
         };
         let text = serde_json::to_vec(&record)?;
-        write_whole(&file, &text).with_context(|| format!("cannot write {}", file.display()))
+        write_atomically(&file, &text).with_context(|| format!("cannot write {}", file.display()))
     }
 }

@@ -14,7 +14,7 @@ use crate::output::shell_word;
 use crate::telling::tell;
 use anyhow::{Context as _, ensure};
 use ddl::DdlError;
-use ddl::data::write_whole;
+use ddl::data::write_atomically;
 use queue::Job;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
@@ -133,7 +133,7 @@ impl Slurm {
     fn sbatch(&self, options: &[String], (name, script): (&str, &str), first: &[OsString]) -> anyhow::Result<String> {
         let file = self.out.join("slurm").join(name);
         let unwritable = || format!("cannot write {}", file.display());
-        write_whole(&file, script.as_bytes()).with_context(unwritable)?;
+        write_atomically(&file, script.as_bytes()).with_context(unwritable)?;
         let mut sbatch = Command::new("sbatch");
         sbatch
             .args(["--parsable", "--chdir"])

@@ -6,7 +6,7 @@ use super::record::Record;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use anyhow::Context as _;
-use ddl::data::remove_half_written;
+use ddl::data::remove_temporary_files;
 use ddl::{DeviceChoice, RunDirectory};
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions, TryLockError};
@@ -123,7 +123,7 @@ impl Workers {
             return End::Kept;
         }
         // No other process writes there now; the program itself cleans the folder of the run.
-        remove_half_written(&task.folder(out));
+        remove_temporary_files(&task.folder(out));
         let start = Instant::now();
         if let Some(other) = plan
             .with_same_goals(task)

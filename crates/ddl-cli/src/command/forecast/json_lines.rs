@@ -93,13 +93,13 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
                     certificate: moment.certificate(i, k).map(Certificate::of),
                 })
                 .collect();
-            let made_up = moment.window.made_up(i);
+            let counts = moment.window.completion_counts(i);
             let line = Line {
                 scene: moment.scene,
                 observed_until: moment.observed_until(),
                 pedestrian: moment.window.name(i),
-                padded: made_up.padded,
-                filled: made_up.filled,
+                padded: counts.padded,
+                filled: counts.filled,
                 frames: moment.frames(),
                 familiarity: forecast.familiarity(i),
                 spread: (0..HORIZON).filter_map(|t| forecast.spread(i, t)).collect(),

@@ -373,7 +373,7 @@ impl Output {
 
 /// Warns if the speeds in the first complete window look wrong; returns whether it warned.
 fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
-    let whole = (0..window.len()).filter(|&i| window.made_up(i) == CompletionCounts::default());
+    let whole = (0..window.len()).filter(|&i| window.completion_counts(i) == CompletionCounts::default());
     let seen: Vec<Observation> = whole
         .flat_map(|i| {
             let pedestrian = window.pedestrians()[i];
@@ -386,8 +386,8 @@ fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
     }
     let recording = Recording::new("standard input", window.frame_step(), seen)?;
     // Other warnings are left out: a jump does not point to wrong units, and a pedestrian may be slow for 3.2 s.
-    if let Some(doubt @ PlausibilityWarning::Fast { .. }) = &recording.speed_doubt() {
-        recordings::warn_of(doubt);
+    if let Some(warning @ PlausibilityWarning::Fast { .. }) = &recording.speed_warning() {
+        recordings::warn_of(warning);
     }
     Ok(true)
 }
@@ -396,7 +396,7 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
     let Some(homography) = homography else {
         return Ok(frame);
     };
-    for (pedestrian, position) in &mut frame.people {
+    for (pedestrian, position) in &mut frame.pedestrians {
         let seen = Observation::new(frame.number, *pedestrian, *position);
         *position = homography.place(&seen, &frame.names).context("standard input")?;
     }

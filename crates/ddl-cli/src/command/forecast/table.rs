@@ -62,7 +62,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
         // One field if the tracks name scenes, otherwise no field.
         let scene = Vec::from_iter(moment.scene);
         for i in 0..moment.window.len() {
-            let made_up = moment.window.made_up(i);
+            let counts = moment.window.completion_counts(i);
             for hypothesis in 0..moment.forecast.hypotheses() {
                 let certificate = moment.certificate(i, hypothesis);
                 let holds = certificate.is_some_and(|certificate| certificate.holds().is_ok());
@@ -83,8 +83,8 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
                         frame: frame.rounded(),
                         x,
                         y,
-                        padded: made_up.padded,
-                        filled: made_up.filled,
+                        padded: counts.padded,
+                        filled: counts.filled,
                         familiarity: moment.forecast.familiarity(i).map(table_share),
                     };
                     let radius = |&level: &f64| {

@@ -4,7 +4,7 @@ use super::super::benchmark::{Method, Plan, Profile, Task};
 use super::super::recipe::Recipe;
 use anyhow::{Context as _, ensure};
 use ddl::Protocol;
-use ddl::data::{Convention, WindowRule, write_whole};
+use ddl::data::{Convention, WindowRule, write_atomically};
 use ddl::report::Report;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -59,7 +59,7 @@ pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::R
     }
     std::fs::create_dir_all(out).with_context(|| format!("cannot create {}", out.display()))?;
     let write = |file: &Path, bytes: &[u8]| {
-        write_whole(file, bytes).with_context(|| format!("cannot write {}", file.display()))
+        write_atomically(file, bytes).with_context(|| format!("cannot write {}", file.display()))
     };
     for (file, bytes, _) in &packed {
         write(file, bytes)?;

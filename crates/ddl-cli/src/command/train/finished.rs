@@ -65,7 +65,7 @@ pub(super) fn print(
 fn next(request: &TrainingRequest, (only_goals, measured): (bool, bool), data: &str) -> String {
     let run = shell_word(request.out.path());
     let kept = request.validation > 0.0 || !request.validation_recordings.is_empty();
-    let part = match (request.fold == Fold::WHOLE, kept) {
+    let part = match (request.fold == Fold::NO_HELD_OUT, kept) {
         (false, _) => Some("test"),
         (true, true) => Some("validation"),
         (true, false) => None,

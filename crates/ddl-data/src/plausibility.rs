@@ -21,7 +21,7 @@ const JUMP: f64 = 12.0;
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
-/// A doubt is reported from this share of missing positions on, counted between the first and last frame of each
+/// A warning is given from this share of missing positions on, counted between the first and last frame of each
 /// pedestrian.
 const OFTEN: f64 = 0.03;
 
@@ -89,7 +89,7 @@ pub(crate) struct Speeds {
 }
 
 impl Speeds {
-    pub(crate) fn doubt(&self) -> Option<PlausibilityWarning> {
+    pub(crate) fn warning(&self) -> Option<PlausibilityWarning> {
         let (Some(median), Some(fastest)) = (self.median, &self.fastest) else {
             let frame_step = self.frame_step;
             return Some(PlausibilityWarning::NoSteps { frame_step });
@@ -109,10 +109,10 @@ impl Speeds {
 }
 
 impl Recording {
-    /// The first doubt about speeds in [the summary](Self::summary), computed without the rest of the summary.
+    /// The first warning about speeds in [the summary](Self::summary), computed without the rest of the summary.
     #[must_use]
-    pub fn speed_doubt(&self) -> Option<PlausibilityWarning> {
-        self.speeds(&self.tracks()).doubt()
+    pub fn speed_warning(&self) -> Option<PlausibilityWarning> {
+        self.speeds(&self.tracks()).warning()
     }
 
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {

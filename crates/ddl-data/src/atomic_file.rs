@@ -10,7 +10,7 @@ const WRITING: &str = ".writing-";
 ///
 /// # Errors
 /// When the file cannot be written; an existing file then stays unchanged.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
+pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -31,9 +31,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<()> {
     Ok(())
 }
 
-/// Removes the unfinished files that killed processes left in a folder. Call it only when no other process writes
+/// Removes the temporary files that killed processes left in a folder. Call it only when no other process writes
 /// there. Files that cannot be removed are ignored.
-pub fn remove_half_written(folder: &Path) {
+pub fn remove_temporary_files(folder: &Path) {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     for entry in entries.filter(|entry| entry.file_name().to_string_lossy().starts_with(WRITING)) {
         // Removing a folder of that name fails and is ignored.
@@ -53,8 +53,8 @@ mod tests {
         for name in [".writing-a1", "whole.json", "deep/.writing-b2"] {
             std::fs::write(at(name), "half").unwrap();
         }
-        write_whole(&at("whole.json"), b"new").unwrap();
-        remove_half_written(folder.path());
+        write_atomically(&at("whole.json"), b"new").unwrap();
+        remove_temporary_files(folder.path());
         assert!(!at(".writing-a1").exists());
         assert_eq!(std::fs::read(at("whole.json")).unwrap(), b"new");
         // Files in sub-folders may belong to another process.
