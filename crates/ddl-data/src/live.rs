@@ -315,7 +315,7 @@ pub enum LiveError {
     FrameOutOfRange { frame: i64 },
     #[error(
         "frame {frame} comes after frame {last}; push frames in order of time, each once; when the tracker restarts, \
-         clear the tracks, or interrupt the memory, before its first frame"
+         clear the tracks, or end those of the memory, before its first frame"
     )]
     TooEarly { frame: i64, last: i64 },
     #[error("frame {frame}, pedestrian {pedestrian}: {position:?} is not finite")]

@@ -13,7 +13,7 @@ fn errors_change_nothing() {
         let other = (PedestrianId(1), here);
         for (frame, pedestrians, problem) in [
             (last, vec![], "comes after frame"),
-            (last - 1, vec![other], "interrupt the memory"),
+            (last - 1, vec![other], "end those of the memory"),
             (i64::MIN, vec![other], "not below 2^53"),
             (1 << 53, vec![], "not below 2^53"),
             (
