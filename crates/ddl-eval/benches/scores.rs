@@ -91,7 +91,7 @@ fn adapt(criterion: &mut Criterion) {
     let forecasts: Vec<Forecast> = noisy
         .expect("a forecast")
         .into_iter()
-        .map(|f| f.with_spread(spread(), Arc::clone(&table)).expect("a spread"))
+        .map(|f| f.with_std_dev(spread(), Arc::clone(&table)).expect("a spread"))
         .collect();
     let (mut regions, mut at) = (AdaptiveRegions::default(), 0);
     criterion.bench_function("regions of 25 pedestrians follow a frame", |b| {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     EvaluationError, Forecast, Forecaster, MeasureError, Protocol, Scores,
-    scene::places,
+    scene::indices_in_full,
     significance::{BlockErrors, block_errors},
 };
 
@@ -111,19 +111,19 @@ impl ResultRow {
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
-        everybody: &[Window],
+        full_windows: &[Window],
     ) -> Result<Self, MeasureError> {
-        let mut forecasts = conditions.protocol.forecast(forecaster, everybody)?;
-        for (forecast, (window, whole)) in forecasts.iter_mut().zip(windows.iter().zip(everybody)) {
+        let mut forecasts = conditions.protocol.forecast(forecaster, full_windows)?;
+        for (forecast, (window, full_window)) in forecasts.iter_mut().zip(windows.iter().zip(full_windows)) {
             // Mismatches are reported by the scoring.
-            if let Some(places) = places(window, whole)
-                && places.len() < forecast.pedestrians()
-                && forecast.pedestrians() == whole.len()
+            if let Some(kept) = indices_in_full(window, full_window)
+                && kept.len() < forecast.pedestrians()
+                && forecast.pedestrians() == full_window.len()
             {
-                *forecast = forecast.keeping(&places);
+                *forecast = forecast.keeping(&kept);
             }
         }
-        Ok(Self::score_among(conditions, windows, everybody, &forecasts)?)
+        Ok(Self::score_among(conditions, windows, full_windows, &forecasts)?)
     }
 
     /// Scores given forecasts, one for each window.
@@ -137,12 +137,12 @@ impl ResultRow {
     pub(crate) fn score_among(
         conditions: Conditions,
         windows: &[Window],
-        everybody: &[Window],
+        full_windows: &[Window],
         forecasts: &[Forecast],
     ) -> Result<Self, EvaluationError> {
         Ok(Self {
             conditions,
-            scores: Scores::evaluate_among(windows, everybody, forecasts)?,
+            scores: Scores::evaluate_among(windows, full_windows, forecasts)?,
             blocks: block_errors(windows, forecasts)?,
         })
     }

@@ -96,8 +96,8 @@ pub enum EvaluationError {
     Count { windows: usize, forecasts: usize },
     #[error("{longest} true positions after the observation; a forecast has {HORIZON}")]
     Seen { longest: usize },
-    #[error("{windows} windows but {everybody} whole ones; each window needs its whole one")]
-    EverybodyCount { windows: usize, everybody: usize },
+    #[error("{windows} windows but {full_windows} full ones; each window needs its full one")]
+    FullWindowCount { windows: usize, full_windows: usize },
     #[error("window of `{recording}` starting at frame {start_frame}{problem}")]
     Window {
         recording: String,
@@ -113,8 +113,8 @@ pub enum EvaluationError {
 pub enum WindowProblem {
     #[error(" holds {expected} pedestrians, its forecast {found}")]
     Pedestrians { expected: usize, found: usize },
-    #[error(": its whole window has other frames or lacks some of its pedestrians")]
-    Everybody,
+    #[error(": its full window has other frames or lacks some of its pedestrians")]
+    FullWindow,
     #[error(" has no true future: it can be forecast but not scored")]
     NoFuture,
     #[error(" was forecast with {found} hypotheses, the windows before it with {expected}; the best of K needs one K")]

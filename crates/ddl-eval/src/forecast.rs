@@ -16,7 +16,7 @@ use crate::{error::ForecastShapeError, region::RegionTable};
 /// - weights `[N][K]`; they sum to 1 for each pedestrian
 /// - goals `[N][K]`, in metres
 /// - certified `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds
-/// - spread `[N][12]`, in metres: standard deviation of a pedestrian around the hypothesis that it follows
+/// - standard deviation `[N][12]`, in metres, of a pedestrian around the hypothesis that it follows
 /// - familiarity `[N]`, 0 to 1: similarity of the observed motion to the training data
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
@@ -111,11 +111,11 @@ impl Forecast {
         })
     }
 
-    /// Adds the spread around the hypotheses, `[N][12]` (metres), and the table of regions.
+    /// Adds the standard deviation around the hypotheses, `[N][12]` (metres), and the table of regions.
     ///
     /// # Errors
     /// The array has the wrong length, or a deviation is not finite and positive.
-    pub fn with_spread(self, spread: Vec<f64>, regions: Arc<RegionTable>) -> Result<Self, ForecastShapeError> {
+    pub fn with_std_dev(self, spread: Vec<f64>, regions: Arc<RegionTable>) -> Result<Self, ForecastShapeError> {
         check_length("spread", "pedestrian, frame", self.pedestrians * HORIZON, spread.len())?;
         check_range("spread", &spread, HORIZON, f64::MAX)?;
         Ok(Self {
@@ -139,12 +139,12 @@ impl Forecast {
 
     /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, around the hypothesis that it follows (metres), if
     /// known.
-    pub fn spread(&self, i: usize, t: usize) -> Option<f64> {
+    pub fn std_dev(&self, i: usize, t: usize) -> Option<f64> {
         let (spread, _) = self.spread.as_ref()?;
         Some(spread[i * HORIZON..][..HORIZON][t])
     }
 
-    /// The table of its regions; `None` for forecasts without a spread.
+    /// The table of its regions; `None` for forecasts without a standard deviation.
     pub fn regions(&self) -> Option<&RegionTable> {
         self.spread.as_ref().map(|(_, regions)| regions.as_ref())
     }
@@ -154,7 +154,7 @@ impl Forecast {
         Some(Arc::clone(regions))
     }
 
-    /// The same forecast with another table of regions; unchanged without a spread.
+    /// The same forecast with another table of regions; unchanged without a standard deviation.
     pub(crate) fn with_regions(self, regions: &Arc<RegionTable>) -> Self {
         Self {
             spread: self.spread.map(|(spread, _)| (spread, Arc::clone(regions))),

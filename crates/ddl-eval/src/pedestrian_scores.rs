@@ -69,7 +69,7 @@ impl PedestrianScores {
                 weight_log_loss: weight_log_loss(scene, i),
                 regions: RegionScores::of(scene, i),
                 familiarity: forecast.familiarity(i),
-                categories: Category::of(scene.everybody(), scene.place(i)),
+                categories: Category::of(scene.full_window(), scene.index_in_full(i)),
             })
             .collect()
     }

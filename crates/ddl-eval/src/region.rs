@@ -1,7 +1,7 @@
 //! Regions that contain a pedestrian with a given probability.
 //!
-//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the spread `s` around them, the score
-//! of a position `x` is
+//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the standard deviation `s` around them, the
+//! score of a position `x` is
 //!
 //! ```text
 //! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln(w_k / max w)        no unit
@@ -136,7 +136,7 @@ impl RegionTable {
 
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
-    /// [spread](Self::spread).
+    /// [standard deviation](Self::std_dev).
     pub fn region_score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
         self.score_among(i, t, at, &self.log_weights(i))
     }
@@ -144,10 +144,10 @@ impl Forecast {
     /// As [`region_score`](Self::region_score), from the precomputed [`log_weights`](Self::log_weights) of the
     /// pedestrian.
     fn score_among(&self, i: usize, t: usize, at: Position, log_weights: &[f64]) -> Option<f64> {
-        let spread = self.spread(i, t)?;
+        let std_dev = self.std_dev(i, t)?;
         let of_hypothesis = |(k, log_weight): (usize, &f64)| {
             let p = self.hypothesis(i, k)[t];
-            let off = [0, 1].map(|axis| (at[axis] - p[axis]) / spread);
+            let off = [0, 1].map(|axis| (at[axis] - p[axis]) / std_dev);
             0.5 * (off[0] * off[0] + off[1] * off[1]) - log_weight
         };
         let scores = log_weights.iter().enumerate().map(of_hypothesis);
@@ -171,7 +171,7 @@ impl Forecast {
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
         let quantile = self.regions()?.quantile(level, t)?;
         let left = quantile + self.log_weight(i, k);
-        (left >= 0.0).then(|| self.spread(i, t).map(|spread| spread * (2.0 * left).sqrt()))?
+        (left >= 0.0).then(|| self.std_dev(i, t).map(|std_dev| std_dev * (2.0 * left).sqrt()))?
     }
 
     /// The region that contains pedestrian `i`, `t` + 1 steps ahead, with the probability `level`. It has at most one
@@ -263,12 +263,12 @@ mod tests {
             let bare = Forecast::new(1, 5, positions, weights, None).unwrap();
             let spread = vec![spread; HORIZON];
             let table = |scores: &[[f64; HORIZON]]| RegionTable::of(scores, &[level]).unwrap().into();
-            let any = bare.clone().with_spread(spread.clone(), table(&[[1.0; HORIZON]; 40])).unwrap();
+            let any = bare.clone().with_std_dev(spread.clone(), table(&[[1.0; HORIZON]; 40])).unwrap();
             let scores: Vec<[f64; HORIZON]> = truths
                 .iter()
                 .map(|&at| std::array::from_fn(|t| any.region_score(0, t, at).unwrap()))
                 .collect();
-            let forecast = bare.with_spread(spread, table(&scores)).unwrap();
+            let forecast = bare.with_std_dev(spread, table(&scores)).unwrap();
             let region = forecast.region(0, 5, level).unwrap();
             prop_assert!(!region.is_empty());
             let quantile = forecast.regions().unwrap().quantile(level, 5).unwrap();

@@ -12,7 +12,7 @@ use crate::{
 pub struct Scene<'a> {
     window: &'a Window,
     forecast: &'a Forecast,
-    everybody: &'a Window,
+    full_window: &'a Window,
 }
 
 impl<'a> Scene<'a> {
@@ -32,22 +32,25 @@ impl<'a> Scene<'a> {
         Ok(Self {
             window,
             forecast,
-            everybody: window,
+            full_window: window,
         })
     }
 
-    /// Sets `everybody`, the window with all pedestrians of these frames. Metrics that use the true futures of others
+    /// Sets `full`, the window with all pedestrians of these frames. Metrics that use the true futures of others
     /// take them from it.
     ///
     /// # Errors
-    /// `everybody` has no future, is of other frames or another recording, or lacks a pedestrian of the window.
-    pub fn among(self, everybody: &'a Window) -> Result<Self, EvaluationError> {
+    /// `full` has no future, is of other frames or another recording, or lacks a pedestrian of the window.
+    pub fn among(self, full: &'a Window) -> Result<Self, EvaluationError> {
         let window = self.window;
-        let same_frames = window.recording() == everybody.recording() && window.frames() == everybody.frames();
-        if !same_frames || places(window, everybody).is_none() {
-            return Err(EvaluationError::of(window, WindowProblem::Everybody));
+        let same_frames = window.recording() == full.recording() && window.frames() == full.frames();
+        if !same_frames || indices_in_full(window, full).is_none() {
+            return Err(EvaluationError::of(window, WindowProblem::FullWindow));
         }
-        Ok(Self { everybody, ..self })
+        Ok(Self {
+            full_window: full,
+            ..self
+        })
     }
 
     /// The window.
@@ -56,14 +59,14 @@ impl<'a> Scene<'a> {
     }
 
     /// The window with all pedestrians, forecast or not.
-    pub fn everybody(&self) -> &'a Window {
-        self.everybody
+    pub fn full_window(&self) -> &'a Window {
+        self.full_window
     }
 
-    /// Index of pedestrian `i` in [`everybody`](Self::everybody).
-    pub fn place(&self, i: usize) -> usize {
-        // `among` has checked that the whole window includes them; in the window itself the index is the same.
-        place(self.everybody, self.window.pedestrians()[i]).unwrap_or(i)
+    /// Index of pedestrian `i` in [`full_window`](Self::full_window).
+    pub fn index_in_full(&self, i: usize) -> usize {
+        // `among` has checked that the full window includes them; in the window itself the index is the same.
+        index_of(self.full_window, self.window.pedestrians()[i]).unwrap_or(i)
     }
 
     /// The forecast.
@@ -106,11 +109,11 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn place(window: &Window, pedestrian: PedestrianId) -> Option<usize> {
+fn index_of(window: &Window, pedestrian: PedestrianId) -> Option<usize> {
     window.pedestrians().iter().position(|&p| p == pedestrian)
 }
 
-pub(crate) fn places(window: &Window, everybody: &Window) -> Option<Vec<usize>> {
+pub(crate) fn indices_in_full(window: &Window, full: &Window) -> Option<Vec<usize>> {
     let pedestrians = window.pedestrians().iter();
-    pedestrians.map(|&p| place(everybody, p)).collect()
+    pedestrians.map(|&p| index_of(full, p)).collect()
 }

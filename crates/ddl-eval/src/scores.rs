@@ -101,31 +101,31 @@ impl Scores {
         Self::evaluate_among(windows, windows, forecasts)
     }
 
-    /// [`Scores::evaluate`] for a part of the pedestrians; `everybody` holds the whole window of each.
+    /// [`Scores::evaluate`] for a part of the pedestrians; `full_windows` holds the full window of each.
     ///
     /// Means are over the part. Collisions with true futures and interactions include all pedestrians. The collision
     /// rate, JADE and JFDE compare forecasts, so they include only the pedestrians with forecasts.
     ///
     /// # Errors
-    /// As [`Scores::evaluate`]; also when a whole window does not belong to the reduced one.
+    /// As [`Scores::evaluate`]; also when a full window does not belong to the reduced one.
     pub fn evaluate_among(
         windows: &[Window],
-        everybody: &[Window],
+        full_windows: &[Window],
         forecasts: &[Forecast],
     ) -> Result<Self, EvaluationError> {
-        if everybody.len() != windows.len() {
-            let (windows, everybody) = (windows.len(), everybody.len());
-            return Err(EvaluationError::EverybodyCount { windows, everybody });
+        if full_windows.len() != windows.len() {
+            let (windows, full_windows) = (windows.len(), full_windows.len());
+            return Err(EvaluationError::FullWindowCount { windows, full_windows });
         }
         EvaluationError::unless_one_each(windows, forecasts.len())?;
         let first = forecasts.first().ok_or(EvaluationError::NoWindows)?;
         let scenes: Vec<SceneScores> = windows
             .par_iter()
-            .zip(everybody)
+            .zip(full_windows)
             .zip(forecasts)
-            .map(|((window, everybody), forecast)| {
+            .map(|((window, full_window), forecast)| {
                 check_alike(window, forecast, first)?;
-                let scene = Scene::new(window, forecast)?.among(everybody)?;
+                let scene = Scene::new(window, forecast)?.among(full_window)?;
                 Ok(SceneScores::of(&scene))
             })
             .collect::<Result<_, EvaluationError>>()?;

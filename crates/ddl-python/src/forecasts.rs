@@ -68,7 +68,7 @@ pub(crate) fn parts<'py>(
     });
     let spread = rows.iter().flat_map(|row| {
         (0..HORIZON).map(move |t| {
-            let spread = of_row(row).and_then(|(forecast, i)| forecast.spread(i, t));
+            let spread = of_row(row).and_then(|(forecast, i)| forecast.std_dev(i, t));
             spread.unwrap_or(f64::NAN)
         })
     });
@@ -233,7 +233,7 @@ pub(crate) fn region_radii<'py>(
         let spreads = known.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
         let positions = vec![[0.0; 2]; known.len() * k * HORIZON];
         let forecast = Forecast::new(known.len(), k, positions, of_known, None)
-            .and_then(|forecast| forecast.with_spread(spreads.collect(), table.into()))
+            .and_then(|forecast| forecast.with_std_dev(spreads.collect(), table.into()))
             .map_err(|error| of_any(&error))?;
         for (place, i) in known.into_iter().enumerate() {
             for k_of in 0..k {

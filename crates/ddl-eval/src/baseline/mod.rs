@@ -31,7 +31,7 @@ pub fn measure(conditions: &Conditions, windows: &[Window], noise_seed: u64) -> 
 pub(crate) fn measure_among(
     conditions: &Conditions,
     windows: &[Window],
-    everybody: &[Window],
+    full_windows: &[Window],
     noise_seed: u64,
 ) -> Result<Vec<ResultRow>, MeasureError> {
     let row = |forecaster: &dyn Forecaster, seed| {
@@ -46,7 +46,7 @@ pub(crate) fn measure_among(
             training_subset: None,
             ..conditions.clone()
         };
-        ResultRow::measure_among(conditions, forecaster, windows, everybody)
+        ResultRow::measure_among(conditions, forecaster, windows, full_windows)
     };
     let mut rows = vec![
         row(&ConstantVelocity::last_step(), None)?,

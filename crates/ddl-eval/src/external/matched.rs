@@ -30,7 +30,7 @@ pub struct Matched {
     /// The windows, reduced to the pedestrians with forecasts.
     pub windows: Vec<Window>,
     /// The same windows with all pedestrians.
-    pub everybody: Vec<Window>,
+    pub full_windows: Vec<Window>,
     /// Their forecasts.
     pub forecasts: Vec<Forecast>,
     file: String,
@@ -126,7 +126,7 @@ impl ExpectedForecasts<'_> {
         self.refuse_conflicts()?;
         let mut matched = Matched {
             windows: Vec::with_capacity(self.windows.len()),
-            everybody: Vec::with_capacity(self.windows.len()),
+            full_windows: Vec::with_capacity(self.windows.len()),
             forecasts: Vec::with_capacity(self.windows.len()),
             file: self.origin.clone(),
             pedestrians: all,
@@ -137,7 +137,7 @@ impl ExpectedForecasts<'_> {
             };
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();
             matched.windows.push(kept);
-            matched.everybody.push(window.clone());
+            matched.full_windows.push(window.clone());
             let forecast = forecast(slots).map_err(|source| ExternalError::Shape {
                 origin: self.origin.clone(),
                 source,

@@ -41,13 +41,13 @@ pub fn measure(conditions: &Conditions, matched: &Matched, noise_seed: u64) -> R
     let mut rows = vec![ResultRow::score_among(
         conditions.clone(),
         &matched.windows,
-        &matched.everybody,
+        &matched.full_windows,
         &forecasts,
     )?];
     rows.extend(baseline::measure_among(
         &conditions,
         &matched.windows,
-        &matched.everybody,
+        &matched.full_windows,
         noise_seed,
     )?);
     Ok(rows)

@@ -48,7 +48,7 @@ impl DistributionErrors {
         let (mut distance, mut covariance) = (0.0, Covariance::default());
         for (t, p) in scene.truth(i).iter().enumerate() {
             let moments = Moments::of(&scene.hypotheses_at(i, t), &weights);
-            let about = scene.forecast().spread(i, t).unwrap_or(0.0).powi(2);
+            let about = scene.forecast().std_dev(i, t).unwrap_or(0.0).powi(2);
             let axes = moments
                 .covariance
                 .plus(Covariance {

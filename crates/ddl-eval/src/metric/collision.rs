@@ -76,19 +76,19 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
 
 /// Whether the true future of each pedestrian collides with that of another one, forecast or not; `[N]`.
 pub fn true_futures_collide(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
-    let everybody = scene.everybody();
-    let tracks: Vec<&[Position]> = (0..everybody.len()).map(|j| everybody.future(j)).collect();
+    let full_window = scene.full_window();
+    let tracks: Vec<&[Position]> = (0..full_window.len()).map(|j| full_window.future(j)).collect();
     let hit = collides(&tracks, radius);
-    (0..scene.pedestrians()).map(|i| hit[scene.place(i)]).collect()
+    (0..scene.pedestrians()).map(|i| hit[scene.index_in_full(i)]).collect()
 }
 
 /// Whether the representative forecast of each pedestrian collides with the true future of another; `[N]`.
 pub fn collides_with_true_futures(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
-    let (forecast, everybody) = (scene.forecast(), scene.everybody());
+    let (forecast, full_window) = (scene.forecast(), scene.full_window());
     let runs_into_another = |i: usize| {
         let track = forecast.hypothesis(i, forecast.representative(i));
-        let own = scene.place(i);
-        (0..everybody.len()).any(|j| j != own && closest_approach(track, everybody.future(j)) < 2.0 * radius)
+        let own = scene.index_in_full(i);
+        (0..full_window.len()).any(|j| j != own && closest_approach(track, full_window.future(j)) < 2.0 * radius)
     };
     (0..scene.pedestrians()).map(runs_into_another).collect()
 }

@@ -12,8 +12,8 @@
 //! KDE NLL = - mean over frames and pedestrians of max(ln f(p), -20)        nats
 //! ```
 //!
-//! For a forecast with a [spread](crate::Forecast::spread) s around its hypotheses, which is already a Gaussian
-//! mixture, H is s^2 times the identity.
+//! For a forecast with a [standard deviation](crate::Forecast::std_dev) s around its hypotheses, which is already a
+//! Gaussian mixture, H is s^2 times the identity.
 //!
 //! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, except
 //! for the smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it. Other implementations fail or skip the
@@ -82,7 +82,7 @@ pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
         .enumerate()
         .map(|(t, &at)| {
             let positions = scene.hypotheses_at(i, t);
-            let density = match scene.forecast().spread(i, t) {
+            let density = match scene.forecast().std_dev(i, t) {
                 None => log_density(&positions, &weights, at),
                 Some(spread) => {
                     let variances = [spread * spread; 2];

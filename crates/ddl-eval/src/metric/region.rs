@@ -78,7 +78,7 @@ mod tests {
         let scene = Scene::new(&window, &bare).unwrap();
         assert_relative_eq!(weight_log_loss(&scene, 0).unwrap(), -(0.2_f64.ln()), epsilon = 1e-12);
         assert_eq!(RegionScores::of(&scene, 0), None);
-        let forecast = bare.with_spread(vec![0.5; HORIZON], table.into()).unwrap();
+        let forecast = bare.with_std_dev(vec![0.5; HORIZON], table.into()).unwrap();
         let scene = Scene::new(&window, &forecast).unwrap();
         let scores = RegionScores::of(&scene, 0).unwrap();
         assert_relative_eq!(scores.coverage[0], 0.0);

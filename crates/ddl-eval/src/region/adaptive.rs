@@ -32,7 +32,7 @@ use crate::Forecast;
 ///     // A standing pedestrian with a forecast that says so.
 ///     let window = Window::new("yard", frame, 1, vec![PedestrianId(1)], vec![vec![[1.0, 2.0]; 8]])?;
 ///     let forecast = Forecast::with_equal_weights(1, 1, vec![[1.0, 2.0]; HORIZON])?
-///         .with_spread(vec![0.5; HORIZON], table.clone())?;
+///         .with_std_dev(vec![0.5; HORIZON], table.clone())?;
 ///     let fixed = forecast.region_radius(0, 0, 5, 0.9);
 ///     let adapted = regions.adapt(&window, forecast).region_radius(0, 0, 5, 0.9);
 ///     assert_eq!(adapted < fixed, frame >= 6, "smaller as soon as its first outcome is known");
@@ -209,7 +209,7 @@ mod tests {
             let weights = [0.6, 0.4].repeat(window.len());
             let forecast = Forecast::new(window.len(), 2, walks, weights, None).unwrap();
             let spread = vec![0.7; HORIZON * window.len()];
-            let forecast = forecast.with_spread(spread, Arc::clone(&table)).unwrap();
+            let forecast = forecast.with_std_dev(spread, Arc::clone(&table)).unwrap();
             (window, forecast)
         };
         (7..tracks.len()).map(until).collect()

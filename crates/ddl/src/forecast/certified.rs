@@ -121,7 +121,7 @@ impl Walked<'_> {
         let spread = pairs
             .flat_map(|(i, goals)| calibration.spread(self.window.observed(i), goals, self.config.time_step))
             .collect();
-        Ok(forecast.with_spread(spread, Calibration::shared_regions())?)
+        Ok(forecast.with_std_dev(spread, Calibration::shared_regions())?)
     }
 
     pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {

@@ -102,7 +102,7 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
                 filled: counts.filled,
                 frames: moment.frames(),
                 familiarity: forecast.familiarity(i),
-                spread: (0..HORIZON).filter_map(|t| forecast.spread(i, t)).collect(),
+                spread: (0..HORIZON).filter_map(|t| forecast.std_dev(i, t)).collect(),
                 regions: regions
                     .iter()
                     .filter_map(|&probability| Region::of(forecast, i, probability))

@@ -101,7 +101,7 @@ proptest! {
             let matched = external::read_from(
                 line.as_bytes(), "f", ExternalFormat::JsonLines, &windows, Coverage::Intersection,
             ).unwrap();
-            let alone = Scores::evaluate_among(&matched.windows, &matched.everybody, &matched.forecasts).unwrap();
+            let alone = Scores::evaluate_among(&matched.windows, &matched.full_windows, &matched.forecasts).unwrap();
             truly += alone.true_collision_rate;
             into_truth += alone.true_neighbour_collision_rate.unwrap();
             categories += alone.categories.iter().map(|c| c.pedestrians).sum::<usize>();
