@@ -156,7 +156,7 @@ impl GoalEstimator {
     ///
     /// # Panics
     /// If `expert` is not of this estimator's library.
-    pub fn carry_over(&self, expert: &Expert, track: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, GoalError> {
+    pub fn transfer_track(&self, expert: &Expert, track: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, GoalError> {
         let (library, observed) = (self.library(), QuerySpan::Observed.positions());
         let other = &library.tracks()[expert.index];
         if track.len() < observed {
@@ -171,12 +171,12 @@ impl GoalEstimator {
         let expert_motion = Motion::new(other, library.time_step())?;
         let mirror = if expert.mirrored { -1.0 } else { 1.0 };
         let horizon = (TRACK_LENGTH - observed) as f64;
-        let carried = |(step, &position): (usize, &[f64; 2])| {
+        let transferred = |(step, &position): (usize, &[f64; 2])| {
             let share = (step as f64 - (observed - 1) as f64) / horizon;
             let [ahead, left] = expert_motion.deviation(position, share);
             pedestrian.place([ahead, mirror * left], share)
         };
-        Ok(other.iter().enumerate().map(carried).collect())
+        Ok(other.iter().enumerate().map(transferred).collect())
     }
 }
 

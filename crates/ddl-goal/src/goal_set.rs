@@ -119,7 +119,7 @@ impl GoalSet {
 
     /// The same set with every goal farther than `radius` (m, not negative) from `centre` moved to that distance.
     #[must_use]
-    pub fn within(mut self, centre: [f64; 2], radius: f64) -> Self {
+    pub fn clamped_to(mut self, centre: [f64; 2], radius: f64) -> Self {
         for goal in &mut self.goals {
             let way = [goal[0] - centre[0], goal[1] - centre[1]];
             let distance = way[0].hypot(way[1]);
@@ -191,7 +191,7 @@ mod tests {
     fn goals_beyond_the_radius_are_moved_to_it() {
         let goals = vec![[7.0, 9.0], [-2.0, 1.0], [1.1, 1.7]];
         let set = GoalSet::new(goals, vec![0.5, 0.3, 0.2], Vec::new());
-        let drawn = set.clone().within([1.0, 1.0], 5.0);
+        let drawn = set.clone().clamped_to([1.0, 1.0], 5.0);
         assert!(squared_distance(drawn.goals()[0], [4.0, 5.0]) < 1e-24);
         assert_eq!(drawn.goals()[1..], set.goals()[1..]);
         let [x, y] = [0.1_f64, 0.7];
@@ -199,7 +199,7 @@ mod tests {
             let goal = [x * f64::from(scale), y * f64::from(scale)];
             let set = GoalSet::new(vec![goal], vec![1.0], Vec::new());
             let radius = goal[0].hypot(goal[1]);
-            assert_eq!(set.within([0.0; 2], radius).goals(), [goal]);
+            assert_eq!(set.clamped_to([0.0; 2], radius).goals(), [goal]);
         }
     }
 

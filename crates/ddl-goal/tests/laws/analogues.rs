@@ -64,9 +64,9 @@ fn distances_weights_and_endpoints_agree_with_the_definition() {
             assert!((set.weights()[k] - analogue.weight).abs() < 1e-5);
             assert!(distance(set.goals()[k], analogue.end) < 1e-8, "{set:?}");
         }
-        let carried = estimator.carry_over(&set.experts()[1], observed).unwrap();
+        let transferred = estimator.transfer_track(&set.experts()[1], observed).unwrap();
         for (step, place) in pedestrian.carried {
-            assert!(distance(carried[step], place) < 1e-8, "{step}: {carried:?}");
+            assert!(distance(transferred[step], place) < 1e-8, "{step}: {transferred:?}");
         }
     }
 }

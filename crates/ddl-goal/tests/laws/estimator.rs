@@ -222,10 +222,10 @@ fn in_the_world_a_track_is_carried_to_where_the_pedestrian_was_first_seen() {
     let params = GoalEstimatorParams::published().experts(1).clusters(1);
     let estimator = tracks::estimator(params, vec![other.clone()]);
     let expert = estimator.estimate(&pedestrian).unwrap().experts()[0];
-    assert!(estimator.carry_over(&expert, &pedestrian[..7]).is_err());
-    let carried = estimator.carry_over(&expert, &pedestrian[..8]).unwrap();
+    assert!(estimator.transfer_track(&expert, &pedestrian[..7]).is_err());
+    let transferred = estimator.transfer_track(&expert, &pedestrian[..8]).unwrap();
     let by = [0, 1].map(|axis| pedestrian[0][axis] - other[0][axis]);
-    for (carried, [x, y]) in carried.into_iter().zip(other) {
-        assert!(distance(carried, [x + by[0], y + by[1]]) < 1e-12);
+    for (transferred, [x, y]) in transferred.into_iter().zip(other) {
+        assert!(distance(transferred, [x + by[0], y + by[1]]) < 1e-12);
     }
 }

@@ -86,7 +86,7 @@ impl<'a> Pedestrian<'a> {
                 .experts()
                 .iter()
                 .take(EXPERTS)
-                .map(|expert| estimator.carry_over(expert, observed))
+                .map(|expert| estimator.transfer_track(expert, observed))
                 .collect::<Result<Vec<_>, _>>()?,
         };
         let goals =

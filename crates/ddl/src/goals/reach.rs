@@ -8,7 +8,7 @@ pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec
     let each = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);
         let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
-        set.within(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
+        set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
     };
     sets.into_iter().enumerate().map(each).collect()
 }
