@@ -23,7 +23,7 @@
 //! let config = ProposalConfig { members: 2, ends: 5, ..ProposalConfig::default() };
 //! let network = ProposalNetwork::new(config, 1)?;
 //! let proposed = network.propose(&[view])?.remove(0);
-//! assert_eq!(proposed.ends.len(), 2 * 5); // metres ahead, metres to the left
+//! assert_eq!(proposed.endpoints.len(), 2 * 5); // metres ahead, metres to the left
 //! assert!((proposed.weights.iter().sum::<f64>() - 1.0).abs() < 1e-9);
 //! # Ok::<(), ddl_network::NetworkError>(())
 //! ```
@@ -56,7 +56,7 @@
 //! | [`BatchRollout`]: positions, factors | `[12, H, P]`: each from the forecast position before it |
 //! | [`backend::Backend::Tokens`] | `[B, P, width]`: B hypotheses, or time steps |
 //! | [`PedestrianView`]: own, neighbours | `[8]`, `[any number][8]` |
-//! | [`ProposedEndpoints`]: ends, weights | `[members K]` |
+//! | [`ProposedEndpoints`]: endpoints, weights | `[members K]` |
 //!
 //! ## Weights
 //!

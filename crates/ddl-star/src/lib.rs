@@ -32,9 +32,9 @@
 //!
 //! let network = ProposalNetwork::new(config, 1)?.with_weights(weights)?; // without libtorch
 //! let proposed = network.propose(&[examples[10].view.clone()])?.remove(0);
-//! assert_eq!(proposed.ends.len(), 2 * 5); // metres ahead, metres to the left; with weights
+//! assert_eq!(proposed.endpoints.len(), 2 * 5); // metres ahead, metres to the left; with weights
 //! let off = |end: &[f64; 2]| (end[0] - examples[10].future[11][0]).hypot(end[1]);
-//! assert!(proposed.ends.iter().map(off).fold(f64::INFINITY, f64::min) < 1.0);
+//! assert!(proposed.endpoints.iter().map(off).fold(f64::INFINITY, f64::min) < 1.0);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!

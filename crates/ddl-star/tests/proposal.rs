@@ -96,7 +96,7 @@ fn oracle(network: &TorchProposals, examples: &[ProposalExample]) -> f64 {
     let proposed = network.propose(&views).unwrap();
     let nearest = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
         let [x, y] = example.future[11];
-        let off = proposed.ends.iter().map(|end| (end[0] - x).hypot(end[1] - y));
+        let off = proposed.endpoints.iter().map(|end| (end[0] - x).hypot(end[1] - y));
         off.fold(f64::INFINITY, f64::min)
     };
     proposed.iter().zip(examples).map(nearest).sum::<f64>() / examples.len() as f64
@@ -121,7 +121,7 @@ fn it_learns_where_pedestrians_go_on_a_fork() {
     // A faster pedestrian ends further away: the endpoints depend on the observation.
     let reach = |speed| {
         let proposed = after.propose(&[view(speed, 0)]).unwrap();
-        let lengths = proposed[0].ends.iter().map(|end| end[0].hypot(end[1]));
+        let lengths = proposed[0].endpoints.iter().map(|end| end[0].hypot(end[1]));
         lengths.fold(0.0, f64::max)
     };
     assert!(reach(1.5) > reach(0.8) + 1.0);
@@ -160,7 +160,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
         let proposed = network.propose(&views).unwrap();
         let off = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
             let [x, y] = example.future[11];
-            let ends = proposed.ends[which.clone()].iter();
+            let ends = proposed.endpoints[which.clone()].iter();
             let off = ends.map(|end| (end[0] - x).hypot(end[1] - y));
             off.sum::<f64>() / which.len() as f64
         };
@@ -197,7 +197,8 @@ fn kernels_propose_the_endpoints_of_libtorch() {
         let (ours, known) = (plain.propose(&views).unwrap(), torch.propose(&views).unwrap());
         assert_eq!((ours.len(), known.len()), (views.len(), views.len()));
         for (i, (ours, known)) in ours.iter().zip(&known).enumerate() {
-            let numbers = |proposed: &ProposedEndpoints| [proposed.ends.as_flattened(), &proposed.weights].concat();
+            let numbers =
+                |proposed: &ProposedEndpoints| [proposed.endpoints.as_flattened(), &proposed.weights].concat();
             let (ours, known) = (numbers(ours), numbers(known));
             let numbers = if views[i].remembered.is_empty() { 36 } else { 72 };
             assert_eq!((ours.len(), known.len()), (numbers, numbers));

@@ -1,6 +1,6 @@
 //! The ensemble on the CPU: small perceptrons with attention over the neighbours.
 
-use super::ends::{ENDPOINT_UNIT, PedestrianView, ProposeEndpoints, ProposedEndpoints};
+use super::endpoints::{ENDPOINT_UNIT, PedestrianView, ProposeEndpoints, ProposedEndpoints};
 use super::layers::ProposalLayers;
 use super::member::{MemberKernels, Readings};
 use super::remembered::RememberedRows;
@@ -88,7 +88,7 @@ impl ProposalNetwork {
             shares[index] -= share;
         }
         let none = ProposedEndpoints {
-            ends: Vec::new(),
+            endpoints: Vec::new(),
             weights: Vec::new(),
         };
         let mut proposed = vec![none; views.len()];
@@ -101,7 +101,7 @@ impl ProposalNetwork {
                     f64::from(y) * ENDPOINT_UNIT + onward[1],
                 ]
             });
-            proposed[index].ends.extend(places);
+            proposed[index].endpoints.extend(places);
             let largest = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
             let powers = logits.iter().map(|&logit| f64::from(logit - largest).exp());
             let sum: f64 = powers.clone().sum();

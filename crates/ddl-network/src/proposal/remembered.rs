@@ -1,6 +1,6 @@
 //! Inputs of the memory branch from earlier pedestrians of the place.
 
-use super::ends::{ENDPOINT_UNIT, PedestrianView};
+use super::endpoints::{ENDPOINT_UNIT, PedestrianView};
 use super::seen::{OthersRows, RECENT, velocity};
 use crate::MemoryConfig;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};

@@ -1,6 +1,6 @@
 //! Inputs of the proposal network from the observation.
 
-use super::ends::PedestrianView;
+use super::endpoints::PedestrianView;
 use crate::ProposalConfig;
 use ddl_data::{HORIZON, OBSERVED, Position};
 

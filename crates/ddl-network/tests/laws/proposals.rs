@@ -73,7 +73,7 @@ fn earlier(aside: f64) -> Remembered {
 }
 
 fn bits(proposed: &ProposedEndpoints) -> Vec<u64> {
-    let numbers = proposed.ends.as_flattened().iter().chain(&proposed.weights);
+    let numbers = proposed.endpoints.as_flattened().iter().chain(&proposed.weights);
     numbers.map(|number| number.to_bits()).collect()
 }
 
@@ -96,11 +96,11 @@ proptest! {
         prop_assert_eq!(bits(&alone[0]), bits(&together[i]));
         let ends = network.config().members * network.config().ends;
         let ends = if views[i].remembered.is_empty() { ends } else { 2 * ends };
-        prop_assert_eq!(together[i].ends.len(), ends as usize);
+        prop_assert_eq!(together[i].endpoints.len(), ends as usize);
         prop_assert_eq!(together[i].weights.len(), ends as usize);
         let sum: f64 = together[i].weights.iter().sum();
         prop_assert!((sum - 1.0).abs() < 1e-9);
-        prop_assert!(together[i].ends.as_flattened().iter().all(|x| x.is_finite()));
+        prop_assert!(together[i].endpoints.as_flattened().iter().all(|x| x.is_finite()));
     }
 }
 
@@ -114,7 +114,7 @@ fn the_memory_branch_adds_endpoints_and_keeps_the_others() {
     let alike: f64 = [0.04, 0.16, 0.36, 0.64].map(|d: f64| (-d / 8.0).exp()).iter().sum();
     let share = alike / (alike + 0.5);
     let both = network.propose(&[remembering.clone()]).unwrap().remove(0);
-    assert_eq!(both.ends[..12], alone.ends);
+    assert_eq!(both.endpoints[..12], alone.endpoints);
     for (both, alone) in both.weights.iter().zip(&alone.weights) {
         assert!((both - alone * (1.0 - share)).abs() < 1e-12);
     }
@@ -124,7 +124,7 @@ fn the_memory_branch_adds_endpoints_and_keeps_the_others() {
     remembering.remembered = (0..20).map(|j| earlier(0.1 * f64::from(j))).collect();
     let mut looked_at = remembering.clone();
     looked_at.remembered.truncate(memory.remembered);
-    let ends = |view: &PedestrianView| network.propose(std::slice::from_ref(view)).unwrap().remove(0).ends;
+    let ends = |view: &PedestrianView| network.propose(std::slice::from_ref(view)).unwrap().remove(0).endpoints;
     assert_eq!(ends(&remembering), ends(&looked_at));
     let forwards = ends(&looked_at);
     looked_at.remembered.reverse();
@@ -139,7 +139,7 @@ fn apart(a: &PedestrianView, b: &PedestrianView) -> f64 {
     let network = network(small());
     let ends = |view: &PedestrianView| {
         let mut proposed = network.propose(std::slice::from_ref(view)).unwrap();
-        proposed.remove(0).ends
+        proposed.remove(0).endpoints
     };
     let pairs = ends(a).into_iter().zip(ends(b));
     pairs.map(|(a, b)| distance(a, b)).fold(0.0, f64::max)
@@ -225,8 +225,8 @@ fn proposals_are_those_of_libtorch() {
         ),
     ];
     for (found, (ends, weights)) in proposed.iter().zip(expected) {
-        let off = found.ends.iter().zip(ends).map(|(&a, b)| distance(a, b));
-        assert!(off.fold(0.0, f64::max) < 3e-6, "{:?}", found.ends);
+        let off = found.endpoints.iter().zip(ends).map(|(&a, b)| distance(a, b));
+        assert!(off.fold(0.0, f64::max) < 3e-6, "{:?}", found.endpoints);
         let off = found.weights.iter().zip(weights).map(|(a, b)| (a - b).abs());
         assert!(off.fold(0.0, f64::max) < 2e-6, "{:?}", found.weights);
     }

@@ -113,12 +113,12 @@ impl TorchProposals {
                 let ends: Vec<Position> = ends.as_chunks::<2>().0.to_vec();
                 Ok((ends, numbers(&weights.transpose(0, 1))?))
             };
-            let (ends, weights) = listed(&alone)?;
-            let ends = ends.chunks_exact(each).map(<[_]>::to_vec);
+            let (endpoints, weights) = listed(&alone)?;
+            let endpoints = endpoints.chunks_exact(each).map(<[_]>::to_vec);
             let weights = weights.chunks_exact(each).map(<[_]>::to_vec);
-            let mut of_chunk: Vec<ProposedEndpoints> = ends
+            let mut of_chunk: Vec<ProposedEndpoints> = endpoints
                 .zip(weights)
-                .map(|(ends, weights)| ProposedEndpoints { ends, weights })
+                .map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights })
                 .collect();
             let remembers = chunk.iter().any(|view| !view.remembered.is_empty());
             let branch = self.config.memory.as_ref().filter(|_| remembers);
@@ -131,7 +131,7 @@ impl TorchProposals {
                         for weight in &mut proposed.weights {
                             *weight *= 1.0 - share;
                         }
-                        proposed.ends.extend(ends);
+                        proposed.endpoints.extend(ends);
                         proposed.weights.extend(weights.iter().map(|weight| weight * share));
                     }
                 }

@@ -327,7 +327,7 @@ impl GoalModel {
         }
         let mut proposed = network.propose(&views).map_err(failed)?;
         for (proposed, (_, unit)) in proposed.iter_mut().zip(&frames) {
-            for end in &mut proposed.ends {
+            for end in &mut proposed.endpoints {
                 *end = end.map(|coordinate| coordinate * unit);
             }
         }
@@ -339,7 +339,7 @@ impl GoalModel {
                     *weight *= 1.0 - share;
                 }
                 let ends = set.goals().iter().map(|&goal| frame.to_frame(goal));
-                proposed.ends.extend(ends);
+                proposed.endpoints.extend(ends);
                 proposed
                     .weights
                     .extend(set.weights().iter().map(|weight| weight * share));
@@ -348,8 +348,8 @@ impl GoalModel {
         let clusters = self.clusters;
         let sets: Vec<GoalSet> = (frames, proposed)
             .into_par_iter()
-            .map(|((frame, _), ProposedEndpoints { ends, weights })| {
-                GoalSet::from_endpoints(&frame, &ends, &weights, clusters)
+            .map(|((frame, _), ProposedEndpoints { endpoints, weights })| {
+                GoalSet::from_endpoints(&frame, &endpoints, &weights, clusters)
             })
             .collect::<Result<_, _>>()
             .map_err(failed)?;

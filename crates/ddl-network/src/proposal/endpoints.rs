@@ -35,7 +35,7 @@ pub struct ProposalExample {
 pub struct ProposedEndpoints {
     /// Endpoints in the pedestrian's frame (metres): members x K of them. Twice as many if the network has a memory
     /// branch and the view has earlier pedestrians.
-    pub ends: Vec<Position>,
+    pub endpoints: Vec<Position>,
     /// Probability of each endpoint to be the nearest to the true one; the sum is 1.
     pub weights: Vec<f64>,
 }
