@@ -51,14 +51,20 @@ pub struct SlidingIndex<const D: usize> {
 }
 
 impl<const D: usize> SlidingIndex<D> {
-    /// Prepares all windows of `length` steps that are followed by at least `tail` more steps of their track.
+    /// Prepares all windows of `length` steps that are followed by at least `min_following_steps` more steps of
+    /// their track.
     ///
     /// # Shapes
-    /// Tracks of any length: shorter ones than `length + tail` have no window.
+    /// Tracks of any length: shorter ones than `length + min_following_steps` have no window.
     ///
     /// # Errors
     /// `length` is 0, no track has a window, or a track is not finite.
-    pub fn build<T>(dtw: &SoftDtw, tracks: &[T], length: usize, tail: usize) -> Result<Self, SlidingError>
+    pub fn build<T>(
+        dtw: &SoftDtw,
+        tracks: &[T],
+        length: usize,
+        min_following_steps: usize,
+    ) -> Result<Self, SlidingError>
     where
         T: AsRef<[[f64; D]]> + Sync,
     {
@@ -72,7 +78,7 @@ impl<const D: usize> SlidingIndex<D> {
             }
         }
         let windows = |track: &&[[f64; D]]| {
-            let needed = length.saturating_add(tail);
+            let needed = length.saturating_add(min_following_steps);
             (track.len() + 1).saturating_sub(needed)
         };
         let windows: Vec<usize> = tracks.iter().map(windows).collect();
@@ -81,7 +87,7 @@ impl<const D: usize> SlidingIndex<D> {
             return Err(SlidingError::NoWindows {
                 tracks: tracks.len(),
                 length,
-                tail,
+                min_following_steps,
             });
         }
         let mut index = Self {

@@ -12,8 +12,14 @@ use ddl_simd::InstructionSet;
 pub enum SlidingError {
     #[error("the window length is 0: a window needs at least one step")]
     EmptyWindow,
-    #[error("none of the {tracks} tracks has a window: one needs {length} steps with {tail} more behind it")]
-    NoWindows { tracks: usize, length: usize, tail: usize },
+    #[error(
+        "none of the {tracks} tracks has a window: one needs {length} steps with {min_following_steps} more behind it"
+    )]
+    NoWindows {
+        tracks: usize,
+        length: usize,
+        min_following_steps: usize,
+    },
     #[error("track {index}: {source}")]
     Track { index: usize, source: SoftDtwError },
     #[error("the query has {found} steps: the windows of this index have {length}")]
