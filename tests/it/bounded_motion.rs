@@ -86,7 +86,7 @@ fn within_bounds(observed: &[Position], certified: &CertifiedForecast, i: usize)
         let fastest = steps(&path).fold(0.0, f64::max);
         prop_assert!(fastest <= limit(observed), "{fastest} m/s after {observed:?}");
         let certificate = certified.certificate(i, k);
-        prop_assert_eq!(certificate.holds(), Ok(()));
+        prop_assert_eq!(certificate.verify(), Ok(()));
         let motion = certificate.motion().unwrap();
         prop_assert!((motion.speed.largest - fastest).abs() < 1e-6);
         prop_assert!(motion.speed.bound <= limit(observed));

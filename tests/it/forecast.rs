@@ -72,7 +72,7 @@ fn distance(a: Position, b: Position) -> f64 {
 fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
     let value = &hypothesis.certificate;
     let certificate: LyapunovCertificate<f64> = serde_json::from_value(value.clone()).unwrap();
-    assert_eq!(certificate.holds(), Ok(()));
+    assert_eq!(certificate.verify(), Ok(()));
     assert_eq!(
         (&value["holds"], &value["violation"]),
         (&Value::Bool(true), &Value::Null)

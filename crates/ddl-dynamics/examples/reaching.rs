@@ -61,7 +61,7 @@ fn main() -> Result<(), DynamicsError> {
     );
 
     let certificate = LyapunovCertificate::of_rollout(&careful, &path, TIME_STEP)?;
-    match certificate.holds() {
+    match certificate.verify() {
         Ok(()) => println!("certificate: holds, nearer to the cup at every step"),
         Err(violation) => println!("certificate: BROKEN, {violation}"),
     }
@@ -72,7 +72,7 @@ fn main() -> Result<(), DynamicsError> {
 
     // The same flow with plain Euler steps.
     let plain = rollout(&careful, &Euler, start, TIME_STEP, STEPS)?;
-    match LyapunovCertificate::of_rollout(&careful, &plain, TIME_STEP)?.holds() {
+    match LyapunovCertificate::of_rollout(&careful, &plain, TIME_STEP)?.verify() {
         Ok(()) => println!("plain Euler steps: hold"),
         Err(violation) => println!("plain Euler steps: {violation}"),
     }

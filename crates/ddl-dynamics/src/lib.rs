@@ -31,7 +31,7 @@
 //! let path = rollout(&careful, &StableEuler, Vector3::zeros(), 0.05, 400)?;
 //! assert!(path.iter().all(|hand| pillar.gap_and_normal(hand).0 > 0.0));
 //! assert!(cup.distance(&path[400]) < 1e-3);
-//! assert!(LyapunovCertificate::of_rollout(&careful, &path, 0.05)?.holds().is_ok());
+//! assert!(LyapunovCertificate::of_rollout(&careful, &path, 0.05)?.verify().is_ok());
 //! # Ok::<(), ddl_dynamics::DynamicsError>(())
 //! ```
 //!
@@ -54,7 +54,7 @@
 //! let flow = DiffeomorphicFlow::in_chart(shown[3], straightening.chain, identity)?;
 //! let path = rollout(&flow, &StableEuler, shown[0], 0.4, 24)?;
 //! assert_eq!(path[24], shown[3]);
-//! assert!(LyapunovCertificate::of_rollout(&flow, &path, 0.4)?.holds().is_ok());
+//! assert!(LyapunovCertificate::of_rollout(&flow, &path, 0.4)?.verify().is_ok());
 //! # Ok::<(), ddl_dynamics::DynamicsError>(())
 //! ```
 //!

@@ -45,7 +45,7 @@ pub use violation::Violation;
 /// let path = rollout(&flow, &Euler, Vector2::new(-0.75, 0.0), 1.0, 2)?;
 /// let certificate = LyapunovCertificate::of_rollout(&flow, &path, 1.0)?;
 /// assert_eq!(
-///     certificate.holds(),
+///     certificate.verify(),
 ///     Err(Violation::NotDecreasing { step: 1, before: 0.5, after: 0.75 }),
 /// );
 /// # Ok::<(), ddl_dynamics::DynamicsError>(())
@@ -61,7 +61,7 @@ pub struct LyapunovCertificate<T> {
 }
 
 impl<T: Real> LyapunovCertificate<T> {
-    /// Adds the [motion](Self::motion) quantities and their bounds from [`MotionBounds`]. [`holds`](Self::holds) then
+    /// Adds the [motion](Self::motion) quantities and their bounds from [`MotionBounds`]. [`verify`](Self::verify) then
     /// checks these as well.
     ///
     /// # Shapes
@@ -185,7 +185,7 @@ impl<T: Real> LyapunovCertificate<T> {
     ///
     /// # Errors
     /// The [`Violation`] of the first step that violates the guarantee.
-    pub fn holds(&self) -> Result<(), Violation> {
+    pub fn verify(&self) -> Result<(), Violation> {
         let after = self.potentials().skip(1);
         self.steps
             .iter()

@@ -11,7 +11,7 @@ use crate::{metric::CholeskyMetric, polar::polar, real::Real, spectrum::Eigenval
 /// at this constant speed a straight path ends on the goal. The eigenvalues of `P` are kept within
 ///
 /// ```text
-/// m = max(SLOWEST s, n s - (n - 1) V)        M = min(FASTEST s, n s, V)        m = M = s  if n = 1
+/// m = max(MIN_SPEED_RATIO s, n s - (n - 1) V)        M = min(MAX_SPEED_RATIO s, n s, V)        m = M = s  if n = 1
 /// ```
 ///
 /// with `V` the [top speed](Self::top_speed). The *neutral* metric `N` within these bounds leads from the pedestrian's
@@ -54,13 +54,13 @@ impl<T: Real> Default for MotionBounds<T> {
 
 impl<T: Real> MotionBounds<T> {
     /// Smallest eigenvalue in arriving speeds (no unit), unless the goal would become unreachable.
-    pub const SLOWEST: f64 = 0.25;
+    pub const MIN_SPEED_RATIO: f64 = 0.25;
     /// The largest eigenvalue in arriving speeds (no unit).
-    pub const FASTEST: f64 = 2.0;
+    pub const MAX_SPEED_RATIO: f64 = 2.0;
     /// Top speed of a pedestrian without observed motion (m/s).
     pub const LEAST_TOP_SPEED: f64 = 2.15;
     /// Top speed per m/s of the fastest observed step (no unit) ...
-    pub const SPEEDING_UP: f64 = 1.3;
+    pub const TOP_SPEED_FACTOR: f64 = 1.3;
     /// ... and the constant added to it (m/s).
     pub const SPEED_MARGIN: f64 = 0.45;
     /// Weight of the pedestrian's own velocity in the neutral motion at the start (no unit).
@@ -68,12 +68,12 @@ impl<T: Real> MotionBounds<T> {
     /// Time in which that weight falls by a factor e (s).
     pub const RELAXATION: f64 = 1.0;
     /// Largest lateral component of the neutral motion, relative to its component towards the goal (no unit).
-    pub const STEEPEST: f64 = 2.0;
+    pub const MAX_LATERAL_RATIO: f64 = 2.0;
 
     /// The top speed (m/s) of a pedestrian whose fastest observed step had the speed `fastest` (m/s): the larger of
     /// 2.15 m/s and `1.3 fastest + 0.45 m/s`.
     pub fn top_speed_after(fastest: T) -> T {
-        let faster = fastest * T::rounded(Self::SPEEDING_UP) + T::rounded(Self::SPEED_MARGIN);
+        let faster = fastest * T::rounded(Self::TOP_SPEED_FACTOR) + T::rounded(Self::SPEED_MARGIN);
         faster.max(T::rounded(Self::LEAST_TOP_SPEED))
     }
 
@@ -141,8 +141,11 @@ impl<T: Real> MotionBounds<T> {
         let reach = distance / dt;
         let later = T::rounded((left - 1) as f64) * self.top_speed;
         EigenvalueRange {
-            smallest: (T::rounded(Self::SLOWEST) * s).max(reach - later).min(s),
-            largest: (T::rounded(Self::FASTEST) * s).min(reach).min(self.top_speed).max(s),
+            smallest: (T::rounded(Self::MIN_SPEED_RATIO) * s).max(reach - later).min(s),
+            largest: (T::rounded(Self::MAX_SPEED_RATIO) * s)
+                .min(reach)
+                .min(self.top_speed)
+                .max(s),
         }
     }
 
@@ -176,7 +179,7 @@ impl<T: Real> MotionBounds<T> {
         let along = (T::one() - g) * s + g * self.velocity.dot(direction);
         let a = along.max(range.smallest);
         let across = g * (cos * self.velocity.y - sin * self.velocity.x);
-        let most = a * T::rounded(Self::STEEPEST);
+        let most = a * T::rounded(Self::MAX_LATERAL_RATIO);
         let b = across.max(-most).min(most);
         let r = a + (b / a) * b * T::rounded(2.0);
         Vector3::new(

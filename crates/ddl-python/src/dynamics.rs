@@ -82,7 +82,7 @@ impl Flow {
     ) -> PyResult<Bound<'py, PyDict>> {
         let path: Vec<Vector2<f64>> = points("path", &path)?.into_iter().map(Into::into).collect();
         let certificate = LyapunovCertificate::of_rollout(&self.0, &path, dt).map_err(wrong)?;
-        let violation = certificate.holds().err();
+        let violation = certificate.verify().err();
         let potentials: Vec<f64> = certificate.potentials().collect();
         let length = [potentials.len()];
         let dict = PyDict::new(py);

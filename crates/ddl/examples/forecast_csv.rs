@@ -62,7 +62,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         for k in 0..3.min(forecast.hypotheses()) {
             let [x, y] = forecast.goal(i, k).ok_or("a model without goals")?;
             let certificate = certified.certificate(i, k);
-            let verdict = match certificate.holds() {
+            let verdict = match certificate.verify() {
                 Ok(()) => "closer at every step".to_owned(),
                 Err(violation) => violation.to_string(),
             };

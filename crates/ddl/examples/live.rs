@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let k = forecast.representative(i);
             let [x, y] = forecast.hypothesis(i, k)[HORIZON - 1];
             let certificate = now.forecast.certificate(i, k);
-            let verdict = match certificate.holds() {
+            let verdict = match certificate.verify() {
                 Ok(()) => "closer to its goal at every step".to_owned(),
                 Err(violation) => violation.to_string(),
             };

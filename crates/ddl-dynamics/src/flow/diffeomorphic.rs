@@ -112,7 +112,7 @@ where
     fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let metric = self.source.metric(state)?;
         match self.given {
-            Given::InSpace => metric.congruent(&self.psi.jacobian(&state.position)),
+            Given::InSpace => metric.transformed_by(&self.psi.jacobian(&state.position)),
             Given::InChart => Ok(metric),
         }
     }

@@ -21,7 +21,7 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
     /// # Numerics
     /// `P` is not formed: the triangular factor of `[J L, sqrt(sigma) J]` is computed by rotations. The result is `J P
     /// J^T (1 + epsilon)`, where the last term replaces `sigma`.
-    pub fn congruent(&self, map: &SMatrix<T, D, D>) -> Result<Self, DynamicsError> {
+    pub fn transformed_by(&self, map: &SMatrix<T, D, D>) -> Result<Self, DynamicsError> {
         // s_min(J)^2 >= 1 / |J^-1|^2 (Frobenius).
         let inverse = map.try_inverse();
         let shrinks = inverse

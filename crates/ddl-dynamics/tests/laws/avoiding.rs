@@ -36,7 +36,7 @@ fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(scene: &Sc
         let flow = AvoidingFlow::new(scene.flow(), balls, T::rounded(0.5)).unwrap();
         let path = rollout(&flow, &StableEuler, start, scene.dt(), 12).unwrap();
         let certificate = LyapunovCertificate::of_rollout(&flow, &path, scene.dt()).unwrap();
-        prop_assert_eq!(certificate.holds(), Ok(()));
+        prop_assert_eq!(certificate.verify(), Ok(()));
         Ok(path)
     };
     let mut balls = balls::<T, D>(scene);
@@ -78,7 +78,7 @@ fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMet
             }
             let turn = Rotation2::new(turn);
             let metric = CholeskyMetric::planar(1.0, 0.0, 10_f64.powf(slow), 1e-8).unwrap();
-            (kept, start, metric.congruent(turn.matrix()).unwrap(), margin)
+            (kept, start, metric.transformed_by(turn.matrix()).unwrap(), margin)
         },
     )
 }

@@ -26,7 +26,7 @@ fn stable_path<T: Real, const D: usize>(
 fn holds_for_every_stable_rollout<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let (path, metrics, attractor) = stable_path::<T, D>(scene);
     let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
-    prop_assert_eq!(certificate.holds(), Ok(()));
+    prop_assert_eq!(certificate.verify(), Ok(()));
     prop_assert!(certificate.potentials().eq(path.iter().map(|p| attractor.potential(p))));
     for ((step, metric), position) in certificate.steps().iter().zip(&metrics).zip(&path) {
         let u = attractor.gradient(position).map(Real::as_f64);
@@ -51,7 +51,7 @@ fn names_a_planted_violation<T: Real, const D: usize>(scene: &SceneDraw) -> Test
     }
     path[planted + 1] = path[planted] + away * (T::one() + before * T::rounded(0.5));
     let certificate = LyapunovCertificate::new(&path, &metrics, &attractor, scene.dt()).unwrap();
-    match certificate.holds() {
+    match certificate.verify() {
         Err(Violation::NotDecreasing { step, .. }) => prop_assert_eq!(step, planted),
         Err(Violation::LeftGoal { step, .. }) => {
             prop_assert_eq!(step, planted);
@@ -69,7 +69,7 @@ fn holds_on_a_quadratic_attractor<T: Real, const D: usize>(scene: &SceneDraw) ->
     let flow = NaturalGradientFlow::new(attractor, metrics);
     let path = rollout(&flow, &StableEuler, scene.start(), scene.dt(), 3 * METRICS).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, scene.dt()).unwrap();
-    prop_assert_eq!(certificate.holds(), Ok(()));
+    prop_assert_eq!(certificate.verify(), Ok(()));
     Ok(())
 }
 for_every_space!(holds_on_a_quadratic_attractor, any_scene);
@@ -100,7 +100,7 @@ fn figures_by_hand() {
     assert_eq!(certificate.min_eigenvalue(), Some(step.min_eigenvalue));
     assert_eq!(certificate.min_step_margin(), step.step_margin);
     assert_eq!((certificate.goal(), certificate.time_step()), (&[10.0, 20.0][..], 0.4));
-    assert_eq!(certificate.holds(), Ok(()));
+    assert_eq!(certificate.verify(), Ok(()));
 }
 
 #[test]
@@ -111,7 +111,7 @@ fn a_deserialised_certificate_is_checked() {
     let with = |field: &str, value: f64| {
         let mut forged = serde_json::to_value(by_hand()).unwrap();
         forged["steps"][0][field] = value.into();
-        read(&forged.to_string()).holds().unwrap_err()
+        read(&forged.to_string()).verify().unwrap_err()
     };
     let min_eigenvalue = 0.0;
     let not_definite = Violation::NotPositiveDefinite {
@@ -158,7 +158,7 @@ fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
         before: 0.25,
         after: 0.25,
     };
-    assert_eq!(certificate.holds(), Err(violation.clone()));
+    assert_eq!(certificate.verify(), Err(violation.clone()));
     assert_eq!(
         violation.to_string(),
         "step 2 does not approach the goal: 0.25 m away before it, 0.25 m after it"

@@ -27,7 +27,7 @@ fn arrives_within_the_finite_time_bound<T: Real, const D: usize>(scene: &SceneDr
     let dt = bound * T::rounded(1.01) / T::rounded(8.0);
     let path = rollout(&flow, &precise, start, dt, 8).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
-    prop_assert_eq!(certificate.holds(), Ok(()));
+    prop_assert_eq!(certificate.verify(), Ok(()));
     prop_assert!(attractor.distance(&path[8]) <= precise.tolerance());
     Ok(())
 }
@@ -67,7 +67,7 @@ fn decreases_or_reports_stiffness<T: Real, const D: usize>(scene: &SceneDraw) ->
     match rollout(&flow, &coarse, start, scene.dt(), 3) {
         Ok(path) => {
             let certificate = LyapunovCertificate::of_rollout(&flow, &path, scene.dt()).unwrap();
-            prop_assert_eq!(certificate.holds(), Ok(()));
+            prop_assert_eq!(certificate.verify(), Ok(()));
         }
         Err(DynamicsError::Step { cause, .. }) => {
             prop_assert!(matches!(*cause, DynamicsError::TooStiff { .. }), "{cause}");

@@ -94,7 +94,7 @@ fn arrives_within_bounds<T: Real>(scene: &SceneDraw, draw: BoundsDraw) -> TestCa
     }
     let left = attractor.distance(&path[METRICS]).as_f64();
     prop_assert!(left <= off + 1e-5 * top * dt, "{left} m left");
-    prop_assert_eq!(certificate.holds(), Ok(()));
+    prop_assert_eq!(certificate.verify(), Ok(()));
     Ok(())
 }
 
@@ -192,7 +192,7 @@ fn a_goal_out_of_reach_is_reported() {
     assert!((path[12] - Vector2::new(9.6, 0.0)).norm() < 1e-12);
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4).unwrap();
     let certificate = certificate.within(&path, &attractor, &bounds, true).unwrap();
-    assert_eq!(certificate.holds(), Ok(()));
+    assert_eq!(certificate.verify(), Ok(()));
     let left = certificate.motion().unwrap().distance_left.unwrap();
     assert!((left.largest - 10.4).abs() < 1e-9 && (left.bound - 10.4).abs() < 1e-6);
 }

@@ -55,7 +55,7 @@ fn descended<const D: usize>(psi: &Chain<f64, D>, start: SVector<f64, D>, path: 
     let steps = (flow.potential(&start) / step).floor() as usize;
     let positions = rollout(&flow, &StableEuler, start, step, steps).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &positions, step).unwrap();
-    assert_eq!(certificate.holds(), Ok(()));
+    assert_eq!(certificate.verify(), Ok(()));
     let turns = positions
         .windows(2)
         .map(|pair| (pair[1] - pair[0]).angle(&(goal - pair[0])));

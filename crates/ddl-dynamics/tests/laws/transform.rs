@@ -51,7 +51,7 @@ fn seen_through_a_map<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseRes
     let inverse = wide.try_inverse();
     prop_assume!(inverse.is_some_and(|inverse| inverse.norm() < 10.0));
     for metric in scene.metrics::<T, D>() {
-        let seen = metric.congruent(&map).unwrap();
+        let seen = metric.transformed_by(&map).unwrap();
         let expected = wide * formed(&metric) * wide.transpose();
         let tolerance = 64.0 * T::EPSILON.as_f64() * expected.norm();
         prop_assert!((formed(&seen) - expected).norm() <= tolerance);
@@ -73,7 +73,7 @@ fn no_finite_input_breaks_a_transform<T: Real, const D: usize>(scene: &SceneDraw
     for metric in scene.metrics::<T, D>() {
         for made in [
             metric.damped_along(&direction, scene.dt::<T>().min(T::one())),
-            metric.congruent(&map),
+            metric.transformed_by(&map),
         ]
         .into_iter()
         .flatten()
@@ -101,7 +101,7 @@ fn invalid_transforms_are_refused() {
     let no_direction = metric.damped_along(&Vector2::zeros(), 0.5);
     assert_eq!(no_direction, Err(DynamicsError::NoDirection));
     for singular in [Matrix2::new(1.0, 2.0, 2.0, 4.0), Matrix2::new(1.0, f64::NAN, 0.0, 1.0)] {
-        assert_eq!(metric.congruent(&singular), Err(DynamicsError::SingularMap));
+        assert_eq!(metric.transformed_by(&singular), Err(DynamicsError::SingularMap));
     }
 }
 

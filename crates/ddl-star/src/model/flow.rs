@@ -76,10 +76,10 @@ pub fn bounded_step(
         return positions - u * arriving * time.dt;
     }
     let later = top * (time.left - 1) as f64;
-    let smallest = (&arriving * MotionBounds::<f64>::SLOWEST)
+    let smallest = (&arriving * MotionBounds::<f64>::MIN_SPEED_RATIO)
         .maximum(&(&reach - later))
         .minimum(&arriving);
-    let largest = (&arriving * MotionBounds::<f64>::FASTEST)
+    let largest = (&arriving * MotionBounds::<f64>::MAX_SPEED_RATIO)
         .minimum(&reach)
         .minimum(top)
         .maximum(&arriving);
@@ -121,7 +121,7 @@ fn neutral(
     let along = arriving * (1.0 - g) + (&vx * &cos + &vy * &sin) * g;
     // At the goal all of these are 0, and the pedestrian stays.
     let a = along.maximum(smallest).clamp_min(f64::from(f32::MIN_POSITIVE));
-    let most = &a * MotionBounds::<f64>::STEEPEST;
+    let most = &a * MotionBounds::<f64>::MAX_LATERAL_RATIO;
     let b = ((vy * &cos - vx * &sin) * g).maximum(&-&most).minimum(&most);
     let r = &a + (&b / &a) * &b * 2.0;
     let (both, difference) = (&cos * &sin, cos.square() - sin.square());

@@ -31,7 +31,7 @@ pub(crate) fn step_lengths(positions: &Tensor) -> Tensor {
 /// Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
 pub(crate) fn top_speeds(observed: &Tensor, time_step: f64) -> Tensor {
     let fastest = step_lengths(observed).amax([0i64].as_slice(), true) / time_step;
-    (fastest * MotionBounds::<f64>::SPEEDING_UP + MotionBounds::<f64>::SPEED_MARGIN)
+    (fastest * MotionBounds::<f64>::TOP_SPEED_FACTOR + MotionBounds::<f64>::SPEED_MARGIN)
         .clamp_min(MotionBounds::<f64>::LEAST_TOP_SPEED)
 }
 

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// A forecast with a Lyapunov certificate for every hypothesis.
 ///
 /// A certificate refers to exactly the positions of the forecast, starting with the last observed one.
-/// [`LyapunovCertificate::holds`] checks its numbers.
+/// [`LyapunovCertificate::verify`] checks its numbers.
 ///
 /// # Shapes
 /// One certificate of 12 steps for each pedestrian and hypothesis, `[N][K]`.
@@ -43,7 +43,7 @@ impl CertifiedForecast {
     pub fn first_violation(&self) -> Option<(usize, usize, Violation)> {
         let hypotheses = self.forecast.hypotheses();
         self.certificates.iter().enumerate().find_map(|(pair, certificate)| {
-            let violation = certificate.holds().err()?;
+            let violation = certificate.verify().err()?;
             Some((pair / hypotheses, pair % hypotheses, violation))
         })
     }
@@ -96,7 +96,7 @@ impl Walked<'_> {
     pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
         if self.factors.is_some() {
             // Certificates of a crowd take more memory than its forecast: drop each after its check.
-            let (positions, held) = self.walks(|certificate| certificate.holds().is_ok())?;
+            let (positions, held) = self.walks(|certificate| certificate.verify().is_ok())?;
             return Ok(self.at(positions)?.with_certified(held)?);
         }
         let positions = self.rolled_out.clone();
@@ -128,7 +128,7 @@ impl Walked<'_> {
         let (positions, certificates) = self.walks(|certificate| certificate)?;
         let held = certificates
             .iter()
-            .map(|certificate| certificate.holds().is_ok())
+            .map(|certificate| certificate.verify().is_ok())
             .collect();
         let forecast = self.at(positions)?.with_certified(held)?;
         Ok(CertifiedForecast { forecast, certificates })

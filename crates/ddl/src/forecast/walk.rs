@@ -167,12 +167,12 @@ mod tests {
             let x = 0.25 * f64::from(t);
             assert!((position[0] - x).abs() < 1e-7 && position[1].abs() < 1e-12);
         }
-        assert_eq!(walk.certificate.holds(), Ok(()));
+        assert_eq!(walk.certificate.verify(), Ok(()));
         let motion = walk.certificate.motion().unwrap();
         assert!((motion.speed.largest - 0.5).abs() < 1e-6 && (motion.speed.bound - 2.15).abs() < 1e-6);
         assert!(motion.distance_left.unwrap().largest < 1e-9);
         let certified = course.certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
-        assert_eq!(certified.holds(), Ok(()));
+        assert_eq!(certified.verify(), Ok(()));
         assert_eq!(certified.motion(), None);
     }
 
@@ -192,7 +192,7 @@ mod tests {
         assert!(apart(&course.walk(&factors).unwrap()) < 0.15);
         let walk = course.walk_among(&others, &factors).unwrap();
         assert!(apart(&walk) > 0.5);
-        assert_eq!(walk.certificate.holds(), Ok(()));
+        assert_eq!(walk.certificate.verify(), Ok(()));
         assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
         let nobody = among(vec![stands]).unwrap();
         let alone = course.walk_among(&nobody, &factors).unwrap();

@@ -68,7 +68,7 @@ struct Certificate<'a> {
 
 impl<'a> Certificate<'a> {
     fn of(evidence: &'a LyapunovCertificate<f64>) -> Self {
-        let violation = evidence.holds().err();
+        let violation = evidence.verify().err();
         Self {
             holds: violation.is_none(),
             violation,

@@ -65,7 +65,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
             let counts = moment.window.completion_counts(i);
             for hypothesis in 0..moment.forecast.hypotheses() {
                 let certificate = moment.certificate(i, hypothesis);
-                let holds = certificate.is_some_and(|certificate| certificate.holds().is_ok());
+                let holds = certificate.is_some_and(|certificate| certificate.verify().is_ok());
                 // The first distance belongs to the last observed position.
                 let mut distances = certificate.map(|certificate| certificate.potentials().skip(1));
                 let positions = moment.forecast.hypothesis(i, hypothesis);
