@@ -1,7 +1,7 @@
 //! Regions that contain a pedestrian with a given probability.
 //!
-//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the standard deviation `s` around them, the
-//! score of a position `x` is
+//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the standard deviation `s` around them,
+//! the score of a position `x` is
 //!
 //! ```text
 //! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln(w_k / max w)        no unit
