@@ -240,7 +240,7 @@ fn data_summarises_and_draws_a_memory() {
     let summary = SceneMemory::read(&place.at("hall.memory")).unwrap().summary();
     let facts = place.json("data hall.memory tracks.csv --json");
     let memory = &facts["memories"][0];
-    assert_eq!(memory["stretches"], summary.stretches);
+    assert_eq!(memory["stretches"], summary.segments);
     assert_eq!(memory["tracks"], summary.tracks);
     assert_eq!(memory["pedestrians"], summary.pedestrians);
     assert_eq!(
@@ -250,10 +250,10 @@ fn data_summarises_and_draws_a_memory() {
     assert_eq!(memory["low"], json!(summary.extent.unwrap()[0]));
     assert_eq!(facts["recordings"].as_array().unwrap().len(), 1);
     let told = place.ok("data hall.memory --svg hall.svg");
-    let stretches = format!("{} of at most 20000 stretches", summary.stretches);
+    let segments = format!("{} of at most 20000 segments", summary.segments);
     for words in [
         "hall.memory, the memory of a place",
-        &stretches,
+        &segments,
         "10 frames a step",
         "x from ",
     ] {
@@ -262,7 +262,7 @@ fn data_summarises_and_draws_a_memory() {
     let drawn = place.text("hall.svg");
     for part in [
         "<svg",
-        &stretches,
+        &segments,
         "class=\"walked w4\"",
         "class=\"come\"",
         "class=\"leave\"",

@@ -32,7 +32,7 @@ fn live_forecasts_agree_with_a_replay_of_the_recording() {
     let model = drawn_model::of(Variant::Full);
     let recording = scene("corridor", 60, 0.0);
     let windows = recording.observed_windows();
-    let replayed = empty(&recording).replay(&recording, Playback::Onward, windows, 12);
+    let replayed = empty(&recording).replay(&recording, Playback::Forward, windows, 12);
     let mut replayed = replayed.unwrap().into_iter();
     let live = LiveForecaster::with_frame_step(&model, recording.frame_step()).unwrap();
     let mut live = live.remembering(empty(&recording)).unwrap();
@@ -51,7 +51,7 @@ fn live_forecasts_agree_with_a_replay_of_the_recording() {
     }
     assert!(replayed.next().is_none());
     assert!(remembering > 20 && changed == remembering, "{changed} of {remembering}");
-    assert!(live.memory().unwrap().stretches() > 100);
+    assert!(live.memory().unwrap().segments() > 100);
 }
 
 #[test]
@@ -59,7 +59,7 @@ fn a_memory_of_another_place_is_refused() {
     let model = drawn_model::of(Variant::Full);
     let here = scene("corridor", 300, 0.0);
     let mut memory = empty(&here);
-    memory.watch(&here).unwrap();
+    memory.observe_recording(&here).unwrap();
     for (name, by, is_refused) in [("corridor", 0.0, false), ("plaza", 500.0, true)] {
         let watched = scene(name, 120, by);
         let live = LiveForecaster::with_frame_step(&model, watched.frame_step()).unwrap();
@@ -71,11 +71,11 @@ fn a_memory_of_another_place_is_refused() {
         let refused = live.refused_memory();
         assert_eq!(refused.is_some(), is_refused, "{name}: {refused:?}");
         // The memory holds the observed place, not the other one.
-        let least = if is_refused { 1 } else { memory.stretches() };
-        assert!(kept.stretches() > least, "{name}");
+        let least = if is_refused { 1 } else { memory.segments() };
+        assert!(kept.segments() > least, "{name}");
         if let Some(other) = refused {
             assert!(other.to_string().contains("of another place"), "{other}");
-            assert!(kept.stretches() < memory.stretches());
+            assert!(kept.segments() < memory.segments());
             let [low, _] = kept.summary().extent.unwrap();
             assert!(low[0] > 400.0);
         }
@@ -88,7 +88,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
     let model = drawn_model::of(Variant::Full);
     let here = scene("corridor", 300, 0.0);
     let mut memory = empty(&here);
-    memory.watch(&here).unwrap();
+    memory.observe_recording(&here).unwrap();
     let tried = |by: f64, steps: i64| {
         let watched = scene("corridor", 120, by);
         let mut place = WatchedPlace::new(&model, memory.clone()).unwrap();

@@ -1,4 +1,4 @@
-//! Cost of a full memory of 20,000 stretches: a recall, and a frame of 25 pedestrians.
+//! Cost of a full memory of 20,000 segments: a recall, and a frame of 25 pedestrians.
 
 #[path = "../tests/crowd/mod.rs"]
 mod crowd;
@@ -54,8 +54,8 @@ fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Durat
 fn recall(criterion: &mut Criterion) {
     let (memory, _, _, queries) = full();
     let summary = memory.summary();
-    let (stretches, tracks) = (summary.stretches, summary.tracks);
-    let name = format!("recall of 12 from {stretches} stretches, {tracks} tracks");
+    let (segments, tracks) = (summary.segments, summary.tracks);
+    let name = format!("recall of 12 from {segments} segments, {tracks} tracks");
     let mut queries = queries.iter().cycle();
     measure(criterion, &name, || {
         let (id, observed) = queries.next().expect("a query");

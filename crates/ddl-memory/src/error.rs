@@ -20,7 +20,7 @@ pub enum MemoryError {
          memory's frame rate"
     )]
     OtherFrameStep { memory: i64, recording: i64 },
-    #[error("the capacity must lie in 1..={LARGEST_CAPACITY} stretches, found {found}")]
+    #[error("the capacity must lie in 1..={LARGEST_CAPACITY} segments, found {found}")]
     Capacity { found: usize },
     #[error("cannot write {}: {source}", .path.display())]
     Write { path: PathBuf, source: std::io::Error },

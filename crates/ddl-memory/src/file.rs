@@ -65,7 +65,7 @@ impl SceneMemory {
         bytes.starts_with(ANY_VERSION.as_bytes())
     }
 
-    /// Reads a memory file. If the tracker has restarted since, call [`interrupt`](Self::interrupt) next.
+    /// Reads a memory file. If the tracker has restarted since, call [`end_tracks`](Self::end_tracks) next.
     ///
     /// # Errors
     /// [`MemoryError::Read`] if the file cannot be read, [`MemoryError::File`] if its content is invalid or damaged.
@@ -114,8 +114,8 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     memory.seen = stored.seen;
     memory.ended = stored.ended.into_owned();
     memory.running = stored.running.into_owned();
-    if memory.ended.iter().any(|track| track.stretches() == 0) {
-        return Err("a track that has ended holds no stretch".to_owned());
+    if memory.ended.iter().any(|track| track.segments() == 0) {
+        return Err("a track that has ended holds no segment".to_owned());
     }
     let of_running = memory.running.values();
     let last_frames = of_running.clone().map(|running| running.last);
@@ -130,11 +130,11 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
         if track.pieces.len() > MAX_RUNS || earlier.iter().any(|piece| piece.len() == 0) {
             return Err("a track has too many runs, or too short ones".to_owned());
         }
-        memory.stretches += track.stretches();
+        memory.segments += track.segments();
     }
-    if memory.stretches > memory.capacity {
-        let (found, most) = (memory.stretches, memory.capacity);
-        return Err(format!("it holds {found} stretches, more than its capacity {most}"));
+    if memory.segments > memory.capacity {
+        let (found, most) = (memory.segments, memory.capacity);
+        return Err(format!("it holds {found} segments, more than its capacity {most}"));
     }
     Ok(memory)
 }

@@ -10,7 +10,7 @@ use crate::MemoryError;
 use crate::piece::is_remembered;
 use crate::track::{RunningTrack, Track};
 
-/// Largest capacity in stretches; a memory of this size takes up to 180 MB.
+/// Largest capacity in segments; a memory of this size takes up to 180 MB.
 pub(crate) const LARGEST_CAPACITY: usize = 1 << 18;
 /// A full memory removes this fraction (1/n) of its capacity at once ...
 const FORGOTTEN_AT_ONCE: usize = 32;
@@ -19,19 +19,19 @@ const OLDEST: usize = 8;
 
 /// The tracks that one camera has observed.
 ///
-/// A *stretch* is 20 positions of one pedestrian, one step of 0.4 s apart, all of them observed. If frames come faster
+/// A *segment* is 20 positions of one pedestrian, one step of 0.4 s apart, all of them observed. If frames come faster
 /// than steps, a track uses the positions at whole steps after its first frame, or after the first frame after a gap.
-/// A stretch contains only positions of observed frames.
+/// A segment contains only positions of observed frames.
 ///
-/// - A missing step ends a run of stretches. A track ends after more than
+/// - A missing step ends a run of segments. A track ends after more than
 ///   [`MAX_ABSENCE_STEPS`](crate::MAX_ABSENCE_STEPS) steps without a position; if the same id returns later, a new
 ///   track begins.
-/// - Two stretches are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
-/// - A track is kept in runs of up to 8 stretches. A run is removed if its first and its last stretch are both similar
-///   to stretches of an earlier run of the same track, except the run right before it. Of the remaining runs, the
+/// - Two segments are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
+/// - A track is kept in runs of up to 8 segments. A run is removed if its first and its last segment are both similar
+///   to segments of an earlier run of the same track, except the run right before it. Of the remaining runs, the
 ///   latest [`MAX_RUNS`](crate::MAX_RUNS) are kept. So a pedestrian that stands for an hour takes the space of three
 ///   runs.
-/// - The memory holds at most `capacity` stretches. A full memory frees 1/32 of them among the oldest eighth of the
+/// - The memory holds at most `capacity` segments. A full memory frees 1/32 of them among the oldest eighth of the
 ///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, in both cases the
 ///   oldest first. If no track has ended, the longest one loses its oldest run.
 /// - In addition, it holds the pedestrians of the last 3.2 s.
@@ -45,9 +45,9 @@ const OLDEST: usize = 8;
 /// for step in 0..30 {
 ///     memory.observe(10 * step, [(PedestrianId(1), [0.5 * step as f64, 2.0])])?;
 /// }
-/// assert_eq!(memory.stretches(), 11);
+/// assert_eq!(memory.segments(), 11);
 /// assert!(memory.observe(290, []).is_err());
-/// memory.interrupt();
+/// memory.end_tracks();
 /// memory.observe(0, [(PedestrianId(1), [7.0, 2.0])])?;
 /// assert_eq!(memory.summary().pedestrians, 2);
 /// # Ok::<(), ddl_memory::MemoryError>(())
@@ -58,8 +58,8 @@ pub struct SceneMemory {
     pub(crate) capacity: usize,
     pub(crate) last_frame: Option<i64>,
     pub(crate) seen: Seen,
-    pub(crate) stretches: usize,
-    /// Tracks with at least one stretch, in the order in which they ended.
+    pub(crate) segments: usize,
+    /// Tracks with at least one segment, in the order in which they ended.
     pub(crate) ended: Vec<Track>,
     pub(crate) running: BTreeMap<PedestrianId, RunningTrack>,
 }
@@ -83,7 +83,7 @@ impl Seen {
 }
 
 impl SceneMemory {
-    /// Default capacity in stretches: enough for some hundreds to thousands of pedestrians.
+    /// Default capacity in segments: enough for some hundreds to thousands of pedestrians.
     pub const DEFAULT_CAPACITY: usize = 20_000;
 
     /// An empty memory; `frame_step` is the number of raw frames per step of 0.4 s, such as 10 at 25 frames per second.
@@ -110,7 +110,7 @@ impl SceneMemory {
             capacity,
             last_frame: None,
             seen: Seen::default(),
-            stretches: 0,
+            segments: 0,
             ended: Vec::new(),
             running: BTreeMap::new(),
         }
@@ -121,7 +121,7 @@ impl SceneMemory {
         self.frame_step
     }
 
-    /// The largest number of stretches held.
+    /// The largest number of segments held.
     pub fn capacity(&self) -> usize {
         self.capacity
     }
@@ -131,16 +131,16 @@ impl SceneMemory {
         self.last_frame
     }
 
-    /// Number of stretches held, at most the capacity.
-    pub fn stretches(&self) -> usize {
-        self.stretches
+    /// Number of segments held, at most the capacity.
+    pub fn segments(&self) -> usize {
+        self.segments
     }
 
     /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
     /// A memory accepts the frames that [`LiveTracks`](ddl_data::LiveTracks) accepts. It ignores positions with x or y
     /// beyond 1e7 m. If no two frames are one step apart (as for every third frame of a camera with 10 frames per
-    /// step), it holds no stretches, although [`summary`](Self::summary) counts pedestrians.
+    /// step), it holds no segments, although [`summary`](Self::summary) counts pedestrians.
     ///
     /// # Errors
     /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. The memory is then unchanged.
@@ -155,71 +155,71 @@ impl SceneMemory {
         self.seen.frames = self.seen.frames.saturating_add(1);
         self.last_frame = Some(frame);
         let step = self.frame_step;
-        self.end_tracks(|track| track.is_gone(frame, step));
+        self.end_tracks_that(|track| track.is_gone(frame, step));
         let positions = positions.into_iter();
         for (id, position) in positions.filter(|(_, position)| is_remembered(*position)) {
             self.seen.add(position);
             match self.running.entry(id) {
                 Entry::Occupied(mut running) => {
                     let (new, gone) = running.get_mut().see(frame, position, step);
-                    self.stretches = self.stretches + new - gone;
+                    self.segments = self.segments + new - gone;
                 }
                 Entry::Vacant(place) => {
                     place.insert(RunningTrack::new(frame, position));
                     self.seen.pedestrians = self.seen.pedestrians.saturating_add(1);
                 }
             }
-            if self.stretches > self.capacity {
+            if self.segments > self.capacity {
                 self.make_room();
             }
         }
         Ok(())
     }
 
-    /// Marks a restart of the camera or its tracker: all tracks end, and frames may begin at any number. The stretches
+    /// Marks a restart of the camera or its tracker: all tracks end, and frames may begin at any number. The segments
     /// are kept.
-    pub fn interrupt(&mut self) {
-        self.end_tracks(|_| true);
+    pub fn end_tracks(&mut self) {
+        self.end_tracks_that(|_| true);
         self.last_frame = None;
     }
 
-    fn end_tracks(&mut self, ends: impl Fn(&RunningTrack) -> bool) {
+    fn end_tracks_that(&mut self, ends: impl Fn(&RunningTrack) -> bool) {
         let ending = self.running.extract_if(.., |_, running| ends(running));
         let tracks = ending.map(|(_, running)| running.track);
-        self.ended.extend(tracks.filter(|track| track.stretches() > 0));
+        self.ended.extend(tracks.filter(|track| track.segments() > 0));
     }
 
     fn make_room(&mut self) {
         let enough = self.capacity - (self.capacity / FORGOTTEN_AT_ONCE).max(1);
-        while self.stretches > enough && !self.ended.is_empty() {
+        while self.segments > enough && !self.ended.is_empty() {
             self.forget_ended(enough);
         }
-        while self.stretches > self.capacity {
+        while self.segments > self.capacity {
             let tracks = self.running.values_mut().map(|running| &mut running.track);
-            let Some(longest) = tracks.max_by_key(|track| track.stretches()) else {
+            let Some(longest) = tracks.max_by_key(|track| track.segments()) else {
                 return;
             };
-            self.stretches -= longest.forget_oldest();
+            self.segments -= longest.forget_oldest();
         }
     }
 
-    /// Removes tracks of the oldest eighth until the number of stretches is low enough, first those that newer tracks
+    /// Removes tracks of the oldest eighth until the number of segments is low enough, first those that newer tracks
     /// repeat.
     fn forget_ended(&mut self, enough: usize) {
         let oldest = self.ended.len().div_ceil(OLDEST);
         for repeated_only in [true, false] {
             for index in 0..oldest {
-                if self.stretches <= enough {
+                if self.segments <= enough {
                     break;
                 }
                 let [track, newer @ ..] = &mut self.ended[index..] else {
                     break;
                 };
                 if !repeated_only || track.is_repeated_by(newer) {
-                    self.stretches -= std::mem::take(track).stretches();
+                    self.segments -= std::mem::take(track).segments();
                 }
             }
         }
-        self.ended.retain(|track| track.stretches() > 0);
+        self.ended.retain(|track| track.segments() > 0);
     }
 }

@@ -1,22 +1,22 @@
-//! A piece: up to 8 consecutive stretches (20 positions each) of one track, all compared with a pedestrian at once.
+//! A piece: up to 8 consecutive segments (20 positions each) of one track, all compared with a pedestrian at once.
 
 use ddl_data::{COORDINATE_LIMIT, OBSERVED, Position, TIME_STEP, WINDOW};
 use serde::{Deserialize, Serialize, Serializer};
 
-/// Stretches compared at once, so that the loop over them is vectorised.
+/// Segments compared at once, so that the loop over them is vectorised.
 const LANES: usize = 8;
-/// Positions that a piece shares with the following one: all of a stretch but its last.
+/// Positions that a piece shares with the following one: all of a segment but its last.
 pub(crate) const SHARED: usize = WINDOW - 1;
 /// Positions of a full piece.
 const PATH: usize = LANES + SHARED;
-/// Index of the present position in a stretch.
+/// Index of the present position in a segment.
 const NOW: usize = OBSERVED - 1;
 /// Two velocities of two components, each divided by its scale.
 const VELOCITIES: usize = 4;
 const COMPONENTS: usize = 2 + VELOCITIES;
 /// Scales of late and early velocity (m/s): a difference of one scale adds 1 to the squared distance, as 1 m does.
 const VELOCITY_SCALES: [f64; 2] = [0.4, 0.6];
-/// Squared distance below which two stretches are similar: that of two pedestrians that walk 1 m apart.
+/// Squared distance below which two segments are similar: that of two pedestrians that walk 1 m apart.
 const ALIKE: f32 = 1.0;
 /// Largest distance (m) of the present positions of a piece from the first one: an `f32` resolves micrometres within
 /// it. A pedestrian usually moves 6 m in that time.
@@ -61,12 +61,12 @@ impl Motion {
     }
 }
 
-/// 1 to 27 positions that are one step apart, and the motions of the up to 8 stretches of 20 positions in them. A file
+/// 1 to 27 positions that are one step apart, and the motions of the up to 8 segments of 20 positions in them. A file
 /// stores only the positions.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(try_from = "Vec<Position>")]
 pub(crate) struct Piece {
-    /// Motions of the stretches relative to the present position of the first; lanes without a stretch are infinite.
+    /// Motions of the segments relative to the present position of the first; lanes without a segment are infinite.
     motions: [[f32; LANES]; COMPONENTS],
     path: Vec<Position>,
 }
@@ -114,12 +114,12 @@ impl Piece {
         None
     }
 
-    /// The beginning of the next piece: the last 19 positions, one fewer than a stretch has.
+    /// The beginning of the next piece: the last 19 positions, one fewer than a segment has.
     pub(crate) fn rest(&self) -> Self {
         Self::of(&self.path[self.path.len().saturating_sub(SHARED)..])
     }
 
-    /// Number of stretches.
+    /// Number of segments.
     pub(crate) fn len(&self) -> usize {
         self.path.len().saturating_sub(SHARED)
     }
@@ -128,33 +128,33 @@ impl Piece {
         &self.path
     }
 
-    /// The 20 positions of the stretch of a lane.
-    pub(crate) fn stretch(&self, lane: usize) -> [Position; WINDOW] {
+    /// The 20 positions of the segment of a lane.
+    pub(crate) fn segment(&self, lane: usize) -> [Position; WINDOW] {
         std::array::from_fn(|t| self.path[lane + t])
     }
 
-    /// The motion of the stretch of a lane.
+    /// The motion of the segment of a lane.
     fn motion(&self, lane: usize) -> Motion {
         Motion::of(&std::array::from_fn(|t| self.path[lane + t]))
     }
 
-    /// The motion of its first stretch.
+    /// The motion of its first segment.
     pub(crate) fn first_motion(&self) -> Option<Motion> {
         (self.len() > 0).then(|| self.motion(0))
     }
 
-    /// Whether one of its stretches lies within [`ALIKE`] of a motion.
+    /// Whether one of its segments lies within [`ALIKE`] of a motion.
     pub(crate) fn is_alike(&self, motion: &Motion) -> bool {
         self.nearest(motion) < ALIKE
     }
 
-    /// Whether both its first and its last stretch are similar to stretches of another piece. This piece must have a
-    /// stretch.
+    /// Whether both its first and its last segment are similar to segments of another piece. This piece must have a
+    /// segment.
     pub(crate) fn is_repeated_by(&self, other: &Self) -> bool {
         other.is_alike(&self.motion(0)) && other.is_alike(&self.motion(self.len() - 1))
     }
 
-    /// Squared distance of each stretch from a motion; infinite or NaN for lanes without a stretch.
+    /// Squared distance of each segment from a motion; infinite or NaN for lanes without a segment.
     #[inline]
     fn distances(&self, motion: &Motion) -> [f32; LANES] {
         let origin = self.path.get(NOW).copied().unwrap_or_default();
@@ -183,7 +183,7 @@ impl Piece {
         least[0]
     }
 
-    /// The first of the stretches nearest to a motion.
+    /// The first of the segments nearest to a motion.
     pub(crate) fn nearest_lane(&self, motion: &Motion) -> usize {
         let distances = self.distances(motion);
         (1..self.len()).fold(0, |least, lane| {

@@ -5,18 +5,18 @@ use ddl_data::{OBSERVED, PedestrianId, Position, Remembered};
 use crate::SceneMemory;
 use crate::piece::{Motion, Piece};
 
-/// Squared distance from which stretches are ignored.
-pub const FARTHEST: f64 = 60.0;
+/// Squared distance from which segments are ignored.
+pub const MAX_SQUARED_DISTANCE: f64 = 60.0;
 
 impl SceneMemory {
     /// Returns the tracks of at most `count` other pedestrians with a similar motion, nearest first. Each is
-    /// represented by its nearest stretch: 20 positions (m, world coordinates) and the squared distance.
+    /// represented by its nearest segment: 20 positions (m, world coordinates) and the squared distance.
     ///
     /// The last of the 8 observed positions (m, one step of 0.4 s apart) is the present one. The squared distance of a
-    /// stretch is `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`. Here `dp` is the difference of the eighth
+    /// segment is `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`. Here `dp` is the difference of the eighth
     /// positions, `dv` that of the velocities over the last 3 of the 8 steps, and `de` that over the first 3. It is
-    /// computed in `f32`, to about 1e-5, and must be below [`FARTHEST`]. Pedestrians at equal distance are ordered:
-    /// first those that have left, in the order in which they left, then those present, by id.
+    /// computed in `f32`, to about 1e-5, and must be below [`MAX_SQUARED_DISTANCE`]. Pedestrians at equal distance are
+    /// ordered: first those that have left, in the order in which they left, then those present, by id.
     ///
     /// `own` is the id of this pedestrian, whose running track is left out. If a component of the motion is not finite,
     /// the result is empty.
@@ -28,7 +28,7 @@ impl SceneMemory {
         let mut near: Vec<(f32, usize, &Piece)> = Vec::new();
         for (age, track) in self.ended.iter().chain(running).enumerate() {
             match track.nearest(&motion) {
-                Some((distance, piece)) if distance < FARTHEST as f32 => {
+                Some((distance, piece)) if distance < MAX_SQUARED_DISTANCE as f32 => {
                     near.push((distance, age, piece));
                 }
                 _ => (),
@@ -41,7 +41,7 @@ impl SceneMemory {
         }
         near.sort_unstable_by(by_distance);
         let remembered = |(distance, _, piece): (f32, usize, &Piece)| Remembered {
-            track: piece.stretch(piece.nearest_lane(&motion)),
+            track: piece.segment(piece.nearest_lane(&motion)),
             distance: f64::from(distance),
         };
         near.into_iter().map(remembered).collect()

@@ -8,7 +8,7 @@ use crate::{MemoryError, SceneMemory};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Playback {
     /// In recorded order.
-    Onward,
+    Forward,
     /// From the last to the first, for windows that are [reversed](Window::reversed).
     Backward,
 }
@@ -16,7 +16,7 @@ pub enum Playback {
 impl Playback {
     fn time(self, frame: i64) -> i64 {
         match self {
-            Self::Onward => frame,
+            Self::Forward => frame,
             Self::Backward => -frame,
         }
     }
@@ -24,7 +24,7 @@ impl Playback {
     /// The frame from which the forecast starts.
     fn now(self, window: &Window) -> i64 {
         match self {
-            Self::Onward => window.frames()[OBSERVED - 1],
+            Self::Forward => window.frames()[OBSERVED - 1],
             // A reversed window has the same frames as the window.
             Self::Backward => -window.frames()[window.steps() - OBSERVED],
         }
@@ -47,7 +47,7 @@ impl SceneMemory {
         count: usize,
     ) -> Result<Vec<Window>, MemoryError> {
         self.ensure_step_of(recording)?;
-        self.interrupt();
+        self.end_tracks();
         let ends = |window: &Window| window.frames()[window.steps() - 1];
         let last = windows.iter().map(ends).max();
         let frames = recording.frames().iter().copied();
@@ -86,15 +86,15 @@ impl SceneMemory {
     /// # Errors
     /// [`MemoryError`] if the number of raw frames per step differs between recording and memory. The memory is then
     /// unchanged.
-    pub fn watch(&mut self, recording: &Recording) -> Result<(), MemoryError> {
+    pub fn observe_recording(&mut self, recording: &Recording) -> Result<(), MemoryError> {
         self.ensure_step_of(recording)?;
-        self.interrupt();
+        self.end_tracks();
         for &frame in recording.frames() {
             let positions = recording.at(frame).iter();
             let positions = positions.map(|seen| (seen.pedestrian, seen.position));
             self.observe(frame, positions)?;
         }
-        self.interrupt();
+        self.end_tracks();
         Ok(())
     }
 

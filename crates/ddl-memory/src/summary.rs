@@ -9,9 +9,9 @@ use crate::track::Track;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct MemorySummary {
-    /// Stretches held. If it stays 0, check that frames are a whole number of steps of 0.4 s apart.
-    pub stretches: usize,
-    /// Pedestrians with at least one stretch.
+    /// Segments held. If it stays 0, check that frames are a whole number of steps of 0.4 s apart.
+    pub segments: usize,
+    /// Pedestrians with at least one segment.
     pub tracks: usize,
     /// Pedestrians seen; a pedestrian that returns after 3.2 s counts again.
     pub pedestrians: u64,
@@ -28,7 +28,7 @@ impl SceneMemory {
     #[must_use]
     pub fn summary(&self) -> MemorySummary {
         MemorySummary {
-            stretches: self.stretches,
+            segments: self.segments,
             tracks: self.held().count(),
             pedestrians: self.seen.pedestrians,
             frames: self.seen.frames,
@@ -37,7 +37,7 @@ impl SceneMemory {
         }
     }
 
-    /// The positions (m) of each pedestrian with a stretch, one step of 0.4 s apart except where steps were missed or
+    /// The positions (m) of each pedestrian with a segment, one step of 0.4 s apart except where steps were missed or
     /// forgotten. Pedestrians that have left come first, in the order in which they left, then those present, by id.
     pub fn tracks(&self) -> impl Iterator<Item = Vec<Position>> {
         self.held().map(Track::positions)
@@ -46,6 +46,6 @@ impl SceneMemory {
     fn held(&self) -> impl Iterator<Item = &Track> {
         let running = self.running.values().map(|running| &running.track);
         let tracks = self.ended.iter().chain(running);
-        tracks.filter(|track| track.stretches() > 0)
+        tracks.filter(|track| track.segments() > 0)
     }
 }

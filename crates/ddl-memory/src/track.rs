@@ -1,4 +1,4 @@
-//! The stretches of one pedestrian, and the running track of a pedestrian that may be seen again.
+//! The segments of one pedestrian, and the running track of a pedestrian that may be seen again.
 
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};
@@ -8,10 +8,10 @@ use crate::piece::{Motion, Piece, SHARED};
 /// A track ends after this many steps of 0.4 s (3.2 s) without a position. If the same id returns later, a new track
 /// begins.
 pub const MAX_ABSENCE_STEPS: i64 = 8;
-/// Largest number of runs of 8 stretches kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
+/// Largest number of runs of 8 segments kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
 pub const MAX_RUNS: usize = 32;
 
-/// A pedestrian of this memory: pieces, oldest first. Only the last may be without a stretch.
+/// A pedestrian of this memory: pieces, oldest first. Only the last may be without a segment.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub(crate) struct Track {
@@ -19,11 +19,11 @@ pub(crate) struct Track {
 }
 
 impl Track {
-    pub(crate) fn stretches(&self) -> usize {
+    pub(crate) fn segments(&self) -> usize {
         self.pieces.iter().map(Piece::len).sum()
     }
 
-    /// The piece with the stretch nearest to a motion (the first if several are equally near), and its squared
+    /// The piece with the segment nearest to a motion (the first if several are equally near), and its squared
     /// distance.
     pub(crate) fn nearest(&self, motion: &Motion) -> Option<(f32, &Piece)> {
         let distances = self.pieces.iter();
@@ -31,7 +31,7 @@ impl Track {
         distances.reduce(|least, next| if next.0 < least.0 { next } else { least })
     }
 
-    /// Whether a stretch from its middle is similar to one of other tracks.
+    /// Whether a segment from its middle is similar to one of other tracks.
     pub(crate) fn is_repeated_by(&self, others: &[Self]) -> bool {
         let middle = self.pieces.get(self.pieces.len().saturating_sub(1) / 2);
         let mut others = others.iter().flat_map(|track| &track.pieces);
@@ -41,7 +41,7 @@ impl Track {
     }
 
     /// Adds a piece. The previous last piece is removed if it repeats an earlier piece, except the one right before it.
-    /// Returns the number of stretches removed.
+    /// Returns the number of segments removed.
     fn add(&mut self, piece: Piece) -> usize {
         let gone = match &self.pieces[..] {
             [.., last] if last.len() == 0 => self.pieces.pop(),
@@ -53,8 +53,8 @@ impl Track {
         gone.map_or(0, |piece| piece.len())
     }
 
-    /// Removes the oldest piece. From an only piece it keeps the positions that the next stretch needs. Returns the
-    /// number of stretches removed.
+    /// Removes the oldest piece. From an only piece it keeps the positions that the next segment needs. Returns the
+    /// number of segments removed.
     pub(crate) fn forget_oldest(&mut self) -> usize {
         let Some(first) = self.pieces.first_mut() else {
             return 0;
@@ -103,7 +103,7 @@ impl RunningTrack {
         frame - self.last > MAX_ABSENCE_STEPS * step
     }
 
-    /// Adds a position, unless it lies between two steps. Returns the numbers of stretches added and removed.
+    /// Adds a position, unless it lies between two steps. Returns the numbers of segments added and removed.
     pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
         let due = self.last + step;
         if frame < due {

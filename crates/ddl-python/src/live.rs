@@ -175,11 +175,11 @@ impl Live {
         Ok(())
     }
 
-    /// Number of remembered stretches; 0 without a memory.
+    /// Number of remembered segments; 0 without a memory.
     fn remembered(&self, py: Python<'_>) -> PyResult<usize> {
         let mut turn = Turn::take(py, &self.0)?;
         let memory = turn.watching().and_then(|watching| watching.live.memory());
-        Ok(memory.map_or(0, SceneMemory::stretches))
+        Ok(memory.map_or(0, SceneMemory::segments))
     }
 
     /// The reason why the given memory is not used; `None` if it is used.

@@ -29,7 +29,7 @@ fn observe(memory: &mut SceneMemory, first: i64) {
         let pedestrians = (0..PEDESTRIANS).filter(is_there).map(|id| at(frame, id));
         // An edited memory may have seen a later frame.
         let _ = memory.observe(first + frame, pedestrians);
-        assert!(memory.stretches() <= memory.capacity());
+        assert!(memory.segments() <= memory.capacity());
     }
 }
 
@@ -102,10 +102,10 @@ pub fn read(bytes: &[u8]) {
             let recalled = memory.recall(&observed, own, 4);
             assert!(recalled.is_sorted_by(|a, b| a.distance <= b.distance));
         }
-        assert!(memory.tracks().count() <= memory.stretches());
+        assert!(memory.tracks().count() <= memory.segments());
         observe(&mut memory, FRAMES);
-        memory.interrupt();
+        memory.end_tracks();
         observe(&mut memory, 0);
-        assert!(memory.tracks().count() <= memory.stretches());
+        assert!(memory.tracks().count() <= memory.segments());
     });
 }

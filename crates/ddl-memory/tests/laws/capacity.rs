@@ -15,15 +15,15 @@ proptest! {
         for (frame, pedestrians) in &frames {
             memory.observe(*frame, pedestrians.clone()).unwrap();
             whole.observe(*frame, pedestrians.clone()).unwrap();
-            prop_assert!(memory.stretches() <= capacity);
+            prop_assert!(memory.segments() <= capacity);
         }
-        if whole.stretches() <= capacity {
+        if whole.segments() <= capacity {
             for (id, observed) in queries(&frames) {
                 let recalled = whole.recall(&observed, Some(id), 12);
                 prop_assert_eq!(memory.recall(&observed, Some(id), 12), recalled);
             }
         }
-        memory.interrupt();
+        memory.end_tracks();
         prop_assert_eq!(memory.last_frame(), None);
     }
 }
@@ -67,7 +67,7 @@ fn without_repetition_the_oldest_tracks_are_removed() {
     let is_held = |pedestrian: &i64| !memory.recall(&observed(10.0 * *pedestrian as f64), None, 1).is_empty();
     let held: Vec<i64> = (0..100).filter(is_held).collect();
     assert_eq!(held, (100 - held.len() as i64..100).collect::<Vec<_>>());
-    assert_eq!(held.len(), memory.stretches());
+    assert_eq!(held.len(), memory.segments());
 }
 
 /// 60 pedestrians stand for ten minutes, with tracker noise of some centimetres; one of them leaves at the end.
@@ -89,7 +89,7 @@ fn standing_pedestrians_do_not_displace_passing_ones() {
         memory.observe(frame, still.iter().map(moved)).unwrap();
     }
     assert_eq!(memory.summary().tracks, 960);
-    assert!(memory.stretches() <= 900 + 60 * 24 + 24, "{}", memory.stretches());
+    assert!(memory.segments() <= 900 + 60 * 24 + 24, "{}", memory.segments());
     let leaving = std::array::from_fn(|t| {
         let [x, y] = still[0].1;
         [x - 0.4 * t as f64, y]
@@ -108,9 +108,9 @@ fn a_pedestrian_walking_about_for_hours_does_not_fill_a_memory() {
     }
     let most = 8 * MAX_RUNS;
     assert!(
-        (most - 7..=most + 1).contains(&memory.stretches()),
+        (most - 7..=most + 1).contains(&memory.segments()),
         "{}",
-        memory.stretches()
+        memory.segments()
     );
     let newest: [Position; OBSERVED] = std::array::from_fn(|t| [0.5 * (19_980 + t) as f64, 0.0]);
     assert!(memory.recall(&newest, None, 1)[0].distance < 1e-9);
@@ -127,9 +127,9 @@ fn if_all_tracks_are_running_the_longest_is_shortened() {
     let mut memory = SceneMemory::new(1, 100).unwrap();
     for frame in 0..60 {
         memory.observe(frame, still.clone()).unwrap();
-        assert!(memory.stretches() <= 100);
+        assert!(memory.segments() <= 100);
     }
     assert!(memory.summary().tracks > 20);
     let frames = vec![(0, still)];
-    assert_eq!(memory_of(&frames, 1).stretches(), 0);
+    assert_eq!(memory_of(&frames, 1).segments(), 0);
 }

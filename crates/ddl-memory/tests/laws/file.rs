@@ -49,7 +49,7 @@ proptest! {
             read.observe(last + 1 + frame, pedestrians.clone()).unwrap();
         }
         prop_assert_eq!(&read, &memory);
-        memory.interrupt();
+        memory.end_tracks();
         memory.write(&path).unwrap();
         prop_assert_eq!(SceneMemory::read(&path).unwrap(), memory);
     }
@@ -83,12 +83,12 @@ proptest! {
         if let Ok(mut memory) = read(&path, &signed(edited.as_bytes())) {
             for (frame, pedestrians) in &frames {
                 let _ = memory.observe(1_000 + frame, pedestrians.clone());
-                prop_assert!(memory.stretches() <= memory.capacity());
+                prop_assert!(memory.segments() <= memory.capacity());
             }
             for (id, observed) in queries(&frames) {
                 let _ = memory.recall(&observed, Some(id), 12);
             }
-            prop_assert!(memory.tracks().count() <= memory.stretches());
+            prop_assert!(memory.tracks().count() <= memory.segments());
         }
     }
 }

@@ -1,16 +1,16 @@
-//! Recall agrees with a search through all stretches, for any order of the pedestrians and any origin.
+//! Recall agrees with a search through all segments, for any order of the pedestrians and any origin.
 
 use std::collections::BTreeMap;
 
 use crate::{Frames, memory_of, queries, step_of};
 use ddl_data::{OBSERVED, PedestrianId, Position, Remembered, WINDOW};
-use ddl_memory::{FARTHEST, MAX_ABSENCE_STEPS, SceneMemory};
+use ddl_memory::{MAX_ABSENCE_STEPS, MAX_SQUARED_DISTANCE, SceneMemory};
 use proptest::prelude::*;
 
-type Stretch = [Position; WINDOW];
+type Segment = [Position; WINDOW];
 
-/// The stretches of every pedestrian, by id and frame of the first observation; and whether the track is running.
-fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
+/// The segments of every pedestrian, by id and frame of the first observation; and whether the track is running.
+fn segments(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Segment>)> {
     let (step, now) = (step_of(frames), frames[frames.len() - 1].0);
     let mut tracks: BTreeMap<(PedestrianId, i64), BTreeMap<i64, Position>> = BTreeMap::new();
     let mut current: BTreeMap<PedestrianId, (i64, i64)> = BTreeMap::new();
@@ -25,14 +25,14 @@ fn stretches(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Stretch>)> {
         }
     }
     let pedestrian = |((id, _), track): ((PedestrianId, i64), BTreeMap<i64, Position>)| {
-        let stretch = |first: &i64| {
+        let segment = |first: &i64| {
             let at = |t: usize| track.get(&(first + t as i64 * step)).copied();
             let positions: Option<Vec<Position>> = (0..WINDOW).map(at).collect();
             positions?.try_into().ok()
         };
         let last = track.last_key_value().map_or(0, |(frame, _)| *frame);
-        let stretches = track.keys().filter_map(stretch).collect();
-        (id, now - last <= MAX_ABSENCE_STEPS * step, stretches)
+        let segments = track.keys().filter_map(segment).collect();
+        (id, now - last <= MAX_ABSENCE_STEPS * step, segments)
     };
     tracks.into_iter().map(pedestrian).collect()
 }
@@ -48,14 +48,14 @@ fn distance(a: &[Position], b: &[Position]) -> f64 {
 
 /// The smallest distance of each pedestrian except `own`, in order, below the limit.
 fn reference(frames: &Frames, observed: &[Position; OBSERVED], own: Option<PedestrianId>) -> Vec<f64> {
-    let others = stretches(frames)
+    let others = segments(frames)
         .into_iter()
         .filter(|(id, runs, _)| !(*runs && Some(*id) == own));
-    let nearest = others.map(|(_, _, stretches)| {
-        let distances = stretches.iter().map(|stretch| distance(stretch, observed));
+    let nearest = others.map(|(_, _, segments)| {
+        let distances = segments.iter().map(|segment| distance(segment, observed));
         distances.fold(f64::INFINITY, f64::min)
     });
-    let mut nearest: Vec<f64> = nearest.filter(|d| *d < FARTHEST).collect();
+    let mut nearest: Vec<f64> = nearest.filter(|d| *d < MAX_SQUARED_DISTANCE).collect();
     nearest.sort_by(f64::total_cmp);
     nearest
 }
@@ -75,8 +75,8 @@ proptest! {
     #[test]
     fn a_recall_agrees_with_a_search_through_all_stretches(frames in crate::crowds(), count in 0..20_usize) {
         let memory = memory_of(&frames, SceneMemory::DEFAULT_CAPACITY);
-        let all: Vec<Stretch> = stretches(&frames).into_iter().flat_map(|track| track.2).collect();
-        prop_assert_eq!(memory.stretches(), all.len());
+        let all: Vec<Segment> = segments(&frames).into_iter().flat_map(|track| track.2).collect();
+        prop_assert_eq!(memory.segments(), all.len());
         for (id, observed) in queries(&frames) {
             for own in [Some(id), None, Some(PedestrianId(-1))] {
                 let expected = reference(&frames, &observed, own);
@@ -154,7 +154,7 @@ fn a_jump_of_the_tracker_costs_no_precision() {
         for t in 0..60 {
             memory.observe(t as i64, [(PedestrianId(1), at(t))]).unwrap();
         }
-        assert_eq!(memory.stretches(), 41);
+        assert_eq!(memory.segments(), 41);
         for first in (0..41).filter(|first| !(14..24).contains(first)) {
             let observed = std::array::from_fn(|t| [at(first + t)[0] + 1e-3, 0.0]);
             let found = memory.recall(&observed, None, 1)[0];
@@ -192,7 +192,7 @@ fn frames_between_steps_give_no_stretches() {
             let pedestrians = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
             memory.observe(frame, pedestrians).unwrap();
         }
-        memory.stretches()
+        memory.segments()
     };
     assert_eq!([seen(3..193), seen(193..203), seen(203..213)], [0, 1, 2]);
     assert_eq!([seen(214..304), seen(304..404), seen(404..405)], [2, 2, 3]);
@@ -204,10 +204,10 @@ fn frames_between_steps_give_no_stretches() {
         memory.observe(frame, [(PedestrianId(1), [0.0; 2])]).unwrap();
     }
     let summary = memory.summary();
-    assert_eq!((summary.frames, summary.pedestrians, summary.stretches), (200, 1, 0));
+    assert_eq!((summary.frames, summary.pedestrians, summary.segments), (200, 1, 0));
 }
 
-/// The positions of all pedestrians, each once, without gaps; pedestrians without a stretch are left out.
+/// The positions of all pedestrians, each once, without gaps; pedestrians without a segment are left out.
 #[test]
 fn tracks_are_the_positions_held() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();

@@ -29,7 +29,7 @@ fn errors_change_nothing() {
             assert_eq!(memory, before);
         }
     }
-    assert_eq!(memory.stretches(), 11);
+    assert_eq!(memory.segments(), 11);
     memory.observe((1 << 53) - 1, [(id, [1e7, -1e7])]).unwrap();
 }
 
@@ -68,5 +68,5 @@ fn a_memory_needs_a_step_and_a_capacity() {
     let mut memory = SceneMemory::new(1 << 31, 1 << 18).unwrap();
     memory.observe(1 - (1 << 53), [(PedestrianId(1), [0.0; 2])]).unwrap();
     memory.observe((1 << 53) - 1, []).unwrap();
-    assert_eq!(memory.stretches(), 0);
+    assert_eq!(memory.segments(), 0);
 }

@@ -149,7 +149,7 @@ class Live:
 
     @property
     def remembered(self) -> int:
-        """Number of remembered stretches of 3.2 s and more; 0 without a memory."""
+        """Number of remembered segments of 3.2 s and more; 0 without a memory."""
         return self._core.remembered()
 
     def clear(self) -> None:

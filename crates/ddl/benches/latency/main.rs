@@ -57,20 +57,20 @@ fn main() -> Result<()> {
 
 const CROWDS: [usize; 9] = [1, 10, 25, 100, 400, 1_600, 5_000, 10_000, 20_000];
 
-/// Number of stretches in a memory that is almost full.
+/// Number of segments in a memory that is almost full.
 const FULL: usize = SceneMemory::DEFAULT_CAPACITY * 9 / 10;
 
-/// A memory of all simulated scenes, filled with other simulated crowds up to this number of stretches.
-fn memory_of(dataset: &Dataset, stretches: usize) -> Result<SceneMemory> {
+/// A memory of all simulated scenes, filled with other simulated crowds up to this number of segments.
+fn memory_of(dataset: &Dataset, segments: usize) -> Result<SceneMemory> {
     let step = dataset.recordings()[0].frame_step();
     let mut memory = SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)?;
     let mut seed = 2;
     let mut crowds = dataset.clone();
     loop {
         for recording in crowds.recordings() {
-            memory.watch(recording)?;
+            memory.observe_recording(recording)?;
         }
-        if memory.stretches() >= stretches {
+        if memory.segments() >= segments {
             return Ok(memory);
         }
         crowds = Dataset::simulated(seed);
@@ -116,9 +116,9 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
          network, Transformer                           {transformer:>6.2} ms\n\
          network, perceptron                            {perceptron:>6.2} ms\n\
          the rest: rollout in f64, certificates, spread {rest:>6.2} ms\n\
-         whole forecast with a memory of {stretches} stretches {with_memory:>6.2} ms",
+         whole forecast with a memory of {segments} segments {with_memory:>6.2} ms",
         window.len(),
-        stretches = memory.stretches(),
+        segments = memory.segments(),
         rest = whole - goals - transformer,
     ))
 }

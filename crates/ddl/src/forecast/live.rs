@@ -205,7 +205,7 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     /// Adds a memory of the place: [`SceneMemory::new`], or one from a file ([`SceneMemory::read`]). The paths of
     /// earlier pedestrians then influence the forecasts, and the memory grows with every frame.
     ///
-    /// A forecast uses observations before its frame. A memory of at least [`OtherPlace::FEWEST_STRETCHES`] stretches
+    /// A forecast uses observations before its frame. A memory of at least [`OtherPlace::MIN_SEGMENTS`] segments
     /// is tested on the first pedestrians. If it is of another place, it is [refused](Self::refused_memory), and an
     /// empty one replaces it.
     ///

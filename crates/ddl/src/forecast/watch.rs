@@ -65,7 +65,7 @@ impl Watch {
     pub(crate) fn clear(&mut self) {
         self.tracks.clear();
         if let Some(place) = &mut self.place {
-            place.interrupt();
+            place.end_tracks();
         }
     }
 }

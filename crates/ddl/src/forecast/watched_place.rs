@@ -22,7 +22,7 @@ const FEWEST_TRIED: usize = 13;
 /// The memory of an observed place, and the test that the memory belongs to it. It is the part of a
 /// [`LiveForecaster`](crate::LiveForecaster) for programs that keep tracks themselves.
 ///
-/// A memory of at least [`OtherPlace::FEWEST_STRETCHES`] stretches is tested on the first pedestrians. If it is of
+/// A memory of at least [`OtherPlace::MIN_SEGMENTS`] segments is tested on the first pedestrians. If it is of
 /// another place, it is [refused](Self::refused), and an empty one replaces it.
 #[derive(Debug, Clone)]
 pub struct WatchedPlace {
@@ -52,8 +52,8 @@ pub struct OtherPlace {
 }
 
 impl OtherPlace {
-    /// A memory with fewer stretches is not tested: it may be of any place.
-    pub const FEWEST_STRETCHES: usize = 500;
+    /// A memory with fewer segments is not tested: it may be of any place.
+    pub const MIN_SEGMENTS: usize = 500;
 }
 
 impl fmt::Display for OtherPlace {
@@ -74,8 +74,8 @@ impl WatchedPlace {
     /// When the model has no memory branch.
     pub fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
         let count = model.goal_model().recalled_per_pedestrian()?;
-        memory.interrupt();
-        let known = memory.stretches() >= OtherPlace::FEWEST_STRETCHES;
+        memory.end_tracks();
+        let known = memory.segments() >= OtherPlace::MIN_SEGMENTS;
         let trial = known.then(|| Trial {
             given: memory.clone(),
             tried: BTreeSet::new(),
@@ -118,8 +118,8 @@ impl WatchedPlace {
     }
 
     /// Ends all tracks, as when a tracker restarts: any frame may follow.
-    pub fn interrupt(&mut self) {
-        self.memory.interrupt();
+    pub fn end_tracks(&mut self) {
+        self.memory.end_tracks();
     }
 
     /// The window with the memory for its pedestrians. Call it before its last frame is [observed](Self::observe).

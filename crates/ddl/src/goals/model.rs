@@ -211,7 +211,7 @@ impl GoalModel {
         };
         let playback = match what {
             Remembering::Place => None,
-            Remembering::Online => Some(Playback::Onward),
+            Remembering::Online => Some(Playback::Forward),
         };
         let recordings: Vec<&Recording> = dataset.recordings().iter().collect();
         remembering(&recordings, windows, of_place, playback, count)

@@ -37,7 +37,7 @@ pub(crate) fn remembering<'a>(
         };
         let mut memory = SceneMemory::new(recording.frame_step(), SceneMemory::DEFAULT_CAPACITY)?;
         for other in of_place(recording.name()) {
-            memory.watch(other)?;
+            memory.observe_recording(other)?;
         }
         let some = indices.iter().map(|&index| windows[index].clone());
         let some: Vec<Window> = match playback {

@@ -46,7 +46,7 @@ pub(crate) fn train(
     };
     let whole = windows.iter().filter(|window| window.has_future());
     let reversed = whole.clone().map(Window::reversed).collect();
-    let examples = seen(whole.cloned().collect(), Playback::Onward)?;
+    let examples = seen(whole.cloned().collect(), Playback::Forward)?;
     let reversed = seen(reversed, Playback::Backward)?;
     let network = TorchProposals::new(recipe.network.clone(), recipe.training.seed, device)?;
     if let Some(start) = start {

@@ -50,7 +50,7 @@ pub(super) fn read_each(files: Vec<PathBuf>) -> (Vec<PlaceMemory>, Vec<anyhow::E
 impl PlaceMemory {
     pub(super) fn facts(&self) -> Value {
         let MemorySummary {
-            stretches,
+            segments,
             tracks,
             pedestrians,
             frames,
@@ -61,7 +61,7 @@ impl PlaceMemory {
         let [low, high] = extent.map_or([None; 2], |corners| corners.map(Some));
         json!({
             "file": self.file.display().to_string(),
-            "stretches": stretches,
+            "stretches": segments,
             "capacity": self.memory.capacity(),
             "tracks": tracks,
             "pedestrians": pedestrians,
@@ -77,8 +77,8 @@ impl PlaceMemory {
     fn numbers(&self) -> String {
         let summary = self.memory.summary();
         format!(
-            "{} of at most {} stretches, of {}; {} seen in {}",
-            summary.stretches,
+            "{} of at most {} segments, of {}; {} seen in {}",
+            summary.segments,
             self.memory.capacity(),
             many(summary.tracks, "track", "tracks"),
             many(

@@ -127,9 +127,9 @@ impl KeptMemory {
             Some(why) => tell(format_args!("warning: {why}")),
             None if place.refused().is_none() && place.memory().last_frame().is_some() => {
                 tell(format_args!(
-                    "note: {} remembers {} stretches, 8 s of one pedestrian each",
+                    "note: {} remembers {} segments, 8 s of one pedestrian each",
                     kept.file.path().display(),
-                    place.memory().stretches()
+                    place.memory().segments()
                 ));
             }
             None => {}
