@@ -4,7 +4,7 @@ use ddl::data::{Completion, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::eval::{ForecastError, Forecaster};
 use ddl::memory::SceneMemory;
-use ddl::{DdlError, Forecast, LiveForecaster, LiveScenes, Variant, WatchedPlace};
+use ddl::{DdlError, Forecast, LiveForecaster, LiveScenes, PlaceMemory, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{bits, drawn_model, program};
@@ -198,7 +198,7 @@ fn each_scene_remembers_its_place() {
     let mut scenes = LiveScenes::with_frame_step(FRAME_STEP).unwrap();
     for (scene, crowd) in [("hall", "corridor"), ("yard", "plaza")] {
         let name = name(scene);
-        let place = WatchedPlace::new(&model, memory()).unwrap();
+        let place = PlaceMemory::new(&model, memory()).unwrap();
         scenes.remember(Some(&name), place).unwrap();
         let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
         let mut live = live.remembering(memory()).unwrap();

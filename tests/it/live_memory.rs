@@ -2,7 +2,7 @@
 
 use ddl::data::{LiveTracks, Observation, PedestrianId, Position, Recording, Window};
 use ddl::memory::{Playback, SceneMemory};
-use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant, WatchedPlace};
+use ddl::{DdlError, Forecaster as _, LiveForecaster, PlaceMemory, Variant};
 use ddl_tests::{bits, crowd, drawn_model};
 
 fn empty(recording: &Recording) -> SceneMemory {
@@ -91,7 +91,7 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
     memory.observe_recording(&here).unwrap();
     let tried = |by: f64, steps: i64| {
         let watched = scene("corridor", 120, by);
-        let mut place = WatchedPlace::new(&model, memory.clone()).unwrap();
+        let mut place = PlaceMemory::new(&model, memory.clone()).unwrap();
         let mut tracks = LiveTracks::with_frame_step(watched.frame_step()).unwrap();
         for &frame in &watched.frames()[..steps as usize] {
             let seen = pedestrians(&watched, frame);
@@ -101,14 +101,14 @@ fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
         place
     };
     let mut elsewhere = tried(500.0, 9);
-    let few = elsewhere.on_trial().unwrap();
+    let few = elsewhere.under_test().unwrap();
     assert!((1..13).contains(&few), "{few}");
     elsewhere.finish_test();
-    assert_eq!(elsewhere.on_trial(), Some(few));
+    assert_eq!(elsewhere.under_test(), Some(few));
     assert_eq!(elsewhere.refused(), None);
     // In its own place it is accepted before 30 pedestrians were seen.
-    let accepted = (9..120).find(|&steps| tried(0.0, steps).on_trial().is_none());
-    let seen = tried(500.0, accepted.unwrap()).on_trial();
+    let accepted = (9..120).find(|&steps| tried(0.0, steps).under_test().is_none());
+    let seen = tried(500.0, accepted.unwrap()).under_test();
     assert!(seen.is_some_and(|seen| (5..30).contains(&seen)), "{seen:?}");
 }
 

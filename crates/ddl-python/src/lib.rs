@@ -60,7 +60,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        module.add("UNFAMILIAR", ddl::UNFAMILIAR)?;
+        module.add("UNFAMILIAR", ddl::UNFAMILIAR_THRESHOLD)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

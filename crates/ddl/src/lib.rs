@@ -108,9 +108,9 @@ pub use forecast::certified::{CertificateError, CertifiedForecast};
 pub use forecast::clearance::Clearance;
 pub use forecast::live::{LiveForecast, LiveForecaster};
 pub use forecast::memory_file::MemoryFile;
+pub use forecast::place_memory::{MemoryMismatch, PlaceMemory};
 pub use forecast::recording_player::RecordingPlayer;
 pub use forecast::scenes::{LiveScenes, SceneBatch, SceneForecast};
-pub use forecast::watched_place::{OtherPlace, WatchedPlace};
 pub use goals::model::GoalModel;
 pub use goals::recipe::{GoalRecipe, ProposalRecipe};
 pub use goals::remembering::Remembering;
@@ -127,7 +127,7 @@ pub use run::validation_part::ValidationPart;
 pub use training::best_epoch::best_epoch;
 pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, train};
 pub use trust::calibration::Calibration;
-pub use trust::familiarity::UNFAMILIAR;
+pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
 /// The examples of the guide, run as documentation tests.
 #[cfg(doctest)]

@@ -85,14 +85,14 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
         let familiarity = model.familiarity(&recording.windows(WindowRule::Complete))?;
         let familiarity = familiarity.concat();
         all += familiarity.len();
-        unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR).count();
+        unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR_THRESHOLD).count();
     }
     let share = 100.0 * f64::from(u32::try_from(unfamiliar)?) / f64::from(u32::try_from(all.max(1))?);
     if share > MANY_UNFAMILIAR {
         tell(format_args!(
             "warning: {share:.0} % of the motions are unlike the training motions of the built-in model {model} \
          (familiarity below {}): their forecasts are less certain",
-            ddl::UNFAMILIAR
+            ddl::UNFAMILIAR_THRESHOLD
         ));
     }
     Ok(())

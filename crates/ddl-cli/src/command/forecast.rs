@@ -234,7 +234,7 @@ impl Forecast {
         let familiarity = |&(moment, i): &(&Moment<'_>, usize)| moment.forecast.familiarity(i);
         let mut unfamiliar = all
             .clone()
-            .filter(|of| familiarity(of).is_some_and(|f| f < ddl::UNFAMILIAR));
+            .filter(|of| familiarity(of).is_some_and(|f| f < ddl::UNFAMILIAR_THRESHOLD));
         let Some((moment, i)) = unfamiliar.next() else {
             return false;
         };
@@ -249,7 +249,7 @@ impl Forecast {
              pedestrian {} observed until frame {}: their forecasts use little of the network, and their weights are \
              flatter{later}",
             all.count(),
-            ddl::UNFAMILIAR,
+            ddl::UNFAMILIAR_THRESHOLD,
             moment.who(i),
             moment.observed_until(),
         ));

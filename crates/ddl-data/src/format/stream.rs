@@ -26,7 +26,7 @@ const MOST_WORDS: usize = 2 * LARGEST_CROWD;
 /// Largest number of scenes at a time, above what one machine can forecast.
 const MOST_SCENES: usize = 1_000;
 /// Time without a line after which a scene is forgotten.
-const SILENCE: Duration = Duration::from_mins(10);
+const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 
 /// The pedestrians of one scene at one frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +79,7 @@ pub struct FrameReader<R> {
     named: Option<(bool, usize)>,
     /// Number of pedestrians in incomplete frames.
     unfinished: usize,
-    silence: Duration,
+    idle_timeout: Duration,
     ended: bool,
 }
 
@@ -135,15 +135,15 @@ impl<R: BufRead> FrameReader<R> {
             spoken_of: None,
             named: None,
             unfinished: 0,
-            silence: SILENCE,
+            idle_timeout: IDLE_TIMEOUT,
             ended: false,
         }
     }
 
     /// Sets another time without a line after which a scene is forgotten.
     #[must_use]
-    pub fn forgetting_after(self, silence: Duration) -> Self {
-        Self { silence, ..self }
+    pub fn forgetting_after(self, idle_timeout: Duration) -> Self {
+        Self { idle_timeout, ..self }
     }
 
     /// Waits for the next complete frame; `None` at the end.
@@ -336,21 +336,21 @@ impl<R: BufRead> FrameReader<R> {
         }
     }
 
-    /// Makes room for a new scene, and forgets silent scenes.
+    /// Makes room for a new scene, and forgets idle scenes.
     fn hear(&mut self, name: &Option<SceneName>) -> Result<(), FormatError> {
-        let silence = self.silence;
+        let idle_timeout = self.idle_timeout;
         match self.scenes.get_mut(name) {
-            Some(scene) if name.is_none() || scene.heard.elapsed() < silence => {
+            Some(scene) if name.is_none() || scene.heard.elapsed() < idle_timeout => {
                 scene.heard = Instant::now();
                 return Ok(());
             }
             _ => {}
         }
-        let silent = |scene: &Scene| scene.heard.elapsed() >= silence;
+        let idle = |scene: &Scene| scene.heard.elapsed() >= idle_timeout;
         let scenes = self.scenes.iter();
-        let silent = scenes.filter(|(_, scene)| silent(scene));
-        let silent: Vec<_> = silent.map(|(name, _)| name.clone()).collect();
-        for name in silent {
+        let idle = scenes.filter(|(_, scene)| idle(scene));
+        let idle: Vec<_> = idle.map(|(name, _)| name.clone()).collect();
+        for name in idle {
             let frame = self.whole(&name);
             self.left.extend(frame);
             self.scenes.remove(&name);
@@ -361,7 +361,7 @@ impl<R: BufRead> FrameReader<R> {
             return Err(self.wrong(FormatProblem::TooManyScenes {
                 scene: scene.clone(),
                 limit: MOST_SCENES,
-                minutes: silence.as_secs() / 60,
+                minutes: idle_timeout.as_secs() / 60,
             }));
         }
         Ok(())

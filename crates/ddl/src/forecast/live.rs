@@ -1,7 +1,7 @@
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
+use crate::forecast::place_memory::{MemoryMismatch, PlaceMemory};
 use crate::forecast::watch::Watch;
-use crate::forecast::watched_place::{OtherPlace, WatchedPlace};
 use crate::model::ddl::Ddl;
 use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl_eval::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
@@ -133,21 +133,21 @@ impl<M> LiveForecaster<M> {
     /// The memory of the place, to be [saved](SceneMemory::write); `None` unless
     /// [requested](LiveForecaster::remembering).
     pub fn memory(&self) -> Option<&SceneMemory> {
-        self.place().map(WatchedPlace::memory)
+        self.place().map(PlaceMemory::memory)
     }
 
     /// The reason why the given memory is no longer used; `None` while it is.
-    pub fn refused_memory(&self) -> Option<&OtherPlace> {
+    pub fn refused_memory(&self) -> Option<&MemoryMismatch> {
         self.place()?.refused()
     }
 
-    /// The watched place, for its [memory file](crate::MemoryFile).
-    pub fn place(&self) -> Option<&WatchedPlace> {
+    /// The memory of the place, for its [memory file](crate::MemoryFile).
+    pub fn place(&self) -> Option<&PlaceMemory> {
         self.watch.place.as_ref()
     }
 
     /// Decides from the pedestrians so far whether the given memory is of this place. Call it at the end of the stream
-    /// ([`WatchedPlace::finish_test`]).
+    /// ([`PlaceMemory::finish_test`]).
     pub fn finish_test(&mut self) {
         if let Some(place) = &mut self.watch.place {
             place.finish_test();
@@ -164,12 +164,12 @@ impl<M> LiveForecaster<M> {
     fn push_with<F>(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
         forecast: impl FnOnce(&M, &Window) -> Result<F, ForecastError>,
     ) -> Result<Option<LiveForecast<F>>, DdlError> {
-        let people = people.into_iter().collect();
+        let pedestrians = pedestrians.into_iter().collect();
         let model = &self.model;
-        let made = self.watch.push(frame, people, |window| forecast(model, window))?;
+        let made = self.watch.push(frame, pedestrians, |window| forecast(model, window))?;
         Ok(made.map(|(window, forecast)| LiveForecast { window, forecast }))
     }
 
@@ -191,9 +191,9 @@ impl<M: Forecaster> LiveForecaster<M> {
     pub fn push(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<LiveForecast>, DdlError> {
-        let now = self.push_with(frame, people, M::forecast)?;
+        let now = self.push_with(frame, pedestrians, M::forecast)?;
         Ok(now.map(|LiveForecast { window, forecast }| {
             let forecast = self.adapted(&window, forecast);
             LiveForecast { window, forecast }
@@ -205,14 +205,14 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     /// Adds a memory of the place: [`SceneMemory::new`], or one from a file ([`SceneMemory::read`]). The paths of
     /// earlier pedestrians then influence the forecasts, and the memory grows with every frame.
     ///
-    /// A forecast uses observations before its frame. A memory of at least [`OtherPlace::MIN_SEGMENTS`] segments
+    /// A forecast uses observations before its frame. A memory of at least [`MemoryMismatch::MIN_SEGMENTS`] segments
     /// is tested on the first pedestrians. If it is of another place, it is [refused](Self::refused_memory), and an
     /// empty one replaces it.
     ///
     /// # Errors
     /// When the model has no memory branch, or the memory has another number of raw frames per step.
     pub fn remembering(mut self, memory: SceneMemory) -> Result<Self, DdlError> {
-        let place = WatchedPlace::new(self.model.borrow(), memory)?;
+        let place = PlaceMemory::new(self.model.borrow(), memory)?;
         self.watch.remember(place)?;
         Ok(self)
     }
@@ -226,10 +226,10 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     pub fn push_certified(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<LiveForecast<CertifiedForecast>>, DdlError> {
         certified::ensure_flow(self.model.borrow().config().star.variant)?;
-        let now = self.push_with(frame, people, |model, window| {
+        let now = self.push_with(frame, pedestrians, |model, window| {
             let windows = std::slice::from_ref(window);
             Ok(model.borrow().forecast_certified(windows)?.remove(0))
         })?;

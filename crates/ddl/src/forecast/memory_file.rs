@@ -1,7 +1,7 @@
 //! The file that stores the memory of a place between sessions.
 
 use crate::error::DdlError;
-use crate::forecast::watched_place::WatchedPlace;
+use crate::forecast::place_memory::PlaceMemory;
 use crate::run::lock::RunLock;
 use ddl_memory::SceneMemory;
 use std::fs::File;
@@ -62,9 +62,9 @@ impl MemoryFile {
     ///
     /// # Errors
     /// When the file cannot be written; an earlier one is unchanged.
-    pub fn write(&mut self, place: &WatchedPlace) -> Result<(), DdlError> {
+    pub fn write(&mut self, place: &PlaceMemory) -> Result<(), DdlError> {
         self.written = Instant::now();
-        let decided = place.refused().is_none() && place.on_trial().is_none();
+        let decided = place.refused().is_none() && place.under_test().is_none();
         // Without a frame, the file would only fix the frame rate of the next session.
         if decided && place.memory().last_frame().is_some() {
             place.memory().write(&self.file)?;
@@ -72,12 +72,12 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// Writes the memory at the end of a session, after its [test](WatchedPlace::finish_test). Returns the reason if
+    /// Writes the memory at the end of a session, after its [test](PlaceMemory::finish_test). Returns the reason if
     /// the file is left unchanged.
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    pub fn end(&mut self, place: &WatchedPlace) -> Result<Option<String>, DdlError> {
+    pub fn end(&mut self, place: &PlaceMemory) -> Result<Option<String>, DdlError> {
         self.write(place)?;
         let path = self.path.display();
         if let Some(other) = place.refused() {
@@ -86,7 +86,7 @@ impl MemoryFile {
                  place"
             )));
         }
-        Ok(place.on_trial().map(|tried| {
+        Ok(place.under_test().map(|tried| {
             format!(
                 "{path}: {tried} pedestrians were observed for 8 time steps, too few to tell whether the memory is of \
                  this place; the file is unchanged"

@@ -1,6 +1,6 @@
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
-use crate::trust::familiarity::UNFAMILIAR;
+use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
 use ddl_data::{OBSERVED, Recording, Window};
 use ddl_eval::{EvaluationError, Forecast, Forecaster as _};
 use ddl_report::Moment;
@@ -82,13 +82,16 @@ fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
     let all = forecasts
         .iter()
         .flat_map(|of| (0..of.pedestrians()).filter_map(move |i| of.familiarity(i)));
-    let unlike = all.clone().filter(|&familiarity| familiarity < UNFAMILIAR).count();
+    let unlike = all
+        .clone()
+        .filter(|&familiarity| familiarity < UNFAMILIAR_THRESHOLD)
+        .count();
     (unlike > 0).then(|| {
         format!(
         "{unlike} of {} motions are unlike the training motions (familiarity below {}): their forecasts use little of \
          the network, and their weights are flatter.",
             all.count(),
-            UNFAMILIAR
+            UNFAMILIAR_THRESHOLD
         )
     })
 }

@@ -1,8 +1,8 @@
 //! Many cameras in one process; their windows are forecast in batches.
 
 use crate::error::DdlError;
+use crate::forecast::place_memory::PlaceMemory;
 use crate::forecast::watch::Watch;
-use crate::forecast::watched_place::WatchedPlace;
 use ddl_data::{Completion, Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use std::collections::{BTreeMap, VecDeque};
@@ -22,8 +22,8 @@ use std::time::{Duration, Instant};
 ///
 /// # What is kept
 /// It keeps the state of a `LiveForecaster` for each scene, for at most [`MOST_SCENES`](Self::MOST_SCENES) scenes. A
-/// scene without a frame for [`SILENCE`](Self::SILENCE) is forgotten when another scene begins, or by
-/// [`forget_silent`](Self::forget_silent). For adaptive regions the caller keeps one
+/// scene without a frame for [`IDLE_TIMEOUT`](Self::IDLE_TIMEOUT) is forgotten when another scene begins, or by
+/// [`forget_idle`](Self::forget_idle). For adaptive regions the caller keeps one
 /// [`AdaptiveRegions`](ddl_eval::AdaptiveRegions) per scene.
 ///
 /// # Examples
@@ -52,7 +52,7 @@ pub struct LiveScenes {
     waiting: VecDeque<(Option<SceneName>, Window)>,
     is_latest_only: bool,
     dropped: u64,
-    silence: Duration,
+    idle_timeout: Duration,
 }
 
 #[derive(Debug, Clone)]
@@ -93,7 +93,7 @@ impl LiveScenes {
     /// crowd.
     pub const BATCH: usize = 50;
     /// Time without a frame after which a scene is forgotten.
-    pub const SILENCE: Duration = Duration::from_mins(10);
+    pub const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 
     /// Starts without scenes; consecutive frame numbers are one step of 0.4 s apart.
     #[must_use]
@@ -117,7 +117,7 @@ impl LiveScenes {
             waiting: VecDeque::new(),
             is_latest_only: false,
             dropped: 0,
-            silence: Self::SILENCE,
+            idle_timeout: Self::IDLE_TIMEOUT,
         }
     }
 
@@ -141,8 +141,8 @@ impl LiveScenes {
 
     /// Sets another time without a frame after which a scene is forgotten.
     #[must_use]
-    pub fn forgetting_after(self, silence: Duration) -> Self {
-        Self { silence, ..self }
+    pub fn forgetting_after(self, idle_timeout: Duration) -> Self {
+        Self { idle_timeout, ..self }
     }
 
     /// Raw frames in one step of 0.4 s.
@@ -161,10 +161,10 @@ impl LiveScenes {
         &mut self,
         scene: Option<&SceneName>,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<(), DdlError> {
-        let people = people.into_iter().collect();
-        self.add(scene.cloned(), frame, people, PedestrianNames::default())
+        let pedestrians = pedestrians.into_iter().collect();
+        self.add(scene.cloned(), frame, pedestrians, PedestrianNames::default())
     }
 
     /// Adds a frame as read by a [`FrameReader`](ddl_data::FrameReader); its pedestrians keep their names. If the scene
@@ -186,7 +186,7 @@ impl LiveScenes {
         &mut self,
         name: Option<SceneName>,
         frame: i64,
-        people: Vec<(PedestrianId, Position)>,
+        pedestrians: Vec<(PedestrianId, Position)>,
         names: PedestrianNames,
     ) -> Result<(), DdlError> {
         if self.waiting.len() >= Self::MOST_WAITING {
@@ -195,7 +195,7 @@ impl LiveScenes {
             });
         }
         let scene = self.scene(&name)?;
-        let made = scene.watch.push(frame, people, |_| Ok::<_, DdlError>(()))?;
+        let made = scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(()))?;
         scene.heard = Instant::now();
         let window = made.map(|(window, ())| window.with_names(names));
         let mut waiting = self.waiting.iter();
@@ -221,11 +221,11 @@ impl LiveScenes {
     #[expect(clippy::ref_option, reason = "a key of the map")]
     fn scene(&mut self, name: &Option<SceneName>) -> Result<&mut Scene, DdlError> {
         if !self.scenes.contains_key(name) {
-            self.forget_silent();
+            self.forget_idle();
             if self.scenes.len() >= Self::MOST_SCENES {
                 return Err(DdlError::TooManyScenes {
                     limit: Self::MOST_SCENES,
-                    minutes: self.silence.as_secs() / 60,
+                    minutes: self.idle_timeout.as_secs() / 60,
                 });
             }
         }
@@ -241,16 +241,16 @@ impl LiveScenes {
     ///
     /// # Errors
     /// When the memory has another number of raw frames per step; [`DdlError::TooManyScenes`] beyond that limit.
-    pub fn remember(&mut self, scene: Option<&SceneName>, place: WatchedPlace) -> Result<(), DdlError> {
+    pub fn remember(&mut self, scene: Option<&SceneName>, place: PlaceMemory) -> Result<(), DdlError> {
         self.scene(&scene.cloned())?.watch.remember(place)
     }
 
     /// The place of a scene, if it [has a memory](Self::remember).
-    pub fn place(&self, scene: Option<&SceneName>) -> Option<&WatchedPlace> {
+    pub fn place(&self, scene: Option<&SceneName>) -> Option<&PlaceMemory> {
         self.scenes.get(&scene.cloned())?.watch.place.as_ref()
     }
 
-    /// Decides whether the memory of a scene is of its place ([`WatchedPlace::finish_test`]).
+    /// Decides whether the memory of a scene is of its place ([`PlaceMemory::finish_test`]).
     pub fn finish_test(&mut self, scene: Option<&SceneName>) {
         let scene = self.scenes.get_mut(&scene.cloned());
         if let Some(place) = scene.and_then(|scene| scene.watch.place.as_mut()) {
@@ -259,20 +259,20 @@ impl LiveScenes {
     }
 
     /// Forgets a scene, and returns its place with the memory. Its waiting windows stay in the queue.
-    pub fn forget(&mut self, scene: Option<&SceneName>) -> Option<WatchedPlace> {
+    pub fn forget(&mut self, scene: Option<&SceneName>) -> Option<PlaceMemory> {
         self.scenes.remove(&scene.cloned())?.watch.place
     }
 
     /// Scenes that have been without a frame for so long that they are forgotten when another scene begins.
-    pub fn silent(&self) -> Vec<SceneName> {
+    pub fn idle(&self) -> Vec<SceneName> {
         let scenes = self.scenes.iter();
-        let silent = scenes.filter(|(_, scene)| scene.heard.elapsed() >= self.silence);
-        silent.filter_map(|(name, _)| name.clone()).collect()
+        let idle = scenes.filter(|(_, scene)| scene.heard.elapsed() >= self.idle_timeout);
+        idle.filter_map(|(name, _)| name.clone()).collect()
     }
 
-    /// Forgets the [silent](Self::silent) scenes and their memories.
-    pub fn forget_silent(&mut self) {
-        for scene in self.silent() {
+    /// Forgets the [idle](Self::idle) scenes and their memories.
+    pub fn forget_idle(&mut self) {
+        for scene in self.idle() {
             self.forget(Some(&scene));
         }
     }

@@ -1,7 +1,7 @@
 //! One scene that is observed frame by frame: its tracks, and the memory of the place.
 
 use crate::error::DdlError;
-use crate::forecast::watched_place::WatchedPlace;
+use crate::forecast::place_memory::PlaceMemory;
 use ddl_data::{LiveTracks, PedestrianId, Position, Window};
 
 /// The state that a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes)
@@ -9,7 +9,7 @@ use ddl_data::{LiveTracks, PedestrianId, Position, Window};
 #[derive(Debug, Clone)]
 pub(crate) struct Watch {
     pub(crate) tracks: LiveTracks,
-    pub(crate) place: Option<WatchedPlace>,
+    pub(crate) place: Option<PlaceMemory>,
 }
 
 impl Watch {
@@ -22,7 +22,7 @@ impl Watch {
     ///
     /// # Errors
     /// When it has another number of raw frames per step.
-    pub(crate) fn remember(&mut self, place: WatchedPlace) -> Result<(), DdlError> {
+    pub(crate) fn remember(&mut self, place: PlaceMemory) -> Result<(), DdlError> {
         let (camera, memory) = (self.tracks.frame_step(), place.memory().frame_step());
         if camera != memory {
             return Err(DdlError::MemoryFrameStep { camera, memory });
@@ -36,13 +36,13 @@ impl Watch {
     pub(crate) fn push<T, E>(
         &mut self,
         frame: i64,
-        people: Vec<(PedestrianId, Position)>,
+        pedestrians: Vec<(PedestrianId, Position)>,
         make: impl FnOnce(&Window) -> Result<T, E>,
     ) -> Result<Option<(Window, T)>, DdlError>
     where
         DdlError: From<E>,
     {
-        let tracks = self.tracks.after(frame, people.iter().copied())?;
+        let tracks = self.tracks.after(frame, pedestrians.iter().copied())?;
         let made = match tracks.window() {
             None => None,
             Some(window) => {
@@ -55,7 +55,7 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            place.observe(frame, people, made.as_ref().map(|(window, _)| window))?;
+            place.observe(frame, pedestrians, made.as_ref().map(|(window, _)| window))?;
         }
         self.tracks = tracks;
         Ok(made)

@@ -22,7 +22,7 @@ const EXCESS_SPEED: f64 = 1.0;
 /// Lower bound, so that familiarity is never 0.
 const LEAST: f64 = 1e-9;
 /// Below this familiarity the user is warned: fewer than one in a hundred training motions are as unusual.
-pub const UNFAMILIAR: f64 = 0.01;
+pub const UNFAMILIAR_THRESHOLD: f64 = 0.01;
 
 /// Speeds (m/s) and lengths (m) below which logarithms carry little information.
 const SPEED: f64 = 0.1;
@@ -222,12 +222,12 @@ mod tests {
         let familiar = motions.familiarity(&at(1.0), 0.4);
         let runners = [4.0, 6.0, 8.0].map(|speed| motions.familiarity(&at(speed), 0.4));
         assert!(
-            familiar > 0.1 && runners[0] < UNFAMILIAR && runners.is_sorted_by(|a, b| a > b),
+            familiar > 0.1 && runners[0] < UNFAMILIAR_THRESHOLD && runners.is_sorted_by(|a, b| a > b),
             "{familiar} {runners:?}"
         );
         let mut jump = at(1.0);
         jump[7][1] += 8.0;
-        assert!(motions.familiarity(&jump, 0.4) < UNFAMILIAR);
+        assert!(motions.familiarity(&jump, 0.4) < UNFAMILIAR_THRESHOLD);
         assert!(motions.familiarity(&[[1e200, 0.0]; 8], 0.4) > 0.0);
         assert_eq!(TrainingMotions::learn(&[], 0.4), None);
     }

@@ -4,7 +4,7 @@ use crate::telling::{tell, words};
 use anyhow::{Context as _, bail};
 use ddl::data::SceneName;
 use ddl::memory::SceneMemory;
-use ddl::{Ddl, DdlError, LiveScenes, MemoryFile, WatchedPlace};
+use ddl::{Ddl, DdlError, LiveScenes, MemoryFile, PlaceMemory};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -87,7 +87,7 @@ impl KeptMemory {
     /// Reports that the memory of a scene is of another place, if so.
     pub(super) fn tell_refusal(&mut self, scene: Option<&SceneName>, scenes: &LiveScenes) {
         if let Some(Some(kept)) = self.kept.get_mut(&scene.cloned())
-            && let Some(other) = scenes.place(scene).and_then(WatchedPlace::refused)
+            && let Some(other) = scenes.place(scene).and_then(PlaceMemory::refused)
             && !std::mem::replace(&mut kept.is_refusal_told, true)
         {
             tell(format_args!(
@@ -168,7 +168,7 @@ impl Kept {
             Some(memory) => memory,
             None => SceneMemory::new(camera, SceneMemory::DEFAULT_CAPACITY)?,
         };
-        let place = WatchedPlace::new(model, memory)?;
+        let place = PlaceMemory::new(model, memory)?;
         let begun = scenes.remember(scene, place);
         match begun {
             Err(error @ DdlError::MemoryFrameStep { .. }) => {

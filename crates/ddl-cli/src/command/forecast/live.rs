@@ -121,19 +121,19 @@ fn lock(watching: &Mutex<Watching>) -> MutexGuard<'_, Watching> {
 }
 
 impl Watching {
-    /// Ends the scenes that have been silent, when another one begins.
-    fn forget_silent(&mut self) -> (Vec<SceneName>, anyhow::Result<()>) {
+    /// Ends the scenes that have been idle, when another one begins.
+    fn forget_idle(&mut self) -> (Vec<SceneName>, anyhow::Result<()>) {
         let Some(scenes) = &mut self.scenes else {
             return (Vec::new(), Ok(()));
         };
-        let (silent, mut ended) = (scenes.silent(), Ok(()));
-        for scene in &silent {
+        let (idle, mut ended) = (scenes.idle(), Ok(()));
+        for scene in &idle {
             if let Some(memory) = &mut self.memory {
                 ended = ended.and(memory.end(Some(scene), scenes));
             }
             scenes.forget(Some(scene));
         }
-        (silent, ended)
+        (idle, ended)
     }
 
     fn observe(&mut self, frame: Frame, model: &Ddl) -> anyhow::Result<()> {
@@ -262,12 +262,12 @@ impl Stream<'_> {
     fn observe(&mut self, frame: Frame) -> anyhow::Result<()> {
         let frame = to_ground(frame, self.homography.as_ref())?;
         let mut watching = lock(self.watching);
-        let (silent, ended) = if frame.is_first {
-            watching.forget_silent()
+        let (idle, ended) = if frame.is_first {
+            watching.forget_idle()
         } else {
             (Vec::new(), Ok(()))
         };
-        for scene in silent {
+        for scene in idle {
             self.onward.forget(&scene);
         }
         watching.observe(frame, self.model).and(ended)

@@ -1,4 +1,4 @@
-//! A watched place: its memory, and the test whether a given memory is of this place.
+//! The memory of a place, and the test whether a given memory is of this place.
 
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
@@ -22,15 +22,15 @@ const FEWEST_TRIED: usize = 13;
 /// The memory of an observed place, and the test that the memory belongs to it. It is the part of a
 /// [`LiveForecaster`](crate::LiveForecaster) for programs that keep tracks themselves.
 ///
-/// A memory of at least [`OtherPlace::MIN_SEGMENTS`] segments is tested on the first pedestrians. If it is of
+/// A memory of at least [`MemoryMismatch::MIN_SEGMENTS`] segments is tested on the first pedestrians. If it is of
 /// another place, it is [refused](Self::refused), and an empty one replaces it.
 #[derive(Debug, Clone)]
-pub struct WatchedPlace {
+pub struct PlaceMemory {
     memory: SceneMemory,
     /// Earlier pedestrians recalled for each pedestrian.
     count: usize,
     trial: Option<Trial>,
-    refused: Option<OtherPlace>,
+    refused: Option<MemoryMismatch>,
 }
 
 /// The given memory, unchanged, until it is confirmed to be of this place.
@@ -41,22 +41,22 @@ struct Trial {
     alike: usize,
 }
 
-/// The given memory is of another place than the watched one.
+/// The given memory is of another place than the observed one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct OtherPlace {
+pub struct MemoryMismatch {
     /// Number of pedestrians that it was tested on.
     pub tried: usize,
     /// Number of these that moved like an earlier pedestrian in the memory.
     pub alike: usize,
 }
 
-impl OtherPlace {
+impl MemoryMismatch {
     /// A memory with fewer segments is not tested: it may be of any place.
     pub const MIN_SEGMENTS: usize = 500;
 }
 
-impl fmt::Display for OtherPlace {
+impl fmt::Display for MemoryMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { tried, alike } = self;
         write!(
@@ -67,7 +67,7 @@ impl fmt::Display for OtherPlace {
     }
 }
 
-impl WatchedPlace {
+impl PlaceMemory {
     /// Starts with an empty memory or one from a file; tracks that were running in it have ended.
     ///
     /// # Errors
@@ -75,7 +75,7 @@ impl WatchedPlace {
     pub fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
         let count = model.goal_model().recalled_per_pedestrian()?;
         memory.end_tracks();
-        let known = memory.segments() >= OtherPlace::MIN_SEGMENTS;
+        let known = memory.segments() >= MemoryMismatch::MIN_SEGMENTS;
         let trial = known.then(|| Trial {
             given: memory.clone(),
             tried: BTreeSet::new(),
@@ -95,17 +95,17 @@ impl WatchedPlace {
     }
 
     /// The reason why the given memory is no longer used; `None` while it is.
-    pub fn refused(&self) -> Option<&OtherPlace> {
+    pub fn refused(&self) -> Option<&MemoryMismatch> {
         self.refused.as_ref()
     }
 
     /// The number of pedestrians that the given memory was tested on so far; `None` once the test is decided.
-    pub fn on_trial(&self) -> Option<usize> {
+    pub fn under_test(&self) -> Option<usize> {
         self.trial.as_ref().map(|trial| trial.tried.len())
     }
 
     /// Ends the test of the memory; call it when no more pedestrians will follow. If there were too few to refuse the
-    /// memory, and none of them moved like an earlier one, the test stays [undecided](Self::on_trial).
+    /// memory, and none of them moved like an earlier one, the test stays [undecided](Self::under_test).
     pub fn finish_test(&mut self) {
         if let Some(trial) = &self.trial {
             let tried = trial.tried.len();
@@ -135,10 +135,10 @@ impl WatchedPlace {
     pub fn observe(
         &mut self,
         frame: i64,
-        people: impl IntoIterator<Item = (PedestrianId, Position)>,
+        pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
         window: Option<&Window>,
     ) -> Result<(), DdlError> {
-        self.memory.observe(frame, people)?;
+        self.memory.observe(frame, pedestrians)?;
         if let (Some(trial), Some(window)) = (&mut self.trial, window) {
             trial.look_at(window);
             // With this many similar pedestrians, later ones cannot cause a refusal.
@@ -153,7 +153,7 @@ impl WatchedPlace {
     fn refuse(&mut self) {
         if let Some(trial) = self.trial.take() {
             let (tried, alike) = (trial.tried.len(), trial.alike);
-            self.refused = Some(OtherPlace { tried, alike });
+            self.refused = Some(MemoryMismatch { tried, alike });
             self.memory = trial.given.empty_copy();
         }
     }
