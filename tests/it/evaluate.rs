@@ -3,7 +3,7 @@
 use ddl::data::{Convention, Dataset, Window, WindowRule};
 use ddl::eval::ResultRow;
 use ddl::network::{StarConfig, TrainingConfig};
-use ddl::report::{Moment, Report};
+use ddl::report::{ForecastSnapshot, Report};
 use ddl::{GoalEvaluation, Protocol, RunConfig, Variant};
 use ddl_tests::place::{Place, json};
 use ddl_tests::progress::{returns_at_once, told};
@@ -120,7 +120,7 @@ fn a_number_goes_from_the_model_to_the_page() {
     returns_at_once(&place, EVALUATE);
 
     // Selected moments: the certified forecasts under `fair`, some of them chosen as examples.
-    let moments: Vec<Moment> = json(&place.text("run/moments.json"));
+    let moments: Vec<ForecastSnapshot> = json(&place.text("run/moments.json"));
     assert!(moments.iter().any(|moment| !moment.picks.is_empty()));
     for moment in &moments {
         assert_eq!((moment.fold.as_str(), moment.forecaster.as_str()), (crowd::FOLD, "DDL"));

@@ -14,7 +14,7 @@ use ddl_eval::{
     metric::{displacement::distance, stability::RolloutStability},
 };
 use ddl_report::{
-    EpochPoint, Moment, Report, TrainingCurve, gallery,
+    EpochPoint, ForecastSnapshot, Report, TrainingCurve, gallery,
     page::{Page, Viewer},
 };
 
@@ -144,7 +144,7 @@ fn rows(fold: &str, windows: &[Window], rule: WindowRule) -> Result<Vec<ResultRo
     Ok(rows)
 }
 
-fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
+fn under_way(windows: &[Window]) -> Result<Vec<ForecastSnapshot>, Box<dyn Error>> {
     let spread = windows.iter().step_by((windows.len() / MOMENTS).max(1));
     let mut moments = Vec::new();
     for (at, window) in spread.enumerate() {
@@ -156,7 +156,12 @@ fn under_way(windows: &[Window]) -> Result<Vec<Moment>, Box<dyn Error>> {
                 window.track(i)[OBSERVED..OBSERVED + steps].to_vec()
             })
             .collect();
-        moments.push(Moment::under_way(Bending.name(), &under_way, &forecast, &seen)?);
+        moments.push(ForecastSnapshot::under_way(
+            Bending.name(),
+            &under_way,
+            &forecast,
+            &seen,
+        )?);
     }
     Ok(moments)
 }

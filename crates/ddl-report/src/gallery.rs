@@ -6,7 +6,7 @@ use std::fmt;
 use ddl_data::{HORIZON, Position, Window};
 use serde::{Deserialize, Serialize};
 
-use crate::Moment;
+use crate::ForecastSnapshot;
 use ddl_eval::{
     EvaluationError, Forecast, Scene,
     category::{Interaction, MotionKind},
@@ -24,11 +24,11 @@ const ARRIVED: f64 = 0.2;
 /// Smallest distance of pedestrians that keep their distance: twice the radius of a pedestrian, m.
 const APART: f64 = 0.4;
 
-/// The subject of a case.
+/// What a [`Highlight`] shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
-pub enum Show {
+pub enum HighlightKind {
     /// A pedestrian who reaches the goal of the representative hypothesis.
     Convergence,
     /// Pedestrians who walk together.
@@ -41,7 +41,7 @@ pub enum Show {
     Turning,
 }
 
-impl Show {
+impl HighlightKind {
     /// All kinds, in the order in which they are shown.
     pub const ALL: [Self; 5] = [
         Self::Convergence,
@@ -52,7 +52,7 @@ impl Show {
     ];
 }
 
-impl fmt::Display for Show {
+impl fmt::Display for HighlightKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Convergence => "convergence",
@@ -67,9 +67,9 @@ impl fmt::Display for Show {
 /// The reason to show a moment, and the pedestrians concerned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct Pick {
+pub struct Highlight {
     /// What it shows.
-    pub show: Show,
+    pub show: HighlightKind,
     /// Indices of the pedestrians concerned, in the order of the moment.
     #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<usize>,
@@ -77,9 +77,9 @@ pub struct Pick {
     pub rule: String,
 }
 
-impl Pick {
+impl Highlight {
     /// A case of these pedestrians, picked by this rule.
-    pub fn new(show: Show, pedestrians: Vec<usize>, rule: impl Into<String>) -> Self {
+    pub fn new(show: HighlightKind, pedestrians: Vec<usize>, rule: impl Into<String>) -> Self {
         Self {
             show,
             pedestrians,
@@ -91,7 +91,8 @@ impl Pick {
 /// Chooses moments to show from the forecasts of one fold (one forecast for each window), in order of recording and
 /// time.
 ///
-/// For each [`Show`] the moment of the pedestrian with the median minADE; for each recording 8 evenly spread moments.
+/// For each [`HighlightKind`] the moment of the pedestrian with the median minADE; for each recording 8 evenly spread
+/// moments.
 ///
 /// # Errors
 /// A window has no future, or a forecast is not of its window's pedestrians.
@@ -100,12 +101,12 @@ pub fn moments(
     forecaster: &str,
     windows: &[Window],
     forecasts: &[Forecast],
-) -> Result<Vec<Moment>, EvaluationError> {
+) -> Result<Vec<ForecastSnapshot>, EvaluationError> {
     if windows.len() != forecasts.len() {
         let (windows, forecasts) = (windows.len(), forecasts.len());
         return Err(EvaluationError::Count { windows, forecasts });
     }
-    let mut shown: BTreeMap<usize, Vec<Pick>> = spread_over_time(windows)
+    let mut shown: BTreeMap<usize, Vec<Highlight>> = spread_over_time(windows)
         .into_iter()
         .map(|index| (index, Vec::new()))
         .collect();
@@ -115,7 +116,7 @@ pub fn moments(
     shown
         .into_iter()
         .map(|(index, picks)| {
-            let moment = Moment::new(fold, forecaster, &windows[index], &forecasts[index])?;
+            let moment = ForecastSnapshot::new(fold, forecaster, &windows[index], &forecasts[index])?;
             Ok(moment.picked(picks))
         })
         .collect()
@@ -127,8 +128,8 @@ struct GalleryCase {
     min_ade: f64,
 }
 
-fn picks(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<(usize, Pick)>, EvaluationError> {
-    let mut cases: BTreeMap<Show, Vec<GalleryCase>> = BTreeMap::new();
+fn picks(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<(usize, Highlight)>, EvaluationError> {
+    let mut cases: BTreeMap<HighlightKind, Vec<GalleryCase>> = BTreeMap::new();
     for (index, (window, forecast)) in windows.iter().zip(forecasts).enumerate() {
         let scene = Scene::new(window, forecast)?;
         let errors = DisplacementErrors::of(&scene);
@@ -145,7 +146,7 @@ fn picks(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<(usize, Pick)
     Ok(cases.into_iter().map(|(show, cases)| median(show, cases)).collect())
 }
 
-fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
+fn median(show: HighlightKind, mut cases: Vec<GalleryCase>) -> (usize, Highlight) {
     let count = cases.len();
     cases.sort_by(|a, b| a.min_ade.total_cmp(&b.min_ade).then(a.window.cmp(&b.window)));
     let case = cases.swap_remove((count - 1) / 2);
@@ -156,7 +157,7 @@ fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
             case.min_ade
         ),
     };
-    let pick = Pick {
+    let pick = Highlight {
         show,
         pedestrians: case.pedestrians,
         rule,
@@ -164,27 +165,27 @@ fn median(show: Show, mut cases: Vec<GalleryCase>) -> (usize, Pick) {
     (case.window, pick)
 }
 
-fn shows(scene: &Scene<'_>, i: usize) -> Vec<(Show, Vec<usize>)> {
+fn shows(scene: &Scene<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)> {
     let window = scene.window();
     let mut shows = Vec::new();
     if converges(scene, i) {
-        shows.push((Show::Convergence, vec![i]));
+        shows.push((HighlightKind::Convergence, vec![i]));
     }
     match MotionKind::of(window.track(i)) {
-        Some(MotionKind::SlowingDown) => shows.push((Show::SlowingDown, vec![i])),
+        Some(MotionKind::SlowingDown) => shows.push((HighlightKind::SlowingDown, vec![i])),
         Some(MotionKind::TurningLeft | MotionKind::TurningRight) => {
-            shows.push((Show::Turning, vec![i]));
+            shows.push((HighlightKind::Turning, vec![i]));
         }
         _ => {}
     }
     if let Some((other, _)) = nearest(window, i, Interaction::Group, mean_distance) {
-        shows.push((Show::Group, vec![i, other]));
+        shows.push((HighlightKind::Group, vec![i, other]));
     }
     let passed = nearest(window, i, Interaction::CollisionAvoidance, closest_approach);
     if let Some((other, apart)) = passed
         && apart >= APART
     {
-        shows.push((Show::KeepingDistance, vec![i, other]));
+        shows.push((HighlightKind::KeepingDistance, vec![i, other]));
     }
     shows
 }

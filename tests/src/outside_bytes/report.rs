@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use ddl_report::{Moment, Report, page::Page};
+use ddl_report::{ForecastSnapshot, Report, page::Page};
 
 /// Reads bytes as `report.json` and creates a page. A report that was read is written and read back unchanged.
 pub fn read(bytes: &[u8]) {
@@ -21,11 +21,11 @@ pub fn read(bytes: &[u8]) {
 /// Reads bytes as `moments.json` and draws them.
 pub fn read_moments(bytes: &[u8]) {
     static EMPTY: OnceLock<Report> = OnceLock::new();
-    let Ok(moments) = serde_json::from_slice::<Vec<Moment>>(bytes) else {
+    let Ok(moments) = serde_json::from_slice::<Vec<ForecastSnapshot>>(bytes) else {
         return;
     };
     let text = serde_json::to_string(&moments).expect("valid data can be written");
-    let again: Vec<Moment> = serde_json::from_str(&text).expect("written moments can be read");
+    let again: Vec<ForecastSnapshot> = serde_json::from_str(&text).expect("written moments can be read");
     assert_eq!(again, moments);
     let empty = EMPTY.get_or_init(|| Report::new("none", []).expect("no rows, no conflict"));
     let moments = &moments;

@@ -7,7 +7,7 @@ use super::{
     marks::{arrow, star},
     plan::PlanView,
 };
-use crate::{MomentHypothesis, MomentPedestrian};
+use crate::{SnapshotHypothesis, SnapshotPedestrian};
 
 const ARROW_EVERY: usize = 3;
 /// Time of the displacement that an arrow of velocity shows, s.
@@ -17,7 +17,7 @@ fn from_last<'a>(observed: &'a [Position], path: &'a [Position]) -> impl Iterato
     observed[OBSERVED - 1..].iter().chain(path)
 }
 
-pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
+pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
     drawing.path("bystander", &plan.path(&pedestrian.observed));
     let ahead = plan.path(from_last(&pedestrian.observed, &pedestrian.truth));
     drawing.path("bystander-ahead", &ahead);
@@ -25,7 +25,7 @@ pub(crate) fn bystander(drawing: &mut Drawing, plan: &PlanView, pedestrian: &Mom
 }
 
 /// All hypotheses except the representative one; a larger weight gives a darker line.
-pub(crate) fn other_hypotheses(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
+pub(crate) fn other_hypotheses(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
     let representative = pedestrian.representative();
     let weights = pedestrian.hypotheses.iter().map(|h| h.weight);
     let heaviest = weights.fold(1e-9, f64::max);
@@ -48,7 +48,7 @@ pub(super) fn hypothesis_style(share: f64) -> String {
     format!("opacity:{opacity:.2};stroke-width:{width:.1}")
 }
 
-pub(crate) fn representative_goal(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian) {
+pub(crate) fn representative_goal(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian) {
     if let Some(goal) = pedestrian.hypotheses[pedestrian.representative()].goal {
         drawing.circle("goal representative", plan.px(goal), 8.0);
     }
@@ -58,10 +58,10 @@ pub(crate) fn representative_goal(drawing: &mut Drawing, plan: &PlanView, pedest
 pub(crate) fn representative(
     drawing: &mut Drawing,
     plan: &PlanView,
-    pedestrian: &MomentPedestrian,
+    pedestrian: &SnapshotPedestrian,
     with_velocities: bool,
 ) {
-    let hypothesis: &MomentHypothesis = &pedestrian.hypotheses[pedestrian.representative()];
+    let hypothesis: &SnapshotHypothesis = &pedestrian.hypotheses[pedestrian.representative()];
     let way = from_last(&pedestrian.observed, &hypothesis.positions);
     let way: Vec<Position> = way.copied().collect();
     drawing.path("forecast", &plan.path(&way));

@@ -10,7 +10,7 @@ use super::{
     legend::{self, LegendEntry},
     pedestrian,
 };
-use crate::{Moment, MomentPedestrian};
+use crate::{ForecastSnapshot, SnapshotPedestrian};
 
 /// Probability that the drawn region contains the pedestrian at the end of the horizon.
 const LEVEL: f64 = 0.9;
@@ -23,7 +23,7 @@ const LEVEL: f64 = 0.9;
 pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError> {
     let seen = |i: usize| window.track(i)[OBSERVED..].to_vec();
     let seen: Vec<Vec<Position>> = (0..window.len()).map(seen).collect();
-    let moment = Moment::under_way("", window, forecast, &seen).map_err(|_| {
+    let moment = ForecastSnapshot::under_way("", window, forecast, &seen).map_err(|_| {
         let (expected, found) = (window.len(), forecast.pedestrians());
         FigureError::Pedestrians { expected, found }
     })?;
@@ -87,8 +87,8 @@ fn entries(window: &Window, forecast: &Forecast) -> Vec<LegendEntry> {
     entries
 }
 
-fn extent(drawn: &[MomentPedestrian]) -> Vec<Position> {
-    let of_one = |pedestrian: &MomentPedestrian| {
+fn extent(drawn: &[SnapshotPedestrian]) -> Vec<Position> {
+    let of_one = |pedestrian: &SnapshotPedestrian| {
         let mut points = [&pedestrian.observed[..], &pedestrian.truth].concat();
         for hypothesis in &pedestrian.hypotheses {
             points.extend(&hypothesis.positions);

@@ -33,7 +33,7 @@ pub enum PageError {
 }
 
 #[derive(Debug, thiserror::Error)]
-pub(super) enum MomentProblem {
+pub(super) enum SnapshotProblem {
     #[error("pedestrian {pedestrian} has {found} positions in `{field}`, not {expected}")]
     Length {
         pedestrian: usize,
@@ -59,8 +59,8 @@ pub(super) enum MomentProblem {
     #[error("{0}")]
     Empty(&'static str),
     #[error("the pick `{show}` names pedestrian {pedestrian} of {pedestrians}, counted from 0")]
-    Pick {
-        show: crate::gallery::Show,
+    Highlight {
+        show: crate::gallery::HighlightKind,
         pedestrian: usize,
         pedestrians: usize,
     },

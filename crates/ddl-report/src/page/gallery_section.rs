@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use ddl_data::{OBSERVED, Position};
 
 use crate::{
-    Moment, MomentPedestrian,
+    ForecastSnapshot, SnapshotPedestrian,
     document::{escape, inline},
     figure::{
         drawing::Drawing,
@@ -13,7 +13,7 @@ use crate::{
         pedestrian,
         plan::{PlanView, bounds},
     },
-    gallery::{Pick, Show},
+    gallery::{Highlight, HighlightKind},
 };
 
 const SCENE: [f64; 2] = [360.0, 300.0];
@@ -25,13 +25,13 @@ const LEAST_SPAN: f64 = 3.0;
 const STRIPS: [f64; 2] = [30.0, 44.0];
 
 /// Draws the pedestrians of the pick, and the others in grey; `alone` adds a title and a legend, for a separate file.
-fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
+fn case_figure(moment: &ForecastSnapshot, pick: &Highlight, alone: bool) -> Drawing {
     let title = format!("{}: {}, frame {}", pick.show, moment.recording, moment.frame);
     let above = if alone { STRIPS[0] } else { 0.0 };
     let below = if alone { STRIPS[1] } else { 0.0 };
     let height = SCENE[1] + above + below;
     let mut drawing = Drawing::new(SCENE[0], height, &title);
-    let chosen: Vec<&MomentPedestrian> = pick.pedestrians.iter().map(|&at| &moment.pedestrians[at]).collect();
+    let chosen: Vec<&SnapshotPedestrian> = pick.pedestrians.iter().map(|&at| &moment.pedestrians[at]).collect();
     let plan = fitting(&chosen, above);
     for (at, pedestrian) in moment.pedestrians.iter().enumerate() {
         let mut all = pedestrian.observed.iter().chain(&pedestrian.truth);
@@ -62,7 +62,7 @@ fn case_figure(moment: &Moment, pick: &Pick, alone: bool) -> Drawing {
     drawing
 }
 
-fn fitting(chosen: &[&MomentPedestrian], above: f64) -> PlanView {
+fn fitting(chosen: &[&SnapshotPedestrian], above: f64) -> PlanView {
     let seen = chosen.iter().flat_map(|pedestrian| {
         let shown = &pedestrian.hypotheses[pedestrian.representative()];
         let paths = pedestrian.observed.iter().chain(&pedestrian.truth);
@@ -85,7 +85,7 @@ fn is_seen(plan: &PlanView, place: Position, above: f64) -> bool {
     (-slack..=SCENE[0] + slack).contains(&x) && (above - slack..=above + SCENE[1] + slack).contains(&y)
 }
 
-fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &MomentPedestrian, above: f64) {
+fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian, above: f64) {
     let [first, last] = [pedestrian.observed[0], pedestrian.observed[OBSERVED - 1]].map(|p| plan.px(p));
     let ahead = last[0] - first[0];
     let words = pedestrian.pedestrian.to_string();
@@ -136,8 +136,8 @@ fn key(drawing: &mut Drawing, y: f64) {
     drawing.text("small", [199.0, y], "velocity (move in 0.8 s)");
 }
 
-fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
-    let mut cases: Vec<(usize, &Moment, &Pick)> = moments
+fn cases(moments: &[ForecastSnapshot]) -> Vec<(usize, &ForecastSnapshot, &Highlight)> {
+    let mut cases: Vec<(usize, &ForecastSnapshot, &Highlight)> = moments
         .iter()
         .enumerate()
         .flat_map(|(at, moment)| moment.picks.iter().map(move |pick| (at, moment, pick)))
@@ -146,17 +146,19 @@ fn cases(moments: &[Moment]) -> Vec<(usize, &Moment, &Pick)> {
     cases
 }
 
-fn meaning(show: Show) -> &'static str {
+fn meaning(show: HighlightKind) -> &'static str {
     match show {
-        Show::Convergence => "A pedestrian who reaches the goal of the representative hypothesis.",
-        Show::Group => "Pedestrians who walk together.",
-        Show::SlowingDown => "A pedestrian who slows down; where the forecast does too, its arrows grow shorter.",
-        Show::KeepingDistance => "Pedestrians who pass each other and keep their distance.",
-        Show::Turning => "A pedestrian who turns.",
+        HighlightKind::Convergence => "A pedestrian who reaches the goal of the representative hypothesis.",
+        HighlightKind::Group => "Pedestrians who walk together.",
+        HighlightKind::SlowingDown => {
+            "A pedestrian who slows down; where the forecast does too, its arrows grow shorter."
+        }
+        HighlightKind::KeepingDistance => "Pedestrians who pass each other and keep their distance.",
+        HighlightKind::Turning => "A pedestrian who turns.",
     }
 }
 
-pub(super) fn html(moments: &[Moment]) -> String {
+pub(super) fn html(moments: &[ForecastSnapshot]) -> String {
     let cases = cases(moments);
     if cases.is_empty() {
         return "<p class=\"nothing\">No cases were picked for this page.</p>\n".to_owned();
@@ -195,7 +197,7 @@ pub(super) fn html(moments: &[Moment]) -> String {
     html + "</div>\n"
 }
 
-pub(super) fn figures(moments: &[Moment]) -> Vec<(String, Drawing)> {
+pub(super) fn figures(moments: &[ForecastSnapshot]) -> Vec<(String, Drawing)> {
     cases(moments)
         .into_iter()
         .map(|(_, moment, pick)| {

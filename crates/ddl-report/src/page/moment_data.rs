@@ -18,8 +18,8 @@
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
 
-use super::error::{MomentProblem, PageError};
-use crate::{Moment, MomentHypothesis, MomentPedestrian, gallery::Pick};
+use super::error::{PageError, SnapshotProblem};
+use crate::{ForecastSnapshot, SnapshotHypothesis, SnapshotPedestrian, gallery::Highlight};
 
 /// Largest absolute coordinate, m: millimetres stay far below the largest whole number of an `f64`.
 const REACH: f64 = ddl_data::COORDINATE_LIMIT;
@@ -32,7 +32,7 @@ pub(super) struct MomentData<'a> {
     recording: &'a str,
     frame: i64,
     frame_step: i64,
-    picks: &'a [Pick],
+    picks: &'a [Highlight],
     #[serde(rename = "pedestrians")]
     pedestrians: Vec<PedestrianData<'a>>,
 }
@@ -65,7 +65,7 @@ pub(super) enum Truth {
     AsSeen,
 }
 
-pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
+pub(super) fn check(moments: &[ForecastSnapshot], truth: Truth) -> Result<(), PageError> {
     for (index, moment) in moments.iter().enumerate() {
         problem(moment, truth).map_or(Ok(()), |problem| {
             Err(PageError::Moment {
@@ -79,14 +79,14 @@ pub(super) fn check(moments: &[Moment], truth: Truth) -> Result<(), PageError> {
     Ok(())
 }
 
-fn problem(moment: &Moment, truth: Truth) -> Option<MomentProblem> {
+fn problem(moment: &ForecastSnapshot, truth: Truth) -> Option<SnapshotProblem> {
     if moment.pedestrians.is_empty() {
-        return Some(MomentProblem::Empty("no pedestrian"));
+        return Some(SnapshotProblem::Empty("no pedestrian"));
     }
     let people = moment.pedestrians.len();
-    let absent = |pick: &Pick| {
+    let absent = |pick: &Highlight| {
         let pedestrian = *pick.pedestrians.iter().find(|&&one| one >= people)?;
-        Some(MomentProblem::Pick {
+        Some(SnapshotProblem::Highlight {
             show: pick.show,
             pedestrian,
             pedestrians: people,
@@ -98,14 +98,14 @@ fn problem(moment: &Moment, truth: Truth) -> Option<MomentProblem> {
         .or_else(|| moment.picks.iter().find_map(absent))
 }
 
-fn of_pedestrian(pedestrian: usize, who: &MomentPedestrian, truth: Truth) -> Option<MomentProblem> {
+fn of_pedestrian(pedestrian: usize, who: &SnapshotPedestrian, truth: Truth) -> Option<SnapshotProblem> {
     if who.hypotheses.is_empty() {
-        return Some(MomentProblem::Empty("a pedestrian has no hypothesis"));
+        return Some(SnapshotProblem::Empty("a pedestrian has no hypothesis"));
     }
     let path = |field, path: &[Position], expected| {
         if path.len() != expected {
             let found = path.len();
-            return Some(MomentProblem::Length {
+            return Some(SnapshotProblem::Length {
                 pedestrian,
                 field,
                 expected,
@@ -129,7 +129,7 @@ fn of_pedestrian(pedestrian: usize, who: &MomentPedestrian, truth: Truth) -> Opt
                 path("hypotheses", &of.positions, HORIZON)
                     .or_else(|| place(pedestrian, "goal", goal))
                     .or_else(|| {
-                        (!(0.0..=1.0).contains(&of.weight)).then_some(MomentProblem::Weight {
+                        (!(0.0..=1.0).contains(&of.weight)).then_some(SnapshotProblem::Weight {
                             pedestrian,
                             hypothesis,
                             weight: of.weight,
@@ -139,19 +139,19 @@ fn of_pedestrian(pedestrian: usize, who: &MomentPedestrian, truth: Truth) -> Opt
         })
 }
 
-fn place(pedestrian: usize, field: &'static str, path: &[Position]) -> Option<MomentProblem> {
+fn place(pedestrian: usize, field: &'static str, path: &[Position]) -> Option<SnapshotProblem> {
     let value = *path
         .as_flattened()
         .iter()
         .find(|value| value.is_nan() || value.abs() > REACH)?;
-    Some(MomentProblem::Coordinate {
+    Some(SnapshotProblem::Coordinate {
         pedestrian,
         field,
         value,
     })
 }
 
-pub(super) fn to_json(moments: &[Moment]) -> Result<String, PageError> {
+pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, PageError> {
     let lines: Vec<String> = moments
         .iter()
         .map(|moment| serde_json::to_string(&MomentData::of(moment)))
@@ -160,7 +160,7 @@ pub(super) fn to_json(moments: &[Moment]) -> Result<String, PageError> {
 }
 
 impl<'a> MomentData<'a> {
-    fn of(moment: &'a Moment) -> Self {
+    fn of(moment: &'a ForecastSnapshot) -> Self {
         Self {
             fold: &moment.fold,
             forecaster: &moment.forecaster,
@@ -174,10 +174,10 @@ impl<'a> MomentData<'a> {
 }
 
 impl<'a> PedestrianData<'a> {
-    fn of(pedestrian: &'a MomentPedestrian) -> Self {
+    fn of(pedestrian: &'a SnapshotPedestrian) -> Self {
         let last = pedestrian.observed[OBSERVED - 1];
         let all = &pedestrian.hypotheses;
-        let letters = |of: fn(&MomentHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
+        let letters = |of: fn(&SnapshotHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
         Self {
             pedestrian: &pedestrian.pedestrian,
             observed: steps([0.0, 0.0], &pedestrian.observed),
@@ -189,7 +189,7 @@ impl<'a> PedestrianData<'a> {
                 .collect(),
             weights: all.iter().map(|h| mm(h.weight)).collect(),
             radii: if all.iter().all(|h| h.radii.len() == HORIZON) {
-                let in_mm = |h: &MomentHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
+                let in_mm = |h: &SnapshotHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
                 all.iter().map(in_mm).collect()
             } else {
                 Vec::new()

@@ -1,7 +1,7 @@
 //! Parts of every page with a player: head, player, scripts.
 
 use super::template::fill;
-use crate::{Moment, document::escape, figure::drawing};
+use crate::{ForecastSnapshot, document::escape, figure::drawing};
 
 const HEAD: &str = include_str!("head.html");
 pub(super) const THEME_BUTTON: &str = include_str!("theme_button.html");
@@ -32,7 +32,7 @@ pub(super) fn head(title: &str) -> String {
     fill(HEAD, &slots)
 }
 
-pub(super) fn player(moments: &[Moment]) -> String {
+pub(super) fn player(moments: &[ForecastSnapshot]) -> String {
     let state = if moments.is_empty() { "empty" } else { "ready" };
     fill(PLAYER, &[("player-state", state)])
 }

@@ -11,7 +11,7 @@ use super::{
     training_section,
 };
 use crate::{
-    Moment, Report, TrainingCurve,
+    ForecastSnapshot, Report, TrainingCurve,
     document::{ContentsEntry, escape, identifier, inline, unused},
     figure::drawing::Drawing,
 };
@@ -25,8 +25,8 @@ const REPORT_SCRIPTS: [&str; 2] = [include_str!("script/curves.js"), include_str
 pub struct Page<'a> {
     /// The results.
     pub report: &'a Report,
-    /// Moments for the player; those with [picks](Moment::picks) are also shown in the gallery.
-    pub moments: &'a [Moment],
+    /// Moments for the player; those with [picks](ForecastSnapshot::picks) are also shown in the gallery.
+    pub moments: &'a [ForecastSnapshot],
     /// Training curves.
     pub curves: &'a [TrainingCurve],
 }

@@ -6,7 +6,7 @@ use super::{
     player::{PLAYER_SCRIPTS, THEME_BUTTON, head, player},
     template::{fill, json_in_script},
 };
-use crate::{Moment, document::escape};
+use crate::{ForecastSnapshot, document::escape};
 
 const TEMPLATE: &str = include_str!("viewer.html");
 
@@ -20,7 +20,7 @@ pub struct Viewer<'a> {
     /// Paragraphs below the player.
     pub notes: &'a [String],
     /// The moments to play.
-    pub moments: &'a [Moment],
+    pub moments: &'a [ForecastSnapshot],
 }
 
 impl Viewer<'_> {

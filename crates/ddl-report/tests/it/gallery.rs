@@ -7,8 +7,8 @@ use ddl_eval::{
     metric::displacement::average_displacement,
 };
 use ddl_report::{
-    Moment,
-    gallery::{self, Show},
+    ForecastSnapshot,
+    gallery::{self, HighlightKind},
 };
 
 fn windows() -> Vec<Window> {
@@ -22,8 +22,8 @@ fn oracle(windows: &[Window]) -> Vec<Forecast> {
         .unwrap()
 }
 
-fn shown(moments: &[Moment]) -> Vec<Show> {
-    let mut shown: Vec<Show> = moments.iter().flat_map(|m| &m.picks).map(|pick| pick.show).collect();
+fn shown(moments: &[ForecastSnapshot]) -> Vec<HighlightKind> {
+    let mut shown: Vec<HighlightKind> = moments.iter().flat_map(|m| &m.picks).map(|pick| pick.show).collect();
     shown.sort();
     shown
 }
@@ -33,7 +33,7 @@ fn each_kind_of_case_is_picked_once_and_time_is_covered() {
     let windows = windows();
     let moments = gallery::moments("corridor", "oracle", &windows, &oracle(&windows)).unwrap();
     let kinds = shown(&moments);
-    assert!(kinds.contains(&Show::Convergence) && kinds.contains(&Show::KeepingDistance));
+    assert!(kinds.contains(&HighlightKind::Convergence) && kinds.contains(&HighlightKind::KeepingDistance));
     let mut once = kinds.clone();
     once.dedup();
     assert_eq!(kinds, once);
@@ -60,9 +60,13 @@ fn the_case_shown_is_the_median_one() {
     let moments = gallery::moments("corridor", "oracle", &windows, &forecasts).unwrap();
     let moment = moments
         .iter()
-        .find(|m| m.picks.iter().any(|p| p.show == Show::Convergence))
+        .find(|m| m.picks.iter().any(|p| p.show == HighlightKind::Convergence))
         .unwrap();
-    let pick = moment.picks.iter().find(|p| p.show == Show::Convergence).unwrap();
+    let pick = moment
+        .picks
+        .iter()
+        .find(|p| p.show == HighlightKind::Convergence)
+        .unwrap();
     let error = |window: &Window, i: usize, forecast: &Forecast| {
         average_displacement(forecast.hypothesis(i, 0), window.future(i))
     };
@@ -94,7 +98,7 @@ fn forecasts_without_goals_converge_nowhere_and_few_windows_are_all_shown() {
         .unwrap();
     let moments = gallery::moments("corridor", "CV", &windows[..3], &forecasts).unwrap();
     assert_eq!(moments.len(), 3);
-    assert!(!shown(&moments).contains(&Show::Convergence));
+    assert!(!shown(&moments).contains(&HighlightKind::Convergence));
     assert_eq!(gallery::moments("corridor", "CV", &[], &[]).unwrap(), []);
     assert!(gallery::moments("corridor", "CV", &windows, &forecasts).is_err());
     assert!(gallery::moments("c", "CV", &[windows[0].without_future()], &forecasts[..1]).is_err());

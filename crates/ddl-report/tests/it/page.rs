@@ -3,8 +3,8 @@
 use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
 use ddl_report::{
-    EpochPoint, Moment, Report, TrainingCurve,
-    gallery::{Pick, Show},
+    EpochPoint, ForecastSnapshot, Report, TrainingCurve,
+    gallery::{Highlight, HighlightKind},
     page::{Page, Viewer},
 };
 use proptest::prelude::*;
@@ -36,9 +36,9 @@ fn window_and_forecast(pedestrians: usize, hypotheses: usize, goals: bool) -> (W
     (window, forecast.unwrap())
 }
 
-fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> Moment {
+fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> ForecastSnapshot {
     let (window, forecast) = window_and_forecast(pedestrians, hypotheses, goals);
-    Moment::new("fold", "stand-in", &window, &forecast).unwrap()
+    ForecastSnapshot::new("fold", "stand-in", &window, &forecast).unwrap()
 }
 
 fn report() -> Report {
@@ -50,7 +50,7 @@ fn report() -> Report {
     Report::new("A & B", Protocol::ALL.into_iter().flat_map(row)).unwrap()
 }
 
-fn with_moments(moments: &[Moment]) -> String {
+fn with_moments(moments: &[ForecastSnapshot]) -> String {
     let report = report();
     let page = Page {
         moments,
@@ -162,7 +162,7 @@ fn names_cannot_become_markup() {
     let mut bad = moment(2, 2, true);
     bad.recording = hostile.to_owned();
     bad.forecaster = hostile.to_owned();
-    let bad = bad.picked(vec![Pick::new(Show::Turning, vec![1], hostile)]);
+    let bad = bad.picked(vec![Highlight::new(HighlightKind::Turning, vec![1], hostile)]);
     let mut trained = curve(&[1, 2]);
     trained.variant = hostile.to_owned();
     let report = report();
@@ -187,8 +187,12 @@ fn names_cannot_become_markup() {
 
 #[test]
 fn figures_are_files_of_their_own() {
-    let pick = |show| Pick::new(show, vec![0, 1], "by hand");
-    let picked = moment(3, 20, true).picked(vec![pick(Show::Group), pick(Show::Group), pick(Show::Turning)]);
+    let pick = |show| Highlight::new(show, vec![0, 1], "by hand");
+    let picked = moment(3, 20, true).picked(vec![
+        pick(HighlightKind::Group),
+        pick(HighlightKind::Group),
+        pick(HighlightKind::Turning),
+    ]);
     let report = report();
     let page = Page {
         report: &report,
@@ -228,7 +232,7 @@ fn what_is_not_there_is_said() {
     }
 }
 
-type Fault = (fn(&mut Moment), &'static str);
+type Fault = (fn(&mut ForecastSnapshot), &'static str);
 
 #[test]
 fn what_is_not_whole_is_refused_by_name() {
@@ -256,7 +260,7 @@ fn what_is_not_whole_is_refused_by_name() {
             "a pedestrian has no hypothesis",
         ),
         (
-            |m| m.picks = vec![Pick::new(Show::Group, vec![0, 2], "")],
+            |m| m.picks = vec![Highlight::new(HighlightKind::Group, vec![0, 2], "")],
             "the pick `walking together` names pedestrian 2 of 2, counted from 0",
         ),
     ];
@@ -323,7 +327,7 @@ fn a_viewer_plays_what_is_not_over_yet() {
     let mut under_way = moment(2, 2, true);
     under_way.pedestrians[1].truth.truncate(3);
     under_way.pedestrians[0].truth.clear();
-    let view = |moment: &Moment| {
+    let view = |moment: &ForecastSnapshot| {
         let viewer = Viewer {
             title: "yard <1>",
             lead: "two & two",

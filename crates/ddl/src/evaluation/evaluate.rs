@@ -14,7 +14,7 @@ use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
 use ddl_eval::{Forecast, ForecastError, Forecaster as _, Protocol, ResultRow};
 use ddl_goal::{GoalSet, QuerySpan};
-use ddl_report::{Moment, gallery};
+use ddl_report::{ForecastSnapshot, gallery};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -59,7 +59,7 @@ pub struct Evaluation {
     /// The scores, each with its conditions.
     pub rows: Vec<ResultRow>,
     /// Windows for display with the model's `fair` forecasts, under the headline rule; empty without that protocol.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<ForecastSnapshot>,
 }
 
 /// Evaluates the model and the baselines on the test windows of the model's fold.
@@ -219,7 +219,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     }
 
     /// Windows for display, from the model's forecasts for each window of the test set.
-    fn moments(&self, forecasts: &[Forecast]) -> Result<Vec<Moment>, DdlError> {
+    fn moments(&self, forecasts: &[Forecast]) -> Result<Vec<ForecastSnapshot>, DdlError> {
         let (windows, forecasts): (Vec<Window>, Vec<Forecast>) = self
             .test
             .headline_indices()

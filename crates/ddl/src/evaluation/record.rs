@@ -10,7 +10,7 @@ use crate::run::lock::RunLock;
 use crate::run::training_data::digest_of_recording;
 use crate::trust::calibration::Calibration;
 use ddl_data::{Dataset, Recording};
-use ddl_report::{Moment, Report};
+use ddl_report::{ForecastSnapshot, Report};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
@@ -87,7 +87,7 @@ pub fn save_evaluation(
     dataset: &Dataset,
     request: &EvaluationRequest,
     report: &Report,
-    moments: &[Moment],
+    moments: &[ForecastSnapshot],
 ) -> Result<(), DdlError> {
     let Some(run) = model.run() else {
         return Err(model

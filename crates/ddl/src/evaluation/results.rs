@@ -2,7 +2,7 @@ use crate::error::DdlError;
 use crate::run::directory::RunDirectory;
 use crate::run::directory::write_atomically;
 use ddl_report::page::Page;
-use ddl_report::{EpochPoint, Moment, Report, TrainingCurve};
+use ddl_report::{EpochPoint, ForecastSnapshot, Report, TrainingCurve};
 use std::path::Path;
 
 const LOSS: &str = "training loss: mean squared error of the next position (m²)";
@@ -14,7 +14,7 @@ pub struct Results {
     /// All rows.
     pub report: Report,
     /// Windows for display: of other programs' forecasts, and of the runs of the full variant with the lowest seed.
-    pub moments: Vec<Moment>,
+    pub moments: Vec<ForecastSnapshot>,
     /// The training curves.
     pub curves: Vec<TrainingCurve>,
 }
@@ -22,7 +22,7 @@ pub struct Results {
 impl Results {
     /// Results that do not come from runs, such as those of another program's forecasts.
     #[must_use]
-    pub fn new(report: Report, moments: Vec<Moment>) -> Self {
+    pub fn new(report: Report, moments: Vec<ForecastSnapshot>) -> Self {
         Self {
             report,
             moments,
@@ -42,7 +42,7 @@ impl Results {
             moments: Vec::new(),
             curves: Vec::new(),
         };
-        let mut headline: Vec<(u64, Vec<Moment>)> = Vec::new();
+        let mut headline: Vec<(u64, Vec<ForecastSnapshot>)> = Vec::new();
         let mut elsewhere = Vec::new();
         for folder in folders {
             let run = RunDirectory::new(folder.as_ref());

@@ -3,7 +3,7 @@ use crate::model::ddl::Ddl;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
 use ddl_data::{OBSERVED, Recording, Window};
 use ddl_eval::{EvaluationError, Forecast, Forecaster as _};
-use ddl_report::Moment;
+use ddl_report::ForecastSnapshot;
 use ddl_report::page::Viewer;
 
 /// A self-contained HTML page that plays forecasts for some windows of a recording.
@@ -47,11 +47,11 @@ impl<'a> RecordingPlayer<'a> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
         let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
             let seen = recording.futures_of(window);
-            let mut moment = Moment::under_way(model.name(), window, forecast, &seen)?;
+            let mut moment = ForecastSnapshot::under_way(model.name(), window, forecast, &seen)?;
             moment.frame = frame(window.frames()[OBSERVED - 1]);
             Ok(moment)
         });
-        let moments: Vec<Moment> = moments.collect::<Result<_, EvaluationError>>()?;
+        let moments: Vec<ForecastSnapshot> = moments.collect::<Result<_, EvaluationError>>()?;
         let warning = warning.map(|warning| format!("Doubtful: {warning} "));
         let lead = format!(
             "{}{} of {} moments of {name}: the observed path of each pedestrian, its forecast for the next 4.8 s, and \

@@ -24,7 +24,7 @@ use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::lock::RunLock;
 use ddl_data::remove_temporary_files;
 use ddl_network::EpochReport;
-use ddl_report::Moment;
+use ddl_report::ForecastSnapshot;
 use serde::{Serialize, de::DeserializeOwned};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -119,7 +119,7 @@ impl RunDirectory {
     }
 
     /// Reads `moments.json`; empty when there is none.
-    pub(crate) fn read_moments(&self) -> Result<Vec<Moment>, DdlError> {
+    pub(crate) fn read_moments(&self) -> Result<Vec<ForecastSnapshot>, DdlError> {
         let path = self.moments();
         if path.is_file() {
             read_json(&path)
@@ -129,7 +129,7 @@ impl RunDirectory {
     }
 
     /// Writes `moments.json`, compact because it holds thousands of positions.
-    pub(crate) fn write_moments(&self, moments: &[Moment]) -> Result<(), DdlError> {
+    pub(crate) fn write_moments(&self, moments: &[ForecastSnapshot]) -> Result<(), DdlError> {
         let path = self.moments();
         write_atomically(&path, serialise(&path, &moments, false)?.as_bytes())
     }

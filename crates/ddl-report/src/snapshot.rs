@@ -1,9 +1,9 @@
-//! One window of a recording with its forecast (a moment), as data for galleries and the player.
+//! One window of a recording with its forecast (a snapshot), as data for galleries and the player.
 
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
 use serde::{Deserialize, Serialize};
 
-use crate::gallery::Pick;
+use crate::gallery::Highlight;
 use ddl_eval::{
     EvaluationError, Forecast, Scene, WindowProblem,
     metric::{displacement::average_displacement, stability::RolloutStability},
@@ -19,7 +19,7 @@ const REGION: f64 = 0.9;
 /// belong to the unrounded forecast.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct Moment {
+pub struct ForecastSnapshot {
     /// The fold whose test scene holds it.
     pub fold: String,
     /// Name of the forecaster.
@@ -32,16 +32,16 @@ pub struct Moment {
     pub frame_step: i64,
     /// The pedestrians of the window.
     #[serde(rename = "pedestrians")]
-    pub pedestrians: Vec<MomentPedestrian>,
-    /// The reasons to show the moment; empty for an evenly spread one.
+    pub pedestrians: Vec<SnapshotPedestrian>,
+    /// The reasons to show the snapshot; empty for an evenly spread one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub picks: Vec<Pick>,
+    pub picks: Vec<Highlight>,
 }
 
-/// One pedestrian of a [`Moment`].
+/// One pedestrian of a [`ForecastSnapshot`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct MomentPedestrian {
+pub struct SnapshotPedestrian {
     /// Number or name of the pedestrian in the recording.
     pub pedestrian: PedestrianName,
     /// 8 observed positions, m.
@@ -55,13 +55,13 @@ pub struct MomentPedestrian {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub familiarity: Option<f64>,
     /// K hypotheses.
-    pub hypotheses: Vec<MomentHypothesis>,
+    pub hypotheses: Vec<SnapshotHypothesis>,
 }
 
-/// One hypothesis of a [`MomentPedestrian`].
+/// One hypothesis of a [`SnapshotPedestrian`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
-pub struct MomentHypothesis {
+pub struct SnapshotHypothesis {
     /// Its weight, in [0, 1].
     pub weight: f64,
     /// 12 positions, m.
@@ -81,7 +81,7 @@ pub struct MomentHypothesis {
     pub certified: Option<bool>,
 }
 
-impl MomentPedestrian {
+impl SnapshotPedestrian {
     /// Index of the hypothesis shown as the forecast: [`Forecast::representative`] of the rounded paths and weights.
     pub(crate) fn representative(&self) -> usize {
         let weights: Vec<f64> = self.hypotheses.iter().map(|h| h.weight).collect();
@@ -90,8 +90,8 @@ impl MomentPedestrian {
     }
 }
 
-impl Moment {
-    /// The moment of a window and its forecast.
+impl ForecastSnapshot {
+    /// The snapshot of a window and its forecast.
     ///
     /// # Errors
     /// The forecast is not of the window's pedestrians, or the window has no future.
@@ -106,7 +106,7 @@ impl Moment {
         Ok(Self::of((fold.into(), forecaster.into()), window, forecast, &truths))
     }
 
-    /// The moment of a window without a future, such as the last one of a recording.
+    /// The snapshot of a window without a future, such as the last one of a recording.
     ///
     /// `seen[i]`: the true positions of pedestrian `i` as far as they were observed, m; 0 to 12 of them.
     ///
@@ -153,20 +153,20 @@ impl Moment {
         }
     }
 
-    /// Adds reasons to show the moment.
+    /// Adds reasons to show the snapshot.
     #[must_use]
-    pub fn picked(self, picks: Vec<Pick>) -> Self {
+    pub fn picked(self, picks: Vec<Highlight>) -> Self {
         Self { picks, ..self }
     }
 }
 
-fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize) -> MomentPedestrian {
+fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize) -> SnapshotPedestrian {
     let last = window.observed(i)[OBSERVED - 1];
     let hypothesis = |k: usize| {
         let goal = forecast.goal(i, k);
         let path = forecast.hypothesis(i, k);
         debug_assert_eq!(path.len(), HORIZON);
-        MomentHypothesis {
+        SnapshotHypothesis {
             weight: round(forecast.weight(i, k)),
             positions: positions(path),
             radii: match forecast.regions() {
@@ -181,7 +181,7 @@ fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize
         }
     };
     let counts = window.completion_counts(i);
-    MomentPedestrian {
+    SnapshotPedestrian {
         pedestrian: window.name(i),
         observed: positions(window.observed(i)),
         truth: positions(truth),
