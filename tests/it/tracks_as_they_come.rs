@@ -269,8 +269,8 @@ fn frames_are_numbered_as_in_the_tracks() {
     let walk = |id: i64, off: fn(i64) -> f64| (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64));
     place.write_tracks("tracks.csv", &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>());
     let told = place.ok("data tracks.csv --fps 24");
-    assert!(told.contains("(7 to 199, 9.6 a step of 0.4 s"), "{told}");
-    for (before, after) in [("(pedestrian 2 at frame ", ')'), ("jumps at frame ", ',')] {
+    assert!(told.contains("frames 7 to 199 (9.6 per step of 0.4 s)"), "{told}");
+    for (before, after) in [("(pedestrian 2, frame ", ')'), ("jumps at frame ", ',')] {
         let at = told.split(before).nth(1).unwrap().split(after).next().unwrap();
         assert!((95..=106).contains(&at.parse::<i64>().unwrap()), "{told}");
     }

@@ -163,57 +163,54 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     Ok(facts)
 }
 
+/// A quantity in each line, so that no line is wider than a terminal.
 fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std::fmt::Result {
-    writeln!(out, "{file}")?;
+    let speed = match (s.median_speed, &s.fastest) {
+        (Some(median), Some(fastest)) => format!(
+            "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
+            fastest.speed,
+            fastest.pedestrian,
+            clock.nearest(fastest.frame)
+        ),
+        _ => "unknown: no successive positions".to_owned(),
+    };
+    let gaps = s.longest_hole.as_ref().map_or_else(String::new, |gap| {
+        format!(
+            ", the longest {:.1} s (pedestrian {}, after frame {})",
+            gap.seconds,
+            gap.pedestrian,
+            clock.nearest(gap.after)
+        )
+    });
+    let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,
-        "  {} in {} ({} to {}, {} a step of 0.4 s: {:.1} s), {}",
+        "{file}\n\
+         \x20 observed     {}, {}\n\
+         \x20 time         {:.1} s, frames {} to {} ({} per step of 0.4 s)\n\
+         \x20 area         x {:.2} to {:.2} m, y {:.2} to {:.2} m\n\
+         \x20 speed        {speed}\n\
+         \x20 gaps         {}{gaps}\n\
+         \x20 to forecast  {} of 8 steps, {} of them observed at all 8\n\
+         \x20 to train     {} of 20 steps, in {}",
         many(s.pedestrians, "pedestrian", "pedestrians"),
-        many(s.frames, "frame", "frames"),
+        many(s.observations, "position", "positions"),
+        s.seconds,
         clock.nearest(s.first_frame),
         clock.nearest(s.last_frame),
         clock.number(s.frame_step),
-        s.seconds,
-        many(s.observations, "position", "positions"),
-    )?;
-    writeln!(
-        out,
-        "  x from {:.2} to {:.2} m, y from {:.2} to {:.2} m; {}",
         s.low[0],
         s.high[0],
         s.low[1],
         s.high[1],
-        match (s.median_speed, &s.fastest) {
-            (Some(median), Some(fastest)) => format!(
-                "median speed {median:.2} m/s, the fastest step {:.2} m/s (pedestrian {} at frame {})",
-                fastest.speed,
-                fastest.pedestrian,
-                clock.nearest(fastest.frame)
-            ),
-            _ => "no speeds".to_owned(),
-        }
-    )?;
-    writeln!(
-        out,
-        "  to forecast: {} of 8 steps, {} of them seen at all 8; {} in the tracks{}",
-        many(s.to_forecast, "pedestrian-window", "pedestrian-windows"),
+        s.holes,
+        windows(s.to_forecast),
         s.seen_whole,
-        many(s.holes, "gap", "gaps"),
-        s.longest_hole.as_ref().map_or_else(String::new, |gap| format!(
-            ", the longest {:.1} s (pedestrian {} after frame {})",
-            gap.seconds,
-            gap.pedestrian,
-            clock.nearest(gap.after)
-        )),
-    )?;
-    writeln!(
-        out,
-        "  to train on and to measure with: {} in {} of 20 steps",
-        many(s.to_learn_from, "pedestrian-window", "pedestrian-windows"),
-        many(s.windows, "window", "windows")
+        windows(s.to_learn_from),
+        many(s.windows, "window", "windows"),
     )?;
     for warning in s.warnings() {
-        writeln!(out, "  doubtful: {}", recordings::words(&clock.of_warning(warning)))?;
+        writeln!(out, "  doubtful     {}", recordings::words(&clock.of_warning(warning)))?;
     }
     Ok(())
 }

@@ -61,7 +61,7 @@ impl<'a> RecordingPlayer<'a> {
             self.windows.len()
         );
         let mut notes = vec![format!(
-            "Forecast by {} ({}); goals {}.",
+            "Forecaster: {}; model {}. Goals: {}.",
             model.name(),
             model.source(),
             model.goal_model().words()
