@@ -159,17 +159,16 @@ impl<T: Real> LyapunovCertificate<T> {
         path: &[SVector<T, D>],
         dt: T,
     ) -> Result<Self, DynamicsError> {
-        let metrics = path.iter().take(path.len().saturating_sub(1)).enumerate();
-        let metrics = metrics
-            .map(|(step, position)| {
-                let time = dt * T::rounded(step as f64);
-                let state = State::new(*position, step, time, &path[..=step]);
-                flow.metric(&state).map_err(|cause| DynamicsError::Step {
-                    step,
-                    cause: Box::new(cause),
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
+        let steps = path.len().saturating_sub(1);
+        let mut metrics = Vec::with_capacity(steps);
+        for (step, position) in path[..steps].iter().enumerate() {
+            let time = dt * T::rounded(step as f64);
+            let state = State::new(*position, step, time, &path[..=step]);
+            metrics.push(flow.metric(&state).map_err(|cause| DynamicsError::Step {
+                step,
+                cause: Box::new(cause),
+            })?);
+        }
         match flow.chart() {
             None => Self::new(path, &metrics, flow.attractor(), dt),
             Some(psi) => {

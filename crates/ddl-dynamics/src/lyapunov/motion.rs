@@ -58,47 +58,34 @@ impl<T: Real> MotionEvidence<T> {
         let largest_coordinate = coordinates.map(SVector::amax).fold(T::zero(), T::max);
         let off = T::rounded(ROUNDINGS) * T::EPSILON * largest_coordinate;
         let rounded = |bound: T, off: T| bound * T::rounded(1.0 + ROUNDING) + off;
-        let steps = path.len().saturating_sub(1);
-        let speeds: Vec<T> = path.windows(2).map(|p| (p[1] - p[0]).norm() / dt).collect();
-        let ranges: Vec<_> = path[..steps]
-            .iter()
-            .enumerate()
-            .map(|(k, p)| bounds.eigenvalues(attractor.distance(p), steps - k, dt))
-            .collect();
-        let between = |a: T, b: T| (a - b).abs();
-        let change = speeds.windows(2).map(|pair| between(pair[0], pair[1]));
-        let most_change = ranges.windows(2).map(|pair| {
-            let [before, after] = [pair[0], pair[1]];
-            (after.largest - before.smallest).max(before.largest - after.smallest)
-        });
+        let (steps, half) = (path.len().saturating_sub(1), T::rounded(0.5));
+        let [mut fastest, mut change, mut most_change, mut sideways] = [T::zero(); 4];
+        let mut previous = None;
+        for (k, pair) in path.windows(2).enumerate() {
+            let speed = (pair[1] - pair[0]).norm() / dt;
+            let range = bounds.eigenvalues(attractor.distance(&pair[0]), steps - k, dt);
+            fastest = fastest.max(speed);
+            sideways += (range.largest - range.smallest) * dt * half;
+            if let Some((earlier, before)) = previous.replace((speed, range)) {
+                change = change.max((earlier - speed).abs());
+                most_change = most_change.max((range.largest - before.smallest).max(before.largest - range.smallest));
+            }
+        }
         let top = bounds.top_speed();
-        let largest = |figures: &mut dyn Iterator<Item = T>| figures.fold(T::zero(), T::max);
         let speed = Bounded {
-            largest: largest(&mut speeds.iter().copied()),
+            largest: fastest,
             bound: rounded(top, off / dt),
         };
         let speed_change = Bounded {
-            largest: largest(&mut change.into_iter()),
-            bound: rounded(
-                if alone {
-                    largest(&mut most_change.into_iter()).min(top)
-                } else {
-                    top
-                },
-                (off + off) / dt,
-            ),
+            largest: change,
+            bound: rounded(if alone { most_change.min(top) } else { top }, (off + off) / dt),
         };
         let (deviation, distance_left) = if alone {
-            let half = T::rounded(0.5);
-            let sideways = ranges.iter().map(|range| (range.largest - range.smallest) * dt * half);
             let left = path.last().map_or(T::zero(), |last| attractor.distance(last));
             (
                 Some(Bounded {
                     largest: farthest_from_line(path, attractor.goal()),
-                    bound: rounded(
-                        sideways.fold(T::zero(), |sum, s| sum + s),
-                        off * T::rounded(steps as f64 + 1.0),
-                    ),
+                    bound: rounded(sideways, off * T::rounded(steps as f64 + 1.0)),
                 }),
                 Some(Bounded {
                     largest: left,

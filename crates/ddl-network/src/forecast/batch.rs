@@ -124,7 +124,6 @@ impl ForecastBatch<'_> {
     pub(super) fn windows_of(&self, rollout: &BatchRollout) -> Vec<WindowRollout> {
         let all = self.pedestrians();
         let hypotheses = rollout.hypotheses;
-        let at = |t: usize, h: usize, i: usize| (t * hypotheses + h) * all + i;
         let mut first = 0;
         let windows = self.originals.iter().zip(&self.origins).zip(&self.orders);
         windows
@@ -134,25 +133,31 @@ impl ForecastBatch<'_> {
                     own[i] = first + place;
                 }
                 first += order.len();
-                let places = || {
-                    own.iter()
-                        .flat_map(move |&i| (0..hypotheses).flat_map(move |h| (0..HORIZON).map(move |t| at(t, h, i))))
-                };
+                let mut positions = paths(&rollout.positions, &own, (hypotheses, all));
+                for position in &mut positions {
+                    *position = [position[0] + x, position[1] + y];
+                }
+                let factors = rollout.factors.as_ref();
                 WindowRollout {
                     pedestrians: window.len(),
                     hypotheses,
-                    positions: places()
-                        .map(|place| rollout.positions[place])
-                        .map(|p| [p[0] + x, p[1] + y])
-                        .collect(),
-                    factors: rollout
-                        .factors
-                        .as_ref()
-                        .map(|factors| places().map(|place| factors[place]).collect()),
+                    positions,
+                    factors: factors.map(|factors| paths(factors, &own, (hypotheses, all))),
                 }
             })
             .collect()
     }
+}
+
+/// From `[12, H, all]` to `[own, H, 12]`.
+fn paths<T: Copy>(steps: &[T], own: &[usize], (hypotheses, all): (usize, usize)) -> Vec<T> {
+    let mut paths = Vec::with_capacity(own.len() * hypotheses * HORIZON);
+    for &i in own {
+        for h in 0..hypotheses {
+            paths.extend((0..HORIZON).map(|t| steps[(t * hypotheses + h) * all + i]));
+        }
+    }
+    paths
 }
 
 fn origin(window: &Window) -> Position {

@@ -91,13 +91,14 @@ impl<'a> Pass<'a> {
 /// The hypotheses of all parts, in their order.
 fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
     fn each<T: Copy>(parts: &[BatchRollout], pedestrians: usize, numbers: impl Fn(&BatchRollout) -> &[T]) -> Vec<T> {
-        let steps = (0..HORIZON).flat_map(|t| parts.iter().map(move |part| (t, part)));
-        steps
-            .flat_map(|(t, part)| {
+        let mut all = Vec::with_capacity(parts.iter().map(|part| numbers(part).len()).sum());
+        for t in 0..HORIZON {
+            for part in parts {
                 let count = part.hypotheses * pedestrians;
-                numbers(part)[t * count..][..count].iter().copied()
-            })
-            .collect()
+                all.extend_from_slice(&numbers(part)[t * count..][..count]);
+            }
+        }
+        all
     }
     let with_factors = parts.iter().all(|part| part.factors.is_some());
     BatchRollout {

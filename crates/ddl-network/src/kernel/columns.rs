@@ -76,6 +76,11 @@ impl<'a> MatrixColumnsMut<'a> {
     }
 
     #[inline(always)]
+    pub(super) fn count(&self) -> usize {
+        self.count
+    }
+
+    #[inline(always)]
     pub(super) fn row_mut(&mut self, row: usize) -> &mut [f32] {
         &mut self.numbers[row * self.stride + self.first..][..self.count]
     }

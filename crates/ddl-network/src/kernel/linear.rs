@@ -4,7 +4,7 @@ use super::affine::Affine;
 use super::buffer::Buffer;
 use super::columns::{MatrixColumns, MatrixColumnsMut};
 use super::threads::run_each;
-use ddl_simd::{Dispatch, Simd, TiledKernel};
+use ddl_simd::{Dispatch, LANES, Simd, TiledKernel};
 
 /// Rows that are computed together. The constant number makes sums over rows independent of the threads.
 const ROWS: usize = 512;
@@ -37,16 +37,27 @@ impl LinearKernel {
 
     /// `x` `[rows, inputs]` -> `[rows, outputs]`.
     pub(crate) fn forward(&self, x: &[f32]) -> Buffer {
-        let mut y = Buffer::any(x.len() / self.inputs * self.outputs);
+        // Rows that are narrower than a vector are written as whole vectors and then put together.
+        let width = self.outputs.max(LANES);
+        let rows = x.len() / self.inputs;
+        let mut wide = Buffer::any(rows * width);
         let inputs = x.chunks(ROWS * self.inputs);
-        let jobs = inputs.zip(y.chunks_mut(ROWS * self.outputs));
+        let jobs = inputs.zip(wide.chunks_mut(ROWS * width));
         let jobs = jobs.map(|(x, y)| LinearForward {
             map: &self.map,
             x: MatrixColumns::whole(x, self.inputs),
-            y: MatrixColumnsMut::whole(y, self.outputs),
+            y: MatrixColumnsMut::whole(y, width),
         });
-        let work = x.len() * self.outputs;
-        run_each(self.dispatch, jobs, work);
+        run_each(self.dispatch, jobs, x.len() * self.outputs);
+        if width == self.outputs {
+            return wide;
+        }
+        let mut y = Buffer::any(rows * self.outputs);
+        for (row, numbers) in y.chunks_exact_mut(self.outputs).zip(wide.chunks_exact(width)) {
+            for (to, from) in row.iter_mut().zip(numbers) {
+                *to = *from;
+            }
+        }
         y
     }
 
@@ -85,7 +96,11 @@ struct LinearForward<'a> {
 impl TiledKernel for LinearForward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
-        self.map.forward::<S, R, V>(simd, self.x, &mut self.y);
+        if self.y.count() == LANES {
+            self.map.forward::<S, R, 1>(simd, self.x, &mut self.y);
+        } else {
+            self.map.forward::<S, R, V>(simd, self.x, &mut self.y);
+        }
     }
 }
 

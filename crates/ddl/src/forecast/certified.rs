@@ -175,7 +175,9 @@ impl Walked<'_> {
                 let first = weights.iter().position(|weight| *weight >= heaviest);
                 let pair = i * hypotheses + first.unwrap_or(0);
                 let factors = &factors[pair * HORIZON..][..HORIZON];
-                let walk = self.one(pair, factors, |_, course, factors| course.walk(factors))?;
+                let walk = self.one(pair, &self.bounds(i), factors, |_, course, factors| {
+                    course.walk(factors)
+                })?;
                 Ok(walk.positions)
             })
             .collect::<Result<Vec<_>, ForecastError>>()?;
@@ -198,8 +200,9 @@ impl Walked<'_> {
         factors: &[[f64; 3]],
         of: impl Fn(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
+        let bounds: Vec<_> = (0..self.window.len()).map(|i| self.bounds(i)).collect();
         let pairs = factors.par_chunks_exact(HORIZON).enumerate();
-        let each = pairs.map(|(pair, factors)| self.one(pair, factors, &of));
+        let each = pairs.map(|(pair, factors)| self.one(pair, &bounds[pair / self.hypotheses], factors, &of));
         // A parallel collect into a `Result` could return the error of any hypothesis.
         each.collect::<Vec<_>>().into_iter().collect()
     }
@@ -208,6 +211,7 @@ impl Walked<'_> {
     fn one<R>(
         &self,
         pair: usize,
+        bounds: &MotionBounds<f64>,
         factors: &[[f64; 3]],
         of: impl FnOnce(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
     ) -> Result<R, ForecastError> {
@@ -217,7 +221,7 @@ impl Walked<'_> {
             goal: self.goals[pair],
             sigma: self.config.sigma,
             time_step: self.config.time_step,
-            bounds: self.bounds(i),
+            bounds: *bounds,
         };
         of(pair, &course, factors).map_err(|cause| {
             failed(CertificateError::Walk {

@@ -129,13 +129,15 @@ impl Course {
 
     /// The metrics of all steps. An error names the step of an invalid factor.
     fn metrics(&self, factors: &[[f64; 3]]) -> Result<Vec<CholeskyMetric<f64, 2>>, DynamicsError> {
-        let metric = |(step, &[a, b, c]): (usize, &[f64; 3])| {
-            CholeskyMetric::planar(a, b, c, self.sigma).map_err(|cause| DynamicsError::Step {
+        let mut metrics = Vec::with_capacity(factors.len());
+        for (step, &[a, b, c]) in factors.iter().enumerate() {
+            let metric = CholeskyMetric::planar(a, b, c, self.sigma);
+            metrics.push(metric.map_err(|cause| DynamicsError::Step {
                 step,
                 cause: Box::new(cause),
-            })
-        };
-        factors.iter().enumerate().map(metric).collect()
+            })?);
+        }
+        Ok(metrics)
     }
 }
 

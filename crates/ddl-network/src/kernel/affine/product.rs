@@ -78,6 +78,9 @@ fn tile<S: Simd, const R: usize, const V: usize>(
     for (column, pairs) in b.pairs.chunks_exact(b.rows).enumerate() {
         for part in (0..2).step_by(V) {
             let vector = 2 * column + part;
+            if vector * LANES >= y.count() {
+                break;
+            }
             let mut sum = [[simd.splat(0.0); V]; R];
             for r in 0..R {
                 for v in 0..V {
