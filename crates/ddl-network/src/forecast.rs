@@ -1,11 +1,13 @@
 //! Forecasts: from windows and goals to positions.
 
 mod batch;
+mod bounded_steps;
 mod course;
 mod emission;
 mod forecast_windows;
 mod motion_bounds;
 mod network;
+mod numbers;
 mod own_frame;
 mod pass;
 mod rollout;

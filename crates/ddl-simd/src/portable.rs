@@ -143,6 +143,9 @@ impl Register for Portable {
         fn div(a: Floats, b: Floats;) -> Floats = |l| a[l] / b[l];
         fn sqrt(a: Floats;) -> Floats = |l| a[l].sqrt();
         fn max(a: Floats, b: Floats;) -> Floats = |l| if a[l] > b[l] { a[l] } else { b[l] };
+        fn min(a: Floats, b: Floats;) -> Floats = |l| if a[l] < b[l] { a[l] } else { b[l] };
+        fn where_at_least(a: Floats, b: Floats, taken: Floats, other: Floats;) -> Floats =
+            |l| if a[l] >= b[l] { taken[l] } else { other[l] };
         fn zero_unless_positive(condition: Floats, a: Floats;) -> Floats =
             |l| if condition[l] <= 0.0 { 0.0 } else { a[l] };
         fn scale(power: Floats, exponent: Floats;) -> Floats =

@@ -52,11 +52,13 @@ pub trait Register: Copy + Send + Sync {
     fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn sqrt(self, a: Self::Floats) -> Self::Floats;
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// c − a b, rounded once or twice.
     fn neg_mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
-    /// Bit l is set where a >= b in lane l.
     fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32;
+    fn where_at_least(self, a: Self::Floats, b: Self::Floats, taken: Self::Floats, other: Self::Floats)
+    -> Self::Floats;
     fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
     /// Adds the low bits of `exponent`'s representation to the exponent of `power`.
     fn scale(self, power: Self::Floats, exponent: Self::Floats) -> Self::Floats;

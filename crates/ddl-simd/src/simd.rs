@@ -38,6 +38,13 @@ pub trait Simd: Copy + Send + Sync {
     fn sqrt(self, a: Self::Floats) -> Self::Floats;
     /// The larger of each two numbers; `b` if one of them is NaN.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// The smaller of each two numbers; `b` where one is NaN.
+    fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    /// Bit l is set where a >= b in lane l.
+    fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32;
+    /// `taken` where a >= b, `other` elsewhere.
+    fn where_at_least(self, a: Self::Floats, b: Self::Floats, taken: Self::Floats, other: Self::Floats)
+    -> Self::Floats;
     /// a b + c, rounded once or twice.
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).

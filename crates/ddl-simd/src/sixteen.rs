@@ -66,6 +66,8 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
         fn div(a: Floats, b: Floats;);
         fn sqrt(a: Floats;);
         fn max(a: Floats, b: Floats;);
+        fn min(a: Floats, b: Floats;);
+        fn where_at_least(a: Floats, b: Floats, taken: Floats, other: Floats;);
         fn mul_add(a: Floats, b: Floats, c: Floats;);
         fn zero_unless_positive(condition: Floats, a: Floats;);
         fn spread<const FROM: i32>(a: Floats;);
@@ -74,6 +76,15 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
         fn shift_left<const N: u32>(a: Bits;);
         fn mul_low(a: Bits; b: u32);
         fn keep(a: Floats, bits: Bits; least: u32);
+    }
+
+    #[inline(always)]
+    fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32 {
+        let mut mask = 0;
+        for p in 0..P {
+            mask |= self.0.at_least(a[p], b[p]) << (p * R::WIDTH);
+        }
+        mask
     }
 
     #[inline(always)]

@@ -137,9 +137,12 @@ impl Register for Avx512 {
         fn sqrt(a: __m512) -> __m512 = _mm512_sqrt_ps(a);
         // The second operand is the result if one is NaN.
         fn max(a: __m512, b: __m512) -> __m512 = _mm512_max_ps(a, b);
+        fn min(a: __m512, b: __m512) -> __m512 = _mm512_min_ps(a, b);
         fn mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fmadd_ps(a, b, c);
         fn neg_mul_add(a: __m512, b: __m512, c: __m512) -> __m512 = _mm512_fnmadd_ps(a, b, c);
         fn at_least(a: __m512, b: __m512) -> u32 = u32::from(_mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b));
+        fn where_at_least(a: __m512, b: __m512, taken: __m512, other: __m512) -> __m512 =
+            _mm512_mask_blend_ps(_mm512_cmp_ps_mask::<_CMP_GE_OQ>(a, b), other, taken);
         fn zero_unless_positive(condition: __m512, a: __m512) -> __m512 =
             _mm512_maskz_mov_ps(_mm512_cmp_ps_mask::<_CMP_NLE_UQ>(condition, _mm512_setzero_ps()), a);
         fn scale(power: __m512, exponent: __m512) -> __m512 = _mm512_castsi512_ps(_mm512_add_epi32(
@@ -336,10 +339,13 @@ impl Register for Avx2 {
         fn sqrt(a: __m256) -> __m256 = _mm256_sqrt_ps(a);
         // The second operand is the result if one is NaN.
         fn max(a: __m256, b: __m256) -> __m256 = _mm256_max_ps(a, b);
+        fn min(a: __m256, b: __m256) -> __m256 = _mm256_min_ps(a, b);
         fn mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fmadd_ps(a, b, c);
         fn neg_mul_add(a: __m256, b: __m256, c: __m256) -> __m256 = _mm256_fnmadd_ps(a, b, c);
         fn at_least(a: __m256, b: __m256) -> u32 =
             _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_GE_OQ>(a, b)).cast_unsigned();
+        fn where_at_least(a: __m256, b: __m256, taken: __m256, other: __m256) -> __m256 =
+            _mm256_blendv_ps(other, taken, _mm256_cmp_ps::<_CMP_GE_OQ>(a, b));
         fn zero_unless_positive(condition: __m256, a: __m256) -> __m256 =
             _mm256_and_ps(_mm256_cmp_ps::<_CMP_NLE_UQ>(condition, _mm256_setzero_ps()), a);
         fn scale(power: __m256, exponent: __m256) -> __m256 = _mm256_castsi256_ps(_mm256_add_epi32(

@@ -21,6 +21,7 @@ struct OnGroups<'a> {
     numbers: &'a [Narrow; 3],
     word: u32,
     floats: &'a mut Vec<Narrow>,
+    mask: &'a mut u32,
 }
 
 impl Kernel for OnGroups<'_> {
@@ -42,6 +43,8 @@ impl Kernel for OnGroups<'_> {
             simd.div(a, b),
             simd.sqrt(a),
             simd.max(a, b),
+            simd.min(a, b),
+            simd.where_at_least(a, b, c, a),
             simd.zero_unless_positive(a, b),
             s,
             t,
@@ -57,6 +60,7 @@ impl Kernel for OnGroups<'_> {
             // A multiply-add is rounded once (fused) or twice.
             simd.mul_add(a, b, c),
         ];
+        *self.mask = simd.at_least(a, b);
         for result in results {
             let mut lanes = [0.0; LANES];
             simd.store(result, &mut lanes);
@@ -84,6 +88,8 @@ fn expected([a, b, c]: &[Narrow; 3], word: u32, l: usize) -> Vec<f32> {
         a[l] / b[l],
         a[l].sqrt(),
         if a[l] > b[l] { a[l] } else { b[l] },
+        if a[l] < b[l] { a[l] } else { b[l] },
+        if a[l] >= b[l] { c[l] } else { a[l] },
         if a[l] <= 0.0 { 0.0 } else { b[l] },
     ];
     expected.extend((0..DEPTH).map(|from| a[four + from]));
@@ -115,8 +121,8 @@ proptest! {
     #[test]
     fn groups(numbers in prop::array::uniform3(prop::array::uniform16(number())), word in any::<u32>()) {
         for dispatch in each_set() {
-            let mut floats = Vec::new();
-            dispatch.run(OnGroups { numbers: &numbers, word, floats: &mut floats });
+            let (mut floats, mut mask) = (Vec::new(), 0);
+            dispatch.run(OnGroups { numbers: &numbers, word, floats: &mut floats, mask: &mut mask });
             let product = floats.pop().unwrap();
             for l in 0..LANES {
                 let expected = expected(&numbers, word, l);
@@ -128,6 +134,7 @@ proptest! {
                     );
                 }
                 let [a, b, c] = numbers.map(|numbers| numbers[l]);
+                prop_assert_eq!(mask >> l & 1 == 1, a >= b);
                 prop_assert!(is_product(product[l], a, b, c), "{:?}, lane {}", dispatch, l);
             }
         }

@@ -2,6 +2,7 @@
 //! positions.
 
 use super::batch::ForecastBatch;
+use super::bounded_steps::BoundedSteps;
 use super::motion_bounds::motion_bounds;
 use super::own_frame::{OwnFrame, length_unit};
 use super::rollout::StepRule;
@@ -14,6 +15,7 @@ use ddl_dynamics::{
     Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime,
     rollout_into,
 };
+use ddl_simd::Dispatch;
 use nalgebra::Vector2;
 use std::ops::Range;
 use std::rc::Rc;
@@ -254,20 +256,30 @@ impl<'a> Course<'a> {
         let Observation { config, bounds, .. } = self.observation;
         let (sigma, dt) = (config.sigma as f32, self.observation.time_step());
         let time = StepTime { done, left, dt };
-        for (i, (place, factor)) in self.positions.iter_mut().zip(factors).enumerate() {
-            if let Some(frames) = &self.frames {
-                *factor = around(frames, i).factor_to_world(*factor);
+        if let Some(frames) = &self.frames {
+            for (factor, frame) in factors.iter_mut().zip(frames.iter().cycle()) {
+                *factor = frame.factor_to_world(*factor);
             }
+            if let Some(bounds) = bounds {
+                return Dispatch::detect().run(BoundedSteps {
+                    positions: &mut self.positions,
+                    goals: &self.goals,
+                    factors,
+                    bounds,
+                    sigma,
+                    time,
+                });
+            }
+        }
+        for (i, (place, factor)) in self.positions.iter_mut().zip(factors).enumerate() {
             let bounds = bounds.as_ref();
             let bounds = bounds.map(|bounds| &bounds[i % self.observation.pedestrians]);
-            let goal = around(&self.goals, i);
-            // An invalid step gives NaN. The integration in f64 by `ddl` reports the error.
-            *place = next(*place, goal, *factor, (sigma, time), bounds).unwrap_or([f32::NAN; 2]);
+            *place = next(*place, around(&self.goals, i), *factor, (sigma, time), bounds);
         }
     }
 }
 
-fn around<T: Copy>(entries: &[T], i: usize) -> T {
+pub(super) fn around<T: Copy>(entries: &[T], i: usize) -> T {
     entries[i % entries.len()]
 }
 
@@ -295,7 +307,18 @@ fn single(bounds: &MotionBounds<f64>, absolute: bool) -> MotionBounds<f32> {
     if absolute { single.absolute() } else { single }
 }
 
-fn next(
+/// One step by `ddl-dynamics`. An invalid step gives NaN; the integration in `f64` by `ddl` reports the error.
+pub(super) fn next(
+    place: [f32; 2],
+    goal: [f32; 2],
+    factor: [f32; 3],
+    constants: (f32, StepTime<f32>),
+    bounds: Option<&MotionBounds<f32>>,
+) -> [f32; 2] {
+    checked(place, goal, factor, constants, bounds).unwrap_or([f32::NAN; 2])
+}
+
+fn checked(
     place: [f32; 2],
     goal: [f32; 2],
     [a, b, c]: [f32; 3],
