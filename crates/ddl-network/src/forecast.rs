@@ -8,6 +8,7 @@ mod forecast_windows;
 mod motion_bounds;
 mod network;
 mod numbers;
+mod one_step;
 mod own_frame;
 mod pass;
 mod rollout;

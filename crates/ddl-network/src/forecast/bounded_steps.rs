@@ -7,8 +7,8 @@
 
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
-use super::course::{around, next};
 use super::numbers::Numbers;
+use super::one_step::{around, next};
 use ddl_dynamics::{MotionBounds, StepTime};
 use ddl_simd::{Kernel, LANES, Lanes, Simd};
 
@@ -89,14 +89,14 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
     let mut range = [s, s];
     if time.left > 1 {
         let (reach, later) = (distance / time.dt, top * (time.left - 1) as f32);
-        let slowest = s * MotionBounds::<f32>::SLOWEST as f32;
-        let fastest = s * MotionBounds::<f32>::FASTEST as f32;
+        let slowest = s * MotionBounds::<f32>::MIN_SPEED_RATIO as f32;
+        let fastest = s * MotionBounds::<f32>::MAX_SPEED_RATIO as f32;
         range = [slowest.max(reach - later).min(s), fastest.min(reach).min(top).max(s)];
     }
 
     let g = MotionBounds::<f32>::momentum(time) as f32;
     let along = (s * (1.0 - g) + (vx * cos + vy * sin) * g).max(range[0]);
-    let most = along * MotionBounds::<f32>::STEEPEST as f32;
+    let most = along * MotionBounds::<f32>::MAX_LATERAL_RATIO as f32;
     let across = ((cos * vy - sin * vx) * g).max(most * -1.0).min(most);
     let r = along + across / along * across * 2.0;
     let twice = across + across;

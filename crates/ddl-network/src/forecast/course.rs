@@ -4,6 +4,7 @@
 use super::batch::ForecastBatch;
 use super::bounded_steps::BoundedSteps;
 use super::motion_bounds::motion_bounds;
+use super::one_step::{around, next};
 use super::own_frame::{OwnFrame, length_unit};
 use super::rollout::StepRule;
 use super::visibility::visibility;
@@ -11,12 +12,8 @@ use crate::StarConfig;
 use crate::backend::{Buffer, Rows, Scenes, VisibleScenes};
 use crate::config::NetworkFrame;
 use ddl_data::{OBSERVED, Position, Window};
-use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime,
-    rollout_into,
-};
+use ddl_dynamics::{MotionBounds, StepTime};
 use ddl_simd::Dispatch;
-use nalgebra::Vector2;
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -279,10 +276,6 @@ impl<'a> Course<'a> {
     }
 }
 
-pub(super) fn around<T: Copy>(entries: &[T], i: usize) -> T {
-    entries[i % entries.len()]
-}
-
 fn add(sums: &mut [[f32; 2]], terms: &[[f32; 2]]) {
     for (sum, term) in sums.iter_mut().zip(terms) {
         sum[0] += term[0];
@@ -305,40 +298,4 @@ fn single(bounds: &MotionBounds<f64>, absolute: bool) -> MotionBounds<f32> {
     let (top, share) = (bounds.top_speed() as f32, bounds.share() as f32);
     let single = MotionBounds::new(top, velocity, share).unwrap_or_default();
     if absolute { single.absolute() } else { single }
-}
-
-/// One step by `ddl-dynamics`. An invalid step gives NaN; the integration in `f64` by `ddl` reports the error.
-pub(super) fn next(
-    place: [f32; 2],
-    goal: [f32; 2],
-    factor: [f32; 3],
-    constants: (f32, StepTime<f32>),
-    bounds: Option<&MotionBounds<f32>>,
-) -> [f32; 2] {
-    checked(place, goal, factor, constants, bounds).unwrap_or([f32::NAN; 2])
-}
-
-fn checked(
-    place: [f32; 2],
-    goal: [f32; 2],
-    [a, b, c]: [f32; 3],
-    (sigma, time): (f32, StepTime<f32>),
-    bounds: Option<&MotionBounds<f32>>,
-) -> Result<[f32; 2], DynamicsError> {
-    let attractor = Attractor::new(Vector2::from(goal))?;
-    let metric = CholeskyMetric::planar(a, b, c, sigma)?;
-    let start = Vector2::from(place);
-    let mut path = [start; 2];
-    match bounds {
-        None => {
-            let flow = NaturalGradientFlow::new(attractor, metric);
-            rollout_into(&flow, &Euler, start, time.dt, &mut path)?;
-        }
-        Some(bounds) => {
-            let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
-            let flow = NaturalGradientFlow::new(attractor, metric);
-            rollout_into(&flow, &StableEuler, start, time.dt, &mut path)?;
-        }
-    }
-    Ok(path[1].into())
 }
