@@ -27,6 +27,10 @@ pub(crate) fn factor_singular_values<T: Real, const D: usize>(factor: &SMatrix<T
 
 fn planar<T: Real>(a: T, b: T, c: T) -> (T, T) {
     let (a, c) = (a.abs(), c.abs());
+    if c.is_zero() {
+        // Both terms of the sum are equal.
+        return (T::zero(), a.hypot(b));
+    }
     let large = ((a + c).hypot(b) + (a - c).hypot(b)) / T::rounded(2.0);
     if large.is_zero() {
         return (T::zero(), T::zero());

@@ -2,6 +2,8 @@
 
 use ddl_simd::{Dispatch, Kernel};
 use rayon::prelude::*;
+use std::cell::Cell;
+use std::thread::LocalKey;
 
 /// Number of multiplications below which other threads are not woken: less than some tens of microseconds of work.
 pub(super) const WORTH_WAKING: usize = 1_000_000;
@@ -12,12 +14,28 @@ pub(super) struct Buffered<'b, J, B> {
     pub(super) buffers: &'b mut B,
 }
 
+/// The buffers of a job. Each thread keeps those of small work, because allocating them would take as long as the work.
+pub(super) trait JobBuffers: Default + 'static {
+    fn of_thread() -> &'static LocalKey<Cell<Self>>;
+}
+
+impl JobBuffers for () {
+    fn of_thread() -> &'static LocalKey<Cell<()>> {
+        thread_local!(static BUFFERS: Cell<()> = const { Cell::new(()) });
+        &BUFFERS
+    }
+}
+
 /// Runs all jobs, of `work` multiplications together. The result of a job must not depend on its thread.
-pub(super) fn each<J: Send, B: Default>(jobs: Vec<J>, work: usize, run: impl Fn(J, &mut B) + Sync + Send) {
-    if jobs.len() < 2 || work < WORTH_WAKING || rayon::current_num_threads() == 1 {
-        let mut buffers = B::default();
+pub(super) fn each<J: Send, B: JobBuffers>(jobs: Vec<J>, work: usize, run: impl Fn(J, &mut B) + Sync + Send) {
+    let (small, kept) = (work < WORTH_WAKING, B::of_thread());
+    if jobs.len() < 2 || small || rayon::current_num_threads() == 1 {
+        let mut buffers = if small { kept.take() } else { B::default() };
         for job in jobs {
             run(job, &mut buffers);
+        }
+        if small {
+            kept.set(buffers);
         }
     } else {
         jobs.into_par_iter()
@@ -33,7 +51,7 @@ pub(super) fn run_each<K: Kernel + Send>(dispatch: Dispatch, jobs: impl Iterator
 }
 
 /// Runs all jobs, each of which is a kernel with a buffer for its results.
-pub(super) fn run_buffered<J: Send, B: Default>(dispatch: Dispatch, jobs: Vec<J>, work: usize)
+pub(super) fn run_buffered<J: Send, B: JobBuffers>(dispatch: Dispatch, jobs: Vec<J>, work: usize)
 where
     for<'b> Buffered<'b, J, B>: Kernel,
 {

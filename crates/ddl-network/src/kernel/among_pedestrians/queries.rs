@@ -3,8 +3,11 @@
 use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
 use crate::kernel::scenes::SceneView;
+use crate::kernel::threads::JobBuffers;
 use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
+use std::cell::Cell;
 use std::ops::Range;
+use std::thread::LocalKey;
 
 /// A block of queries of a scene and the keys that they read.
 #[derive(Clone, Debug)]
@@ -68,6 +71,13 @@ pub(super) struct SceneBuffers {
     pub(super) score_gradients: Vec<Lanes>,
     /// For each pair of queries and key: see [`Seen::code`](crate::kernel::scenes::Seen::code).
     pub(super) codes: Vec<u8>,
+}
+
+impl JobBuffers for SceneBuffers {
+    fn of_thread() -> &'static LocalKey<Cell<Self>> {
+        thread_local!(static BUFFERS: Cell<SceneBuffers> = Cell::default());
+        &BUFFERS
+    }
 }
 
 /// The terms added to the scores of two queries, indexed by the visibility code.

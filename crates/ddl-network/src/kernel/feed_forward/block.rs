@@ -15,6 +15,7 @@ pub(super) struct Block(pub(super) [f32; BLOCK]);
 impl Block {
     pub(super) const ZERO: Self = Self([0.0; BLOCK]);
 
+    #[inline(always)]
     pub(super) fn padded(from: &[f32]) -> Self {
         if let Some(whole) = from.first_chunk() {
             return Self(*whole);
@@ -95,6 +96,7 @@ impl BlockRows {
     }
 
     /// Rows of `width` numbers, and rows of zeros up to a multiple of [`ROWS`].
+    #[inline(always)]
     pub(super) fn padded(from: &[f32], width: usize) -> Self {
         let count = from.len() / width;
         let mut result = Self::any(count.next_multiple_of(ROWS), width.div_ceil(BLOCK));
@@ -122,6 +124,7 @@ impl BlockRows {
     }
 
     /// Copies rows of `width` numbers to all rows of `into`.
+    #[inline(always)]
     pub(super) fn write(&self, into: &mut [f32], width: usize) {
         for (row, into) in into.chunks_exact_mut(width).enumerate() {
             for (column, into) in into.chunks_mut(BLOCK).enumerate() {

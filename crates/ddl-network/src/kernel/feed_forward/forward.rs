@@ -7,6 +7,7 @@ use super::layer::FeedForward;
 use super::tile::Tile;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::each;
+use ddl_simd::{Kernel, Simd};
 
 /// Largest number of rows in a tile. Its x and y and a block's weights fit the second-level cache.
 const TILE: usize = 256;
@@ -38,20 +39,43 @@ impl FeedForward {
         let tiles: Vec<_> = tiles.enumerate().collect();
         let work = 2 * x.len() * weights.hidden;
         each(tiles, work, |(tile, (x, y)), (): &mut ()| {
-            let x = BlockRows::padded(x, width);
-            let mut result = BlockRows::any(x.rows(), weights.columns);
-            let tile = Tile {
-                weights,
+            self.dispatch.run(Rows {
+                layer: self,
                 decisions: decisions.as_ref(),
                 first: tile * size,
-                x: &x,
-                y: &mut result,
-            };
-            match &self.rounded {
-                None => self.dispatch.run(tile),
-                Some(squares) => self.pair_dispatch.run(PairForward { tile, squares }),
-            }
-            result.write(y, width);
+                x,
+                y,
+            });
         });
+    }
+}
+
+/// The rows of a tile. Their copies to blocks and back take whole registers.
+struct Rows<'a> {
+    layer: &'a FeedForward,
+    decisions: Option<&'a UnitDecisions>,
+    first: usize,
+    x: &'a [f32],
+    y: &'a mut [f32],
+}
+
+impl Kernel for Rows<'_> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let weights = &self.layer.weights;
+        let x = BlockRows::padded(self.x, weights.width);
+        let mut result = BlockRows::any(x.rows(), weights.columns);
+        let tile = Tile {
+            weights,
+            decisions: self.decisions,
+            first: self.first,
+            x: &x,
+            y: &mut result,
+        };
+        match &self.layer.rounded {
+            None => simd.run_tiled(tile),
+            Some(squares) => self.layer.pair_dispatch.run(PairForward { tile, squares }),
+        }
+        result.write(self.y, weights.width);
     }
 }

@@ -3,7 +3,10 @@
 //! Rows and heads are one index here, because every row has a separate memory. Scores and weights, one for each head,
 //! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
+use crate::kernel::threads::JobBuffers;
 use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
+use std::cell::Cell;
+use std::thread::LocalKey;
 
 /// Keys and values of one token for each row, `[rows, heads, head width]` each.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +52,13 @@ pub(super) struct MemoryBuffers {
     pub(super) powers: Vec<Lanes>,
     /// For each token: the product of its value and the gradient of the mixed values.
     pub(super) taken: Vec<Lanes>,
+}
+
+impl JobBuffers for MemoryBuffers {
+    fn of_thread() -> &'static LocalKey<Cell<Self>> {
+        thread_local!(static BUFFERS: Cell<MemoryBuffers> = Cell::default());
+        &BUFFERS
+    }
 }
 
 /// The position of sixteen heads in a slice: `numbers` from `first` on. The last group may have fewer heads.
