@@ -38,7 +38,7 @@ pub trait Simd: Copy + Send + Sync {
     fn sqrt(self, a: Self::Floats) -> Self::Floats;
     /// The larger of each two numbers; `b` if one of them is NaN.
     fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The smaller of each two numbers; `b` where one is NaN.
+    /// The smaller of each two numbers; `b` if one of them is NaN.
     fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// Bit l is set where a >= b in lane l.
     fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32;

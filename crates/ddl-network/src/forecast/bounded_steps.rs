@@ -1,9 +1,10 @@
 //! Bounded steps of many pedestrians, sixteen at a time.
 //!
 //! A step is a chain of square roots and divisions, each of which waits for the one before. With a pedestrian in each
-//! lane, sixteen chains take hardly longer than one. The operations are those of `MotionBounds::shape` and `StableEuler`
-//! in `ddl-dynamics`, in the same order and each rounded once, so the results have the same bits. Lanes that leave the
-//! usual branches there, for instance at the goal or with extreme numbers, are computed by `ddl-dynamics` itself.
+//! lane, sixteen chains take hardly longer than one. The operations are those of `MotionBounds::shape` and
+//! `StableEuler` in `ddl-dynamics`, in the same order and each rounded once, so the results have the same bits. Lanes
+//! that leave the usual branches there, for instance at the goal or with extreme numbers, are computed by
+//! `ddl-dynamics` itself.
 
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 

@@ -49,7 +49,8 @@ impl Affine {
     }
 
     /// y for every row of x.
-    /// `x` `[rows, inputs]` -> `y` `[rows, outputs]`, overwritten.
+    /// `x` `[rows, inputs]` -> `y` `[rows, outputs]`, overwritten. If `y` is wider, up to a whole vector, the columns
+    /// after the outputs have no meaning.
     #[inline(always)]
     pub(super) fn forward<S: Simd, const R: usize, const V: usize>(
         &self,

@@ -78,6 +78,7 @@ fn tile<S: Simd, const R: usize, const V: usize>(
     for (column, pairs) in b.pairs.chunks_exact(b.rows).enumerate() {
         for part in (0..2).step_by(V) {
             let vector = 2 * column + part;
+            // The blocks are padded to two vectors; a narrow y has only one.
             if vector * LANES >= y.count() {
                 break;
             }
