@@ -278,7 +278,7 @@ fn scenes_that_fall_silent_make_room() {
     let early = reader.next_frame().unwrap_err().to_string();
     assert!(early.contains("frame 0 of scene 7 comes after frame 5"), "{early}");
     assert_eq!(std::iter::from_fn(|| reader.unfinished()).count(), 1_000);
-    // With a silence of zero, every frame is the first of its scene.
+    // With an idle timeout of zero, every frame is the first of its scene.
     let reader = FrameReader::new(text.as_bytes(), "tracker");
     let mut reader = reader.forgetting_after(Duration::ZERO);
     let read: Vec<Frame> = std::iter::from_fn(|| reader.next_frame().unwrap()).collect();

@@ -239,7 +239,7 @@ mod tests {
         }
 
         #[test]
-        fn the_order_of_people_does_not_matter(tracks in tracks(), order in Just(ORDER).prop_shuffle()) {
+        fn the_order_of_pedestrians_does_not_matter(tracks in tracks(), order in Just(ORDER).prop_shuffle()) {
             let one = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, ORDER));
             let other = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, order));
             prop_assert_eq!(one, other);

@@ -92,7 +92,7 @@ proptest! {
     }
 
     #[test]
-    fn the_order_of_people_does_not_matter(frames in crate::crowds(), seed in any::<u64>()) {
+    fn the_order_of_pedestrians_does_not_matter(frames in crate::crowds(), seed in any::<u64>()) {
         let memory = memory_of(&frames, 100);
         let mut shuffled = frames.clone();
         for (frame, pedestrians) in &mut shuffled {
@@ -185,7 +185,7 @@ fn ties_go_by_age() {
 
 /// A camera with ten frames per step: a track uses the positions one step apart, and a gap begins another run.
 #[test]
-fn frames_between_steps_give_no_stretches() {
+fn frames_between_steps_give_no_segments() {
     let mut memory = SceneMemory::new(10, 1_000).unwrap();
     let mut seen = |frames: std::ops::Range<i64>| {
         for frame in frames {
