@@ -270,7 +270,7 @@ fn frames_are_numbered_as_in_the_tracks() {
     place.write_tracks("tracks.csv", &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>());
     let told = place.ok("data tracks.csv --fps 24");
     assert!(told.contains("frames 7 to 199 (9.6 per step of 0.4 s)"), "{told}");
-    for (before, after) in [("(pedestrian 2, frame ", ')'), ("jumps at frame ", ',')] {
+    for (before, after) in [("(pedestrian 2, frame ", ')'), ("that ends at frame ", ',')] {
         let at = told.split(before).nth(1).unwrap().split(after).next().unwrap();
         assert!((95..=106).contains(&at.parse::<i64>().unwrap()), "{told}");
     }

@@ -55,7 +55,8 @@ pub enum PlausibilityWarning {
     )]
     Unseen { share: f64 },
     #[error(
-        "pedestrian {} jumps at frame {}, {:.1} m/s over one step; does the track continue with another pedestrian?",
+        "pedestrian {} jumps in the step that ends at frame {}, {:.1} m/s; is one of its two positions wrong, or does \
+         the track continue with another pedestrian?",
         .0.pedestrian,
         .0.frame,
         .0.speed

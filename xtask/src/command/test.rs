@@ -34,7 +34,7 @@ impl Arguments {
             }
         }
         let selection = ["--workspace", "--exclude", "ddl-star", "--exclude", "ddl-tests"];
-        cargo_test(workspace, &selection, &self.rest)?;
+        library_tests(workspace, &selection, &self.rest)?;
         let selection = ["-p", "ddl-tests", "--no-default-features"];
         cargo_test(workspace, &selection, &self.rest)?;
         if self.no_torch {
@@ -43,7 +43,7 @@ impl Arguments {
         // The tests that need libtorch.
         let packages = ["-p", "ddl-star", "-p", "ddl-forecast", "-p", "ddl-cli"];
         let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
-        cargo_test(workspace, &arguments, &self.rest)?;
+        library_tests(workspace, &arguments, &self.rest)?;
         let tests = ["--test", "it_torch", "--test", "faults_torch"];
         let arguments = [&["-p", "ddl-tests"][..], &tests].concat();
         cargo_test(workspace, &arguments, &self.rest)
@@ -57,6 +57,14 @@ pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
         rest: Vec::new(),
     }
     .run(workspace)
+}
+
+/// Without the examples, which the tests of `ddl-tests` build and run.
+fn library_tests(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Result<()> {
+    for targets in ["--tests", "--doc"] {
+        cargo_test(workspace, &[selection, &[targets]].concat(), rest)?;
+    }
+    Ok(())
 }
 
 fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Result<()> {

@@ -8,6 +8,8 @@ use super::rows::{FIELDS, TrackRow};
 use crate::SceneName;
 use crate::error::{FormatError, FormatProblem};
 
+/// Number of unknown columns that an error names.
+const UNKNOWN_NAMED: usize = 5;
 const COLUMNS: [&str; 4] = ["frame", "pedestrian", "x", "y"];
 /// An optional column, only for streams.
 const SCENE: &str = "scene";
@@ -78,6 +80,7 @@ impl TrackColumns {
             return Err(wrong(None, detail));
         }
         let (mut places, mut scene) = ([None; 4], None);
+        let mut unknown = Vec::new();
         for (index, name) in header.iter().enumerate() {
             // Spreadsheets may write column names in capitals.
             if name.eq_ignore_ascii_case(SCENE) && scene.is_none() {
@@ -86,14 +89,22 @@ impl TrackColumns {
             }
             let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
             let Some(column) = column else {
-                let advice = advice(name, header);
-                let name = field::quoted(name);
-                let detail = format!("unknown column {name:?}; {advice}");
-                return Err(wrong(Some(index + 1), detail));
+                unknown.push((
+                    index + 1,
+                    format!("{:?}; {}", field::quoted(name), advice(name, header)),
+                ));
+                continue;
             };
             if places[column].replace(index).is_some() {
                 return Err(wrong(Some(index + 1), format!("column {name} appears twice")));
             }
+        }
+        if let Some(&(first, _)) = unknown.first() {
+            let each = unknown
+                .iter()
+                .take(UNKNOWN_NAMED)
+                .map(|(_, words)| format!("unknown column {words}"));
+            return Err(wrong(Some(first), each.collect::<Vec<_>>().join("; ")));
         }
         let mut columns = [0; 4];
         for ((column, place), name) in columns.iter_mut().zip(places).zip(COLUMNS) {

@@ -62,7 +62,11 @@ fn a_track_that_jumps_is_reported_with_its_frame() {
         panic!("{warnings:?}");
     };
     assert_eq!((&fastest.pedestrian, fastest.frame), (&PedestrianId(1).into(), 40));
-    assert!(warnings[0].to_string().contains("pedestrian 1 jumps at frame 40"));
+    assert!(
+        warnings[0]
+            .to_string()
+            .contains("pedestrian 1 jumps in the step that ends at frame 40")
+    );
 }
 
 #[test]

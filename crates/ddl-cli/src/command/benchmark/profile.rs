@@ -15,7 +15,7 @@ pub(crate) enum Profile {
     Quick,
     /// Every window; with the protocol published 60 epochs, one or two hours
     Evening,
-    /// Every window and all epochs of the recipe: a quarter of an hour on two cores for each seed; with the protocol
+    /// Every window and all epochs of the recipe: half an hour on two cores for each seed; with the protocol
     /// published (200 epochs) some hours, or one GPU
     Paper,
 }

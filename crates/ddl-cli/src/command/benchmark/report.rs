@@ -2,6 +2,7 @@
 
 use super::super::{Reporting, baselines};
 use super::plan::{Plan, Settings};
+use super::profile::Profile;
 use crate::output;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
@@ -12,9 +13,13 @@ use std::path::{Path, PathBuf};
 
 pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Reporting) -> anyhow::Result<Report> {
     let settings = &plan.settings;
+    let profile = match settings.profile {
+        Profile::Smoke => "smoke (a test of the program: the numbers mean nothing)".to_owned(),
+        profile => profile.to_string(),
+    };
     let title = format!(
-        "Benchmark: {}, {}, recipe {}",
-        settings.convention, settings.profile, settings.recipe.name
+        "Benchmark: {}, {profile}, recipe {}",
+        settings.convention, settings.recipe.name
     );
     if runs.is_empty() {
         return Ok(Report::new(title, [])?);
@@ -23,10 +28,14 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
     folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
     let results = Results::of(title, &folders)?;
     results.save(out)?;
-    let text = results.report.to_markdown();
     if reporting.telling.json {
         output::print(&(results.report.to_json()? + "\n"))?;
     } else if reporting.telling.progress != ProgressMode::Json {
+        // The main table: the whole report has more than a thousand lines.
+        let text = match results.report.summary(settings.convention) {
+            Some(summary) => format!("minADE/minFDE in metres:\n\n{}", summary.errors),
+            None => results.report.to_markdown(),
+        };
         output::print(&format!("\n{}\n\n", text.trim_end()))?;
     }
     for (what, name) in [
