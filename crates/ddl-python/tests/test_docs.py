@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+STRICT = [sys.executable, "-m", "mypy", "--strict", "--ignore-missing-imports"]
+STRICT += ["--disable-error-code=import-untyped", "--allow-untyped-calls"]
 MODULES = [
     "ddl_forecast",
     "ddl_forecast._evaluation",
@@ -82,33 +84,15 @@ def test_pages(page, tracks, tmp_path, request):
             shutil.copy(picture, pictures)
     if page not in TYPED:
         return
-    strict = [
-        sys.executable,
-        "-m",
-        "mypy",
-        "--strict",
-        "--ignore-missing-imports",
-        "--disable-error-code=import-untyped",
-        "--allow-untyped-calls",
-        script,
-    ]
-    typed = subprocess.run(strict, cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
+    typed = subprocess.run([*STRICT, script], cwd=tmp_path, capture_output=True, text=True, timeout=300, check=False)
     assert typed.returncode == 0, typed.stdout
 
 
 def test_examples_are_typed():
     examples = sorted((CHECKOUT / "crates/ddl-python/examples").glob("*.py"))
-    strict = [
-        sys.executable,
-        "-m",
-        "mypy",
-        "--strict",
-        "--ignore-missing-imports",
-        "--disable-error-code=import-untyped",
-        "--allow-untyped-calls",
-        *examples,
-    ]
-    typed = subprocess.run(strict, cwd=examples[0].parent, capture_output=True, text=True, timeout=300, check=False)
+    typed = subprocess.run(
+        [*STRICT, *examples], cwd=examples[0].parent, capture_output=True, text=True, timeout=300, check=False
+    )
     assert typed.returncode == 0, typed.stdout
 
 
