@@ -12,11 +12,13 @@ pub const EXP2_ERROR: f64 = 3e-7;
 pub const COST_LIMIT_64: f64 = 900.0;
 /// Bound on the relative error of [`wide_exp2_each`]: ten rounding units.
 pub const EXP2_ERROR_64: f64 = 1.2e-15;
+/// Bound on the relative error of [`wide_exp2_parts`]: two rounding units.
+pub const EXP2_PARTS_ERROR: f64 = 2.2e-16;
 
 /// Adding and subtracting 1.5 · 2^23 rounds a small number to an integer, which is in the low bits of the sum.
 const ROUNDING: f32 = 12_582_912.0;
 /// The same for `f64`: 1.5 · 2^52.
-const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
+pub(crate) const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
 
 struct Approximation {
     lowest: f32,
@@ -130,12 +132,10 @@ fn by_rounding<R: Register, const G: usize>(
 /// −[`COST_LIMIT_64`] (and NaN) count as −[`COST_LIMIT_64`], so that no result is denormal.
 #[inline(always)]
 pub fn wide_exp2_each<R: Register, const G: usize>(register: R, mut exponents: [R::Wide; G]) -> [R::Wide; G] {
-    let rounding = register.wide_splat(WIDE_ROUNDING);
     let mut fractions = exponents;
     for g in 0..G {
         let exponent = register.wide_max(exponents[g], register.wide_splat(-COST_LIMIT_64));
-        exponents[g] = register.wide_add(exponent, rounding);
-        fractions[g] = register.wide_sub(exponent, register.wide_sub(exponents[g], rounding));
+        (exponents[g], fractions[g]) = register.wide_split(exponent);
     }
     let [lower @ .., highest] = WIDE_POLYNOMIAL;
     let mut powers = [register.wide_splat(highest); G];
@@ -149,4 +149,28 @@ pub fn wide_exp2_each<R: Register, const G: usize>(register: R, mut exponents: [
         powers[g] = register.wide_scale(powers[g], exponents[g]);
     }
     powers
+}
+
+/// 2^exponent as a factor from 2^−1/2 to 2^1/2 and an integer power of two: (factor, integer). |exponent| must be below
+/// 2^51.
+///
+/// # Numerics
+/// The products are fused: the relative error of the factor is below [`EXP2_PARTS_ERROR`], and the factor is exactly 1
+/// for integers. Every instruction set gives the same bits.
+#[inline(always)]
+pub fn wide_exp2_parts<R: Register>(register: R, exponent: R::Wide) -> (R::Wide, R::Wide) {
+    let (integer, fraction) = register.wide_split(exponent);
+    let squared = register.wide_mul(fraction, fraction);
+    // Even and odd powers are summed separately, which halves the latency of a single chain.
+    let [lower @ .., odd, even] = WIDE_POLYNOMIAL.map(|coefficient| register.wide_splat(coefficient));
+    let mut sums = [odd, even];
+    for pair in lower.as_chunks().0.iter().rev() {
+        let [even, odd]: [_; 2] = *pair;
+        sums = [
+            register.wide_mul_add(sums[0], squared, even),
+            register.wide_mul_add(sums[1], squared, odd),
+        ];
+    }
+    let [even, odd] = sums;
+    (register.wide_mul_add(odd, fraction, even), integer)
 }

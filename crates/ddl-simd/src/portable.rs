@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::exp2::normal;
+use crate::exp2::{WIDE_ROUNDING, normal};
 use crate::lanes::{LANES, WIDE_LANES};
 use crate::register::{Register, RegisterKernel};
 use crate::simd::TiledKernel;
@@ -126,6 +126,12 @@ impl Register for Portable {
     }
 
     #[inline(always)]
+    fn wide_split(self, a: Wide) -> (Wide, Wide) {
+        let integer = each_lane!(a, |l| (a[l] + WIDE_ROUNDING) - WIDE_ROUNDING);
+        (integer, each_lane!(a, |l| a[l] - integer[l]))
+    }
+
+    #[inline(always)]
     fn wide_load(self, from: &[f64; WIDE_LANES], part: usize) -> Wide {
         from.as_chunks().0[part]
     }
@@ -163,11 +169,14 @@ impl Register for Portable {
         fn wide_add(a: Wide, b: Wide;) -> Wide = |l| a[l] + b[l];
         fn wide_sub(a: Wide, b: Wide;) -> Wide = |l| a[l] - b[l];
         fn wide_mul(a: Wide, b: Wide;) -> Wide = |l| a[l] * b[l];
+        fn wide_mul_add(a: Wide, b: Wide, c: Wide;) -> Wide = |l| a[l].mul_add(b[l], c[l]);
         fn wide_max(a: Wide, b: Wide;) -> Wide = |l| if a[l] > b[l] { a[l] } else { b[l] };
+        fn wide_min(a: Wide, b: Wide;) -> Wide = |l| if a[l] < b[l] { a[l] } else { b[l] };
         fn wide_sqrt(a: Wide;) -> Wide = |l| a[l].sqrt();
         fn wide_opposite(a: Wide; bits: u64) -> Wide = |l| f64::from_bits(bits.wrapping_sub(a[l].to_bits()));
         fn wide_zero_unless_above(a: Wide, limit: Wide;) -> Wide = |l| if a[l] > limit[l] { a[l] } else { 0.0 };
-        fn wide_scale(power: Wide, exponent: Wide;) -> Wide =
-            |l| f64::from_bits(power[l].to_bits().wrapping_add(exponent[l].to_bits() << 52));
+        // The integer is in the low bits of the sum; added to the bits of the exponent it multiplies by 2^integer.
+        fn wide_scale(number: Wide, exponent: Wide;) -> Wide =
+            |l| f64::from_bits(number[l].to_bits().wrapping_add((exponent[l] + WIDE_ROUNDING).to_bits() << 52));
     }
 }

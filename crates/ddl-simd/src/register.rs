@@ -16,8 +16,8 @@ use crate::simd::{Simd, TiledKernel};
 /// Loads and stores panic if `part >= PARTS`; the check is optimised away in a loop over `0..PARTS`.
 ///
 /// # Numerics
-/// Operations on `f64` are rounded separately (without fused multiplication), so that every instruction set gives the
-/// same bits. Operations on `f32` may be fused.
+/// Every instruction set gives the same bits in `f64`: only [`wide_mul_add`](Register::wide_mul_add) is fused, and it
+/// is fused everywhere. Operations on `f32` may be fused.
 #[expect(
     missing_docs,
     reason = "undocumented operations are those of `Simd`, on one register or on f64"
@@ -97,9 +97,16 @@ pub trait Register: Copy + Send + Sync {
     fn wide_add(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_sub(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_mul(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    /// a b + c, rounded once. Slow on processors without the instruction.
+    fn wide_mul_add(self, a: Self::Wide, b: Self::Wide, c: Self::Wide) -> Self::Wide;
     fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
+    fn wide_min(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
-    fn wide_scale(self, power: Self::Wide, exponent: Self::Wide) -> Self::Wide;
+    /// The nearest integer to `a` (the even one of two), and `a` minus this integer. |a| must be below 2^51.
+    fn wide_split(self, a: Self::Wide) -> (Self::Wide, Self::Wide);
+    /// number · 2^exponent for a positive normal number and an integer exponent of at least −2000. If the product is below
+    /// the normal numbers, the result is at most 2^−1022, possibly negative.
+    fn wide_scale(self, number: Self::Wide, exponent: Self::Wide) -> Self::Wide;
     /// The number whose representation is `bits` minus the representation of `a`. If `bits` is the sum of the
     /// representations of b and 1, the result is b / a, or up to an eighth more.
     fn wide_opposite(self, a: Self::Wide, bits: u64) -> Self::Wide;

@@ -12,7 +12,7 @@
 
 use std::arch::x86_64::*;
 
-use crate::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL, normal};
+use crate::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL, WIDE_ROUNDING, normal};
 use crate::lanes::{LANES, WIDE_LANES};
 use crate::pairs::{PairKernel, Pairs};
 use crate::register::{Register, RegisterKernel};
@@ -185,7 +185,9 @@ impl Register for Avx512 {
         fn wide_add(a: __m512d, b: __m512d) -> __m512d = _mm512_add_pd(a, b);
         fn wide_sub(a: __m512d, b: __m512d) -> __m512d = _mm512_sub_pd(a, b);
         fn wide_mul(a: __m512d, b: __m512d) -> __m512d = _mm512_mul_pd(a, b);
+        fn wide_mul_add(a: __m512d, b: __m512d, c: __m512d) -> __m512d = _mm512_fmadd_pd(a, b, c);
         fn wide_max(a: __m512d, b: __m512d) -> __m512d = _mm512_max_pd(a, b);
+        fn wide_min(a: __m512d, b: __m512d) -> __m512d = _mm512_min_pd(a, b);
         fn wide_sqrt(a: __m512d) -> __m512d = _mm512_sqrt_pd(a);
         fn wide_opposite(a: __m512d, bits: u64) -> __m512d = _mm512_castsi512_pd(_mm512_sub_epi64(
             _mm512_set1_epi64(bits.cast_signed()),
@@ -193,10 +195,11 @@ impl Register for Avx512 {
         ));
         fn wide_zero_unless_above(a: __m512d, limit: __m512d) -> __m512d =
             _mm512_maskz_mov_pd(_mm512_cmp_pd_mask::<_CMP_GT_OQ>(a, limit), a);
-        fn wide_scale(power: __m512d, exponent: __m512d) -> __m512d = _mm512_castsi512_pd(_mm512_add_epi64(
-            _mm512_castpd_si512(power),
-            _mm512_slli_epi64::<52>(_mm512_castpd_si512(exponent)),
-        ));
+        fn wide_split(a: __m512d) -> (__m512d, __m512d) = {
+            let rest = _mm512_reduce_pd::<_MM_FROUND_TO_NEAREST_INT>(a);
+            (_mm512_sub_pd(a, rest), rest)
+        };
+        fn wide_scale(number: __m512d, exponent: __m512d) -> __m512d = _mm512_scalef_pd(number, exponent);
     }
 
     #[inline(always)]
@@ -389,7 +392,9 @@ impl Register for Avx2 {
         fn wide_add(a: __m256d, b: __m256d) -> __m256d = _mm256_add_pd(a, b);
         fn wide_sub(a: __m256d, b: __m256d) -> __m256d = _mm256_sub_pd(a, b);
         fn wide_mul(a: __m256d, b: __m256d) -> __m256d = _mm256_mul_pd(a, b);
+        fn wide_mul_add(a: __m256d, b: __m256d, c: __m256d) -> __m256d = _mm256_fmadd_pd(a, b, c);
         fn wide_max(a: __m256d, b: __m256d) -> __m256d = _mm256_max_pd(a, b);
+        fn wide_min(a: __m256d, b: __m256d) -> __m256d = _mm256_min_pd(a, b);
         fn wide_sqrt(a: __m256d) -> __m256d = _mm256_sqrt_pd(a);
         fn wide_opposite(a: __m256d, bits: u64) -> __m256d = _mm256_castsi256_pd(_mm256_sub_epi64(
             _mm256_set1_epi64x(bits.cast_signed()),
@@ -397,9 +402,15 @@ impl Register for Avx2 {
         ));
         fn wide_zero_unless_above(a: __m256d, limit: __m256d) -> __m256d =
             _mm256_and_pd(_mm256_cmp_pd::<_CMP_GT_OQ>(a, limit), a);
-        fn wide_scale(power: __m256d, exponent: __m256d) -> __m256d = _mm256_castsi256_pd(_mm256_add_epi64(
-            _mm256_castpd_si256(power),
-            _mm256_slli_epi64::<52>(_mm256_castpd_si256(exponent)),
+        fn wide_split(a: __m256d) -> (__m256d, __m256d) = {
+            let rounding = _mm256_set1_pd(WIDE_ROUNDING);
+            let integer = _mm256_sub_pd(_mm256_add_pd(a, rounding), rounding);
+            (integer, _mm256_sub_pd(a, integer))
+        };
+        // The integer is in the low bits of the sum; added to the bits of the exponent it multiplies by 2^integer.
+        fn wide_scale(number: __m256d, exponent: __m256d) -> __m256d = _mm256_castsi256_pd(_mm256_add_epi64(
+            _mm256_castpd_si256(number),
+            _mm256_slli_epi64::<52>(_mm256_castpd_si256(_mm256_add_pd(exponent, _mm256_set1_pd(WIDE_ROUNDING)))),
         ));
     }
 

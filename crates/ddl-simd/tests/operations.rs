@@ -154,7 +154,8 @@ proptest! {
             }
             for l in 0..WIDE_LANES {
                 let [a, b] = wide.map(|numbers| numbers[l]);
-                let expected = [a + b, a - b, a * b, if a > b { a } else { b }, a.sqrt(), 2.5];
+                let (larger, smaller) = (if a > b { a } else { b }, if a < b { a } else { b });
+                let expected = [a + b, a - b, a * b, a.mul_add(b, a), larger, smaller, a.sqrt(), 2.5];
                 for (found, expected) in found.wide.iter().zip(expected) {
                     let same = found[l].to_bits() == expected.to_bits() || found[l].is_nan() && expected.is_nan();
                     prop_assert!(same, "{:?}: {} {}", dispatch, found[l], expected);
@@ -170,7 +171,7 @@ struct OnRegisters<'a>(&'a [Narrow; 3], &'a [Wide; 2]);
 struct Results {
     products: Narrow,
     mask: u32,
-    wide: [Wide; 6],
+    wide: [Wide; 8],
 }
 
 impl RegisterKernel for OnRegisters<'_> {
@@ -181,7 +182,7 @@ impl RegisterKernel for OnRegisters<'_> {
         let mut results = Results {
             products: [0.0; LANES],
             mask: 0,
-            wide: [[0.0; WIDE_LANES]; 6],
+            wide: [[0.0; WIDE_LANES]; 8],
         };
         for part in 0..R::PARTS {
             let [a, b, c] = [0, 1, 2].map(|i: usize| register.load(&self.0[i], part));
@@ -193,7 +194,9 @@ impl RegisterKernel for OnRegisters<'_> {
                 register.wide_add(a, b),
                 register.wide_sub(a, b),
                 register.wide_mul(a, b),
+                register.wide_mul_add(a, b, a),
                 register.wide_max(a, b),
+                register.wide_min(a, b),
                 register.wide_sqrt(a),
                 register.wide_splat(2.5),
             ];
@@ -202,6 +205,52 @@ impl RegisterKernel for OnRegisters<'_> {
             }
         }
         results
+    }
+}
+
+/// Splits a group, and multiplies a second one by two to its integers.
+struct Split<'a>(&'a Wide, &'a Wide);
+
+impl RegisterKernel for Split<'_> {
+    type Output = [Wide; 3];
+
+    #[inline(always)]
+    fn run<R: Register>(self, register: R) -> [Wide; 3] {
+        let mut results = [[0.0; WIDE_LANES]; 3];
+        for part in 0..R::PARTS {
+            let (integer, rest) = register.wide_split(register.wide_load(self.0, part));
+            let scaled = register.wide_scale(register.wide_load(self.1, part), integer);
+            for (value, into) in [integer, rest, scaled].into_iter().zip(&mut results) {
+                register.wide_store(value, into, part);
+            }
+        }
+        results
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn integers_and_powers_of_two(
+        exponents in prop::array::uniform8(prop_oneof![
+            -2000.0..700.0_f64, (-4000..1400_i32).prop_map(|halves| f64::from(halves) / 2.0),
+        ]),
+        numbers in prop::array::uniform8(1e-9..1e9_f64),
+    ) {
+        for dispatch in each_set() {
+            let [integers, rests, scaled] = dispatch.run_on_registers(Split(&exponents, &numbers));
+            for l in 0..WIDE_LANES {
+                prop_assert_eq!(integers[l], exponents[l].round_ties_even());
+                prop_assert_eq!(rests[l], exponents[l] - integers[l]);
+                let expected = numbers[l] * 2.0_f64.powf(integers[l] / 2.0).powi(2);
+                if integers[l] > -980.0 {
+                    prop_assert!((scaled[l] / expected - 1.0).abs() < 1e-14, "{:?}: {} {}", dispatch, scaled[l], expected);
+                } else if integers[l] < -1060.0 {
+                    prop_assert!(scaled[l] <= f64::MIN_POSITIVE, "{:?}: {}", dispatch, scaled[l]);
+                }
+            }
+        }
     }
 }
 

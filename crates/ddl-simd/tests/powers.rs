@@ -3,8 +3,8 @@
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use ddl_simd::{
-    COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64, InstructionSet, Kernel, LANES, Register,
-    RegisterKernel, Simd, WIDE_LANES, wide_exp2_each,
+    COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64, EXP2_PARTS_ERROR, InstructionSet, Kernel, LANES,
+    Register, RegisterKernel, Simd, WIDE_LANES, wide_exp2_each, wide_exp2_parts,
 };
 
 type Narrow = [f32; LANES];
@@ -76,6 +76,62 @@ fn wide_ones_keep_the_error_bound_and_their_bits() {
             assert_eq!(*bits.get_or_insert(found), found, "{set}");
         });
     }
+}
+
+/// Factors and integers.
+struct Parts<'a>(&'a Wide);
+
+impl RegisterKernel for Parts<'_> {
+    type Output = (Wide, Wide);
+
+    #[inline(always)]
+    fn run<R: Register>(self, register: R) -> (Wide, Wide) {
+        let (mut factors, mut integers) = ([0.0; WIDE_LANES], [0.0; WIDE_LANES]);
+        for part in 0..R::PARTS {
+            let (factor, integer) = wide_exp2_parts(register, register.wide_load(self.0, part));
+            register.wide_store(factor, &mut factors, part);
+            register.wide_store(integer, &mut integers, part);
+        }
+        (factors, integers)
+    }
+}
+
+/// Compared with the power of the fraction by the standard library, which adds an error of up to half a unit in the
+/// last place.
+#[test]
+fn parts_keep_the_error_bound_and_their_bits() {
+    let mut worst = 0.0_f64;
+    for i in 0..50_000_u32 {
+        let exponents: Wide = std::array::from_fn(|l| -1.234_567e-3 * f64::from(i) * 3.0_f64.powi(l as i32) + l as f64);
+        let mut bits: Option<[u64; WIDE_LANES]> = None;
+        each_set(|dispatch| {
+            let (factors, integers) = dispatch.run_on_registers(Parts(&exponents));
+            for l in 0..WIDE_LANES {
+                let fraction = exponents[l] - integers[l];
+                assert!(integers[l] == integers[l].round() && fraction.abs() <= 0.5);
+                worst = worst.max((factors[l] / fraction.exp2() - 1.0).abs());
+            }
+            let found = factors.map(f64::to_bits);
+            assert_eq!(*bits.get_or_insert(found), found, "{}", dispatch.instruction_set());
+        });
+    }
+    assert!((5e-17..EXP2_PARTS_ERROR + 1.2e-16).contains(&worst), "{worst:e}");
+    each_set(|dispatch| {
+        let exponents = [
+            0.0,
+            -0.0,
+            1.0,
+            -37.0,
+            1023.0,
+            -1022.0,
+            2.0_f64.powi(51) - 1.0,
+            1.0 - 2.0_f64.powi(51),
+        ];
+        assert_eq!(
+            dispatch.run_on_registers(Parts(&exponents)),
+            ([1.0; WIDE_LANES], exponents)
+        );
+    });
 }
 
 #[test]

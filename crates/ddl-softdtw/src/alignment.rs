@@ -7,8 +7,8 @@
 use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 use crate::cost::{Cost, Length, Metric, Squared};
-use crate::exp2::{Lanes, STRIP};
 use crate::grid::{Grid, Slanted, Strip};
+use crate::lanes::{Lanes, STRIP};
 use crate::log_domain::Gradients;
 use crate::scalar::Scalar;
 use crate::wavefront::{STRETCH, StepRecord};
@@ -18,9 +18,18 @@ use crate::weight::{Plain, Scaled, TOTAL, Weight};
 struct Steps<W: Weight>(Vec<(W::Factor, W)>);
 
 impl<W: Weight> StepRecord<W> for Steps<W> {
+    type Step = (W::Factor, W);
+
     #[inline(always)]
-    fn step(&mut self, factor: &W::Factor, cells: &W) {
-        self.0.push((*factor, *cells));
+    fn strip(&mut self, steps: usize) -> &mut [(W::Factor, W)] {
+        let before = self.0.len();
+        self.0.resize(before + steps, (W::NONE_FACTOR, W::NONE));
+        &mut self.0[before..]
+    }
+
+    #[inline(always)]
+    fn step(factor: &W::Factor, cells: &W) -> (W::Factor, W) {
+        (*factor, *cells)
     }
 }
 
@@ -122,7 +131,7 @@ fn retreat<S: Register, W: Weight, M: Metric, const D: usize>(
     metric: M,
     strip: &Strip<D>,
     steps: &[(W::Factor, W)],
-    columns: &Slanted,
+    columns: &Slanted<D>,
     total: (f64, f64),
     below: &mut Below<W, D>,
 ) -> [Lanes; D] {

@@ -8,7 +8,7 @@ use std::ops::RangeInclusive;
 
 use crate::band::Band;
 use crate::cost::{Cost, Length, Metric as _, Squared};
-use crate::exp2::{Lanes, STRIP};
+use crate::lanes::{Lanes, STRIP};
 use crate::scalar::{Scalar, widened};
 
 /// For plain numbers: R is at most 2^`LARGEST`, and t at most `LARGEST`.
@@ -143,42 +143,39 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
     }
 }
 
-/// The columns component by component, from the last column to the first, so that the values for the lanes of a strip
-/// are adjacent. Before the first and after the last column there is room for the slanted ends of a strip.
-pub(crate) struct Slanted {
-    numbers: Vec<f64>,
-    /// Number of values per component.
-    stride: usize,
-}
+/// Steps of a strip whose columns are stored together.
+const BLOCK: usize = 32;
 
-impl Slanted {
+/// The columns component by component and in decreasing order, so that those of the lanes of a strip are adjacent. The
+/// columns of [`BLOCK`] steps have a block of their own, whose fixed length spares a check of bounds per component.
+pub(crate) struct Slanted<const D: usize>(Vec<[[f64; BLOCK + STRIP - 1]; D]>);
+
+impl<const D: usize> Slanted<D> {
     /// The steps of the columns; beyond the ends the first or the last step is repeated. Cells there are computed but
     /// not used, and do not overflow unless a cell of the grid does.
     #[inline(always)]
-    pub(crate) fn of<T: Scalar, const D: usize>(columns: &[[T; D]]) -> Self {
-        let stride = columns.len() + 2 * (STRIP - 1);
-        let numbers = vec![0.0; D * stride];
-        let mut slanted = Self { numbers, stride };
-        for k in 0..D {
-            let numbers = &mut slanted.numbers[k * slanted.stride..][..slanted.stride];
-            let (after, rest) = numbers.split_at_mut(STRIP - 1);
-            let (within, before) = rest.split_at_mut(columns.len());
-            after.fill(columns[columns.len() - 1][k].widened());
-            before.fill(columns[0][k].widened());
-            for (number, column) in within.iter_mut().rev().zip(columns) {
-                *number = column[k].widened();
+    pub(crate) fn of<T: Scalar>(columns: &[[T; D]]) -> Self {
+        let last = columns.len() - 1;
+        let mut blocks = vec![[[0.0; BLOCK + STRIP - 1]; D]; (last + STRIP - 1) / BLOCK + 1];
+        for (b, block) in blocks.iter_mut().enumerate() {
+            for i in 0..BLOCK + STRIP - 1 {
+                let column = ((b + 1) * BLOCK - 1).saturating_sub(i).min(last);
+                for k in 0..D {
+                    block[k][i] = columns[column][k].widened();
+                }
             }
         }
-        slanted
+        Self(blocks)
     }
 
     /// The values for the lanes in step `d` of a strip, component by component: lane l is at column d − l.
     #[inline(always)]
-    pub(crate) fn window<const D: usize>(&self, d: usize) -> [&Lanes; D] {
+    pub(crate) fn window(&self, d: usize) -> [&Lanes; D] {
+        let from = BLOCK - 1 - d % BLOCK;
+        let block = &self.0[d / BLOCK];
         let mut window = [&[0.0; STRIP]; D];
-        for (k, lanes) in window.iter_mut().enumerate() {
-            let from = (k + 1) * self.stride - STRIP - d;
-            *lanes = self.numbers[from..from + STRIP].first_chunk().expect("of this length");
+        for k in 0..D {
+            window[k] = block[k][from..from + STRIP].first_chunk().expect("of this length");
         }
         window
     }

@@ -36,7 +36,8 @@
 //! `tests/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last bit.
 //!
 //! Eight rows advance together along antidiagonals in plain safe loops. The loops are compiled for each instruction
-//! set, and all give the same bits. If costs are small and sequences short, R stays in the range of `f64` and needs no
+//! set, and all give the same bits: products are fused everywhere, in software (slowly) on processors without the
+//! instruction. If costs are small and sequences short, R stays in the range of `f64` and needs no
 //! separate exponent; a bound of the costs decides this in advance. If costs exceed about 10¹⁵ γ, or if γ = 0, the
 //! recursion runs in the log domain.
 //!
@@ -91,9 +92,9 @@ mod blocks;
 mod cost;
 mod decision;
 mod error;
-mod exp2;
 mod gradient;
 mod grid;
+mod lanes;
 mod log_domain;
 mod range;
 mod recursion;

@@ -29,8 +29,8 @@
 use ddl_simd::{Dispatch, Register, RegisterKernel};
 
 use crate::cost::{Cost, Length, Metric, Squared};
-use crate::exp2::{Lanes, STRIP};
 use crate::grid::{Grid, Slanted, Strip};
+use crate::lanes::{Lanes, STRIP};
 use crate::scalar::Scalar;
 use crate::weight::{Plain, Scaled, Weight};
 
@@ -43,21 +43,37 @@ const SHORT: usize = 48;
 /// The total factor is 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
 pub(crate) const STRETCH: usize = 128;
 
-/// Receives what the backward recursion needs of each step of each strip.
+/// What the backward recursion needs of each step of each strip. The room is made strip by strip, because a call per
+/// step would empty the registers.
 pub(crate) trait StepRecord<W: Weight> {
-    /// 2^−t and R of each cell.
-    fn step(&mut self, factor: &W::Factor, cells: &W);
+    type Step;
+
+    /// Room for the next strip of `steps` steps.
+    fn strip(&mut self, steps: usize) -> &mut [Self::Step];
+
+    /// 2^−t and R of each cell of a step.
+    fn step(factor: &W::Factor, cells: &W) -> Self::Step;
 }
 
-struct Forget;
+/// Records nothing.
+#[derive(Default)]
+struct Forget(Vec<()>);
 
 impl<W: Weight> StepRecord<W> for Forget {
+    type Step = ();
+
     #[inline(always)]
-    fn step(&mut self, _: &W::Factor, _: &W) {}
+    fn strip(&mut self, steps: usize) -> &mut [()] {
+        self.0.resize(steps, ());
+        &mut self.0
+    }
+
+    #[inline(always)]
+    fn step(_: &W::Factor, _: &W) {}
 }
 
-/// Compiled for each instruction set: the loops over lanes become vectors of its width. Every operation is rounded
-/// separately, so that all give the same bits.
+/// Compiled for each instruction set: the loops over lanes become vectors of its width. All give the same bits, because
+/// the same products are fused everywhere.
 struct Forwards<'a, 'b, T, const D: usize>(&'a Grid<'b, T, D>);
 
 impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
@@ -67,8 +83,10 @@ impl<T: Scalar, const D: usize> RegisterKernel for Forwards<'_, '_, T, D> {
     fn run<S: Register>(self, simd: S) -> Option<f64> {
         let columns = Slanted::of(self.0.columns);
         let total = match self.0.plain_start() {
-            Some(start) => self.0.run::<S, Plain>(simd, start, &columns, &mut Forget),
-            None => self.0.run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget),
+            Some(start) => self.0.run::<S, Plain>(simd, start, &columns, &mut Forget::default()),
+            None => self
+                .0
+                .run::<S, Scaled<Lanes>>(simd, 0.0, &columns, &mut Forget::default()),
         };
         total.map(|total| self.0.value_of(total))
     }
@@ -92,7 +110,7 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         &self,
         simd: S,
         start: f64,
-        columns: &Slanted,
+        columns: &Slanted<D>,
         record: &mut impl StepRecord<W>,
     ) -> Option<(f64, f64)> {
         let scale = self.scale();
@@ -106,25 +124,33 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         let mut long = Vec::new();
         let length = self.columns.len() + 2 * (STRIP - 1);
         let row = row_of(&mut short, &mut long, length, W::NONE_ONE);
-        let mut largest = [0.0; STRIP];
+        let mut lowest = [0.0; STRIP];
         for index in 0..self.strips() {
             let strip = self.strip(index);
-            let (t_max, start) = (&mut largest, W::power(start));
+            let (lowest, start) = (&mut lowest, W::power(start));
             match (self.cost, self.band) {
                 (Cost::SquaredEuclidean, None) => {
-                    advance::<S, W, _, D, false>(simd, Squared, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, _, D, false>(
+                        simd,
+                        Squared,
+                        &strip,
+                        (scale, columns, start),
+                        row,
+                        lowest,
+                        record,
+                    );
                 }
                 (Cost::SquaredEuclidean, Some(_)) => {
-                    advance::<S, W, _, D, true>(simd, Squared, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, _, D, true>(simd, Squared, &strip, (scale, columns, start), row, lowest, record);
                 }
                 (Cost::Euclidean, None) => {
-                    advance::<S, W, _, D, false>(simd, Length, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, _, D, false>(simd, Length, &strip, (scale, columns, start), row, lowest, record);
                 }
                 (Cost::Euclidean, Some(_)) => {
-                    advance::<S, W, _, D, true>(simd, Length, &strip, (scale, columns, start), row, t_max, record);
+                    advance::<S, W, _, _, D, true>(simd, Length, &strip, (scale, columns, start), row, lowest, record);
                 }
             }
-            if largest.iter().any(|&t| t > EXACT / path) {
+            if lowest.iter().any(|&minus_t| minus_t < -EXACT / path) {
                 return None;
             }
             if (index + 1) % (STRETCH / STRIP) == 0 {
@@ -139,33 +165,34 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
 }
 
 /// Computes one strip. Before the call `row` holds the row above the strip, after it the last row of the strip.
-/// `largest` receives the largest t of each lane.
+/// `lowest` receives the smallest −t of each lane.
 #[inline(always)]
-fn advance<S: Register, W: Weight, M: Metric, const D: usize, const BANDED: bool>(
+fn advance<S: Register, W: Weight, R: StepRecord<W>, M: Metric, const D: usize, const BANDED: bool>(
     simd: S,
     metric: M,
     strip: &Strip<D>,
-    (scale, columns, one): (f64, &Slanted, W::One),
+    (scale, columns, one): (f64, &Slanted<D>, W::One),
     row: &mut [W::One],
-    largest: &mut Lanes,
-    record: &mut impl StepRecord<W>,
+    lowest: &mut Lanes,
+    record: &mut R,
 ) {
     let (start, end) = (strip.start, strip.end);
+    let steps = record.strip(end + 1 - start);
     let row = &mut row[..end + STRIP];
     let mut cells = W::NONE;
     let mut diagonal = match strip.corner {
         Some(lane) => W::alone(lane, one),
         None => W::NONE.below(simd, row[start + STRIP - 2]),
     };
-    let mut t_max = *largest;
+    let mut smallest = *lowest;
     let mut next = start;
     while next <= end {
         let stop = end.min(next | (STRETCH - 1));
         for d in next..=stop {
-            let mut t = metric.of_lanes(simd, &strip.x, columns.window(d));
+            let mut minus_t = metric.of_lanes(simd, &strip.x, columns.window(d));
             for part in 0..S::PARTS {
-                let scaled = simd.wide_mul(simd.wide_load(&t, part), simd.wide_splat(scale));
-                simd.wide_store(scaled, &mut t, part);
+                let scaled = simd.wide_mul(simd.wide_load(&minus_t, part), simd.wide_splat(-scale));
+                simd.wide_store(scaled, &mut minus_t, part);
             }
             let mut inside = None;
             if BANDED {
@@ -173,19 +200,19 @@ fn advance<S: Register, W: Weight, M: Metric, const D: usize, const BANDED: bool
                 let inside = inside.insert([true; STRIP]);
                 for l in 0..STRIP {
                     inside[l] = strip.first[l] <= step && step <= strip.last[l];
-                    t[l] = if inside[l] { t[l] } else { 0.0 };
+                    minus_t[l] = if inside[l] { minus_t[l] } else { 0.0 };
                 }
             }
             if W::UNBOUNDED {
                 for part in 0..S::PARTS {
-                    let (t, largest) = (simd.wide_load(&t, part), simd.wide_load(&t_max, part));
-                    simd.wide_store(simd.wide_max(t, largest), &mut t_max, part);
+                    let (minus_t, before) = (simd.wide_load(&minus_t, part), simd.wide_load(&smallest, part));
+                    simd.wide_store(simd.wide_min(minus_t, before), &mut smallest, part);
                 }
             }
-            let factor = W::factor(simd, &t, inside.as_ref());
+            let factor = W::factor(simd, &minus_t, inside.as_ref());
             let up = cells.below(simd, row[d + STRIP - 1]);
             (_, cells) = W::cells(simd, [&diagonal, &up, &cells], &factor);
-            record.step(&factor, &cells);
+            steps[d - start] = R::step(&factor, &cells);
             diagonal = up;
             row[d] = cells.last();
         }
@@ -193,7 +220,7 @@ fn advance<S: Register, W: Weight, M: Metric, const D: usize, const BANDED: bool
         cells = cells.normalised();
         next = stop + 1;
     }
-    *largest = t_max;
+    *lowest = smallest;
 }
 
 /// Working memory of `length` entries, on the stack if it fits there.
@@ -224,19 +251,19 @@ mod tests {
     use crate::alignment::Backwards;
     use crate::band::Band;
     use crate::cost::Cost;
-    use crate::exp2::Lanes;
     use crate::grid::{Grid, Slanted};
+    use crate::lanes::Lanes;
     use crate::weight::{Plain, Scaled, Weight};
 
     /// The recursion with one kind of weight, from 2^start.
-    struct Run<'a, W>((&'a Grid<'a, f64, 2>, &'a Slanted), f64, PhantomData<W>);
+    struct Run<'a, W>((&'a Grid<'a, f64, 2>, &'a Slanted<2>), f64, PhantomData<W>);
 
     impl<W: Weight> RegisterKernel for Run<'_, W> {
         type Output = Option<(f64, f64)>;
 
         fn run<S: Register>(self, simd: S) -> Self::Output {
             let Self((grid, columns), start, _) = self;
-            grid.run::<S, W>(simd, start, columns, &mut Forget)
+            grid.run::<S, W>(simd, start, columns, &mut Forget::default())
         }
     }
 

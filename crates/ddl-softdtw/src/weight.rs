@@ -4,9 +4,9 @@
     reason = "the lanes stay in registers only when what works on them is inlined"
 )]
 
-use ddl_simd::Register;
+use ddl_simd::{Register, wide_exp2_parts};
 
-use crate::exp2::{Lanes, ROUNDING, STRIP, exp2_minus};
+use crate::lanes::{Lanes, STRIP};
 
 /// Exponent of a cell that no path reaches: far below every other, far from overflow.
 const NOTHING: f64 = -1_152_921_504_606_846_976.0; // −2^60
@@ -32,6 +32,8 @@ pub(crate) trait Weight: Copy {
     type One: Copy;
     /// 2^−t of each cell.
     type Factor: Copy;
+    /// Any factor: a place to be written to.
+    const NONE_FACTOR: Self::Factor;
     /// Whether t may have any size.
     const UNBOUNDED: bool;
     /// R = 0: no path reaches the cells.
@@ -55,8 +57,8 @@ pub(crate) trait Weight: Copy {
 
     fn last(&self) -> Self::One;
 
-    /// 2^−t; 0 in the lanes that are not `inside`, whose t is 0.
-    fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self::Factor;
+    /// 2^`minus_t`; 0 in the lanes that are not `inside`, whose t is 0.
+    fn factor<S: Register>(simd: S, minus_t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self::Factor;
 
     /// The sum over the three predecessors (or successors) of each cell, and `factor` times this sum. The first one is
     /// the diagonal. The other two are added first, so that (y, x) gives the same bits as (x, y).
@@ -85,6 +87,7 @@ impl Weight for Scaled<Lanes> {
     type One = Scaled<f64>;
     /// 2^−t as significand · 2^exponent.
     type Factor = Self;
+    const NONE_FACTOR: Self = Self::NONE;
     const UNBOUNDED: bool = true;
     const NONE: Self = Self {
         significand: [1.0; STRIP],
@@ -143,12 +146,11 @@ impl Weight for Scaled<Lanes> {
     }
 
     #[inline(always)]
-    fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self {
+    fn factor<S: Register>(simd: S, minus_t: &Lanes, inside: Option<&[bool; STRIP]>) -> Self {
         let mut factor = Self::NONE;
         for part in 0..S::PARTS {
-            let (minus, power) = exp2_minus(simd, simd.wide_load(t, part));
-            let exponent = simd.wide_sub(minus, simd.wide_splat(ROUNDING));
-            simd.wide_store(power, &mut factor.significand, part);
+            let (significand, exponent) = wide_exp2_parts(simd, simd.wide_load(minus_t, part));
+            simd.wide_store(significand, &mut factor.significand, part);
             simd.wide_store(exponent, &mut factor.exponent, part);
         }
         if let Some(inside) = inside {
@@ -163,7 +165,6 @@ impl Weight for Scaled<Lanes> {
     fn cells<S: Register>(simd: S, ways: [&Self; 3], factor: &Self) -> (Self, Self) {
         let (mut sum, mut cells) = (Self::NONE, Self::NONE);
         let farthest = simd.wide_splat(FARTHEST);
-        let rounding = simd.wide_splat(ROUNDING);
         for part in 0..S::PARTS {
             let mut top = simd.wide_load(&ways[0].exponent, part);
             for way in &ways[1..] {
@@ -172,7 +173,7 @@ impl Weight for Scaled<Lanes> {
             let mut addends = [top; 3];
             for (addend, way) in addends.iter_mut().zip(ways) {
                 let shift = simd.wide_sub(simd.wide_load(&way.exponent, part), top);
-                let shift = simd.wide_add(simd.wide_max(shift, farthest), rounding);
+                let shift = simd.wide_max(shift, farthest);
                 *addend = simd.wide_scale(simd.wide_load(&way.significand, part), shift);
             }
             let [diagonal, up, left] = addends;
@@ -220,14 +221,14 @@ impl Weight for Scaled<Lanes> {
         let inverse = simd.wide_splat(1.0 / significand);
         let mut shares = [0.0; STRIP];
         for part in 0..S::PARTS {
-            // The significands are from 2^−256 to 2^912: with 2^−2000 the bits are those of a negative number.
+            // The significands are from 2^−256 to 2^912: with 2^−2000 a share is negligible.
             let share = simd.wide_mul(simd.wide_load(&a.significand, part), inverse);
             let share = simd.wide_mul(share, simd.wide_load(&b.significand, part));
             let shift = simd.wide_load(&a.exponent, part);
             let shift = simd.wide_add(shift, simd.wide_load(&b.exponent, part));
             let shift = simd.wide_sub(shift, simd.wide_splat(exponent));
             let shift = simd.wide_max(shift, simd.wide_splat(-2000.0));
-            let share = simd.wide_scale(share, simd.wide_add(shift, simd.wide_splat(ROUNDING)));
+            let share = simd.wide_scale(share, shift);
             let share = simd.wide_zero_unless_above(share, simd.wide_splat(NEGLIGIBLE));
             simd.wide_store(share, &mut shares, part);
         }
@@ -242,12 +243,13 @@ pub(crate) struct Plain(Lanes);
 impl Weight for Plain {
     type One = f64;
     type Factor = Lanes;
+    const NONE_FACTOR: Lanes = [0.0; STRIP];
     const UNBOUNDED: bool = false;
     const NONE: Self = Self([0.0; STRIP]);
     const NONE_ONE: f64 = 0.0;
 
     fn power(exponent: f64) -> f64 {
-        shifted(1.0, exponent)
+        f64::from_bits(((exponent as i64 + 1023) as u64) << 52)
     }
 
     #[inline(always)]
@@ -276,11 +278,11 @@ impl Weight for Plain {
     }
 
     #[inline(always)]
-    fn factor<S: Register>(simd: S, t: &Lanes, inside: Option<&[bool; STRIP]>) -> Lanes {
+    fn factor<S: Register>(simd: S, minus_t: &Lanes, inside: Option<&[bool; STRIP]>) -> Lanes {
         let mut factor = [0.0; STRIP];
         for part in 0..S::PARTS {
-            let (minus, power) = exp2_minus(simd, simd.wide_load(t, part));
-            simd.wide_store(simd.wide_scale(power, minus), &mut factor, part);
+            let (significand, exponent) = wide_exp2_parts(simd, simd.wide_load(minus_t, part));
+            simd.wide_store(simd.wide_scale(significand, exponent), &mut factor, part);
         }
         if let Some(inside) = inside {
             for (factor, inside) in factor.iter_mut().zip(inside) {
@@ -342,14 +344,6 @@ fn alone(lane: usize, one: f64, none: f64) -> Lanes {
         *number = if l == lane { one } else { none };
     }
     lanes
-}
-
-/// number · 2^shift for an integer shift. The low bits of the sum are the shift; moved to the position of the exponent,
-/// they multiply by 2^shift.
-#[inline(always)]
-fn shifted(number: f64, shift: f64) -> f64 {
-    let shift = (shift + ROUNDING).to_bits() << 52;
-    f64::from_bits(number.to_bits().wrapping_add(shift))
 }
 
 /// A positive normal number as significand in [1, 2) and exponent.
