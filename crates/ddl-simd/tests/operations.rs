@@ -232,6 +232,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "both results are exact")]
     fn integers_and_powers_of_two(
         exponents in prop::array::uniform8(prop_oneof![
             -2000.0..700.0_f64, (-4000..1400_i32).prop_map(|halves| f64::from(halves) / 2.0),

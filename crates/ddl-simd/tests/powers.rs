@@ -108,7 +108,7 @@ fn parts_keep_the_error_bound_and_their_bits() {
             let (factors, integers) = dispatch.run_on_registers(Parts(&exponents));
             for l in 0..WIDE_LANES {
                 let fraction = exponents[l] - integers[l];
-                assert!(integers[l] == integers[l].round() && fraction.abs() <= 0.5);
+                assert!(integers[l].fract() == 0.0 && fraction.abs() <= 0.5);
                 worst = worst.max((factors[l] / fraction.exp2() - 1.0).abs());
             }
             let found = factors.map(f64::to_bits);

@@ -158,10 +158,10 @@ impl<const D: usize> Slanted<D> {
         let last = columns.len() - 1;
         let mut blocks = vec![[[0.0; BLOCK + STRIP - 1]; D]; (last + STRIP - 1) / BLOCK + 1];
         for (b, block) in blocks.iter_mut().enumerate() {
-            for i in 0..BLOCK + STRIP - 1 {
-                let column = ((b + 1) * BLOCK - 1).saturating_sub(i).min(last);
-                for k in 0..D {
-                    block[k][i] = columns[column][k].widened();
+            for (k, numbers) in block.iter_mut().enumerate() {
+                for (i, number) in numbers.iter_mut().enumerate() {
+                    let column = ((b + 1) * BLOCK - 1).saturating_sub(i).min(last);
+                    *number = columns[column][k].widened();
                 }
             }
         }

@@ -22,7 +22,7 @@ pub(super) struct AddNorm {
     inside: Vec<Lanes>,
 }
 
-/// Results of the forward pass that the backward pass needs.
+/// Results of the forward pass that the backward pass needs; empty if there will be none.
 pub(super) struct Normal<'a> {
     /// (s − mean) / deviation, `[rows, width]`.
     pub(super) numbers: &'a mut [f32],
@@ -83,52 +83,88 @@ impl AddNorm {
         y: &mut [f32],
     ) {
         let width = self.fixed_width::<FIXED>();
-        let mut four = Four::<FIXED>::new(self.inside.len());
-        let vectors = four.vectors();
         let rows = x.len() / width;
-        assert_eq!(normal.scales.len(), rows, "scales of the rows");
-        for first in (0..rows).step_by(DEPTH) {
-            let count = DEPTH.min(rows - first);
-            for r in 0..count {
-                let row = (first + r) * width..(first + r + 1) * width;
-                let (x, t) = (&x[row.clone()], &t[row]);
-                for v in 0..vectors {
-                    let at = v * LANES;
-                    let term = load(simd, t, at);
-                    let term = match decisions {
-                        Some((decisions, start)) => decisions.apply(simd, term, start + first + r, at),
-                        None => term,
-                    };
-                    four.set(simd, r, v, simd.add(load(simd, x, at), term));
-                }
+        assert!([0, rows].contains(&normal.scales.len()), "scales of the rows");
+        let mut four = Four::<FIXED>::new(self.inside.len());
+        let whole = rows / DEPTH * DEPTH;
+        for first in (0..whole).step_by(DEPTH) {
+            self.forward_four(simd, [x, t], decisions, normal, y, (first, DEPTH), &mut four);
+        }
+        if whole < rows {
+            self.forward_four(simd, [x, t], decisions, normal, y, (whole, rows - whole), &mut four);
+        }
+    }
+
+    /// Up to four rows from `first` on. Inlined with `count` a constant, so that four rows stay in registers.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "those of the rows, and which of them")]
+    fn forward_four<S: Simd, const FIXED: bool>(
+        &self,
+        simd: S,
+        [x, t]: [&[f32]; 2],
+        decisions: Option<(Decisions, usize)>,
+        normal: &mut Normal<'_>,
+        y: &mut [f32],
+        (first, count): (usize, usize),
+        four: &mut Four<FIXED>,
+    ) {
+        let (width, vectors) = (self.fixed_width::<FIXED>(), four.vectors());
+        // Slices of constant length, so that rows need no check of bounds.
+        let all = first * width..first * width + count * width;
+        let (x, t, y) = (&x[all.clone()], &t[all.clone()], &mut y[all.clone()]);
+        for r in 0..count {
+            let row = r * width..(r + 1) * width;
+            let (x, t) = (&x[row.clone()], &t[row]);
+            for v in 0..vectors {
+                let at = v * LANES;
+                let term = load(simd, t, at);
+                let term = match decisions {
+                    Some((decisions, start)) => decisions.apply(simd, term, start + first + r, at),
+                    None => term,
+                };
+                four.set(simd, r, v, simd.add(load(simd, x, at), term));
             }
-            let mean = simd.spread_each(means(simd, width, four.sums(simd)));
-            for r in 0..DEPTH {
-                for v in 0..vectors {
-                    let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
-                    if !FIXED {
-                        centred = simd.mul(centred, simd.load(&self.inside[v].0));
-                    }
-                    four.set(simd, r, v, centred);
+        }
+        let mean = simd.spread_each(means(simd, width, four.sums(simd)));
+        for r in 0..DEPTH {
+            for v in 0..vectors {
+                let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
+                if !FIXED {
+                    centred = simd.mul(centred, simd.load(&self.inside[v].0));
                 }
+                four.set(simd, r, v, centred);
             }
-            // Computes the root and the division of four rows at once.
-            let variance = means(simd, width, four.products(simd, &four));
-            let deviation = simd.sqrt(simd.add(variance, simd.splat(EPSILON)));
-            let scale = simd.div(simd.splat(1.0), deviation);
-            let mut scales = Lanes::ZERO;
-            simd.store(scale, &mut scales.0);
-            let scale = simd.spread_each(scale);
+        }
+        // The variances of the four rows are in the first four lanes; roots of all lanes would take several times as
+        // long.
+        let mut variances = Lanes::ZERO;
+        simd.store(means(simd, width, four.products(simd, four)), &mut variances.0);
+        let mut scales = [0.0; DEPTH];
+        for (scale, variance) in scales.iter_mut().zip(variances.0) {
+            *scale = 1.0 / (variance + EPSILON).sqrt();
+        }
+        for r in 0..count {
+            let scale = simd.splat(scales[r]);
+            let y = &mut y[r * width..(r + 1) * width];
+            for v in 0..vectors {
+                let number = simd.mul(four.get(simd, r, v), scale);
+                four.set(simd, r, v, number);
+                let weight = simd.load(&self.weight[v].0);
+                let bias = simd.load(&self.bias[v].0);
+                store(simd, simd.mul_add(number, weight, bias), y, v * LANES);
+            }
+        }
+        if !normal.scales.is_empty() {
+            normal.scales[first..first + count].copy_from_slice(&scales[..count]);
+            let numbers = &mut normal.numbers[all];
             for r in 0..count {
-                normal.scales[first + r] = scales.0[r];
-                let row = (first + r) * width..(first + r + 1) * width;
-                let (normal, y) = (&mut normal.numbers[row.clone()], &mut y[row]);
                 for v in 0..vectors {
-                    let number = simd.mul(four.get(simd, r, v), scale[r]);
-                    store(simd, number, normal, v * LANES);
-                    let weight = simd.load(&self.weight[v].0);
-                    let bias = simd.load(&self.bias[v].0);
-                    store(simd, simd.mul_add(number, weight, bias), y, v * LANES);
+                    store(
+                        simd,
+                        four.get(simd, r, v),
+                        &mut numbers[r * width..(r + 1) * width],
+                        v * LANES,
+                    );
                 }
             }
         }

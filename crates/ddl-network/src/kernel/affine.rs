@@ -6,8 +6,8 @@ mod tests;
 
 use super::columns::{MatrixColumns, MatrixColumnsMut};
 use ddl_simd::{LANES, Lanes, Simd};
-pub(super) use product::sum_of_rows;
 use product::{Matrix, Start, add_transposed_product, multiply};
+pub(super) use product::{UNROLLED, sum_of_rows};
 
 /// y = W x + b. The weights are stored for the forward and for the backward pass.
 #[derive(Clone, Debug)]

@@ -25,13 +25,16 @@ thread_local! {
 }
 
 impl Spares {
-    /// The smallest free buffer that holds `count` numbers, or a new one.
+    /// The smallest free buffer that holds `count` numbers, or a new one. Of several equal ones it is the newest, which
+    /// is most likely still in the processor's cache.
     fn take(&mut self, count: usize) -> Vec<f32> {
-        let lengths = self.buffers.iter().map(Vec::len).enumerate();
-        let fitting = lengths.filter(|&(_, length)| length >= count);
-        if let Some((index, length)) = fitting.min_by_key(|&(_, length)| length) {
+        let lengths = || self.buffers.iter().map(Vec::len).enumerate().rev();
+        let fitting = || lengths().filter(|&(_, length)| length >= count);
+        // Most buffers are as long as one before, and soon found.
+        let equal = lengths().find(|&(_, length)| length == count);
+        if let Some((index, length)) = equal.or_else(|| fitting().min_by_key(|&(_, length)| length)) {
             self.numbers -= length;
-            return self.buffers.swap_remove(index);
+            return self.buffers.remove(index);
         }
         // Drops a free buffer that is too small, so that the number of buffers does not grow.
         if let Some(small) = self.buffers.pop() {

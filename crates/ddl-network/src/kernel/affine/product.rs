@@ -4,6 +4,8 @@ use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
 const BLOCK: usize = 32;
+/// Steps of a product whose loop the compiler unrolls: a longer loop it leaves as it is, which costs a fifth of the time.
+pub(in crate::kernel) const UNROLLED: usize = 8;
 
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
 #[derive(Clone, Debug)]
@@ -47,34 +49,6 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
 ) {
     let rows = a.rows();
     assert_eq!(rows, y.rows(), "rows of a product");
-    let mut row = 0;
-    while row + R <= rows {
-        tile::<S, R, V>(simd, a, b, start, y, row);
-        row += R;
-    }
-    while R > 4 && row + 4 <= rows {
-        tile::<S, 4, V>(simd, a, b, start, y, row);
-        row += 4;
-    }
-    while row < rows {
-        tile::<S, 1, V>(simd, a, b, start, y, row);
-        row += 1;
-    }
-}
-
-#[inline(always)]
-fn tile<S: Simd, const R: usize, const V: usize>(
-    simd: S,
-    a: MatrixColumns<'_>,
-    b: &Matrix,
-    start: Start<'_>,
-    y: &mut MatrixColumnsMut<'_>,
-    row: usize,
-) {
-    let mut of_a: [&[f32]; R] = [&[]; R];
-    for r in 0..R {
-        of_a[r] = a.row(row + r);
-    }
     for (column, pairs) in b.pairs.chunks_exact(b.rows).enumerate() {
         for part in (0..2).step_by(V) {
             let vector = 2 * column + part;
@@ -82,33 +56,64 @@ fn tile<S: Simd, const R: usize, const V: usize>(
             if vector * LANES >= y.count() {
                 break;
             }
-            let mut sum = [[simd.splat(0.0); V]; R];
-            for r in 0..R {
-                for v in 0..V {
-                    sum[r][v] = match start {
-                        Start::Row(numbers) => simd.load(&numbers[vector + v].0),
-                        Start::Zero => simd.splat(0.0),
-                        Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
-                    };
-                }
+            let b = (pairs, part);
+            let mut row = 0;
+            while row + R <= rows {
+                tile::<S, R, V>(simd, a, b, start, y, (row, vector));
+                row += R;
             }
-            let (blocks, rest) = pairs.as_chunks();
-            for (block, of_b) in blocks.iter().enumerate() {
-                sum = add_block(simd, sum, of_a, block * BLOCK, of_b, part);
+            while R > 4 && row + 4 <= rows {
+                tile::<S, 4, V>(simd, a, b, start, y, (row, vector));
+                row += 4;
             }
-            for (t, of_b) in (blocks.len() * BLOCK..).zip(rest) {
-                for r in 0..R {
-                    let of_a = simd.splat(of_a[r][t]);
-                    for v in 0..V {
-                        sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[part + v].0), sum[r][v]);
-                    }
-                }
+            while row < rows {
+                tile::<S, 1, V>(simd, a, b, start, y, (row, vector));
+                row += 1;
             }
-            for r in 0..R {
-                for v in 0..V {
-                    store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
-                }
+        }
+    }
+}
+
+/// The product of some rows and V vectors of B's columns: those of `pairs` from `part` on, which are the columns of y
+/// from `vector` on.
+#[inline(always)]
+fn tile<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    a: MatrixColumns<'_>,
+    (pairs, part): (&[[Lanes; 2]], usize),
+    start: Start<'_>,
+    y: &mut MatrixColumnsMut<'_>,
+    (row, vector): (usize, usize),
+) {
+    let mut of_a: [&[f32]; R] = [&[]; R];
+    for r in 0..R {
+        of_a[r] = a.row(row + r);
+    }
+    let mut sum = [[simd.splat(0.0); V]; R];
+    for r in 0..R {
+        for v in 0..V {
+            sum[r][v] = match start {
+                Start::Row(numbers) => simd.load(&numbers[vector + v].0),
+                Start::Zero => simd.splat(0.0),
+                Start::There => load(simd, y.row_mut(row + r), (vector + v) * LANES),
+            };
+        }
+    }
+    let (blocks, rest) = pairs.as_chunks();
+    for (block, of_b) in blocks.iter().enumerate() {
+        sum = add_block(simd, sum, of_a, block * BLOCK, of_b, part);
+    }
+    for (t, of_b) in (blocks.len() * BLOCK..).zip(rest) {
+        for r in 0..R {
+            let of_a = simd.splat(of_a[r][t]);
+            for v in 0..V {
+                sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[part + v].0), sum[r][v]);
             }
+        }
+    }
+    for r in 0..R {
+        for v in 0..V {
+            store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
         }
     }
 }
@@ -127,15 +132,17 @@ fn add_block<S: Simd, const R: usize, const V: usize>(
     for r in 0..R {
         of_a[r] = a[r][first..].first_chunk().expect("as many columns as rows of B");
     }
-    for t in 0..BLOCK {
-        let mut of_b = [simd.splat(0.0); V];
-        for v in 0..V {
-            of_b[v] = simd.load(&b[t][part + v].0);
-        }
-        for r in 0..R {
-            let of_a = simd.splat(of_a[r][t]);
+    for eight in 0..BLOCK / UNROLLED {
+        for t in eight * UNROLLED..(eight + 1) * UNROLLED {
+            let mut of_b = [simd.splat(0.0); V];
             for v in 0..V {
-                sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+                of_b[v] = simd.load(&b[t][part + v].0);
+            }
+            for r in 0..R {
+                let of_a = simd.splat(of_a[r][t]);
+                for v in 0..V {
+                    sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+                }
             }
         }
     }
@@ -178,19 +185,15 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
 ) {
     for first in (0..columns).step_by(V * LANES) {
         let mut sum = [[simd.splat(0.0); V]; R];
-        for t in 0..a.rows() {
-            let of_a = &a.row(t)[row..][..R];
-            let of_b = b.row(t);
-            let mut loaded = [simd.splat(0.0); V];
-            for v in 0..V {
-                loaded[v] = load(simd, of_b, first + v * LANES);
+        let mut t = 0;
+        while t + 4 <= a.rows() {
+            for t in t..t + 4 {
+                sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
             }
-            for r in 0..R {
-                let of_a = simd.splat(of_a[r]);
-                for v in 0..V {
-                    sum[r][v] = simd.mul_add(of_a, loaded[v], sum[r][v]);
-                }
-            }
+            t += 4;
+        }
+        for t in t..a.rows() {
+            sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
         }
         for r in 0..R {
             let into = sums.row_mut(row + r);
@@ -202,6 +205,30 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
             }
         }
     }
+}
+
+/// sum + a b for R numbers of a from `row` on, and V vectors of b from number `first` on.
+#[inline(always)]
+fn add_outer_product<S: Simd, const R: usize, const V: usize>(
+    simd: S,
+    mut sum: Tile<S, R, V>,
+    a: &[f32],
+    row: usize,
+    b: &[f32],
+    first: usize,
+) -> Tile<S, R, V> {
+    let of_a = &a[row..][..R];
+    let mut of_b = [simd.splat(0.0); V];
+    for v in 0..V {
+        of_b[v] = load(simd, b, first + v * LANES);
+    }
+    for r in 0..R {
+        let of_a = simd.splat(of_a[r]);
+        for v in 0..V {
+            sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+        }
+    }
+    sum
 }
 
 #[inline(always)]

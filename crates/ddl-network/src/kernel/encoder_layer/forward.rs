@@ -63,12 +63,20 @@ impl EncoderKernel {
         run_each(self.dispatch, jobs, work);
     }
 
-    pub(super) fn after_attention(&self, x: &[f32], attention: KeptAttention, dropouts: Dropouts) -> (Buffer, Kept) {
+    /// With `keep`, everything for a backward pass.
+    pub(super) fn after_attention(
+        &self,
+        x: &[f32],
+        attention: KeptAttention,
+        dropouts: Dropouts,
+        keep: bool,
+    ) -> (Buffer, Kept) {
         let [mut z, mut fed, mut y] = [0; 3].map(|_| Buffer::any(x.len()));
         let mixed = attention.mixed();
-        let normal1 = self.add_norm(&self.norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z);
+        let (norm1, norm2) = (&self.norm1, &self.norm2);
+        let normal1 = self.add_norm(norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z, keep);
         self.feed_forward.forward(&z, dropouts.hidden, &mut fed);
-        let normal2 = self.add_norm(&self.norm2, None, [&z, &fed], dropouts.fed, &mut y);
+        let normal2 = self.add_norm(norm2, None, [&z, &fed], dropouts.fed, &mut y, keep);
         let kept = Kept {
             attention,
             normal1,
@@ -86,27 +94,30 @@ impl EncoderKernel {
         [x, t]: [&[f32]; 2],
         dropout: Option<Dropout>,
         y: &mut [f32],
+        keep: bool,
     ) -> KeptRows {
         let width = self.sizes.width;
-        let rows = x.len() / width;
+        let kept = if keep { x.len() } else { 0 };
         let mut normal = KeptRows {
-            numbers: Buffer::any(x.len()),
-            scales: Buffer::any(rows),
+            numbers: Buffer::any(kept),
+            scales: Buffer::any(kept / width),
         };
         let decisions = dropout.and_then(Decisions::new);
         let inputs = x.chunks(ROWS * width).zip(t.chunks(ROWS * width));
-        let numbers = normal.numbers.chunks_mut(ROWS * width);
-        let normals = numbers.zip(normal.scales.chunks_mut(ROWS));
-        let outputs = normals.zip(y.chunks_mut(ROWS * width));
-        let jobs = inputs.zip(outputs).enumerate();
-        let jobs = jobs.map(|(i, ((x, t), ((numbers, scales), y)))| NormForward {
+        let mut numbers = normal.numbers.chunks_mut(ROWS * width);
+        let mut scales = normal.scales.chunks_mut(ROWS);
+        let jobs = inputs.zip(y.chunks_mut(ROWS * width)).enumerate();
+        let jobs = jobs.map(|(i, ((x, t), y))| NormForward {
             norm,
             map,
             width,
             x,
             t,
             decisions: decisions.map(|decisions| (decisions, i * ROWS)),
-            normal: Normal { numbers, scales },
+            normal: Normal {
+                numbers: numbers.next().unwrap_or_default(),
+                scales: scales.next().unwrap_or_default(),
+            },
             y,
         });
         let work = x.len() * map.map_or(10, |_| width);

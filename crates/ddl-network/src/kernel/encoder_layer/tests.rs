@@ -61,7 +61,9 @@ impl LayerCase {
 
     fn among(&self, layer: &EncoderKernel) -> Results {
         let frames = self.scenes.throughout();
-        let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts);
+        let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts, true);
+        let (alone, _) = layer.among_pedestrians(&self.x, frames, self.dropouts, false);
+        assert_eq!(*alone, *y);
         let mut of_weights = vec![0.0; self.weights.len()];
         let gx = layer.among_pedestrians_backward(&self.x, frames, self.dropouts, &kept, &self.gy, &mut of_weights);
         [y.to_vec(), gx.to_vec(), of_weights, Vec::new()]
@@ -75,7 +77,9 @@ impl LayerCase {
             value: Buffer::copy(value),
         }));
         let memory: Vec<&Remembered> = memory.iter().collect();
-        let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts);
+        let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts, true);
+        let (alone, _) = layer.over_memory(&self.x, &memory, self.dropouts, false);
+        assert_eq!(*alone, *y);
         let mut of_weights = vec![0.0; self.weights.len()];
         let mut of_memory: Vec<_> = memory.iter().map(|_| Remembered::zeros(self.x.len())).collect();
         let gx = layer.over_memory_backward(

@@ -96,14 +96,20 @@ impl SixteenHeads {
             for part in 0..DEPTH {
                 result[part] = simd.load(&parts[part]);
             }
-            result
+            return result;
+        }
+        let mut gathered = ZERO_QUAD;
+        if self.width == DEPTH && self.numbers <= from.len() - first {
+            let numbers = from[first..][..self.numbers].chunks(LANES);
+            for (part, numbers) in gathered.iter_mut().zip(numbers) {
+                part.0[..numbers.len()].copy_from_slice(numbers);
+            }
         } else {
-            let mut gathered = ZERO_QUAD;
             self.each(quad, |at, part, lane| {
                 gathered[part].0[lane] = from[(self.first + at) % from.len()];
             });
-            simd.read(&gathered)
         }
+        simd.read(&gathered)
     }
 
     /// Adds to the numbers of a quad. The slice begins with the group.
