@@ -1,5 +1,5 @@
 //! Shared code of the cross-crate and command-line tests. The test targets `it` and `faults` need no libtorch;
-//! `it_torch` and `faults_torch` train (feature `torch`, on by default).
+//! `it_torch` and `faults_torch` train (feature `torch`).
 
 #![allow(clippy::missing_panics_doc, reason = "a test may panic")]
 

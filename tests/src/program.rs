@@ -152,7 +152,7 @@ fn build(target: &[&str]) {
 fn is_with_torch(program: &Path) -> bool {
     let info = Command::new(program).args(["info", "--json"]).output();
     let info = info.expect("the program can be started").stdout;
-    !String::from_utf8_lossy(&info).contains("libtorch, which this program is built without")
+    !String::from_utf8_lossy(&info).contains("this program is built without it")
 }
 
 /// When a source was last changed, except folders of these names. Markdown pages do not affect a program.

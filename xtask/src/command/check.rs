@@ -10,5 +10,5 @@ pub(super) fn run(workspace: &Workspace) -> Result<()> {
     ci::format(workspace)?;
     tidy::run(workspace)?;
     // The feature `doc-only` also compiles the code for libtorch, without libtorch.
-    ci::lints(workspace, "ddl-cli/torch,ddl-cli/doc-only")
+    ci::lints(workspace, "ddl-cli/torch,ddl-tests/torch,ddl-cli/doc-only")
 }

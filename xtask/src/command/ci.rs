@@ -19,7 +19,7 @@ const CHECKS: [Check; 10] = [
     ("recordings from the package index", recordings),
     ("dependencies", deny::run),
     ("set-up", set_up),
-    ("lints", |workspace| lints(workspace, "ddl-cli/torch")),
+    ("lints", |workspace| lints(workspace, "ddl-cli/torch,ddl-tests/torch")),
     (
         "documentation, report page, benchmark; Python wheel",
         pages_benchmark_and_wheel,

@@ -33,20 +33,23 @@ impl Arguments {
                 Err(error) => eprintln!("{error:#}"),
             }
         }
-        let selection = ["--workspace", "--exclude", "ddl-star", "--exclude", "ddl-tests"];
-        library_tests(workspace, &selection, &self.rest)?;
-        let selection = ["-p", "ddl-tests", "--no-default-features"];
-        cargo_test(workspace, &selection, &self.rest)?;
+        // One build of everything: another selection of packages would select other features of their dependencies.
+        // The tests of `ddl-tests` run the examples.
+        let selection = ["--workspace", "--exclude", "ddl-star"];
+        for targets in [&["--tests", "--examples"][..], &["--doc"]] {
+            cargo_test(workspace, &[&selection, targets].concat(), &self.rest)?;
+        }
         if self.no_torch {
             return Ok(());
         }
         // The tests that need libtorch.
         let packages = ["-p", "ddl-star", "-p", "ddl-forecast", "-p", "ddl-cli"];
         let arguments = [&packages[..], &["--features", "ddl-cli/torch"]].concat();
-        library_tests(workspace, &arguments, &self.rest)?;
-        let tests = ["--test", "it_torch", "--test", "faults_torch"];
-        let arguments = [&["-p", "ddl-tests"][..], &tests].concat();
-        cargo_test(workspace, &arguments, &self.rest)
+        for targets in ["--tests", "--doc"] {
+            cargo_test(workspace, &[&arguments[..], &[targets]].concat(), &self.rest)?;
+        }
+        let tests = ["--features", "torch", "--test", "it_torch", "--test", "faults_torch"];
+        cargo_test(workspace, &[&["-p", "ddl-tests"][..], &tests].concat(), &self.rest)
     }
 }
 
@@ -57,14 +60,6 @@ pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
         rest: Vec::new(),
     }
     .run(workspace)
-}
-
-/// Without the examples, which the tests of `ddl-tests` build and run.
-fn library_tests(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Result<()> {
-    for targets in ["--tests", "--doc"] {
-        cargo_test(workspace, &[selection, &[targets]].concat(), rest)?;
-    }
-    Ok(())
 }
 
 fn cargo_test(workspace: &Workspace, selection: &[&str], rest: &[String]) -> Result<()> {
