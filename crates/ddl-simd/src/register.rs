@@ -104,8 +104,8 @@ pub trait Register: Copy + Send + Sync {
     fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
     /// The nearest integer to `a` (the even one of two), and `a` minus this integer. |a| must be below 2^51.
     fn wide_split(self, a: Self::Wide) -> (Self::Wide, Self::Wide);
-    /// number · 2^exponent for a positive normal number and an integer exponent of at least −2000. If the product is below
-    /// the normal numbers, the result is at most 2^−1022, possibly negative.
+    /// number · 2^exponent for a positive normal number and an integer exponent of at least −2000. If the product is
+    /// below the normal numbers, the result is at most 2^−1022, possibly negative.
     fn wide_scale(self, number: Self::Wide, exponent: Self::Wide) -> Self::Wide;
     /// The number whose representation is `bits` minus the representation of `a`. If `bits` is the sum of the
     /// representations of b and 1, the result is b / a, or up to an eighth more.

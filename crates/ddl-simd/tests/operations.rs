@@ -246,7 +246,8 @@ proptest! {
                 prop_assert_eq!(rests[l], exponents[l] - integers[l]);
                 let expected = numbers[l] * 2.0_f64.powf(integers[l] / 2.0).powi(2);
                 if integers[l] > -980.0 {
-                    prop_assert!((scaled[l] / expected - 1.0).abs() < 1e-14, "{:?}: {} {}", dispatch, scaled[l], expected);
+                    let error = scaled[l] / expected - 1.0;
+                    prop_assert!(error.abs() < 1e-14, "{:?}: {} {}", dispatch, scaled[l], expected);
                 } else if integers[l] < -1060.0 {
                     prop_assert!(scaled[l] <= f64::MIN_POSITIVE, "{:?}: {}", dispatch, scaled[l]);
                 }

@@ -4,7 +4,7 @@ use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
 const BLOCK: usize = 32;
-/// Steps of a product whose loop the compiler unrolls: a longer loop it leaves as it is, which costs a fifth of the time.
+/// Steps of a product that are unrolled. The compiler does not unroll a longer loop, which takes a fourth more time.
 pub(in crate::kernel) const UNROLLED: usize = 8;
 
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
