@@ -260,10 +260,7 @@ impl Backend for KernelBackend {
     fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Rows>, seen: &VisibleScenes) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
         let frames = seen.scenes.during(seen.steps.clone());
-        if self.tape.is_none() {
-            return Rc::new(Rows::new(x.shape(), kernel.only_among_pedestrians(x, frames)));
-        }
-        let (y, kept) = kernel.among_pedestrians(x, frames, dropouts);
+        let (y, kept) = kernel.among_pedestrians(x, frames, dropouts, self.tape.is_some());
         let (x, seen) = (Rc::clone(x), seen.clone());
         self.made(x.shape(), y, move |gy, of_weights| {
             let of_weights = &mut of_weights[layer.span()];
@@ -275,10 +272,10 @@ impl Backend for KernelBackend {
 
     fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Rows>, cache: &[Rc<RowKeyValues>]) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
+        let (y, kept) = kernel.over_memory(newest, &rows(cache), dropouts, self.tape.is_some());
         if self.tape.is_none() {
-            return Rc::new(Rows::new(newest.shape(), kernel.only_over_memory(newest, &rows(cache))));
+            return Rc::new(Rows::new(newest.shape(), y));
         }
-        let (y, kept) = kernel.over_memory(newest, &rows(cache), dropouts);
         let (x, cache) = (Rc::clone(newest), cache.to_vec());
         self.made(x.shape(), y, move |gy, of_weights| {
             let mut shares: Vec<_> = cache.iter().map(|token| token.gradient.take()).collect();

@@ -20,24 +20,20 @@ pub(crate) use layer::{Dropouts, EncoderKernel};
 
 impl EncoderKernel {
     /// The layer with spatial attention.
-    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`, and everything for a backward pass.
-    pub(crate) fn among_pedestrians(&self, x: &[f32], frames: Frames<'_>, dropouts: Dropouts) -> (Buffer, Kept) {
-        let (qkv, attended) = self.attend_among_pedestrians(x, frames, dropouts);
-        self.after_attention(x, KeptAttention::Among { qkv, attended }, dropouts)
-    }
-
-    /// y of [`among_pedestrians`](Self::among_pedestrians) without dropout.
-    pub(crate) fn only_among_pedestrians(&self, x: &[f32], frames: Frames<'_>) -> Buffer {
-        let (_, attended) = self.attend_among_pedestrians(x, frames, Dropouts::default());
-        self.only_after_attention(x, attended.mixed())
-    }
-
-    fn attend_among_pedestrians(&self, x: &[f32], frames: Frames<'_>, dropouts: Dropouts) -> (Buffer, Attended) {
+    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`; with `keep`, also everything for a backward pass.
+    pub(crate) fn among_pedestrians(
+        &self,
+        x: &[f32],
+        frames: Frames<'_>,
+        dropouts: Dropouts,
+        keep: bool,
+    ) -> (Buffer, Kept) {
         let mut qkv = Buffer::any(3 * x.len());
         self.project(0, x, Targets::Together(&mut qkv));
         let mut attended = Attended::default();
         self.among.forward(&qkv, frames, dropouts.weights, &mut attended);
-        (qkv, attended)
+        let attention = KeptAttention::Among { qkv, attended };
+        self.after_attention(x, attention, dropouts, keep)
     }
 
     /// The gradients of [`among_pedestrians`](Self::among_pedestrians).
@@ -66,25 +62,21 @@ impl EncoderKernel {
 
     /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
     /// `x` `[rows, width]`; tokens in `memory` have as many rows, or a divisor, as in [`OverMemory::forward`]
-    /// -> y `[rows, width]`, and everything for a backward pass.
-    pub(crate) fn over_memory(&self, x: &[f32], memory: &[&Remembered], dropouts: Dropouts) -> (Buffer, Kept) {
-        let (query, own, mixed) = self.attend_over_memory(x, memory);
-        self.after_attention(x, KeptAttention::Over { query, own, mixed }, dropouts)
-    }
-
-    /// y of [`over_memory`](Self::over_memory) without dropout.
-    pub(crate) fn only_over_memory(&self, x: &[f32], memory: &[&Remembered]) -> Buffer {
-        let (_, _, mixed) = self.attend_over_memory(x, memory);
-        self.only_after_attention(x, &mixed)
-    }
-
-    fn attend_over_memory(&self, x: &[f32], memory: &[&Remembered]) -> (Buffer, Remembered, Buffer) {
+    /// -> y `[rows, width]`; with `keep`, also everything for a backward pass.
+    pub(crate) fn over_memory(
+        &self,
+        x: &[f32],
+        memory: &[&Remembered],
+        dropouts: Dropouts,
+        keep: bool,
+    ) -> (Buffer, Kept) {
         let [mut query, mut key, mut value] = [0; 3].map(|_| Buffer::any(x.len()));
         self.project(0, x, Targets::Apart(vec![&mut query, &mut key, &mut value]));
         let own = Remembered { key, value };
         let mut mixed = Buffer::any(x.len());
         self.over.forward(&query, &views(memory), own.view(), &mut mixed);
-        (query, own, mixed)
+        let attention = KeptAttention::Over { query, own, mixed };
+        self.after_attention(x, attention, dropouts, keep)
     }
 
     /// The gradients of [`over_memory`](Self::over_memory). `gy` like `x` -> the gradient of x. The gradients of the

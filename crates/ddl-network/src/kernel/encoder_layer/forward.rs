@@ -12,8 +12,6 @@ use ddl_simd::{Simd, TiledKernel};
 
 /// Rows that are computed together. The constant number makes sums over rows independent of the threads.
 pub(super) const ROWS: usize = 256;
-/// Rows for each thread whose intermediate values fit its second-level cache.
-const AT_ONCE: usize = 4 * ROWS;
 
 pub(super) enum Targets<'a> {
     /// Concatenated in every row.
@@ -65,11 +63,20 @@ impl EncoderKernel {
         run_each(self.dispatch, jobs, work);
     }
 
-    /// y, and everything for a backward pass.
-    pub(super) fn after_attention(&self, x: &[f32], attention: KeptAttention, dropouts: Dropouts) -> (Buffer, Kept) {
+    /// With `keep`, everything for a backward pass.
+    pub(super) fn after_attention(
+        &self,
+        x: &[f32],
+        attention: KeptAttention,
+        dropouts: Dropouts,
+        keep: bool,
+    ) -> (Buffer, Kept) {
         let [mut z, mut fed, mut y] = [0; 3].map(|_| Buffer::any(x.len()));
-        let inputs = [x, attention.mixed()];
-        let [normal1, normal2] = self.after_mixing(inputs, dropouts, [&mut z, &mut fed, &mut y], true);
+        let mixed = attention.mixed();
+        let (norm1, norm2) = (&self.norm1, &self.norm2);
+        let normal1 = self.add_norm(norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z, keep);
+        self.feed_forward.forward(&z, dropouts.hidden, &mut fed);
+        let normal2 = self.add_norm(norm2, None, [&z, &fed], dropouts.fed, &mut y, keep);
         let kept = Kept {
             attention,
             normal1,
@@ -77,35 +84,6 @@ impl EncoderKernel {
             normal2,
         };
         (y, kept)
-    }
-
-    /// y without dropout. Some rows at a time, so that intermediate values stay in the processor's cache.
-    pub(super) fn only_after_attention(&self, x: &[f32], mixed: &[f32]) -> Buffer {
-        let count = x.len().min(AT_ONCE * rayon::current_num_threads() * self.sizes.width);
-        let [mut z, mut fed] = [0; 2].map(|_| Buffer::any(count));
-        let mut y = Buffer::any(x.len());
-        if count > 0 {
-            let inputs = x.chunks(count).zip(mixed.chunks(count));
-            for ((x, mixed), y) in inputs.zip(y.chunks_mut(count)) {
-                let outputs = [&mut z[..x.len()], &mut fed[..x.len()], y];
-                self.after_mixing([x, mixed], Dropouts::default(), outputs, false);
-            }
-        }
-        y
-    }
-
-    fn after_mixing(
-        &self,
-        [x, mixed]: [&[f32]; 2],
-        dropouts: Dropouts,
-        [z, fed, y]: [&mut [f32]; 3],
-        keep: bool,
-    ) -> [KeptRows; 2] {
-        let (norm1, norm2) = (&self.norm1, &self.norm2);
-        let normal1 = self.add_norm(norm1, Some(&self.out), [x, mixed], dropouts.attended, z, keep);
-        self.feed_forward.forward(z, dropouts.hidden, fed);
-        let normal2 = self.add_norm(norm2, None, [z, fed], dropouts.fed, y, keep);
-        [normal1, normal2]
     }
 
     /// y = norm(x + d(t)), or with an affine map of t if there is one.

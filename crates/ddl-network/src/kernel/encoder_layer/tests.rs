@@ -61,7 +61,9 @@ impl LayerCase {
 
     fn among(&self, layer: &EncoderKernel) -> Results {
         let frames = self.scenes.throughout();
-        let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts);
+        let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts, true);
+        let (alone, _) = layer.among_pedestrians(&self.x, frames, self.dropouts, false);
+        assert_eq!(*alone, *y);
         let mut of_weights = vec![0.0; self.weights.len()];
         let gx = layer.among_pedestrians_backward(&self.x, frames, self.dropouts, &kept, &self.gy, &mut of_weights);
         [y.to_vec(), gx.to_vec(), of_weights, Vec::new()]
@@ -75,7 +77,9 @@ impl LayerCase {
             value: Buffer::copy(value),
         }));
         let memory: Vec<&Remembered> = memory.iter().collect();
-        let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts);
+        let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts, true);
+        let (alone, _) = layer.over_memory(&self.x, &memory, self.dropouts, false);
+        assert_eq!(*alone, *y);
         let mut of_weights = vec![0.0; self.weights.len()];
         let mut of_memory: Vec<_> = memory.iter().map(|_| Remembered::zeros(self.x.len())).collect();
         let gx = layer.over_memory_backward(
@@ -92,24 +96,6 @@ impl LayerCase {
         let given = of_memory[1..].iter();
         let of_memory = given.flat_map(|token| [&token.key[..], &token.value]).flatten();
         [y.to_vec(), gx, of_weights, of_memory.copied().collect()]
-    }
-}
-
-/// More rows than are computed at once.
-#[test]
-fn passes_without_a_backward_pass_give_the_same_bits() {
-    let case = LayerCase::new(6, star(100), &[900, 3, 200, 1, 200], 0.0);
-    for set in InstructionSet::available() {
-        let layer = case.layer(set);
-        let frames = case.scenes.throughout();
-        let (y, _) = layer.among_pedestrians(&case.x, frames, Dropouts::default());
-        let pool = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-        let alone = pool.install(|| layer.only_among_pedestrians(&case.x, case.scenes.throughout()));
-        assert_eq!(*alone, *y);
-        let memory = layer.remember(&case.x);
-        let (y, _) = layer.over_memory(&case.x, &[&memory], Dropouts::default());
-        let alone = pool.install(|| layer.only_over_memory(&case.x, &[&memory]));
-        assert_eq!(*alone, *y);
     }
 }
 
