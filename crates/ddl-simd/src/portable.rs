@@ -176,7 +176,7 @@ impl Register for Portable {
         fn wide_opposite(a: Wide; bits: u64) -> Wide = |l| f64::from_bits(bits.wrapping_sub(a[l].to_bits()));
         fn wide_zero_unless_above(a: Wide, limit: Wide;) -> Wide = |l| if a[l] > limit[l] { a[l] } else { 0.0 };
         // The integer is in the low bits of the sum; added to the bits of the exponent it multiplies by 2^integer.
-        fn wide_scale(number: Wide, exponent: Wide;) -> Wide =
+        fn wide_scale_far(number: Wide, exponent: Wide;) -> Wide =
             |l| f64::from_bits(number[l].to_bits().wrapping_add((exponent[l] + WIDE_ROUNDING).to_bits() << 52));
     }
 }

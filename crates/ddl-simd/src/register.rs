@@ -105,8 +105,13 @@ pub trait Register: Copy + Send + Sync {
     /// The nearest integer to `a` (the even one of two), and `a` minus this integer. |a| must be below 2^51.
     fn wide_split(self, a: Self::Wide) -> (Self::Wide, Self::Wide);
     /// number · 2^exponent for a positive normal number and an integer exponent of at least −2000. If the product is
-    /// below the normal numbers, the result is at most 2^−1022, possibly negative.
-    fn wide_scale(self, number: Self::Wide, exponent: Self::Wide) -> Self::Wide;
+    /// below the normal numbers, the result is at most 2^−1022, possibly negative, and takes no longer.
+    fn wide_scale_far(self, number: Self::Wide, exponent: Self::Wide) -> Self::Wide;
+    /// [`wide_scale_far`](Self::wide_scale_far) where the product is a normal number.
+    #[inline(always)]
+    fn wide_scale(self, number: Self::Wide, exponent: Self::Wide) -> Self::Wide {
+        self.wide_scale_far(number, exponent)
+    }
     /// The number whose representation is `bits` minus the representation of `a`. If `bits` is the sum of the
     /// representations of b and 1, the result is b / a, or up to an eighth more.
     fn wide_opposite(self, a: Self::Wide, bits: u64) -> Self::Wide;

@@ -199,6 +199,11 @@ impl Register for Avx512 {
             let rest = _mm512_reduce_pd::<_MM_FROUND_TO_NEAREST_INT>(a);
             (_mm512_sub_pd(a, rest), rest)
         };
+        fn wide_scale_far(number: __m512d, exponent: __m512d) -> __m512d = _mm512_castsi512_pd(_mm512_add_epi64(
+            _mm512_castpd_si512(number),
+            _mm512_slli_epi64::<52>(_mm512_castpd_si512(_mm512_add_pd(exponent, _mm512_set1_pd(WIDE_ROUNDING)))),
+        ));
+        // This instruction is slow where the product is below the normal numbers.
         fn wide_scale(number: __m512d, exponent: __m512d) -> __m512d = _mm512_scalef_pd(number, exponent);
     }
 
@@ -408,7 +413,7 @@ impl Register for Avx2 {
             (integer, _mm256_sub_pd(a, integer))
         };
         // The integer is in the low bits of the sum; added to the bits of the exponent it multiplies by 2^integer.
-        fn wide_scale(number: __m256d, exponent: __m256d) -> __m256d = _mm256_castsi256_pd(_mm256_add_epi64(
+        fn wide_scale_far(number: __m256d, exponent: __m256d) -> __m256d = _mm256_castsi256_pd(_mm256_add_epi64(
             _mm256_castpd_si256(number),
             _mm256_slli_epi64::<52>(_mm256_castpd_si256(_mm256_add_pd(exponent, _mm256_set1_pd(WIDE_ROUNDING)))),
         ));

@@ -212,15 +212,19 @@ impl RegisterKernel for OnRegisters<'_> {
 struct Split<'a>(&'a Wide, &'a Wide);
 
 impl RegisterKernel for Split<'_> {
-    type Output = [Wide; 3];
+    type Output = [Wide; 4];
 
     #[inline(always)]
-    fn run<R: Register>(self, register: R) -> [Wide; 3] {
-        let mut results = [[0.0; WIDE_LANES]; 3];
+    fn run<R: Register>(self, register: R) -> [Wide; 4] {
+        let mut results = [[0.0; WIDE_LANES]; 4];
         for part in 0..R::PARTS {
             let (integer, rest) = register.wide_split(register.wide_load(self.0, part));
-            let scaled = register.wide_scale(register.wide_load(self.1, part), integer);
-            for (value, into) in [integer, rest, scaled].into_iter().zip(&mut results) {
+            let number = register.wide_load(self.1, part);
+            let scaled = [
+                register.wide_scale_far(number, integer),
+                register.wide_scale(number, integer),
+            ];
+            for (value, into) in [integer, rest, scaled[0], scaled[1]].into_iter().zip(&mut results) {
                 register.wide_store(value, into, part);
             }
         }
@@ -240,12 +244,13 @@ proptest! {
         numbers in prop::array::uniform8(1e-9..1e9_f64),
     ) {
         for dispatch in each_set() {
-            let [integers, rests, scaled] = dispatch.run_on_registers(Split(&exponents, &numbers));
+            let [integers, rests, scaled, near] = dispatch.run_on_registers(Split(&exponents, &numbers));
             for l in 0..WIDE_LANES {
                 prop_assert_eq!(integers[l], exponents[l].round_ties_even());
                 prop_assert_eq!(rests[l], exponents[l] - integers[l]);
                 let expected = numbers[l] * 2.0_f64.powf(integers[l] / 2.0).powi(2);
                 if integers[l] > -980.0 {
+                    prop_assert_eq!(scaled[l], near[l]);
                     let error = scaled[l] / expected - 1.0;
                     prop_assert!(error.abs() < 1e-14, "{:?}: {} {}", dispatch, scaled[l], expected);
                 } else if integers[l] < -1060.0 {

@@ -27,11 +27,11 @@ const FRACTION: u64 = u64::MAX >> 12;
 
 /// R of the cells of one antidiagonal of a strip. Both representations round at the same points, so they give the same
 /// bits if the plain one suffices.
-pub(crate) trait Weight: Copy {
+pub(crate) trait Weight: Copy + 'static {
     /// R of one cell.
     type One: Copy;
     /// 2^−t of each cell.
-    type Factor: Copy;
+    type Factor: Copy + 'static;
     /// Any factor: a place to be written to.
     const NONE_FACTOR: Self::Factor;
     /// Whether t may have any size.
@@ -228,7 +228,7 @@ impl Weight for Scaled<Lanes> {
             let shift = simd.wide_add(shift, simd.wide_load(&b.exponent, part));
             let shift = simd.wide_sub(shift, simd.wide_splat(exponent));
             let shift = simd.wide_max(shift, simd.wide_splat(-2000.0));
-            let share = simd.wide_scale(share, shift);
+            let share = simd.wide_scale_far(share, shift);
             let share = simd.wide_zero_unless_above(share, simd.wide_splat(NEGLIGIBLE));
             simd.wide_store(share, &mut shares, part);
         }
