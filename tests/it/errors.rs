@@ -76,6 +76,8 @@ fn missing_parts_of_a_run_are_reported() {
 #[cfg(not(feature = "torch"))]
 #[test]
 fn commands_that_need_libtorch_explain_how_to_get_it() {
+    use ddl_tests::program::WITHOUT_LIBTORCH;
+
     let place = Place::with_model();
     for (line, what) in [
         ("train --convention simulated --fold plaza --out new", "training"),
@@ -87,14 +89,14 @@ fn commands_that_need_libtorch_explain_how_to_get_it() {
         ("evaluate --model run --device cuda", "CUDA"),
         ("goals tracks.csv --device cuda", "CUDA"),
     ] {
-        let needs = format!("{what} needs libtorch, and this program is built without it");
+        let needs = format!("{what} {WITHOUT_LIBTORCH}");
         let build = "cargo build --release -p ddl-cli --features torch";
         place.fails(line, &[&needs, "`cargo xtask setup`", build]);
     }
     // Without an explicit device, the program uses the CPU.
     let _ = place.ok("forecast --model run tracks.csv --device auto");
     let cuda = &place.json("info --json")["cuda"];
-    assert!(cuda.as_str().unwrap().contains("libtorch"), "{cuda}");
+    assert!(cuda.as_str().unwrap().contains(WITHOUT_LIBTORCH), "{cuda}");
 }
 
 #[test]

@@ -149,10 +149,13 @@ fn build(target: &[&str]) {
     assert!(status.success(), "{cargo:?}: {status}");
 }
 
+/// What a program without libtorch says of everything that needs it.
+pub const WITHOUT_LIBTORCH: &str = "needs libtorch, and this program is built without it";
+
 fn is_with_torch(program: &Path) -> bool {
     let info = Command::new(program).args(["info", "--json"]).output();
     let info = info.expect("the program can be started").stdout;
-    !String::from_utf8_lossy(&info).contains("this program is built without it")
+    !String::from_utf8_lossy(&info).contains(WITHOUT_LIBTORCH)
 }
 
 /// When a source was last changed, except folders of these names. Markdown pages do not affect a program.

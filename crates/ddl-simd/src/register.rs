@@ -102,10 +102,12 @@ pub trait Register: Copy + Send + Sync {
     fn wide_max(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_min(self, a: Self::Wide, b: Self::Wide) -> Self::Wide;
     fn wide_sqrt(self, a: Self::Wide) -> Self::Wide;
-    /// The nearest integer to `a` (the even one of two), and `a` minus this integer. |a| must be below 2^51.
+    /// The nearest integer to `a` (the even one of two), and `a` minus this integer. |a| must be below 2^51. The sign
+    /// of a 0 depends on the instruction set.
     fn wide_split(self, a: Self::Wide) -> (Self::Wide, Self::Wide);
     /// number · 2^exponent for a positive normal number and an integer exponent of at least −2000. If the product is
-    /// below the normal numbers, the result is at most 2^−1022, possibly negative, and takes no longer.
+    /// below the normal numbers, the result is not above 2^−1022: it may be negative or NaN. It is computed as fast as
+    /// others.
     fn wide_scale_far(self, number: Self::Wide, exponent: Self::Wide) -> Self::Wide;
     /// [`wide_scale_far`](Self::wide_scale_far) where the product is a normal number.
     #[inline(always)]

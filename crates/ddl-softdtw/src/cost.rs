@@ -44,8 +44,8 @@ pub(crate) trait Metric: Copy {
     /// Factor between the derivatives of the cost and the results of [`slopes`](Self::slopes).
     const SLOPE: f64;
 
-    /// The costs of several pairs of steps, component by component: [`between`](Self::between), except that products
-    /// are fused.
+    /// The costs of several pairs of steps: [`between`](Self::between) up to rounding, because products are fused, and
+    /// even and odd components are summed separately.
     fn of_lanes<S: Register, const D: usize>(self, simd: S, a: &[Lanes; D], b: [&Lanes; D]) -> Lanes;
 
     /// [`slope`](Self::slope) of each cost, divided by [`SLOPE`](Self::SLOPE).

@@ -13,7 +13,7 @@
 //! # Error
 //! To first order in u = 2^−53, the relative error of R is at most the largest error of a path, the sum of the errors
 //! of its cells.
-//! A cell contributes (D + 5) u t ln 2 for t (D components), 2.1 u for 2^−t, and 3 u for the two sums and the product.
+//! A cell contributes (D + 5) u t ln 2 for t (D components), 2.8 u for 2^−t, and 3 u for the two sums and the product.
 //! A path has at most n + m − 1 cells. The mean cost of the paths, weighted by exp(−cost/γ), exceeds the value by γ
 //! times their entropy, at most γ ln(paths) < 0.9 γ (n + m). The logarithm and the last two products add 5 u |v| + 3 u
 //! γ. The total is less than (D + 12) u (|v| + γ (n + m)).
@@ -43,8 +43,8 @@ const SHORT: usize = 48;
 /// The total factor is 2^−128 to 2^456, which leaves room for addends that are 2^700 smaller.
 pub(crate) const STRETCH: usize = 128;
 
-/// What the backward recursion needs of each step of each strip. The room is made strip by strip, because a call per
-/// step would empty the registers.
+/// What the backward recursion needs of each step of each strip. The room is made strip by strip, because a call in
+/// every step would force the registers into memory.
 pub(crate) trait StepRecord<W: Weight> {
     type Step;
 

@@ -32,7 +32,7 @@ pub(crate) trait Weight: Copy + 'static {
     type One: Copy;
     /// 2^−t of each cell.
     type Factor: Copy + 'static;
-    /// Any factor: a place to be written to.
+    /// Fills new room of a record; it is overwritten.
     const NONE_FACTOR: Self::Factor;
     /// Whether t may have any size.
     const UNBOUNDED: bool;

@@ -39,7 +39,7 @@ impl Arguments {
         let command = workspace
             // The test `program` makes cargo build the program.
             .cargo(["test", "--package", "ddl-tests", "--package", "ddl-cli"])
-            .args(["--features", "ddl-tests/torch"])
+            .args(["--features", "ddl-tests/torch,ddl-cli/torch"])
             .args(["--test", "program", "--test", "faults", "--test", "faults_torch", "--"])
             .args(["--test-threads", "1", "--nocapture"])
             .args(&self.rest)

@@ -34,11 +34,8 @@ impl Arguments {
             }
         }
         // One build of everything: another selection of packages would select other features of their dependencies.
-        // The tests of `ddl-tests` run the examples.
-        let selection = ["--workspace", "--exclude", "ddl-star"];
-        for targets in [&["--tests", "--examples"][..], &["--doc"]] {
-            cargo_test(workspace, &[&selection, targets].concat(), &self.rest)?;
-        }
+        // It includes the examples, which the tests of `ddl-tests` run.
+        cargo_test(workspace, &["--workspace", "--exclude", "ddl-star"], &self.rest)?;
         if self.no_torch {
             return Ok(());
         }

@@ -95,7 +95,8 @@ impl AddNorm {
         }
     }
 
-    /// Up to four rows from `first` on. Inlined with `count` a constant, so that four rows stay in registers.
+    /// Up to four rows from `first` on. It is inlined; for whole groups `count` is a constant, so that their rows stay
+    /// in registers.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "those of the rows, and which of them")]
     fn forward_four<S: Simd, const FIXED: bool>(
@@ -109,7 +110,7 @@ impl AddNorm {
         four: &mut Four<FIXED>,
     ) {
         let (width, vectors) = (self.fixed_width::<FIXED>(), four.vectors());
-        // Slices of constant length, so that rows need no check of bounds.
+        // For whole groups these slices have a constant length, and their rows need no check of bounds.
         let all = first * width..first * width + count * width;
         let (x, t, y) = (&x[all.clone()], &t[all.clone()], &mut y[all.clone()]);
         for r in 0..count {

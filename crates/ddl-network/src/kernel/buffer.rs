@@ -29,16 +29,16 @@ impl Spares {
     /// is most likely still in the processor's cache.
     fn take(&mut self, count: usize) -> Vec<f32> {
         let lengths = || self.buffers.iter().map(Vec::len).enumerate().rev();
-        let fitting = || lengths().filter(|&(_, length)| length >= count);
+        let fitting = lengths().filter(|&(_, length)| length >= count);
         // Most buffers are as long as one before, and soon found.
         let equal = lengths().find(|&(_, length)| length == count);
-        if let Some((index, length)) = equal.or_else(|| fitting().min_by_key(|&(_, length)| length)) {
+        if let Some((index, length)) = equal.or_else(|| fitting.min_by_key(|&(_, length)| length)) {
             self.numbers -= length;
             return self.buffers.remove(index);
         }
         // Drops a free buffer that is too small, so that the number of buffers does not grow.
-        if let Some(small) = self.buffers.pop() {
-            self.numbers -= small.len();
+        if !self.buffers.is_empty() {
+            self.numbers -= self.buffers.remove(0).len();
         }
         vec![0.0; count]
     }

@@ -20,7 +20,8 @@ pub(crate) use layer::{Dropouts, EncoderKernel};
 
 impl EncoderKernel {
     /// The layer with spatial attention.
-    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`; with `keep`, also everything for a backward pass.
+    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`. Without `keep`, what is kept serves no
+    /// backward pass.
     pub(crate) fn among_pedestrians(
         &self,
         x: &[f32],
@@ -62,7 +63,7 @@ impl EncoderKernel {
 
     /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
     /// `x` `[rows, width]`; tokens in `memory` have as many rows, or a divisor, as in [`OverMemory::forward`]
-    /// -> y `[rows, width]`; with `keep`, also everything for a backward pass.
+    /// -> y `[rows, width]`. Without `keep`, what is kept serves no backward pass.
     pub(crate) fn over_memory(
         &self,
         x: &[f32],

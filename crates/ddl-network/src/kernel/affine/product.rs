@@ -4,7 +4,8 @@ use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
 const BLOCK: usize = 32;
-/// Steps of a product that are unrolled. The compiler does not unroll a longer loop, which takes a fourth more time.
+/// Steps of a product in one loop. The compiler unrolls a loop of this length, but not one of 32 steps, which takes a
+/// quarter more time.
 pub(in crate::kernel) const UNROLLED: usize = 8;
 
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
@@ -74,8 +75,8 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     }
 }
 
-/// The product of some rows and V vectors of B's columns: those of `pairs` from `part` on, which are the columns of y
-/// from `vector` on.
+/// The product of some rows and V vectors of columns. They are the vectors of `pairs` from `part` on, and the vectors
+/// of y from `vector` on.
 #[inline(always)]
 fn tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
@@ -132,8 +133,8 @@ fn add_block<S: Simd, const R: usize, const V: usize>(
     for r in 0..R {
         of_a[r] = a[r][first..].first_chunk().expect("as many columns as rows of B");
     }
-    for eight in 0..BLOCK / UNROLLED {
-        for t in eight * UNROLLED..(eight + 1) * UNROLLED {
+    for group in 0..BLOCK / UNROLLED {
+        for t in group * UNROLLED..(group + 1) * UNROLLED {
             let mut of_b = [simd.splat(0.0); V];
             for v in 0..V {
                 of_b[v] = simd.load(&b[t][part + v].0);
@@ -186,11 +187,11 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
     for first in (0..columns).step_by(V * LANES) {
         let mut sum = [[simd.splat(0.0); V]; R];
         let mut t = 0;
-        while t + 4 <= a.rows() {
-            for t in t..t + 4 {
+        while t + UNROLLED <= a.rows() {
+            for t in t..t + UNROLLED {
                 sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
             }
-            t += 4;
+            t += UNROLLED;
         }
         for t in t..a.rows() {
             sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);

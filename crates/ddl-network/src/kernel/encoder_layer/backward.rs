@@ -42,6 +42,11 @@ impl EncoderKernel {
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> (Buffer, Buffer) {
+        assert_eq!(
+            kept.normal2.numbers.len(),
+            gy.len(),
+            "numbers kept for the backward pass"
+        );
         let [_, _, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces_mut(of_weights);
         let count = gy.len();
         let [mut of_z, mut of_fed, mut through] = [0; 3].map(|_| Buffer::any(count));

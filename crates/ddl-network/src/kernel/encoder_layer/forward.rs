@@ -63,7 +63,7 @@ impl EncoderKernel {
         run_each(self.dispatch, jobs, work);
     }
 
-    /// With `keep`, everything for a backward pass.
+    /// Without `keep`, the result serves no backward pass.
     pub(super) fn after_attention(
         &self,
         x: &[f32],
@@ -97,11 +97,11 @@ impl EncoderKernel {
         keep: bool,
     ) -> KeptRows {
         let width = self.sizes.width;
-        let kept = if keep { x.len() } else { 0 };
-        let mut normal = KeptRows {
-            numbers: Buffer::any(kept),
-            scales: Buffer::any(kept / width),
-        };
+        let mut normal = KeptRows::default();
+        if keep {
+            normal.numbers = Buffer::any(x.len());
+            normal.scales = Buffer::any(x.len() / width);
+        }
         let decisions = dropout.and_then(Decisions::new);
         let inputs = x.chunks(ROWS * width).zip(t.chunks(ROWS * width));
         let mut numbers = normal.numbers.chunks_mut(ROWS * width);

@@ -32,6 +32,8 @@ impl KeptAttention {
     }
 }
 
+/// Empty if there will be no backward pass.
+#[derive(Default)]
 pub(super) struct KeptRows {
     pub(super) numbers: Buffer,
     pub(super) scales: Buffer,

@@ -14,8 +14,8 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     b: &Panel,
     part: usize,
 ) -> Tile<S, R, V> {
-    for eight in 0..BLOCK / UNROLLED {
-        for t in eight * UNROLLED..(eight + 1) * UNROLLED {
+    for group in 0..BLOCK / UNROLLED {
+        for t in group * UNROLLED..(group + 1) * UNROLLED {
             let mut of_b = [simd.splat(0.0); V];
             for v in 0..V {
                 of_b[v] = simd.load(b[t].part(part + v));

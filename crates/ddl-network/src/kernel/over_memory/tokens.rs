@@ -100,6 +100,7 @@ impl SixteenHeads {
         }
         let mut gathered = ZERO_QUAD;
         if self.width == DEPTH && self.numbers <= from.len() - first {
+            // A group of fewer heads, contiguous in the slice.
             let numbers = from[first..][..self.numbers].chunks(LANES);
             for (part, numbers) in gathered.iter_mut().zip(numbers) {
                 part.0[..numbers.len()].copy_from_slice(numbers);
