@@ -7,7 +7,7 @@ mod tests;
 use super::columns::{MatrixColumns, MatrixColumnsMut};
 use ddl_simd::{LANES, Lanes, Simd};
 use product::{Matrix, Start, add_transposed_product, multiply};
-pub(super) use product::{UNROLLED, sum_of_rows};
+pub(super) use product::{UNROLLED, add_outer_product, sum_of_rows};
 
 /// y = W x + b. The weights are stored for the forward and for the backward pass.
 #[derive(Clone, Debug)]

@@ -210,7 +210,7 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
 
 /// sum + a b for R numbers of a from `row` on, and V vectors of b from number `first` on.
 #[inline(always)]
-fn add_outer_product<S: Simd, const R: usize, const V: usize>(
+pub(in crate::kernel) fn add_outer_product<S: Simd, const R: usize, const V: usize>(
     simd: S,
     mut sum: Tile<S, R, V>,
     a: &[f32],

@@ -1,8 +1,8 @@
 //! Products of small matrices, with the result in registers.
 
 use super::block::{BLOCK, Block, PARTS, Panel, tile_mut};
-use crate::kernel::affine::UNROLLED;
-use ddl_simd::{Simd, Tile};
+use crate::kernel::affine::{UNROLLED, add_outer_product};
+use ddl_simd::{LANES, Simd, Tile};
 
 /// sum + A B for R rows of A and V parts of the columns of B, beginning with part `part`.
 /// A `[R, 32]`, B `[32, 32]`.
@@ -47,34 +47,11 @@ pub(super) fn multiply_transposed<S: Simd, const R: usize, const V: usize>(
     let (eights_of_b, rest_of_b) = b.as_chunks::<UNROLLED>();
     for (a, b) in eights.iter().zip(eights_of_b) {
         for t in 0..UNROLLED {
-            sum = add_outer_product(simd, sum, &a[t], first, &b[t], part);
+            sum = add_outer_product(simd, sum, &a[t].0, first, &b[t].0, part * LANES);
         }
     }
     for (a, b) in rest.iter().zip(rest_of_b) {
-        sum = add_outer_product(simd, sum, a, first, b, part);
-    }
-    sum
-}
-
-/// sum + a b for R numbers of a, beginning with number `first`, and V parts of b, beginning with part `part`.
-#[inline(always)]
-fn add_outer_product<S: Simd, const R: usize, const V: usize>(
-    simd: S,
-    mut sum: Tile<S, R, V>,
-    a: &Block,
-    first: usize,
-    b: &Block,
-    part: usize,
-) -> Tile<S, R, V> {
-    let mut of_b = [simd.splat(0.0); V];
-    for v in 0..V {
-        of_b[v] = simd.load(b.part(part + v));
-    }
-    for r in 0..R {
-        let of_a = simd.splat(a.0[first + r]);
-        for v in 0..V {
-            sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
-        }
+        sum = add_outer_product(simd, sum, &a.0, first, &b.0, part * LANES);
     }
     sum
 }
