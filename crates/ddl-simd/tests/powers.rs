@@ -96,8 +96,8 @@ impl RegisterKernel for Parts<'_> {
     }
 }
 
-/// Compared with the power of the fraction by the standard library, which adds an error of up to half a unit in the
-/// last place.
+/// Compared with the power of the fraction by the standard library. Its own error, up to half a unit in the last place,
+/// hardly meets the largest one.
 #[test]
 fn parts_keep_the_error_bound_and_their_bits() {
     let mut worst = 0.0_f64;
@@ -115,7 +115,7 @@ fn parts_keep_the_error_bound_and_their_bits() {
             assert_eq!(*bits.get_or_insert(found), found, "{}", dispatch.instruction_set());
         });
     }
-    assert!((5e-17..EXP2_PARTS_ERROR + 1.2e-16).contains(&worst), "{worst:e}");
+    assert!((5e-17..EXP2_PARTS_ERROR + 3e-17).contains(&worst), "{worst:e}");
     each_set(|dispatch| {
         let exponents = [
             0.0,
