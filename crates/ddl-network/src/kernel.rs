@@ -26,6 +26,7 @@ mod tests;
 mod threads;
 
 pub use buffer::Buffer;
+pub(crate) use buffer::KeepBuffers;
 pub(crate) use dropout::Dropout;
 pub use encoder_layer::Sizes;
 pub(crate) use encoder_layer::{Dropouts, EncoderKernel, Remembered};

@@ -20,38 +20,31 @@ const ROUNDING: f32 = 12_582_912.0;
 /// The same for `f64`: 1.5 · 2^52.
 pub(crate) const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-struct Approximation {
-    lowest: f32,
-    coefficients: [f32; 6],
-}
+/// Below this, [`Simd::exp2`](crate::Simd::exp2) is 0. Its results times small numbers are not denormal: processors take
+/// a hundred cycles for a denormal number.
+const VANISHING_FROM: f32 = -96.0;
 
 /// 2^f on [−1/2, 1/2] with the smallest maximum relative error (Remez exchange, 7.5e-8).
-const NORMAL: Approximation = Approximation {
-    lowest: -COST_LIMIT,
-    coefficients: [
-        1.000_000_1,
-        0.693_146_97,
-        0.240_221_2,
-        0.055_507_13,
-        0.009_675_541,
-        0.001_327_647_2,
-    ],
-};
+const NORMAL: [f32; 6] = [
+    1.000_000_1,
+    0.693_146_97,
+    0.240_221_2,
+    0.055_507_13,
+    0.009_675_541,
+    0.001_327_647_2,
+];
 
 /// 2^f on [−1/2, 1/2]: the polynomial with P(0) = 1 and the smallest maximum relative error (iteratively reweighted
 /// least squares; 1.1e-7 with coefficients of f32).
 #[expect(clippy::approx_constant, reason = "a fitted coefficient, not ln 2")]
-const VANISHING: Approximation = Approximation {
-    lowest: -127.0,
-    coefficients: [
-        1.0,
-        0.693_147,
-        0.240_222_42,
-        0.055_507_336,
-        0.009_671_513,
-        0.001_326_472_7,
-    ],
-};
+const VANISHING: [f32; 6] = [
+    1.0,
+    0.693_147,
+    0.240_222_42,
+    0.055_507_336,
+    0.009_671_513,
+    0.001_326_472_7,
+];
 
 /// 2^f on [0, 1], degree 5 (Remez exchange, 7.5e-8).
 #[cfg(target_arch = "x86_64")]
@@ -88,14 +81,21 @@ const WIDE_POLYNOMIAL: [f64; 12] = [
 
 /// [`Register::exp2_each`] for instruction sets without special instructions.
 #[inline(always)]
-pub(crate) fn normal<R: Register, const G: usize>(register: R, exponents: [R::Floats; G]) -> [R::Floats; G] {
-    by_rounding(register, exponents, &NORMAL)
+pub(crate) fn normal<R: Register, const G: usize>(register: R, mut exponents: [R::Floats; G]) -> [R::Floats; G] {
+    for exponent in &mut exponents {
+        *exponent = register.max(*exponent, register.splat(-COST_LIMIT));
+    }
+    by_rounding(register, exponents, NORMAL)
 }
 
-/// [`Simd::exp2`](crate::Simd::exp2): the result at −127 is exactly 0, because P(0) = 1 and the biased exponent is 0.
+/// [`Simd::exp2`](crate::Simd::exp2) of one register. The result at −127 is exactly 0, because P(0) = 1 and the biased
+/// exponent is 0.
 #[inline(always)]
-pub(crate) fn vanishing<R: Register, const G: usize>(register: R, exponents: [R::Floats; G]) -> [R::Floats; G] {
-    by_rounding(register, exponents, &VANISHING)
+pub(crate) fn vanishing<R: Register>(register: R, exponent: R::Floats) -> R::Floats {
+    let [smallest, zero] = [register.splat(VANISHING_FROM), register.splat(-127.0)];
+    let exponent = register.where_at_least(exponent, smallest, exponent, zero);
+    let [power] = by_rounding(register, [exponent], VANISHING);
+    power
 }
 
 /// exponent = k + f with integer k and |f| ≤ 1/2: a polynomial gives 2^f, and k is added to its exponent.
@@ -103,16 +103,16 @@ pub(crate) fn vanishing<R: Register, const G: usize>(register: R, exponents: [R:
 fn by_rounding<R: Register, const G: usize>(
     register: R,
     mut exponents: [R::Floats; G],
-    approximation: &Approximation,
+    coefficients: [f32; 6],
 ) -> [R::Floats; G] {
     let rounding = register.splat(ROUNDING);
     let mut fractions = exponents;
     for g in 0..G {
-        let exponent = register.max(exponents[g], register.splat(approximation.lowest));
+        let exponent = exponents[g];
         exponents[g] = register.add(exponent, rounding);
         fractions[g] = register.sub(exponent, register.sub(exponents[g], rounding));
     }
-    let [lower @ .., highest] = approximation.coefficients;
+    let [lower @ .., highest] = coefficients;
     let mut powers = [register.splat(highest); G];
     for coefficient in lower.into_iter().rev() {
         for g in 0..G {

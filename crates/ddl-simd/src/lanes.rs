@@ -3,6 +3,9 @@
 /// Number of `f32` values in a group.
 pub const LANES: usize = 16;
 
+/// Number of lanes in a half of a group.
+pub const HALF: usize = LANES / 2;
+
 /// Number of `f64` values in the space of [`LANES`] values of `f32`.
 pub const WIDE_LANES: usize = LANES / 2;
 
@@ -24,3 +27,13 @@ pub type Quad = [Lanes; DEPTH];
 
 /// A [`Quad`] of zeros.
 pub const ZERO_QUAD: Quad = [Lanes::ZERO; DEPTH];
+
+/// One half of the lanes of a [`Quad`].
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+pub struct HalfQuad(pub [[f32; HALF]; DEPTH]);
+
+impl HalfQuad {
+    /// Zeros.
+    pub const ZERO: Self = Self([[0.0; HALF]; DEPTH]);
+}

@@ -16,7 +16,7 @@ pub use dispatch::{Dispatch, InstructionSet, PairDispatch};
 pub use exp2::{
     COST_LIMIT, COST_LIMIT_64, EXP2_ERROR, EXP2_ERROR_64, EXP2_PARTS_ERROR, wide_exp2_each, wide_exp2_parts,
 };
-pub use lanes::{DEPTH, LANES, Lanes, Quad, WIDE_LANES, ZERO_QUAD};
+pub use lanes::{DEPTH, HALF, HalfQuad, LANES, Lanes, Quad, WIDE_LANES, ZERO_QUAD};
 pub use pairs::{Floats, PairKernel, Pairs};
 pub use register::{Register, RegisterKernel};
 pub use simd::{Kernel, Simd, Tile, TiledKernel, Vectors};

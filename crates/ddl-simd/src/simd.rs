@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::lanes::{DEPTH, LANES, Quad};
+use crate::lanes::{DEPTH, HALF, HalfQuad, LANES, Quad};
 
 /// Arithmetic on sixteen numbers at a time, in one or more registers.
 ///
@@ -26,6 +26,8 @@ pub trait Simd: Copy + Send + Sync {
     fn load(self, from: &[f32; LANES]) -> Self::Floats;
     /// Writes the numbers to an array.
     fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
+    /// Asks the processor to load the group at this index into its cache soon. Nothing else happens.
+    fn prefetch(self, from: &[f32], at: usize);
     /// a + b.
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// a − b.
@@ -49,11 +51,10 @@ pub trait Simd: Copy + Send + Sync {
     fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
     /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).
     fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
-    /// 2^`exponent` for exponents that are not positive, and exactly 0 from −127 on.
+    /// 2^`exponent` for exponents that are not positive; exactly 0 below −96 and for NaN.
     ///
     /// # Numerics
-    /// The relative error is below 3e-7 down to −126, and the result is exactly 1 at 0. Below −126 it lies in [0,
-    /// 2^−125]. NaN counts as −127.
+    /// The relative error is below 3e-7 down to −96, and the result is exactly 1 at 0.
     fn exp2(self, exponent: Self::Floats) -> Self::Floats;
     /// Lane 4 i + j of group k becomes lane 4 i + k of group j. The operation is its own inverse.
     fn transpose(self, groups: Vectors<Self>) -> Vectors<Self>;
@@ -99,6 +100,36 @@ pub trait Simd: Copy + Send + Sync {
         for d in 0..DEPTH {
             self.store(vectors[d], &mut quad[d].0);
         }
+    }
+
+    /// The numbers of two arrays in the lower and in the upper lanes.
+    #[inline(always)]
+    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Self::Floats {
+        let mut all = [0.0; LANES];
+        all[..HALF].copy_from_slice(low);
+        all[HALF..].copy_from_slice(high);
+        self.load(&all)
+    }
+
+    /// Writes the lower and the upper lanes to two arrays.
+    #[inline(always)]
+    fn store_halves(self, value: Self::Floats, low: &mut [f32; HALF], high: &mut [f32; HALF]) {
+        let mut all = [0.0; LANES];
+        self.store(value, &mut all);
+        low.copy_from_slice(&all[..HALF]);
+        high.copy_from_slice(&all[HALF..]);
+    }
+
+    /// The vectors of a half, in the lower and again in the upper lanes.
+    #[inline(always)]
+    fn read_twice(self, half: &HalfQuad) -> Vectors<Self> {
+        let [a, b, c, d] = &half.0;
+        [
+            self.load_halves(a, a),
+            self.load_halves(b, b),
+            self.load_halves(c, c),
+            self.load_halves(d, d),
+        ]
     }
 
     /// Σ a b over four vectors, added to `start`.

@@ -59,6 +59,13 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
         }
     }
 
+    #[inline(always)]
+    fn prefetch(self, from: &[f32], at: usize) {
+        if let Some(number) = from.get(at) {
+            self.0.prefetch(number);
+        }
+    }
+
     part_by_part! {
         fn add(a: Floats, b: Floats;);
         fn sub(a: Floats, b: Floats;);
@@ -89,7 +96,11 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
 
     #[inline(always)]
     fn exp2(self, exponent: Self::Floats) -> Self::Floats {
-        vanishing(self.0, exponent)
+        let mut powers = exponent;
+        for power in &mut powers {
+            *power = vanishing(self.0, *power);
+        }
+        powers
     }
 
     #[inline(always)]

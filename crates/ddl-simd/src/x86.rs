@@ -129,6 +129,7 @@ impl Register for Avx512 {
     }
 
     instructions! {
+        fn prefetch(number: &f32) -> () = _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(number).cast());
         fn splat(value: f32) -> __m512 = _mm512_set1_ps(value);
         fn add(a: __m512, b: __m512) -> __m512 = _mm512_add_ps(a, b);
         fn sub(a: __m512, b: __m512) -> __m512 = _mm512_sub_ps(a, b);
@@ -339,6 +340,7 @@ impl Register for Avx2 {
     }
 
     instructions! {
+        fn prefetch(number: &f32) -> () = _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(number).cast());
         fn splat(value: f32) -> __m256 = _mm256_set1_ps(value);
         fn add(a: __m256, b: __m256) -> __m256 = _mm256_add_ps(a, b);
         fn sub(a: __m256, b: __m256) -> __m256 = _mm256_sub_ps(a, b);

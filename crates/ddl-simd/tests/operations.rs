@@ -3,8 +3,8 @@
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use ddl_simd::{
-    DEPTH, Dispatch, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd, TiledKernel,
-    WIDE_LANES, ZERO_QUAD,
+    DEPTH, Dispatch, HALF, HalfQuad, InstructionSet, Kernel, LANES, Lanes, Quad, Register, RegisterKernel, Simd,
+    TiledKernel, WIDE_LANES, ZERO_QUAD,
 };
 use proptest::prelude::*;
 
@@ -35,6 +35,13 @@ impl Kernel for OnGroups<'_> {
         );
         let [d, e, f, g] = simd.transpose([a, b, c, simd.sub(a, b)]);
         let [s, t, u, v] = simd.spread_each(a);
+        let [mut low, mut high] = [[0.0; HALF]; 2];
+        simd.store_halves(b, &mut high, &mut low);
+        let mut half = HalfQuad::ZERO;
+        half.0[1] = low;
+        let twice = simd.read_twice(&half);
+        simd.prefetch(&low, 0);
+        simd.prefetch(&low, HALF);
         let results = [
             simd.splat(2.5),
             simd.add(a, b),
@@ -57,6 +64,8 @@ impl Kernel for OnGroups<'_> {
             e,
             f,
             g,
+            simd.load_halves(&low, &high),
+            twice[1],
             // A multiply-add is rounded once (fused) or twice.
             simd.mul_add(a, b, c),
         ];
@@ -96,6 +105,7 @@ fn expected([a, b, c]: &[Narrow; 3], word: u32, l: usize) -> Vec<f32> {
     expected.push((quarter(0) + quarter(2)) + (quarter(1) + quarter(3)));
     expected.extend([keep(a[l], 0x8000_0000), keep(b[l], 0x2000_0000)]);
     expected.extend((0..DEPTH).map(|j| groups[l % DEPTH][four + j]));
+    expected.extend([b[(l + HALF) % LANES], b[HALF + l % HALF]]);
     expected
 }
 

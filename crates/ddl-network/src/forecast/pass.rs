@@ -6,6 +6,7 @@ use super::emission::NoiseSpread;
 use crate::StarConfig;
 use crate::backbone::Backbone;
 use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
+use crate::kernel::KeepBuffers;
 use crate::weights::Linear;
 use ddl_data::{HORIZON, OBSERVED};
 use rayon::prelude::*;
@@ -75,7 +76,7 @@ impl<'a> Pass<'a> {
             .step_by(at_once)
             .collect::<Vec<usize>>()
             .into_par_iter()
-            .map(|first| {
+            .map_init(KeepBuffers::new, |_, first| {
                 let part = Part {
                     pass: self,
                     backend: KernelBackend::forward_only(Arc::clone(self.kernels)),

@@ -36,7 +36,7 @@ pub(crate) struct AmongPedestrians {
 }
 
 /// The output of [`AmongPedestrians::forward`], and what the backward pass needs in addition.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Attended {
     mixed: Buffer,
     /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score −
@@ -66,15 +66,17 @@ impl AmongPedestrians {
     }
 
     /// Mixes the values of the visible pedestrians.
-    /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames` -> `attended`, whose
-    /// buffers are reused.
-    pub(crate) fn forward(&self, qkv: &[f32], frames: Frames<'_>, dropout: Option<Dropout>, attended: &mut Attended) {
+    /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames`. Without `keep`, the
+    /// result serves no backward pass.
+    pub(crate) fn forward(&self, qkv: &[f32], frames: Frames<'_>, dropout: Option<Dropout>, keep: bool) -> Attended {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
-        attended.mixed = Buffer::any(rows * row);
-        let normalisers = entries * self.normalisers(frames);
-        attended.normalisers.resize(normalisers, [Lanes::ZERO; 2]);
+        let normalisers = if keep { entries * self.normalisers(frames) } else { 0 };
+        let mut attended = Attended {
+            mixed: Buffer::any(rows * row),
+            normalisers: vec![[Lanes::ZERO; 2]; normalisers],
+        };
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
         let mut jobs = Vec::new();
         let groups = self.heads.groups();
@@ -92,6 +94,7 @@ impl AmongPedestrians {
         }
         let work = self.work(frames, entries);
         run_buffered::<_, SceneBuffers>(self.dispatch, jobs, work);
+        attended
     }
 
     /// The gradient of the inputs of [`AmongPedestrians::forward`] from that of its output.

@@ -1,18 +1,21 @@
 //! Reusable memory for rows of numbers.
 
 use std::cell::RefCell;
+use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut};
 
 use ddl_simd::LANES;
 
-/// Number of free buffers that a thread keeps. For small batches the system's allocation takes as long as the work.
+/// Number of free buffers that a thread keeps for its next work. For small batches the system's allocation takes as long as the work.
 const SPARE: usize = 64;
-/// Largest total size of the free buffers, in numbers (32 MiB), so that the memory of a crowded frame is freed.
+/// Largest total size of the free buffers, in numbers (32 MiB), so that the memory of a crowded frame is freed after it.
 const SPARE_NUMBERS: usize = 1 << 23;
 
 struct Spares {
     buffers: Vec<Vec<f32>>,
     numbers: usize,
+    /// Number of [`KeepBuffers`].
+    keeping: usize,
 }
 
 thread_local! {
@@ -20,6 +23,7 @@ thread_local! {
         RefCell::new(Spares {
             buffers: Vec::new(),
             numbers: 0,
+            keeping: 0,
         })
     };
 }
@@ -44,10 +48,42 @@ impl Spares {
     }
 
     fn keep(&mut self, buffer: Vec<f32>) {
-        if self.buffers.len() < SPARE && self.numbers + buffer.len() <= SPARE_NUMBERS {
-            self.numbers += buffer.len();
-            self.buffers.push(buffer);
+        self.numbers += buffer.len();
+        self.buffers.push(buffer);
+        self.trim();
+    }
+
+    /// Drops the largest buffers beyond the limits.
+    fn trim(&mut self) {
+        while self.keeping == 0 && (self.buffers.len() > SPARE || self.numbers > SPARE_NUMBERS) {
+            let lengths = self.buffers.iter().map(Vec::len).enumerate();
+            if let Some((index, length)) = lengths.max_by_key(|&(_, length)| length) {
+                self.buffers.remove(index);
+                self.numbers -= length;
+            }
         }
+    }
+}
+
+/// While it lives, its thread keeps all free buffers: for work that is repeated, such as the hypotheses of a crowd.
+#[derive(Debug)]
+pub(crate) struct KeepBuffers(PhantomData<*const ()>);
+
+impl KeepBuffers {
+    pub(crate) fn new() -> Self {
+        SPARES.with_borrow_mut(|spares| spares.keeping += 1);
+        Self(PhantomData)
+    }
+}
+
+impl Drop for KeepBuffers {
+    fn drop(&mut self) {
+        // When a thread ends, its free buffers may already be dropped.
+        let _ = SPARES.try_with(|spares| {
+            let mut spares = spares.borrow_mut();
+            spares.keeping -= 1;
+            spares.trim();
+        });
     }
 }
 
@@ -125,7 +161,11 @@ mod tests {
     #[test]
     fn what_is_kept_is_bounded() {
         let many: Vec<Buffer> = (0..100).map(|_| Buffer::any(1 << 20)).collect();
+        let keep = KeepBuffers::new();
         drop(many);
+        let kept = || SPARES.with_borrow(|spares| spares.numbers);
+        assert!(kept() >= 100 << 20, "{} numbers", kept());
+        drop(keep);
         drop(Buffer::any(2 * SPARE_NUMBERS));
         SPARES.with_borrow(|spares| {
             let kept: usize = spares.buffers.iter().map(Vec::len).sum();

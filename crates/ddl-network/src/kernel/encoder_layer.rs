@@ -7,7 +7,6 @@ mod layer;
 #[cfg(test)]
 mod tests;
 
-use super::among_pedestrians::Attended;
 use super::buffer::Buffer;
 use super::over_memory::{KeyValue, OverMemoryGradients};
 use super::scenes::Frames;
@@ -31,8 +30,7 @@ impl EncoderKernel {
     ) -> (Buffer, Kept) {
         let mut qkv = Buffer::any(3 * x.len());
         self.project(0, x, Targets::Together(&mut qkv));
-        let mut attended = Attended::default();
-        self.among.forward(&qkv, frames, dropouts.weights, &mut attended);
+        let attended = self.among.forward(&qkv, frames, dropouts.weights, keep);
         let attention = KeptAttention::Among { qkv, attended };
         self.after_attention(x, attention, dropouts, keep)
     }

@@ -1,8 +1,12 @@
 //! The layout of heads in lanes: eight heads of each of two pedestrians, four of their numbers (a quad) at a time.
 
-use ddl_simd::{DEPTH, LANES, Simd, Vectors};
+use ddl_simd::{DEPTH, HALF, Simd, Vectors};
 
-pub(super) const GROUP: usize = LANES / 2;
+pub(super) const GROUP: usize = HALF;
+
+/// The numbers of a group of heads in one row, a half of a vector at a time.
+type Halves = [[f32; HALF]; DEPTH];
+const ZERO_HALVES: Halves = [[0.0; HALF]; DEPTH];
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Heads {
@@ -55,75 +59,61 @@ impl HeadPart {
 
     /// Loads the heads of two rows; a missing row counts as zeros. Vector d holds the d-th number of each head.
     ///
-    /// Lane l holds head l / 4 + 4 (l mod 2) of row (l mod 4) / 2. In this order, transposing pieces of four lanes is
-    /// enough.
+    /// Lane l holds head [`head_of`] l of row [`row_of`] l. In this order, transposing pieces of four lanes is enough.
     #[inline(always)]
     pub(super) fn load<S: Simd>(self, simd: S, first: &[f32], second: Option<&[f32]>) -> Vectors<S> {
-        let [a, b] = self.row(simd, first);
-        let [c, d] = match second {
-            Some(second) => self.row(simd, second),
-            None => [simd.splat(0.0); 2],
-        };
-        simd.transpose([a, b, c, d])
+        if let Some(a) = self.whole(first)
+            && let Some(b) = second.map_or(Some(&ZERO_HALVES), |row| self.whole(row))
+        {
+            return loaded(simd, a, b);
+        }
+        let [mut a, mut b] = [ZERO_HALVES; 2];
+        self.each(|place, at| a.as_flattened_mut()[place] = first[at]);
+        if let Some(second) = second {
+            self.each(|place, at| b.as_flattened_mut()[place] = second[at]);
+        }
+        loaded(simd, &a, &b)
     }
 
     #[inline(always)]
     pub(super) fn store<S: Simd>(self, simd: S, vectors: Vectors<S>, first: &mut [f32], second: Option<&mut [f32]>) {
-        let [a, b, c, d] = simd.transpose(vectors);
-        self.store_row(simd, [a, b], first);
+        let (mut none, mut second) = (ZERO_HALVES, second);
+        if let Some(a) = self.whole_mut(first)
+            && let Some(b) = second.as_deref_mut().map_or(Some(&mut none), |row| self.whole_mut(row))
+        {
+            return stored(simd, vectors, a, b);
+        }
+        let [mut a, mut b] = [ZERO_HALVES; 2];
+        stored(simd, vectors, &mut a, &mut b);
+        self.each(|place, at| first[at] = a.as_flattened()[place]);
         if let Some(second) = second {
-            self.store_row(simd, [c, d], second);
+            self.each(|place, at| second[at] = b.as_flattened()[place]);
         }
     }
 
+    /// Stores the sums of the numbers of both rows.
     #[inline(always)]
     pub(super) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
-        let [a, b, c, d] = simd.transpose(vectors);
-        self.store_row(simd, [simd.add(a, c), simd.add(b, d)], row);
+        let [mut a, mut b] = [ZERO_HALVES; 2];
+        stored(simd, vectors, &mut a, &mut b);
+        let (a, b) = (a.as_flattened(), b.as_flattened());
+        self.each(|place, at| row[at] = a[place] + b[place]);
     }
 
     #[inline(always)]
-    fn row<S: Simd>(self, simd: S, row: &[f32]) -> [S::Floats; 2] {
-        let mut gathered = [0.0; GROUP * DEPTH];
-        let numbers = if let Some(whole) = self.whole(row) {
-            whole
-        } else {
-            self.each(|place, at| gathered[place] = row[at]);
-            &gathered
-        };
-        let halves = numbers.as_chunks().0;
-        [simd.load(&halves[0]), simd.load(&halves[1])]
-    }
-
-    #[inline(always)]
-    fn store_row<S: Simd>(self, simd: S, values: [S::Floats; 2], row: &mut [f32]) {
-        if let Some(whole) = self.whole_mut(row) {
-            let halves = whole.as_chunks_mut().0;
-            simd.store(values[0], &mut halves[0]);
-            simd.store(values[1], &mut halves[1]);
-        } else {
-            let mut numbers = [0.0; GROUP * DEPTH];
-            let halves = numbers.as_chunks_mut().0;
-            simd.store(values[0], &mut halves[0]);
-            simd.store(values[1], &mut halves[1]);
-            self.each(|place, at| row[at] = numbers[place]);
-        }
-    }
-
-    #[inline(always)]
-    fn whole(self, row: &[f32]) -> Option<&[f32; GROUP * DEPTH]> {
+    fn whole(self, row: &[f32]) -> Option<&Halves> {
         if self.heads.width != DEPTH {
             return None;
         }
-        row.get(self.group * GROUP * DEPTH..)?.first_chunk()
+        row.as_chunks().0.get(self.group * DEPTH..)?.first_chunk()
     }
 
     #[inline(always)]
-    fn whole_mut(self, row: &mut [f32]) -> Option<&mut [f32; GROUP * DEPTH]> {
+    fn whole_mut(self, row: &mut [f32]) -> Option<&mut Halves> {
         if self.heads.width != DEPTH {
             return None;
         }
-        row.get_mut(self.group * GROUP * DEPTH..)?.first_chunk_mut()
+        row.as_chunks_mut().0.get_mut(self.group * DEPTH..)?.first_chunk_mut()
     }
 
     #[inline(always)]
@@ -139,10 +129,27 @@ impl HeadPart {
     }
 }
 
+#[inline(always)]
+fn loaded<S: Simd>(simd: S, low: &Halves, high: &Halves) -> Vectors<S> {
+    let mut numbers = [simd.splat(0.0); DEPTH];
+    for d in 0..DEPTH {
+        numbers[d] = simd.load_halves(&low[d], &high[d]);
+    }
+    simd.transpose(numbers)
+}
+
+#[inline(always)]
+fn stored<S: Simd>(simd: S, vectors: Vectors<S>, low: &mut Halves, high: &mut Halves) {
+    let numbers = simd.transpose(vectors);
+    for d in 0..DEPTH {
+        simd.store_halves(numbers[d], &mut low[d], &mut high[d]);
+    }
+}
+
 pub(super) const fn row_of(lane: usize) -> usize {
-    lane % 4 / 2
+    lane / GROUP
 }
 
 pub(super) const fn head_of(lane: usize) -> usize {
-    lane / 4 + 4 * (lane % 2)
+    2 * (lane % DEPTH) + lane % GROUP / DEPTH
 }

@@ -153,7 +153,7 @@ fn spread<S: Simd>(
     quads: usize,
 ) -> (Vectors<S>, Vectors<S>) {
     let (mut of_key, mut of_value) = ([simd.splat(0.0); DEPTH], [simd.splat(0.0); DEPTH]);
-    let key = simd.read(&buffers.keys[key * quads + quad]);
+    let key = simd.read_twice(&buffers.keys[key * quads + quad]);
     let queries = buffers.queries.chunks_exact(quads);
     let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
     let results = buffers.query_gradients.chunks_exact_mut(quads);

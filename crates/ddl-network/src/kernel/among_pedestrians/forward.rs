@@ -10,7 +10,7 @@ pub(super) struct SceneForward<'a> {
     pub(super) task: SceneTask<'a>,
     pub(super) qkv: &'a [f32],
     pub(super) mixed: &'a mut [f32],
-    /// For each pair of queries and group of heads.
+    /// For each pair of queries and group of heads; empty if they are not kept.
     pub(super) normalisers: &'a mut [[Lanes; 2]],
 }
 
@@ -38,18 +38,22 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
         let buffers = &mut *self.buffers;
         // A key that is not visible would have the weight 0, so that leaving it out changes no bit.
         buffers.weights.resize(task.keys.len(), Lanes::ZERO);
-        let normalisers = self.job.normalisers.chunks_exact_mut(task.heads.groups());
-        let rows = self.job.mixed.chunks_mut(2 * row).zip(normalisers);
+        let mut normalisers = self.job.normalisers.chunks_exact_mut(task.heads.groups());
+        let rows = self.job.mixed.chunks_mut(2 * row);
+        let (keys, values) = (&buffers.keys[..], &buffers.values[..]);
         let queries = buffers.queries.chunks_exact(quads).zip(task.twos.clone());
-        for (at, ((mixed, normalisers), (query, two))) in rows.zip(queries).enumerate() {
+        for (at, (mixed, (query, two))) in rows.zip(queries).enumerate() {
             let seen = task.scene.of(two);
             let weights = &mut buffers.weights[..seen.len()];
             let first = task.keys.start;
             let place = |seen: &Seen| (seen.key() - first) * quads;
             let mut largest = simd.splat(f32::NEG_INFINITY);
+            let (in_registers, others) = (simd.read(&query[0]), &query[1..]);
             for (seen, weight) in seen.iter().zip(&mut *weights) {
-                let key = &buffers.keys[place(seen)..][..quads];
-                let score = dot(simd, query, key, simd.load(&UNSEEN[seen.code()].0));
+                let key = &keys[place(seen)..][..quads];
+                let unseen = simd.load(&UNSEEN[seen.code()].0);
+                let score = simd.dot(in_registers, simd.read_twice(&key[0]), unseen);
+                let score = dot(simd, others, &key[1..], score);
                 simd.store(score, &mut weight.0);
                 largest = simd.max(largest, score);
             }
@@ -73,14 +77,16 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
             for quad in 0..quads {
                 let mut sum = [simd.splat(0.0); DEPTH];
                 for (seen, weight) in seen.iter().zip(&*weights) {
-                    let value = simd.read(&buffers.values[place(seen) + quad]);
+                    let value = simd.read_twice(&values[place(seen) + quad]);
                     sum = simd.accumulate(sum, simd.load(&weight.0), value);
                 }
                 let part = HeadPart::new(task.heads, group, quad);
                 part.store(simd, simd.scaled(sum, share), first, second.as_deref_mut());
             }
-            simd.store(largest, &mut normalisers[group][0].0);
-            simd.store(share, &mut normalisers[group][1].0);
+            if let Some(kept) = normalisers.next() {
+                simd.store(largest, &mut kept[group][0].0);
+                simd.store(share, &mut kept[group][1].0);
+            }
         }
     }
 }

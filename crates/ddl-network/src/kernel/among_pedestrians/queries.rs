@@ -4,7 +4,7 @@ use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
 use crate::kernel::scenes::SceneView;
 use crate::kernel::threads::JobBuffers;
-use ddl_simd::{LANES, Lanes, Quad, Simd, ZERO_QUAD};
+use ddl_simd::{DEPTH, HalfQuad, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
 use std::cell::Cell;
 use std::ops::Range;
 use std::thread::LocalKey;
@@ -51,14 +51,14 @@ pub(super) const TWOS_AT_ONCE: usize = 256;
 
 /// Buffers for one group of heads of a task, reused by the next task.
 ///
-/// A vector holds two queries, one in each half of the lanes, or one key in both halves. So one operation combines two
-/// queries with a key, and there are no sums across lanes.
+/// A vector holds two queries, one in each half of the lanes, or one key in both halves; the key is stored once. So one
+/// operation combines two queries with a key, and there are no sums across lanes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SceneBuffers {
     /// For each pair of queries and quad of the head's numbers; scaled so that scores are exponents of two.
     pub(super) queries: Vec<Quad>,
-    pub(super) keys: Vec<Quad>,
-    pub(super) values: Vec<Quad>,
+    pub(super) keys: Vec<HalfQuad>,
+    pub(super) values: Vec<HalfQuad>,
     /// For each pair of queries and quad: gradient of the mixed values, over the sum of the weights.
     pub(super) mixed_gradients: Vec<Quad>,
     pub(super) query_gradients: Vec<Quad>,
@@ -112,8 +112,10 @@ impl SceneBuffers {
         let (asking, keys) = (task.queries(), task.keys.clone());
         let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
         self.queries.resize(task.twos.len() * quads, ZERO_QUAD);
-        self.keys.resize(keys.len() * quads, ZERO_QUAD);
-        self.values.resize(keys.len() * quads, ZERO_QUAD);
+        for halves in [&mut self.keys, &mut self.values] {
+            let count = keys.len() * quads;
+            halves.resize(count.max(halves.len()), HalfQuad::ZERO);
+        }
         let of = |pedestrians: &Range<usize>| &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end];
         let twos = of(&asking).chunks(6 * row);
         for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
@@ -125,15 +127,17 @@ impl SceneBuffers {
                 simd.write(simd.scaled(loaded, scale), query);
             }
         }
-        let seen = of(&keys);
-        let into = self.keys.chunks_exact_mut(quads);
-        let into = into.zip(self.values.chunks_exact_mut(quads));
-        for (pedestrian, (keys, values)) in seen.chunks_exact(3 * row).zip(into) {
-            let (key, value) = pedestrian[row..].split_at(row);
-            for quad in 0..quads {
-                let part = HeadPart::new(task.heads, group, quad);
-                simd.write(part.load(simd, key, Some(key)), &mut keys[quad]);
-                simd.write(part.load(simd, value, Some(value)), &mut values[quad]);
+        let twos = of(&keys).chunks(6 * row);
+        let into = self.keys.chunks_mut(2 * quads).zip(self.values.chunks_mut(2 * quads));
+        for (two, (keys, values)) in twos.zip(into) {
+            let (first, second) = two.split_at(3 * row);
+            for (into, at) in [(keys, row), (values, 2 * row)] {
+                let second = second.get(at..at + row);
+                for quad in 0..quads {
+                    let part = HeadPart::new(task.heads, group, quad);
+                    let loaded = part.load(simd, &first[at..at + row], second);
+                    store_halves(simd, loaded, into, [quad, quads + quad]);
+                }
             }
         }
         self.bits.clear();
@@ -147,12 +151,23 @@ impl SceneBuffers {
     }
 }
 
+/// Stores the halves at these places, the second only if it exists.
+#[inline(always)]
+fn store_halves<S: Simd>(simd: S, vectors: Vectors<S>, into: &mut [HalfQuad], [first, second]: [usize; 2]) {
+    let mut none = HalfQuad::ZERO;
+    let (into, rest) = into.split_at_mut(second.min(into.len()));
+    let (low, high) = (&mut into[first], rest.first_mut().unwrap_or(&mut none));
+    for d in 0..DEPTH {
+        simd.store_halves(vectors[d], &mut low.0[d], &mut high.0[d]);
+    }
+}
+
 /// `start` + Σ a b over all quads.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, a: &[Quad], b: &[Quad], start: S::Floats) -> S::Floats {
+pub(super) fn dot<S: Simd>(simd: S, a: &[Quad], b: &[HalfQuad], start: S::Floats) -> S::Floats {
     let mut sum = start;
     for (a, b) in a.iter().zip(b) {
-        sum = simd.dot(simd.read(a), simd.read(b), sum);
+        sum = simd.dot(simd.read(a), simd.read_twice(b), sum);
     }
     sum
 }

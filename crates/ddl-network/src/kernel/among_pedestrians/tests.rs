@@ -1,8 +1,8 @@
 //! Comparison with the formula in double precision.
 
+use super::AmongPedestrians;
 use super::dropout::WeightDecisions;
 use super::queries::TWOS_AT_ONCE;
-use super::{AmongPedestrians, Attended};
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, lists, wide};
 use crate::kernel::{Dropout, Scenes};
@@ -40,8 +40,7 @@ impl SceneCase {
         let attention = attention.with_instructions(set).unwrap();
         let scenes = Scenes::new(&self.sizes, lists(&self.sizes, &self.visible));
         let frames = scenes.throughout();
-        let mut attended = Attended::default();
-        attention.forward(&self.qkv, frames, self.dropout, &mut attended);
+        let attended = attention.forward(&self.qkv, frames, self.dropout, true);
         let mut gradient = vec![f32::NAN; self.qkv.len()];
         attention.backward(
             &self.qkv,
@@ -180,10 +179,9 @@ fn results_do_not_depend_on_what_was_there() {
     let big = SceneCase::new(12, STAR, &[30, 5], (2, 1), 1.0);
     let small = SceneCase::new(13, STAR, &[4, 3], (1, 1), 1.0);
     let attention = AmongPedestrians::new(8, 4);
-    let mut attended = Attended::default();
     for case in [&big, &small] {
         let scenes = Scenes::new(&case.sizes, lists(&case.sizes, &case.visible));
-        attention.forward(&case.qkv, scenes.throughout(), None, &mut attended);
+        let attended = attention.forward(&case.qkv, scenes.throughout(), None, false);
         assert_eq!(attended.mixed(), case.run(InstructionSet::detect()).0);
     }
 }

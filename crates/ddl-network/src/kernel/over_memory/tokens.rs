@@ -39,6 +39,9 @@ impl<'a> KeyValueMut<'a> {
     }
 }
 
+/// Groups of sixteen heads from one that is loaded to one that is prefetched.
+const AHEAD: usize = 3;
+
 /// Buffers for sixteen heads, reused by the next group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MemoryBuffers {
@@ -111,6 +114,14 @@ impl SixteenHeads {
             });
         }
         simd.read(&gathered)
+    }
+
+    /// Loads the numbers of a later group into the cache. There are too many tokens for the processor to foresee it.
+    #[inline(always)]
+    pub(super) fn prefetch<S: Simd>(self, simd: S, from: &[f32]) {
+        for part in 0..DEPTH {
+            simd.prefetch(from, self.first + (AHEAD * self.width + part) * LANES);
+        }
     }
 
     /// Adds to the numbers of a quad. The slice begins with the group.
@@ -211,6 +222,8 @@ pub(super) fn soften<S: Simd>(
     powers.resize(memory.len() + 1, Lanes::ZERO);
     let mut largest = simd.splat(f32::NEG_INFINITY);
     for (token, power) in memory.iter().chain([&own]).zip(powers.iter_mut()) {
+        place.prefetch(simd, token.key);
+        place.prefetch(simd, token.value);
         let mut score = simd.splat(0.0);
         for (quad, query) in query.iter().enumerate() {
             score = dot(simd, simd.read(query), place.load(simd, token.key, quad), score);
