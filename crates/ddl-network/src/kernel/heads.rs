@@ -96,8 +96,14 @@ impl HeadPart {
     pub(super) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
         let [mut a, mut b] = [ZERO_HALVES; 2];
         stored(simd, vectors, &mut a, &mut b);
-        let (a, b) = (a.as_flattened(), b.as_flattened());
-        self.each(|place, at| row[at] = a[place] + b[place]);
+        for (a, b) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
+            *a += b;
+        }
+        if let Some(whole) = self.whole_mut(row) {
+            *whole = a;
+        } else {
+            self.each(|place, at| row[at] = a.as_flattened()[place]);
+        }
     }
 
     #[inline(always)]
