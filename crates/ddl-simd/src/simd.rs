@@ -26,8 +26,8 @@ pub trait Simd: Copy + Send + Sync {
     fn load(self, from: &[f32; LANES]) -> Self::Floats;
     /// Writes the numbers to an array.
     fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
-    /// Asks the processor to load the group at this index into its cache soon. Nothing else happens.
-    fn prefetch(self, from: &[f32], at: usize);
+    /// Asks the processor to load the cache line of this number soon. Nothing else happens.
+    fn prefetch(self, number: &f32);
     /// a + b.
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
     /// a − b.

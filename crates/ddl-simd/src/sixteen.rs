@@ -60,10 +60,8 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
     }
 
     #[inline(always)]
-    fn prefetch(self, from: &[f32], at: usize) {
-        if let Some(number) = from.get(at) {
-            self.0.prefetch(number);
-        }
+    fn prefetch(self, number: &f32) {
+        self.0.prefetch(number);
     }
 
     part_by_part! {

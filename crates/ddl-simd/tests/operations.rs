@@ -40,8 +40,7 @@ impl Kernel for OnGroups<'_> {
         let mut half = HalfQuad::ZERO;
         half.0[1] = low;
         let twice = simd.read_twice(&half);
-        simd.prefetch(&low, 0);
-        simd.prefetch(&low, HALF);
+        simd.prefetch(&low[0]);
         let results = [
             simd.splat(2.5),
             simd.add(a, b),

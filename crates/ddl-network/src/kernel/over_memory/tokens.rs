@@ -42,6 +42,9 @@ impl<'a> KeyValueMut<'a> {
 /// Groups of sixteen heads from one that is loaded to one that is prefetched.
 const AHEAD: usize = 3;
 
+/// Numbers of all keys from which the tokens are prefetched: keys and values then take as much as the second-level cache.
+const PREFETCHED_FROM: usize = 1 << 17;
+
 /// Buffers for sixteen heads, reused by the next group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MemoryBuffers {
@@ -116,11 +119,14 @@ impl SixteenHeads {
         simd.read(&gathered)
     }
 
-    /// Loads the numbers of a later group into the cache. There are too many tokens for the processor to foresee it.
+    /// Asks for the numbers of a later group. The processor does not foresee them, because there are too many tokens.
     #[inline(always)]
     pub(super) fn prefetch<S: Simd>(self, simd: S, from: &[f32]) {
-        for part in 0..DEPTH {
-            simd.prefetch(from, self.first + (AHEAD * self.width + part) * LANES);
+        let ahead = from.get(self.first + AHEAD * LANES * self.width..);
+        if let Some(group) = ahead.and_then(|from| from.first_chunk::<{ LANES * DEPTH }>()) {
+            for part in 0..DEPTH {
+                simd.prefetch(&group[part * LANES]);
+            }
         }
     }
 
@@ -220,10 +226,13 @@ pub(super) fn soften<S: Simd>(
     powers: &mut Vec<Lanes>,
 ) -> S::Floats {
     powers.resize(memory.len() + 1, Lanes::ZERO);
+    let prefetched = own.key.len() * memory.len() >= PREFETCHED_FROM;
     let mut largest = simd.splat(f32::NEG_INFINITY);
     for (token, power) in memory.iter().chain([&own]).zip(powers.iter_mut()) {
-        place.prefetch(simd, token.key);
-        place.prefetch(simd, token.value);
+        if prefetched {
+            place.prefetch(simd, token.key);
+            place.prefetch(simd, token.value);
+        }
         let mut score = simd.splat(0.0);
         for (quad, query) in query.iter().enumerate() {
             score = dot(simd, simd.read(query), place.load(simd, token.key, quad), score);
