@@ -20,8 +20,8 @@ const ROUNDING: f32 = 12_582_912.0;
 /// The same for `f64`: 1.5 · 2^52.
 pub(crate) const WIDE_ROUNDING: f64 = 6_755_399_441_055_744.0;
 
-/// Below this, [`Simd::exp2`](crate::Simd::exp2) is 0. Its results times small numbers are not denormal: processors take
-/// a hundred cycles for a denormal number.
+/// Smallest exponent whose [`Simd::exp2`](crate::Simd::exp2) is not 0. Products of such a power and a number of at
+/// least 2^−30 are normal; an operation on denormal numbers takes a hundred cycles.
 const VANISHING_FROM: f32 = -96.0;
 
 /// 2^f on [−1/2, 1/2] with the smallest maximum relative error (Remez exchange, 7.5e-8).
@@ -88,14 +88,14 @@ pub(crate) fn normal<R: Register, const G: usize>(register: R, mut exponents: [R
     by_rounding(register, exponents, NORMAL)
 }
 
-/// [`Simd::exp2`](crate::Simd::exp2) of one register. The result at −127 is exactly 0, because P(0) = 1 and the biased
-/// exponent is 0.
+/// [`Simd::exp2`](crate::Simd::exp2): the result at −127 is exactly 0, because P(0) = 1 and the biased exponent is 0.
 #[inline(always)]
-pub(crate) fn vanishing<R: Register>(register: R, exponent: R::Floats) -> R::Floats {
-    let [smallest, zero] = [register.splat(VANISHING_FROM), register.splat(-127.0)];
-    let exponent = register.where_at_least(exponent, smallest, exponent, zero);
-    let [power] = by_rounding(register, [exponent], VANISHING);
-    power
+pub(crate) fn vanishing<R: Register, const G: usize>(register: R, mut exponents: [R::Floats; G]) -> [R::Floats; G] {
+    let [smallest, vanished] = [register.splat(VANISHING_FROM), register.splat(-127.0)];
+    for exponent in &mut exponents {
+        *exponent = register.where_at_least(*exponent, smallest, *exponent, vanished);
+    }
+    by_rounding(register, exponents, VANISHING)
 }
 
 /// exponent = k + f with integer k and |f| ≤ 1/2: a polynomial gives 2^f, and k is added to its exponent.

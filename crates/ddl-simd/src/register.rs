@@ -46,7 +46,6 @@ pub trait Register: Copy + Send + Sync {
     /// The `WIDTH` lanes of a group from `part * WIDTH` on.
     fn load(self, from: &[f32; LANES], part: usize) -> Self::Floats;
     fn store(self, value: Self::Floats, into: &mut [f32; LANES], part: usize);
-    /// Does nothing if there is no instruction for it.
     #[inline(always)]
     fn prefetch(self, _number: &f32) {}
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;

@@ -26,7 +26,7 @@ pub trait Simd: Copy + Send + Sync {
     fn load(self, from: &[f32; LANES]) -> Self::Floats;
     /// Writes the numbers to an array.
     fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
-    /// Asks the processor to load the cache line of this number soon. Nothing else happens.
+    /// Asks the processor to load the cache line of this number soon. Does nothing where there is no instruction for it.
     fn prefetch(self, number: &f32);
     /// a + b.
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
@@ -130,6 +130,14 @@ pub trait Simd: Copy + Send + Sync {
             self.load_halves(c, c),
             self.load_halves(d, d),
         ]
+    }
+
+    /// Writes the lower and the upper lanes of four vectors.
+    #[inline(always)]
+    fn write_halves(self, vectors: Vectors<Self>, low: &mut HalfQuad, high: &mut HalfQuad) {
+        for (d, vector) in vectors.into_iter().enumerate() {
+            self.store_halves(vector, &mut low.0[d], &mut high.0[d]);
+        }
     }
 
     /// Σ a b over four vectors, added to `start`.

@@ -94,11 +94,7 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
 
     #[inline(always)]
     fn exp2(self, exponent: Self::Floats) -> Self::Floats {
-        let mut powers = exponent;
-        for power in &mut powers {
-            *power = vanishing(self.0, *power);
-        }
-        powers
+        vanishing(self.0, exponent)
     }
 
     #[inline(always)]

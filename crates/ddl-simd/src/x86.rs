@@ -70,7 +70,7 @@ macro_rules! instructions {
         #[inline(always)]
         fn $name$(<const $n: $constant>)?(self, $($argument: $kind),*) -> $result {
             // SAFETY: `self` is the proof that the processor has the instructions. They access no memory, except whole
-            // arrays without a requirement on alignment.
+            // arrays without a requirement on alignment. A prefetch may name any address.
             unsafe { $value }
         }
     )*};

@@ -37,9 +37,9 @@ impl Kernel for OnGroups<'_> {
         let [s, t, u, v] = simd.spread_each(a);
         let [mut low, mut high] = [[0.0; HALF]; 2];
         simd.store_halves(b, &mut high, &mut low);
-        let mut half = HalfQuad::ZERO;
-        half.0[1] = low;
-        let twice = simd.read_twice(&half);
+        let [mut lower, mut upper] = [HalfQuad::ZERO; 2];
+        simd.write_halves([a, b, c, d], &mut lower, &mut upper);
+        let twice = simd.read_twice(&upper);
         simd.prefetch(&low[0]);
         let results = [
             simd.splat(2.5),
@@ -64,7 +64,10 @@ impl Kernel for OnGroups<'_> {
             f,
             g,
             simd.load_halves(&low, &high),
+            twice[0],
             twice[1],
+            twice[2],
+            twice[3],
             // A multiply-add is rounded once (fused) or twice.
             simd.mul_add(a, b, c),
         ];
@@ -104,7 +107,9 @@ fn expected([a, b, c]: &[Narrow; 3], word: u32, l: usize) -> Vec<f32> {
     expected.push((quarter(0) + quarter(2)) + (quarter(1) + quarter(3)));
     expected.extend([keep(a[l], 0x8000_0000), keep(b[l], 0x2000_0000)]);
     expected.extend((0..DEPTH).map(|j| groups[l % DEPTH][four + j]));
-    expected.extend([b[(l + HALF) % LANES], b[HALF + l % HALF]]);
+    let of_d = |l: usize| groups[l % DEPTH][l / DEPTH * DEPTH];
+    let upper = HALF + l % HALF;
+    expected.extend([b[(l + HALF) % LANES], a[upper], b[upper], c[upper], of_d(upper)]);
     expected
 }
 

@@ -27,8 +27,8 @@ const WORK_OF_A_PAIR: usize = 50;
 /// Multi-head attention within scenes.
 ///
 /// For each head, `mixed_i = Σ_j d_ij softmax_j(q_i · k_j / √head width) v_j` over the j that are visible to i. `d_ij`
-/// is the factor of [`Dropout`], or 1 without it. Results do not depend on the number of threads; those of different
-/// instruction sets agree up to rounding.
+/// is the factor of [`Dropout`], or 1 without it. Weights below 2^−96 of the largest count as 0. Results do not depend
+/// on the number of threads; those of different instruction sets agree up to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct AmongPedestrians {
     heads: Heads,
@@ -40,7 +40,7 @@ pub(crate) struct AmongPedestrians {
 pub(crate) struct Attended {
     mixed: Buffer,
     /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score −
-    /// largest).
+    /// largest). Empty without `keep`.
     normalisers: Vec<[Lanes; 2]>,
 }
 
@@ -66,8 +66,8 @@ impl AmongPedestrians {
     }
 
     /// Mixes the values of the visible pedestrians.
-    /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames`. Without `keep`, the
-    /// result serves no backward pass.
+    /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames`.
+    /// [`backward`](Self::backward) panics if the result was made without `keep`.
     pub(crate) fn forward(&self, qkv: &[f32], frames: Frames<'_>, dropout: Option<Dropout>, keep: bool) -> Attended {
         let entries = self.check(qkv, frames);
         let rows = entries * frames.scenes().pedestrians();
@@ -99,7 +99,7 @@ impl AmongPedestrians {
 
     /// The gradient of the inputs of [`AmongPedestrians::forward`] from that of its output.
     /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, overwritten.
-    /// The first four arguments must be those of the forward pass.
+    /// The first four arguments must be those of a forward pass with `keep`.
     pub(crate) fn backward(
         &self,
         qkv: &[f32],

@@ -6,15 +6,16 @@ use std::ops::{Deref, DerefMut};
 
 use ddl_simd::LANES;
 
-/// Number of free buffers that a thread keeps for its next work. For small batches the system's allocation takes as long as the work.
+/// Number of free buffers that a thread keeps for its next work, while no [`KeepBuffers`] lives. For small batches the
+/// system's allocation takes as long as the work.
 const SPARE: usize = 64;
-/// Largest total size of the free buffers, in numbers (32 MiB), so that the memory of a crowded frame is freed after it.
+/// Largest total size of these buffers, in numbers (32 MiB), so that the memory of a crowded frame is freed after it.
 const SPARE_NUMBERS: usize = 1 << 23;
 
 struct Spares {
     buffers: Vec<Vec<f32>>,
     numbers: usize,
-    /// Number of [`KeepBuffers`].
+    /// Number of living [`KeepBuffers`] of this thread.
     keeping: usize,
 }
 
@@ -48,24 +49,26 @@ impl Spares {
     }
 
     fn keep(&mut self, buffer: Vec<f32>) {
-        self.numbers += buffer.len();
-        self.buffers.push(buffer);
-        self.trim();
+        let fits = self.buffers.len() < SPARE && self.numbers + buffer.len() <= SPARE_NUMBERS;
+        if fits || self.keeping > 0 {
+            self.numbers += buffer.len();
+            self.buffers.push(buffer);
+        }
     }
 
-    /// Drops the largest buffers beyond the limits.
+    /// Drops the oldest buffers beyond the limits.
     fn trim(&mut self) {
-        while self.keeping == 0 && (self.buffers.len() > SPARE || self.numbers > SPARE_NUMBERS) {
-            let lengths = self.buffers.iter().map(Vec::len).enumerate();
-            if let Some((index, length)) = lengths.max_by_key(|&(_, length)| length) {
-                self.buffers.remove(index);
-                self.numbers -= length;
-            }
+        while !self.buffers.is_empty() && (self.buffers.len() > SPARE || self.numbers > SPARE_NUMBERS) {
+            self.numbers -= self.buffers.remove(0).len();
         }
     }
 }
 
-/// While it lives, its thread keeps all free buffers: for work that is repeated, such as the hypotheses of a crowd.
+/// While it lives, its thread keeps all free buffers. In a parallel loop it lives as long as one job of rayon: one
+/// hypothesis of a crowd or several.
+///
+/// The number of buffers is bounded by those in use at the same time. It is not `Send`, because it must be dropped on
+/// its thread.
 #[derive(Debug)]
 pub(crate) struct KeepBuffers(PhantomData<*const ()>);
 
@@ -82,7 +85,9 @@ impl Drop for KeepBuffers {
         let _ = SPARES.try_with(|spares| {
             let mut spares = spares.borrow_mut();
             spares.keeping -= 1;
-            spares.trim();
+            if spares.keeping == 0 {
+                spares.trim();
+            }
         });
     }
 }
@@ -160,18 +165,25 @@ mod tests {
 
     #[test]
     fn what_is_kept_is_bounded() {
-        let many: Vec<Buffer> = (0..100).map(|_| Buffer::any(1 << 20)).collect();
-        let keep = KeepBuffers::new();
-        drop(many);
-        let kept = || SPARES.with_borrow(|spares| spares.numbers);
-        assert!(kept() >= 100 << 20, "{} numbers", kept());
-        drop(keep);
+        let check = |least: usize| {
+            SPARES.with_borrow(|spares| {
+                let kept: usize = spares.buffers.iter().map(Vec::len).sum();
+                assert_eq!(kept, spares.numbers);
+                assert!(spares.buffers.len() <= SPARE, "{} buffers", spares.buffers.len());
+                assert!((least..=SPARE_NUMBERS).contains(&kept), "{kept} numbers");
+            });
+        };
+        for size in [16, 1 << 20] {
+            let many: Vec<Buffer> = (0..100).map(|_| Buffer::any(size)).collect();
+            let [outer, inner] = [0; 2].map(|_| KeepBuffers::new());
+            drop(many);
+            drop(inner);
+            assert!(SPARES.with_borrow(|spares| spares.numbers) >= 100 * size);
+            drop(outer);
+            check(SPARE_NUMBERS.min(SPARE * size) / 2);
+        }
         drop(Buffer::any(2 * SPARE_NUMBERS));
-        SPARES.with_borrow(|spares| {
-            let kept: usize = spares.buffers.iter().map(Vec::len).sum();
-            assert_eq!(kept, spares.numbers);
-            assert!((1..=SPARE_NUMBERS).contains(&kept), "{kept} numbers");
-        });
+        check(1);
     }
 
     #[test]

@@ -1,12 +1,12 @@
 //! The layout of heads in lanes: eight heads of each of two pedestrians, four of their numbers (a quad) at a time.
 
-use ddl_simd::{DEPTH, HALF, Simd, Vectors};
+use ddl_simd::{DEPTH, HALF, HalfQuad, Simd, Vectors};
 
 pub(super) const GROUP: usize = HALF;
 
-/// The numbers of a group of heads in one row, a half of a vector at a time.
+/// Four numbers of each head of a group in one row, a half of a vector at a time.
 type Halves = [[f32; HALF]; DEPTH];
-const ZERO_HALVES: Halves = [[0.0; HALF]; DEPTH];
+const ZERO_HALVES: Halves = HalfQuad::ZERO.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Heads {
@@ -59,7 +59,8 @@ impl HeadPart {
 
     /// Loads the heads of two rows; a missing row counts as zeros. Vector d holds the d-th number of each head.
     ///
-    /// Lane l holds head [`head_of`] l of row [`row_of`] l. In this order, transposing pieces of four lanes is enough.
+    /// Lane l holds head `head_of(l)` of the group, from row `row_of(l)`. In this order, transposing pieces of four
+    /// lanes is enough.
     #[inline(always)]
     pub(super) fn load<S: Simd>(self, simd: S, first: &[f32], second: Option<&[f32]>) -> Vectors<S> {
         if let Some(a) = self.whole(first)
@@ -67,43 +68,45 @@ impl HeadPart {
         {
             return loaded(simd, a, b);
         }
-        let [mut a, mut b] = [ZERO_HALVES; 2];
-        self.each(|place, at| a.as_flattened_mut()[place] = first[at]);
-        if let Some(second) = second {
-            self.each(|place, at| b.as_flattened_mut()[place] = second[at]);
-        }
-        loaded(simd, &a, &b)
+        let b = second.map_or(ZERO_HALVES, |row| self.gathered(row));
+        loaded(simd, &self.gathered(first), &b)
     }
 
     #[inline(always)]
     pub(super) fn store<S: Simd>(self, simd: S, vectors: Vectors<S>, first: &mut [f32], second: Option<&mut [f32]>) {
-        let (mut none, mut second) = (ZERO_HALVES, second);
-        if let Some(a) = self.whole_mut(first)
-            && let Some(b) = second.as_deref_mut().map_or(Some(&mut none), |row| self.whole_mut(row))
-        {
-            return stored(simd, vectors, a, b);
-        }
-        let [mut a, mut b] = [ZERO_HALVES; 2];
-        stored(simd, vectors, &mut a, &mut b);
-        self.each(|place, at| first[at] = a.as_flattened()[place]);
+        let [mut a, mut b] = [HalfQuad::ZERO; 2];
+        simd.write_halves(simd.transpose(vectors), &mut a, &mut b);
+        self.store_row(&a.0, first);
         if let Some(second) = second {
-            self.each(|place, at| second[at] = b.as_flattened()[place]);
+            self.store_row(&b.0, second);
         }
     }
 
     /// Stores the sums of the numbers of both rows.
     #[inline(always)]
     pub(super) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
-        let [mut a, mut b] = [ZERO_HALVES; 2];
-        stored(simd, vectors, &mut a, &mut b);
-        for (a, b) in a.as_flattened_mut().iter_mut().zip(b.as_flattened()) {
+        let [mut a, mut b] = [HalfQuad::ZERO; 2];
+        simd.write_halves(simd.transpose(vectors), &mut a, &mut b);
+        for (a, b) in a.0.as_flattened_mut().iter_mut().zip(b.0.as_flattened()) {
             *a += b;
         }
+        self.store_row(&a.0, row);
+    }
+
+    #[inline(always)]
+    fn store_row(self, numbers: &Halves, row: &mut [f32]) {
         if let Some(whole) = self.whole_mut(row) {
-            *whole = a;
+            *whole = *numbers;
         } else {
-            self.each(|place, at| row[at] = a.as_flattened()[place]);
+            self.each(|place, at| row[at] = numbers.as_flattened()[place]);
         }
+    }
+
+    #[inline(always)]
+    fn gathered(self, row: &[f32]) -> Halves {
+        let mut numbers = ZERO_HALVES;
+        self.each(|place, at| numbers.as_flattened_mut()[place] = row[at]);
+        numbers
     }
 
     #[inline(always)]
@@ -144,18 +147,12 @@ fn loaded<S: Simd>(simd: S, low: &Halves, high: &Halves) -> Vectors<S> {
     simd.transpose(numbers)
 }
 
-#[inline(always)]
-fn stored<S: Simd>(simd: S, vectors: Vectors<S>, low: &mut Halves, high: &mut Halves) {
-    let numbers = simd.transpose(vectors);
-    for d in 0..DEPTH {
-        simd.store_halves(numbers[d], &mut low[d], &mut high[d]);
-    }
-}
-
+/// Which of two rows a lane holds.
 pub(super) const fn row_of(lane: usize) -> usize {
     lane / GROUP
 }
 
+/// Which head of a group a lane holds.
 pub(super) const fn head_of(lane: usize) -> usize {
     2 * (lane % DEPTH) + lane % GROUP / DEPTH
 }

@@ -24,8 +24,9 @@ const WORK_OF_A_NUMBER: usize = 8;
 
 /// Multi-head attention. The query of each row attends to t cached tokens and to its own token.
 ///
-/// For each row and head, `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e. Results do not
-/// depend on the number of threads; those of different instruction sets agree up to rounding.
+/// For each row and head, `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e. Weights below
+/// 2^−96 of the largest count as 0. Results do not depend on the number of threads; those of different instruction sets
+/// agree up to rounding.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OverMemory {
     heads: Heads,

@@ -48,6 +48,7 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
             let first = task.keys.start;
             let place = |seen: &Seen| (seen.key() - first) * quads;
             let mut largest = simd.splat(f32::NEG_INFINITY);
+            // The first quad of the queries is read once, not for each key.
             let (in_registers, others) = (simd.read(&query[0]), &query[1..]);
             for (seen, weight) in seen.iter().zip(&mut *weights) {
                 let key = &keys[place(seen)..][..quads];

@@ -4,7 +4,7 @@ use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
 use crate::kernel::scenes::SceneView;
 use crate::kernel::threads::JobBuffers;
-use ddl_simd::{DEPTH, HalfQuad, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
+use ddl_simd::{HalfQuad, LANES, Lanes, Quad, Simd, ZERO_QUAD};
 use std::cell::Cell;
 use std::ops::Range;
 use std::thread::LocalKey;
@@ -112,10 +112,10 @@ impl SceneBuffers {
         let (asking, keys) = (task.queries(), task.keys.clone());
         let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
         self.queries.resize(task.twos.len() * quads, ZERO_QUAD);
-        for halves in [&mut self.keys, &mut self.values] {
-            let count = keys.len() * quads;
-            halves.resize(count.max(halves.len()), HalfQuad::ZERO);
-        }
+        // Two keys are loaded at once; a missing one is stored as zeros.
+        let count = keys.len().next_multiple_of(2) * quads;
+        self.keys.resize(count, HalfQuad::ZERO);
+        self.values.resize(count, HalfQuad::ZERO);
         let of = |pedestrians: &Range<usize>| &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end];
         let twos = of(&asking).chunks(6 * row);
         for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
@@ -128,15 +128,17 @@ impl SceneBuffers {
             }
         }
         let twos = of(&keys).chunks(6 * row);
-        let into = self.keys.chunks_mut(2 * quads).zip(self.values.chunks_mut(2 * quads));
+        let into = self.keys.chunks_exact_mut(2 * quads);
+        let into = into.zip(self.values.chunks_exact_mut(2 * quads));
         for (two, (keys, values)) in twos.zip(into) {
             let (first, second) = two.split_at(3 * row);
             for (into, at) in [(keys, row), (values, 2 * row)] {
+                let (low, high) = into.split_at_mut(quads);
                 let second = second.get(at..at + row);
                 for quad in 0..quads {
                     let part = HeadPart::new(task.heads, group, quad);
                     let loaded = part.load(simd, &first[at..at + row], second);
-                    store_halves(simd, loaded, into, [quad, quads + quad]);
+                    simd.write_halves(loaded, &mut low[quad], &mut high[quad]);
                 }
             }
         }
@@ -148,17 +150,6 @@ impl SceneBuffers {
                 self.bits.push(LaneBits::new(two, group * GROUP));
             }
         }
-    }
-}
-
-/// Stores the halves at these places, the second only if it exists.
-#[inline(always)]
-fn store_halves<S: Simd>(simd: S, vectors: Vectors<S>, into: &mut [HalfQuad], [first, second]: [usize; 2]) {
-    let mut none = HalfQuad::ZERO;
-    let (into, rest) = into.split_at_mut(second.min(into.len()));
-    let (low, high) = (&mut into[first], rest.first_mut().unwrap_or(&mut none));
-    for d in 0..DEPTH {
-        simd.store_halves(vectors[d], &mut low.0[d], &mut high.0[d]);
     }
 }
 

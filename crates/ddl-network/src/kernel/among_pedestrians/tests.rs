@@ -153,6 +153,44 @@ fn agrees_in_large_scenes() {
     SceneCase::new(21, STAR, &[2 * TWOS_AT_ONCE + 21], (2, 1), 1.5).check(5e-6);
 }
 
+/// The keys of the second block of queries begin at 507: in the middle of the scene, and at an odd place.
+#[test]
+fn agrees_where_a_block_reads_some_of_the_keys() {
+    let size = 2 * TWOS_AT_ONCE + 21;
+    for heads in [STAR, (12, 4), (8, 5)] {
+        let mut case = SceneCase::new(22, heads, &[size], (1, 1), 1.5);
+        for (i, row) in case.visible.chunks_exact_mut(size).enumerate() {
+            for (j, visible) in row.iter_mut().enumerate() {
+                *visible = i.abs_diff(j) <= 5;
+            }
+        }
+        case.check(5e-6);
+    }
+}
+
+/// A score 100 below the largest, in log2 units, has the weight 0.
+#[test]
+fn a_vanishing_weight_is_zero() {
+    let mut case = SceneCase::new(8, STAR, &[2], (1, 1), 1.0);
+    case.visible.fill(true);
+    for (pedestrian, row) in case.qkv.chunks_exact_mut(96).enumerate() {
+        row[..32].fill(1.0);
+        row[32..64].fill(if pedestrian == 0 {
+            0.0
+        } else {
+            -100.0 * std::f32::consts::LN_2 / 2.0
+        });
+        row[64..].fill(if pedestrian == 0 { 3.0 } else { 100_f32.exp2() });
+    }
+    for set in InstructionSet::available() {
+        let (mixed, _) = case.run(set);
+        assert!(
+            mixed.iter().all(|number| number.to_bits() == 3_f32.to_bits()),
+            "{set:?}: {mixed:?}"
+        );
+    }
+}
+
 /// Scores of several hundred give weights of almost 0 and 1. Sums of powers would overflow if the largest score were
 /// not subtracted. Scores have rounding errors of 3e-5, and so have the weights.
 #[test]

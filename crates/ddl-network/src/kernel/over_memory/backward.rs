@@ -67,7 +67,7 @@ impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
             query_gradient[quad] = ZERO_QUAD;
         }
         let powers = &mut buffers.powers;
-        let share = soften(simd, place, query, job.memory, job.own, powers);
+        let share = soften(simd, place, query, job.memory, job.own, powers, false);
         let mut mean = simd.splat(0.0);
         let tokens = job.memory.iter().chain([&job.own]);
         let weights = powers.iter_mut().zip(&mut buffers.taken);

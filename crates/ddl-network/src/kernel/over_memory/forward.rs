@@ -1,6 +1,6 @@
 //! The forward pass: from queries, keys and values to mixed values.
 
-use super::tokens::{KeyValue, MemoryBuffers, SixteenHeads, accumulate, soften, weighted};
+use super::tokens::{KeyValue, MemoryBuffers, SixteenHeads, accumulate, are_prefetched, soften, weighted};
 use crate::kernel::heads::Heads;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Simd, ZERO_QUAD};
@@ -38,6 +38,7 @@ impl Buffered<'_, MemoryForward<'_>, MemoryBuffers> {
         let length = job.mixed.len();
         buffers.query.resize(quads, ZERO_QUAD);
         let query = &mut buffers.query[..quads];
+        let prefetched = are_prefetched(job.memory);
         for (group, mixed) in job.mixed.chunks_mut(LANES * width).enumerate() {
             let place = SixteenHeads::new(job.first, group * LANES * width, length, width);
             for (quad, query) in query.iter_mut().enumerate() {
@@ -45,7 +46,7 @@ impl Buffered<'_, MemoryForward<'_>, MemoryBuffers> {
                 simd.write(simd.scaled(loaded, scale), query);
             }
             let powers = &mut buffers.powers;
-            let share = soften(simd, place, query, job.memory, job.own, powers);
+            let share = soften(simd, place, query, job.memory, job.own, powers, prefetched);
             for quad in 0..quads {
                 let mut sum = [simd.splat(0.0); DEPTH];
                 let tokens = job.memory.iter().chain([&job.own]);
