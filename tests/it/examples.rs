@@ -10,7 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 11] = [
+const EXAMPLES: [(&str, &[&str]); 10] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -46,7 +46,6 @@ const EXAMPLES: [(&str, &[&str]); 11] = [
         "ddl-softdtw nearest_neighbours",
         &["turns left after 0.4 s, at 1.20 m/s", "an exhaustive search agrees"],
     ),
-    ("ddl-softdtw throughput 8 2 portable", &["ns a pair"]),
     (
         "ddl-dynamics reaching",
         &[

@@ -26,7 +26,7 @@ pub trait Simd: Copy + Send + Sync {
     fn load(self, from: &[f32; LANES]) -> Self::Floats;
     /// Writes the numbers to an array.
     fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
-    /// Asks the processor to load the cache line of this number soon. Does nothing where there is no instruction for it.
+    /// Asks the processor to load the cache line of this number soon. Does nothing where no instruction does that.
     fn prefetch(self, number: &f32);
     /// a + b.
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;

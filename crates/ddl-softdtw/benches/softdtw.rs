@@ -1,13 +1,13 @@
-//! Speed of the value, the gradient and the batch (pairs per second on one thread, for each instruction set). The
-//! windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of the
-//! benchmarks say which.
+//! Speed of the value, the gradient, the batch and the search (pairs per second on one thread, for each instruction
+//! set). The windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of
+//! the benchmarks say which.
 
 mod recordings;
 
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SoftDtw, SoftDtwBatch};
+use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SearchIndex, SoftDtw, SoftDtwBatch};
 use recordings::Windows;
 use recordings::walks::Numbers;
 
@@ -60,6 +60,15 @@ fn batch(criterion: &mut Criterion) {
                     batch
                         .values_and_gradients_into(black_box(x), &mut results)
                         .expect("valid");
+                }
+            });
+        });
+        let index = SearchIndex::build(&dtw(), sequences).expect("valid");
+        let index = index.with_instruction_set(set).expect("available");
+        group.bench_function(BenchmarkId::new("100 nearest", set), |b| {
+            b.iter(|| {
+                for x in &queries {
+                    black_box(index.nearest(x, 100)).expect("valid");
                 }
             });
         });
