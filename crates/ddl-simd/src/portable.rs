@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use crate::exp2::{WIDE_ROUNDING, normal};
-use crate::lanes::{LANES, WIDE_LANES};
+use crate::lanes::{HALF, LANES, WIDE_LANES};
 use crate::register::{Register, RegisterKernel};
 use crate::simd::TiledKernel;
 use crate::sixteen::Sixteen;
@@ -75,6 +75,18 @@ impl Register for Portable {
     #[inline(always)]
     fn store(self, value: Floats, into: &mut [f32; LANES], part: usize) {
         into.as_chunks_mut().0[part] = value;
+    }
+
+    #[inline(always)]
+    fn load_halves(self, from: [&[f32; HALF]; 2], part: usize) -> Floats {
+        from[part / 2].as_chunks().0[part % 2]
+    }
+
+    #[inline(always)]
+    fn store_halves(self, value: Floats, into: [&mut [f32; HALF]; 2], part: usize) {
+        let [low, high] = into;
+        let half = if part < 2 { low } else { high };
+        half.as_chunks_mut().0[part % 2] = value;
     }
 
     #[inline(always)]

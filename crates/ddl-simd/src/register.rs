@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use crate::lanes::{LANES, WIDE_LANES};
+use crate::lanes::{HALF, LANES, WIDE_LANES};
 use crate::simd::{Simd, TiledKernel};
 
 /// Arithmetic on one register at a time, of `f32`, of `f64` and of 32-bit words.
@@ -46,6 +46,9 @@ pub trait Register: Copy + Send + Sync {
     /// The `WIDTH` lanes of a group from `part * WIDTH` on.
     fn load(self, from: &[f32; LANES], part: usize) -> Self::Floats;
     fn store(self, value: Self::Floats, into: &mut [f32; LANES], part: usize);
+    /// [`load`](Self::load) from a group whose halves are two arrays.
+    fn load_halves(self, from: [&[f32; HALF]; 2], part: usize) -> Self::Floats;
+    fn store_halves(self, value: Self::Floats, into: [&mut [f32; HALF]; 2], part: usize);
     #[inline(always)]
     fn prefetch(self, _number: &f32) {}
     fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;

@@ -26,6 +26,10 @@ pub trait Simd: Copy + Send + Sync {
     fn load(self, from: &[f32; LANES]) -> Self::Floats;
     /// Writes the numbers to an array.
     fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
+    /// The numbers of two arrays in the lower and in the upper lanes.
+    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Self::Floats;
+    /// Writes the lower and the upper lanes to two arrays.
+    fn store_halves(self, value: Self::Floats, low: &mut [f32; HALF], high: &mut [f32; HALF]);
     /// Asks the processor to load the cache line of this number soon. Does nothing where no instruction does that.
     fn prefetch(self, number: &f32);
     /// a + b.
@@ -100,24 +104,6 @@ pub trait Simd: Copy + Send + Sync {
         for d in 0..DEPTH {
             self.store(vectors[d], &mut quad[d].0);
         }
-    }
-
-    /// The numbers of two arrays in the lower and in the upper lanes.
-    #[inline(always)]
-    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Self::Floats {
-        let mut all = [0.0; LANES];
-        all[..HALF].copy_from_slice(low);
-        all[HALF..].copy_from_slice(high);
-        self.load(&all)
-    }
-
-    /// Writes the lower and the upper lanes to two arrays.
-    #[inline(always)]
-    fn store_halves(self, value: Self::Floats, low: &mut [f32; HALF], high: &mut [f32; HALF]) {
-        let mut all = [0.0; LANES];
-        self.store(value, &mut all);
-        low.copy_from_slice(&all[..HALF]);
-        high.copy_from_slice(&all[HALF..]);
     }
 
     /// The vectors of a half, in the lower and again in the upper lanes.

@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
 use crate::exp2::vanishing;
-use crate::lanes::LANES;
+use crate::lanes::{HALF, LANES};
 use crate::register::Register;
 use crate::simd::{Simd, TiledKernel, Vectors};
 
@@ -56,6 +56,22 @@ impl<R: Register, const P: usize> Simd for Sixteen<R, P> {
     fn store(self, value: Self::Floats, into: &mut [f32; LANES]) {
         for (p, part) in value.into_iter().enumerate() {
             self.0.store(part, into, p);
+        }
+    }
+
+    #[inline(always)]
+    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Self::Floats {
+        let mut result = self.splat(0.0);
+        for (p, part) in result.iter_mut().enumerate() {
+            *part = self.0.load_halves([low, high], p);
+        }
+        result
+    }
+
+    #[inline(always)]
+    fn store_halves(self, value: Self::Floats, low: &mut [f32; HALF], high: &mut [f32; HALF]) {
+        for (p, part) in value.into_iter().enumerate() {
+            self.0.store_halves(part, [low, high], p);
         }
     }
 

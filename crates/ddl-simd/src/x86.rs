@@ -13,7 +13,7 @@
 use std::arch::x86_64::*;
 
 use crate::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL, WIDE_ROUNDING, normal};
-use crate::lanes::{LANES, WIDE_LANES};
+use crate::lanes::{HALF, LANES, WIDE_LANES};
 use crate::pairs::{PairKernel, Pairs};
 use crate::register::{Register, RegisterKernel};
 use crate::simd::TiledKernel;
@@ -126,6 +126,25 @@ impl Register for Avx512 {
     memory! {
         load, store: __m512 = [f32; LANES], _mm512_loadu_ps, _mm512_storeu_ps;
         wide_load, wide_store: __m512d = [f64; WIDE_LANES], _mm512_loadu_pd, _mm512_storeu_pd;
+    }
+
+    #[inline(always)]
+    fn load_halves(self, [low, high]: [&[f32; HALF]; 2], _part: usize) -> __m512 {
+        // SAFETY: `self` is the proof that the processor has the instructions; the arrays fill a register of half the
+        // width each, and the loads require no alignment.
+        unsafe {
+            let low = _mm512_castps256_ps512(_mm256_loadu_ps(low.as_ptr()));
+            _mm512_insertf32x8::<1>(low, _mm256_loadu_ps(high.as_ptr()))
+        }
+    }
+
+    #[inline(always)]
+    fn store_halves(self, value: __m512, [low, high]: [&mut [f32; HALF]; 2], _part: usize) {
+        // SAFETY: as in the load.
+        unsafe {
+            _mm256_storeu_ps(low.as_mut_ptr(), _mm512_castps512_ps256(value));
+            _mm256_storeu_ps(high.as_mut_ptr(), _mm512_extractf32x8_ps::<1>(value));
+        }
     }
 
     instructions! {
@@ -337,6 +356,19 @@ impl Register for Avx2 {
     memory! {
         load, store: __m256 = [f32; LANES], _mm256_loadu_ps, _mm256_storeu_ps;
         wide_load, wide_store: __m256d = [f64; WIDE_LANES], _mm256_loadu_pd, _mm256_storeu_pd;
+    }
+
+    #[inline(always)]
+    fn load_halves(self, from: [&[f32; HALF]; 2], part: usize) -> __m256 {
+        // SAFETY: `self` is the proof that the processor has the instruction; an array fills a register, and the load
+        // requires no alignment.
+        unsafe { _mm256_loadu_ps(from[part].as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn store_halves(self, value: __m256, into: [&mut [f32; HALF]; 2], part: usize) {
+        // SAFETY: as in the load.
+        unsafe { _mm256_storeu_ps(into[part].as_mut_ptr(), value) }
     }
 
     instructions! {
