@@ -28,7 +28,7 @@ pub type Quad = [Lanes; DEPTH];
 /// A [`Quad`] of zeros.
 pub const ZERO_QUAD: Quad = [Lanes::ZERO; DEPTH];
 
-/// Four times eight numbers, one half of the lanes of a [`Quad`], aligned to a cache line.
+/// Four times eight numbers: the lower or the upper lanes of a [`Quad`], aligned to a cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub struct HalfQuad(pub [[f32; HALF]; DEPTH]);

@@ -84,9 +84,7 @@ impl Register for Portable {
 
     #[inline(always)]
     fn store_halves(self, value: Floats, into: [&mut [f32; HALF]; 2], part: usize) {
-        let [low, high] = into;
-        let half = if part < 2 { low } else { high };
-        half.as_chunks_mut().0[part % 2] = value;
+        into[part / 2].as_chunks_mut().0[part % 2] = value;
     }
 
     #[inline(always)]

@@ -174,13 +174,10 @@ fn a_vanishing_weight_is_zero() {
     let mut case = SceneCase::new(8, STAR, &[2], (1, 1), 1.0);
     case.visible.fill(true);
     for (pedestrian, row) in case.qkv.chunks_exact_mut(96).enumerate() {
+        let (key, value) = [(0.0, 3.0), (-50.0 * std::f32::consts::LN_2, 100_f32.exp2())][pedestrian];
         row[..32].fill(1.0);
-        row[32..64].fill(if pedestrian == 0 {
-            0.0
-        } else {
-            -100.0 * std::f32::consts::LN_2 / 2.0
-        });
-        row[64..].fill(if pedestrian == 0 { 3.0 } else { 100_f32.exp2() });
+        row[32..64].fill(key);
+        row[64..].fill(value);
     }
     for set in InstructionSet::available() {
         let (mixed, _) = case.run(set);
