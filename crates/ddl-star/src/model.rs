@@ -24,6 +24,7 @@ pub use backend::TorchBackend;
 pub use batch::SceneBatch;
 pub use emission::NoiseInput;
 pub use flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
+pub(crate) use network::Layers;
 pub use network::TorchNetwork;
 pub(crate) use numbers::{numbers, tensor};
 pub use parameters::Parameters;

@@ -3,6 +3,7 @@
 pub(crate) mod checkpoint;
 mod draws;
 pub(crate) mod gate;
+mod gradient;
 mod loss;
 pub(crate) mod optimizer;
 mod prepared;

@@ -6,7 +6,7 @@ use super::scene_means::SceneMeans;
 use crate::StarError;
 use ddl_data::{Rotation, Window};
 use ddl_network::{NetworkError, visibility};
-use std::rc::Rc;
+use std::sync::Arc;
 use tch::{Device, Kind, Tensor};
 
 /// The pedestrians of several windows, concatenated, with their neighbours.
@@ -16,7 +16,7 @@ use tch::{Device, Kind, Tensor};
 #[derive(Debug)]
 pub struct SceneBatch {
     pub(crate) positions: Tensor,
-    pub(crate) neighbours: Rc<Neighbours>,
+    pub(crate) neighbours: Arc<Neighbours>,
     pub(crate) scene_means: SceneMeans,
     /// Share of the network's metric in the metric of a step, `[1]` or `[1, P, 1]`.
     pub(crate) share: Tensor,
@@ -60,7 +60,7 @@ impl SceneBatch {
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2], (kind, device))?,
             scene_means: SceneMeans::new(neighbours.scenes().ranges(), device, kind),
-            neighbours: Rc::new(neighbours),
+            neighbours: Arc::new(neighbours),
             share: Tensor::ones([1], (kind, device)),
         })
     }
@@ -88,7 +88,7 @@ impl SceneBatch {
     pub(crate) fn shared(&self) -> Self {
         Self {
             positions: self.positions.shallow_clone(),
-            neighbours: Rc::clone(&self.neighbours),
+            neighbours: Arc::clone(&self.neighbours),
             scene_means: self.scene_means.shallow_clone(),
             share: self.share.shallow_clone(),
         }

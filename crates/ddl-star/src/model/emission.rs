@@ -40,7 +40,8 @@ enum Prepared<'a> {
 }
 
 impl<'a> Emission<'a> {
-    pub(crate) fn new(weight: &'a Tensor, bias: &'a Tensor, noise: &'a NoiseInput, config: &StarConfig) -> Self {
+    /// Shapes: `weight` `[outputs, width + noise]`, `bias` `[outputs]`.
+    pub(crate) fn new([weight, bias]: [&'a Tensor; 2], noise: &'a NoiseInput, config: &StarConfig) -> Self {
         let (width, count) = (config.output_inputs(), config.noise_width);
         let noise = match noise {
             NoiseInput::Draws(draws) => Prepared::Draws(draws),

@@ -46,9 +46,10 @@ impl TorchNetwork {
                 NoiseInput::Draws(tensor(draws, &shape)?)
             }
         };
-        let pass = Pass::Torch(TorchBackend::new(self.parameters(), Mode::Evaluate));
+        let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
+        let pass = (Pass::Torch(&torch), self.output());
         let steps = (HORIZON, batch.rule);
-        let Rollout { positions, factors } = self.roll_out_in(&scenes, &goals, &noise, steps, &pass);
+        let Rollout { positions, factors } = self.layers().roll_out(&scenes, &goals, &noise, steps, pass);
         Ok(BatchRollout {
             hypotheses: positions.size()[1] as usize,
             positions: arrays(&positions)?,

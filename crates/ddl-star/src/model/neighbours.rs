@@ -1,14 +1,12 @@
 //! Neighbours in a batch of scenes.
 
-use std::cell::OnceCell;
 use std::ops::Range;
-use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use tch::{Device, Kind, Tensor};
 
 use super::packing::Packing;
 use ddl_network::backend::Scenes;
-use std::sync::Arc;
 
 /// The neighbours in each frame of a batch: by scene for the kernels, in rows for libtorch.
 #[derive(Debug)]
@@ -16,7 +14,7 @@ pub(crate) struct Neighbours {
     scenes: Arc<Scenes>,
     device: Device,
     kind: Kind,
-    rows: OnceCell<MaskedRows>,
+    rows: Mutex<Option<MaskedRows>>,
 }
 
 impl Neighbours {
@@ -25,7 +23,7 @@ impl Neighbours {
             scenes: Arc::new(scenes),
             device,
             kind,
-            rows: OnceCell::new(),
+            rows: Mutex::new(None),
         }
     }
 
@@ -34,15 +32,16 @@ impl Neighbours {
     }
 
     /// The neighbours during some frames: one frame serves every batch entry, several serve one entry each.
-    pub(crate) fn during(self: &Rc<Self>, frames: Range<usize>) -> SeenNeighbours {
+    pub(crate) fn during(self: &Arc<Self>, frames: Range<usize>) -> SeenNeighbours {
         SeenNeighbours {
-            neighbours: Rc::clone(self),
+            neighbours: Arc::clone(self),
             frames,
         }
     }
 
-    fn rows(&self) -> &MaskedRows {
-        self.rows.get_or_init(|| {
+    fn with_rows<T>(&self, read: impl FnOnce(&MaskedRows) -> T) -> T {
+        let mut rows = self.rows.lock().unwrap_or_else(PoisonError::into_inner);
+        read(rows.get_or_insert_with(|| {
             let scenes = &self.scenes;
             let packing = Packing::new(scenes.ranges());
             let (rows, length) = (packing.rows(), packing.length());
@@ -72,7 +71,7 @@ impl Neighbours {
                     .reshape(shape)
                     .to_device(self.device),
             }
-        })
+        }))
     }
 }
 
@@ -89,29 +88,31 @@ struct MaskedRows {
 /// [`Neighbours`] during some frames.
 #[derive(Debug, Clone)]
 pub struct SeenNeighbours {
-    neighbours: Rc<Neighbours>,
+    neighbours: Arc<Neighbours>,
     frames: Range<usize>,
 }
 
 impl SeenNeighbours {
     /// Pedestrians in rows of equal length, for libtorch. Shapes: `x` `[B, P, n]` -> `[B * R, L, n]`.
     pub(crate) fn in_rows(&self, x: &Tensor) -> Tensor {
-        let rows = self.neighbours.rows();
-        let length = rows.mask.size()[3];
-        x.index_select(1, &rows.pedestrians).view([-1, length, x.size()[2]])
+        self.neighbours.with_rows(|rows| {
+            let length = rows.mask.size()[3];
+            x.index_select(1, &rows.pedestrians).view([-1, length, x.size()[2]])
+        })
     }
 
     /// The inverse of [`in_rows`](Self::in_rows). Shapes: `x` `[B * R, L, n]` -> `[B, P, n]`.
     pub(crate) fn out_of_rows(&self, x: &Tensor) -> Tensor {
-        let rows = self.neighbours.rows();
-        let (places, width) = (rows.pedestrians.size()[0], x.size()[2]);
-        x.reshape([-1, places, width]).index_select(1, &rows.places)
+        self.neighbours.with_rows(|rows| {
+            let (places, width) = (rows.pedestrians.size()[0], x.size()[2]);
+            x.reshape([-1, places, width]).index_select(1, &rows.places)
+        })
     }
 
     /// The mask of the rows of a batch of `entries`: `[B * R, 1, L, L]`, 0 or -inf. Neighbours are of the same scene,
     /// and every row of the mask has at least one 0.
     pub(crate) fn row_mask(&self, entries: i64) -> Tensor {
-        let mask = &self.neighbours.rows().mask;
+        let mask = self.neighbours.with_rows(|rows| rows.mask.shallow_clone());
         let (rows, length) = (mask.size()[1], mask.size()[3]);
         mask.narrow(0, self.frames.start as i64, self.frames.len() as i64)
             .expand([entries, rows, length, length], false)

@@ -1,7 +1,6 @@
 //! The forecasting network on libtorch: for training, for CUDA, and as the reference of the kernels.
 
 use super::backend::TorchBackend;
-use super::emission::{Emission, NoiseInput};
 use super::parameters::Parameters;
 use crate::StarError;
 use crate::device::ComputeDevice;
@@ -11,18 +10,24 @@ use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::{Layout, Linear};
 use ddl_network::{BackboneKind, Precision, StarConfig};
 use std::sync::Arc;
-use tch::{Device, Kind};
+use tch::{Device, Kind, Tensor};
 
 /// The network on libtorch's tensors, on a device.
 #[derive(Debug)]
 pub struct TorchNetwork {
-    config: StarConfig,
+    layers: Layers,
     parameters: Parameters,
     device: Device,
     kind: Kind,
-    on_tensors: Box<dyn Backbone<TorchBackend>>,
-    on_rows: Box<dyn Backbone<KernelBackend>>,
-    output: Linear,
+}
+
+/// The layers of a network without its tensors, which threads cannot share.
+#[derive(Debug)]
+pub(crate) struct Layers {
+    pub(super) config: StarConfig,
+    pub(super) on_tensors: Box<dyn Backbone<TorchBackend>>,
+    pub(super) on_rows: Box<dyn Backbone<KernelBackend>>,
+    pub(super) output: Linear,
 }
 
 impl TorchNetwork {
@@ -65,19 +70,21 @@ impl TorchNetwork {
         let output = Backbone::<KernelBackend>::output(&backbone);
         let initial = layout.initial(stream(seed, Stage::Weights, 0));
         Ok(Self {
-            config,
+            layers: Layers {
+                config,
+                on_tensors: Box::new(backbone.clone()),
+                on_rows: Box::new(backbone),
+                output,
+            },
             parameters: Parameters::new(layout, &initial, device, kind),
             device,
             kind,
-            on_tensors: Box::new(backbone.clone()),
-            on_rows: Box::new(backbone),
-            output,
         })
     }
 
     /// Size and constants.
     pub fn config(&self) -> &StarConfig {
-        &self.config
+        &self.layers.config
     }
 
     /// The learned tensors.
@@ -95,6 +102,12 @@ impl TorchNetwork {
         self.kind
     }
 
+    /// Copies of [`output`](Self::output) that have gradients of their own.
+    pub(crate) fn copy_output(&self) -> [Tensor; 2] {
+        self.output()
+            .map(|learned| learned.detach().copy().set_requires_grad(true))
+    }
+
     /// The weights in the form of the kernels; `None` if the kernels cannot compute it: on other devices than the CPU,
     /// or in f64.
     pub(crate) fn kernels(&self) -> Result<Option<Arc<Kernels>>, StarError> {
@@ -106,16 +119,12 @@ impl TorchNetwork {
         Ok(Some(Arc::new(kernels)))
     }
 
-    pub(super) fn on_tensors(&self) -> &dyn Backbone<TorchBackend> {
-        &*self.on_tensors
+    pub(crate) fn layers(&self) -> &Layers {
+        &self.layers
     }
 
-    pub(super) fn on_rows(&self) -> &dyn Backbone<KernelBackend> {
-        &*self.on_rows
-    }
-
-    pub(super) fn emission<'a>(&'a self, noise: &'a NoiseInput) -> Emission<'a> {
-        let [weight, bias] = [0, 1].map(|one| &self.parameters.tensors()[self.output.tensor + one]);
-        Emission::new(weight, bias, noise, &self.config)
+    /// Weight and bias of the output layer.
+    pub(crate) fn output(&self) -> [&Tensor; 2] {
+        [0, 1].map(|one| &self.parameters.tensors()[self.layers.output.tensor + one])
     }
 }

@@ -5,6 +5,7 @@ use super::*;
 use crate::device::ComputeDevice;
 use crate::model::{NoiseInput, TorchNetwork};
 use ddl_data::{Dataset, WINDOW, Window, WindowRule};
+use ddl_network::backend::Mode;
 use ddl_network::{
     BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
 };
@@ -66,49 +67,67 @@ enum By {
 }
 
 /// A loss and its gradient, in double precision.
-fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, &Pass) -> Tensor) -> (f64, Tensor) {
+fn gradient(
+    config: &StarConfig,
+    by: By,
+    loss: impl FnOnce(&TorchNetwork, (Pass<'_>, [&Tensor; 2])) -> Tensor,
+) -> (f64, Tensor) {
     let kind = match by {
         By::Kernels => Kind::Float,
         By::SharedWeights | By::Torch => Kind::Double,
     };
     let network = network(config, kind);
     let parameters = network.parameters();
-    let pass = match by {
-        By::Torch => Pass::Torch(TorchBackend::new(parameters, Mode::Evaluate)),
-        By::Kernels | By::SharedWeights => {
-            let kernels = network.kernels().unwrap();
-            Pass::training(Mode::Evaluate, 0, parameters, kernels.as_ref())
+    let kernels = network.kernels().unwrap();
+    assert_eq!(kernels.is_some(), matches!(by, By::Kernels), "{by:?}");
+    let (loss, gradient) = match kernels {
+        Some(kernels) => {
+            let backend = KernelBackend::training(kernels, Mode::Evaluate, 0);
+            let output = network.copy_output();
+            let loss = loss(&network, (Pass::Kernels(&backend), output.each_ref()));
+            let layers = network.layers();
+            let gradient = layers.gradient_by_kernels(&backend, &loss, &output, parameters.count());
+            (loss, Tensor::from_slice(&gradient.unwrap()))
+        }
+        None => {
+            let torch = match by {
+                By::Torch => TorchBackend::new(parameters, Mode::Evaluate),
+                _ => TorchBackend::training(parameters, Mode::Evaluate),
+            };
+            let loss = loss(&network, (Pass::Torch(&torch), network.output()));
+            let gradient = torch.gradient(&loss, parameters).unwrap();
+            (loss, gradient)
         }
     };
-    assert_eq!(matches!(pass, Pass::Kernels(_)), matches!(by, By::Kernels), "{by:?}");
-    let loss = loss(&network, &pass);
-    let gradient = pass.gradient(&loss, parameters).unwrap();
     (loss.double_value(&[]), gradient.to_kind(Kind::Double))
 }
 
 /// The mean square of single steps from true positions.
-fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: &Pass) -> Tensor {
+fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: (Pass<'_>, [&Tensor; 2])) -> Tensor {
     let kind = network.kind();
     let batch = batch(windows, kind);
     let ones = Tensor::ones([1, 16], (kind, tch::Device::Cpu));
     let noise = NoiseInput::Draws(ones * 0.3);
     let goals = batch.positions().get(WINDOW as i64 - 1);
-    let forecast = network.teacher_forced_in(&batch, &goals, &noise, pass);
+    let forecast = network.layers().teacher_forced(&batch, &goals, &noise, pass);
     let truth = batch.positions().narrow(0, 1, WINDOW as i64 - 1);
     (forecast - truth).square().mean(None::<Kind>)
 }
 
-fn walk(windows: &[Window], network: &TorchNetwork, pass: &Pass) -> Tensor {
+fn walk(windows: &[Window], network: &TorchNetwork, pass: (Pass<'_>, [&Tensor; 2])) -> Tensor {
     let batch = batch(windows, network.kind());
     let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
     let (noise, steps) = (NoiseInput::Expected, (12, StepRule::Bounded));
-    let walk = network.roll_out_in(&batch, &goals, &noise, steps, pass);
+    let walk = network.layers().roll_out(&batch, &goals, &noise, steps, pass);
     let truth = batch.positions().narrow(0, 8, 12);
     crate::mean_distance(&walk.positions.squeeze_dim(1), &truth)
 }
 
 /// A loss, with the largest relative errors of it and of its gradient.
-type Compared = (fn(&[Window], &TorchNetwork, &Pass) -> Tensor, [f64; 2]);
+type Compared = (
+    fn(&[Window], &TorchNetwork, (Pass<'_>, [&Tensor; 2])) -> Tensor,
+    [f64; 2],
+);
 
 #[test]
 fn kernels_and_tape_give_the_gradients_of_libtorch() {

@@ -2,11 +2,11 @@
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
-use super::emission::NoiseInput;
+use super::emission::{Emission, NoiseInput};
 use super::flow::{FlowConstants, StepBounds};
 use super::goal_frame::GoalFrame;
 use super::guidance::Guidance;
-use super::network::TorchNetwork;
+use super::network::{Layers, TorchNetwork};
 use super::own_motion;
 use super::tensor_backend::{Pass, TensorBackend};
 use ddl_data::OBSERVED;
@@ -35,21 +35,46 @@ impl TorchNetwork {
     /// without goal shift; `goals` `[P, 2]`; `noise` one vector or none -> `[T - 1, P, 2]`, the forecasts of frames
     /// 1..T.
     pub fn teacher_forced(&self, batch: &SceneBatch, goals: &Tensor, noise: &NoiseInput, mode: Mode) -> Tensor {
-        let pass = Pass::Torch(TorchBackend::new(self.parameters(), mode));
-        self.teacher_forced_in(batch, goals, noise, &pass)
+        let torch = TorchBackend::new(self.parameters(), mode);
+        let pass = (Pass::Torch(&torch), self.output());
+        self.layers().teacher_forced(batch, goals, noise, pass)
     }
 
-    /// [`teacher_forced`](Self::teacher_forced) in the given pass.
-    pub(crate) fn teacher_forced_in(
+    /// Forecast positions: 8 observed frames, then every forecast is the input of the next step.
+    ///
+    /// At all forecast steps the neighbours are those of the last observed frame. H = G hypotheses with one goal each,
+    /// or H = number of noise vectors for a single goal (G = 1).
+    ///
+    /// # Shapes
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions `[horizon, H, P,
+    /// 2]` and factors `[horizon, H, P, 3]`.
+    pub fn roll_out(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        pass: &Pass,
+        horizon: usize,
+        rule: StepRule,
+    ) -> Rollout {
+        let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
+        let pass = (Pass::Torch(&torch), self.output());
+        self.layers().roll_out(batch, goals, noise, (horizon, rule), pass)
+    }
+}
+
+impl Layers {
+    /// [`TorchNetwork::teacher_forced`] in a pass, with the weights of the output layer.
+    pub(crate) fn teacher_forced(
+        &self,
+        batch: &SceneBatch,
+        goals: &Tensor,
+        noise: &NoiseInput,
+        (pass, output): (Pass<'_>, [&Tensor; 2]),
     ) -> Tensor {
+        let emission = Emission::new(output, noise, &self.config);
         match pass {
-            Pass::Torch(backend) => self.teacher_forced_by(batch, goals, noise, (backend, self.on_tensors())),
-            Pass::Kernels(backend) => self.teacher_forced_by(batch, goals, noise, (backend, self.on_rows())),
+            Pass::Torch(backend) => self.teacher_forced_by(batch, goals, &emission, (backend, &*self.on_tensors)),
+            Pass::Kernels(backend) => self.teacher_forced_by(batch, goals, &emission, (backend, &*self.on_rows)),
         }
     }
 
@@ -57,7 +82,7 @@ impl TorchNetwork {
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
-        noise: &NoiseInput,
+        emission: &Emission<'_>,
         (backend, backbone): (&B, &dyn Backbone<B>),
     ) -> Tensor {
         let steps = batch.positions.size()[0] as usize - 1;
@@ -79,48 +104,24 @@ impl TorchNetwork {
                 backbone.step(backend, &mut memory, &relative[t], &scenes[t], &seen)
             })
             .collect();
-        let emitted = course.to_world(&self.emission(noise).of(&backend.joined(&features)));
+        let emitted = course.to_world(&emission.of(&backend.joined(&features)));
         course.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
-    /// Forecast positions: 8 observed frames, then every forecast is the input of the next step.
-    ///
-    /// At all forecast steps the neighbours are those of the last observed frame. H = G hypotheses with one goal each,
-    /// or H = number of noise vectors for a single goal (G = 1).
-    ///
-    /// # Shapes
-    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions `[horizon, H, P,
-    /// 2]` and factors `[horizon, H, P, 3]`.
-    pub fn roll_out(
+    /// [`TorchNetwork::roll_out`] in a pass, with the weights of the output layer. Gradients flow back through positions and memory only.
+    pub(crate) fn roll_out(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        horizon: usize,
-        rule: StepRule,
+        steps: (usize, StepRule),
+        (pass, output): (Pass<'_>, [&Tensor; 2]),
     ) -> Rollout {
-        let pass = Pass::Torch(TorchBackend::new(self.parameters(), Mode::Evaluate));
-        self.roll_out_in(batch, goals, noise, (horizon, rule), &pass)
-    }
-
-    /// [`roll_out`](Self::roll_out) in the given pass. Gradients flow back through positions and memory only.
-    pub(crate) fn roll_out_in(
-        &self,
-        batch: &SceneBatch,
-        goals: &Tensor,
-        noise: &NoiseInput,
-        (horizon, rule): (usize, StepRule),
-        pass: &Pass,
-    ) -> Rollout {
+        let emission = Emission::new(output, noise, &self.config);
+        let emission = (&emission, goals.size()[0].max(noise.count()));
         match pass {
-            Pass::Torch(backend) => {
-                let by = (backend, self.on_tensors());
-                self.roll_out_by(batch, goals, noise, (horizon, rule), by)
-            }
-            Pass::Kernels(backend) => {
-                let by = (backend, self.on_rows());
-                self.roll_out_by(batch, goals, noise, (horizon, rule), by)
-            }
+            Pass::Torch(backend) => self.roll_out_by(batch, goals, emission, steps, (backend, &*self.on_tensors)),
+            Pass::Kernels(backend) => self.roll_out_by(batch, goals, emission, steps, (backend, &*self.on_rows)),
         }
     }
 
@@ -128,13 +129,12 @@ impl TorchNetwork {
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
-        noise: &NoiseInput,
+        (emission, hypotheses): (&Emission<'_>, i64),
         (horizon, rule): (usize, StepRule),
         (backend, backbone): (&B, &dyn Backbone<B>),
     ) -> Rollout {
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
-        let hypotheses = goals.size()[0].max(noise.count());
         let course = self.course(batch, goals, rule);
         let centred = backend.given(&centre(batch, &observed));
         let scene = backbone.scene(backend, &centred, &backend.seen(batch, 0..OBSERVED));
@@ -154,7 +154,6 @@ impl TorchNetwork {
             memory = memory.repeated(backend, hypotheses as usize);
         }
         let seen = backend.seen(batch, OBSERVED - 1..OBSERVED);
-        let emission = self.emission(noise);
         let mut position = observed.narrow(0, last, 1).expand([hypotheses, -1, -1], false);
         let mut sum = observed
             .sum_dim_intlist([0i64].as_slice(), true, None::<Kind>)
@@ -178,7 +177,7 @@ impl TorchNetwork {
                 features = backbone.step(backend, &mut memory, &relative, &scene, &seen);
             }
         }
-        let shaped = self.config().variant.dynamics();
+        let shaped = self.config.variant.dynamics();
         Rollout {
             positions: Tensor::stack(&path, 0),
             factors: shaped.then(|| Tensor::stack(&factors, 0)),
@@ -188,7 +187,7 @@ impl TorchNetwork {
     /// Goals and frames of the pedestrians for this network. Shapes: `batch` of at least 8 frames, unless the network
     /// reads positions relative to the goal in the world's frame; `goals` `[.., P, 2]`.
     fn course(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
-        let config = self.config();
+        let config = &self.config;
         let time_step = config.time_step;
         let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = || batch.positions.narrow(0, OBSERVED as i64 - 1, 1);

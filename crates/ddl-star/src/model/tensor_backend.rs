@@ -2,8 +2,8 @@
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
-use super::parameters::Parameters;
-use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, VisibleScenes};
+use super::network::Layers;
+use ddl_network::backend::{Backend, Buffer, KernelBackend, Rows, VisibleScenes};
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -102,47 +102,40 @@ pub(super) fn numbers(tensor: &Tensor) -> Buffer {
 }
 
 /// One pass through a network: by libtorch, or by kernels where possible, on the CPU in `f32`.
-#[derive(Debug)]
-pub(crate) enum Pass {
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Pass<'a> {
     /// On any device, in any precision.
-    Torch(TorchBackend),
+    Torch(&'a TorchBackend),
     /// Forwards and backwards.
-    Kernels(KernelBackend),
+    Kernels(&'a KernelBackend),
 }
 
-impl Pass {
-    /// A training pass: dropout by this seed in the kernels, gradients by [`gradient`](Self::gradient).
-    pub(crate) fn training(mode: Mode, seed: u64, parameters: &Parameters, kernels: Option<&Arc<Kernels>>) -> Self {
-        match kernels {
-            Some(kernels) => Self::Kernels(KernelBackend::training(Arc::clone(kernels), mode, seed)),
-            None => Self::Torch(TorchBackend::training(parameters, mode)),
-        }
-    }
-
-    /// The gradient of `loss` with respect to all learned parameters, as one vector.
-    pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
-        let kernels = match self {
-            Self::Torch(torch) => return torch.gradient(loss, parameters),
-            Self::Kernels(kernels) => kernels,
-        };
-        for tensor in parameters.tensors() {
-            tensor.shallow_clone().zero_grad();
-        }
+impl Layers {
+    /// The gradient of `loss`, which a pass of `kernels` computed, with respect to all `count` learned numbers of the
+    /// network. `output` are the weights of the output layer of this pass, leaves of libtorch's graph.
+    ///
+    /// # Errors
+    /// Those of libtorch.
+    pub(crate) fn gradient_by_kernels(
+        &self,
+        kernels: &KernelBackend,
+        loss: &Tensor,
+        output: &[Tensor; 2],
+        count: usize,
+    ) -> Result<Vec<f32>, TchError> {
         loss.f_backward()?;
-        let mut sums = vec![0.0; parameters.count()];
+        let mut sums = vec![0.0; count];
         kernels.backward(&mut sums);
-        // The gradients of the layers that libtorch computes.
-        let tensors = parameters.layout().tensors().iter();
-        for (learned, tensor) in parameters.tensors().iter().zip(tensors) {
+        // libtorch computes the output layer.
+        let mut rest = &mut sums[self.output.span()];
+        for learned in output {
+            let part = rest.split_off_mut(..learned.numel()).unwrap_or_default();
             let gradient = learned.f_grad()?;
             if gradient.defined() {
-                let terms = numbers(&gradient);
-                for (sum, term) in sums[tensor.span()].iter_mut().zip(terms.iter()) {
-                    *sum += term;
-                }
+                part.copy_from_slice(&numbers(&gradient));
             }
         }
-        Tensor::f_from_slice(&sums)
+        Ok(sums)
     }
 }
 

@@ -15,10 +15,13 @@ pub(crate) struct PreparedBatches {
     neighbour_box: f64,
     device: Device,
     kind: Kind,
-    made: Vec<OnceCell<TrainingBatch>>,
+    /// Pedestrians of a part, about; `None` for whole batches.
+    part: Option<usize>,
+    /// The parts of each batch.
+    made: Vec<OnceCell<Vec<TrainingBatch>>>,
 }
 
-/// A batch with its future and the goals of its pedestrians.
+/// A batch, or a part of it, with its future and the goals of its pedestrians.
 #[derive(Debug)]
 pub(crate) struct TrainingBatch {
     pub(crate) scenes: SceneBatch,
@@ -61,13 +64,13 @@ impl TrainingBatch {
 
 impl PreparedBatches {
     /// Prepares `count` batches of `windows`, each with its future and with its goals unless these are the true
-    /// endpoints.
+    /// endpoints. Batches are in parts of about `part` pedestrians.
     pub(crate) fn new(
         (windows, goals): (Vec<Window>, Option<Vec<Vec<Position>>>),
         count: usize,
         neighbour_box: f64,
-        device: Device,
-        kind: Kind,
+        part: Option<usize>,
+        (device, kind): (Device, Kind),
     ) -> Self {
         Self {
             windows,
@@ -75,6 +78,7 @@ impl PreparedBatches {
             neighbour_box,
             device,
             kind,
+            part,
             made: (0..count).map(|_| OnceCell::new()).collect(),
         }
     }
@@ -83,13 +87,36 @@ impl PreparedBatches {
         &self.windows[index]
     }
 
-    /// The batch of that index, which consists of `windows`, the same at every call. Shapes: all 20 frames, with
-    /// neighbours of the first 19.
-    pub(crate) fn batch(&self, index: usize, windows: &[usize]) -> Result<&TrainingBatch, StarError> {
+    /// The parts of the batch of that index, which consists of `windows`, the same at every call. Shapes: all 20 frames,
+    /// with neighbours of the first 19.
+    pub(crate) fn batch(&self, index: usize, windows: &[usize]) -> Result<&[TrainingBatch], StarError> {
         let place = &self.made[index];
-        if let Some(batch) = place.get() {
-            return Ok(batch);
+        if let Some(parts) = place.get() {
+            return Ok(parts);
         }
+        let parts = self.parts(windows).map(|part| self.made_of(part));
+        let parts = parts.collect::<Result<_, _>>()?;
+        Ok(place.get_or_init(|| parts))
+    }
+
+    /// Windows one after the other, with about the same number of pedestrians in each part.
+    fn parts<'a>(&self, windows: &'a [usize]) -> impl Iterator<Item = &'a [usize]> {
+        let pedestrians = |windows: &[usize]| windows.iter().map(|&index| self.windows[index].len()).sum::<usize>();
+        let all = pedestrians(windows);
+        let count = self.part.map_or(1, |part| (all / part).max(1));
+        let mut ends: Vec<usize> = (1..count)
+            .map(|part| {
+                let before = |&end: &usize| pedestrians(&windows[..end]) * count < all * part;
+                (0..windows.len()).take_while(before).count()
+            })
+            .collect();
+        ends.push(windows.len());
+        ends.dedup();
+        let starts = std::iter::once(0).chain(ends.clone());
+        starts.zip(ends).map(|(start, end)| &windows[start..end])
+    }
+
+    fn made_of(&self, windows: &[usize]) -> Result<TrainingBatch, StarError> {
         let scenes: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
         let scenes = SceneBatch::new(&scenes, WINDOW, WINDOW - 1, self.neighbour_box, self.device, self.kind)?;
         let goals = match &self.goals {
@@ -100,7 +127,7 @@ impl PreparedBatches {
                 tensor(&goals, &[-1, 2], (self.kind, self.device))?
             }
         };
-        Ok(place.get_or_init(|| TrainingBatch { scenes, goals }))
+        Ok(TrainingBatch { scenes, goals })
     }
 }
 
@@ -117,8 +144,10 @@ mod tests {
         let windows = dataset.recordings()[0].windows(WindowRule::Complete);
         let (device, kind) = (Device::Cpu, Kind::Double);
         let all: Vec<usize> = (0..windows.len()).collect();
-        let prepared = PreparedBatches::new((windows, None), 1, 10.0, device, kind);
-        let exact = prepared.batch(0, &all).unwrap();
+        let prepared = PreparedBatches::new((windows, None), 1, 10.0, None, (device, kind));
+        let [exact] = prepared.batch(0, &all).unwrap() else {
+            panic!("one part")
+        };
         tch::manual_seed(7);
         let off = exact.shared().jittered(0.05);
         let moved = off.scenes.positions() - exact.scenes.positions();

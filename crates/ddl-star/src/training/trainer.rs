@@ -4,16 +4,16 @@ use super::GENERATOR;
 use super::checkpoint::{self, Extra, TrainerProgress};
 use super::draws::{StepDraw, StepDraws};
 use super::gate::FiniteGate;
-use super::loss::{mean_distance, mean_squared_distance};
+use super::gradient;
 use super::optimizer::Adam;
 use super::prepared::{PreparedBatches, TrainingBatch};
 use super::schedule::Schedule;
 use crate::StarError;
-use crate::model::{NoiseInput, Pass, TorchNetwork, numbers};
-use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
-use ddl_network::backend::{Kernels, Mode};
+use crate::model::{TorchNetwork, numbers};
+use ddl_data::{Position, Window};
+use ddl_network::backend::Kernels;
 use ddl_network::weights::{Origin, Weights};
-use ddl_network::{EpochReport, NetworkError, Objective, StepReport, StepRule, TrainingConfig};
+use ddl_network::{EpochReport, NetworkError, StepReport, TrainingConfig};
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::PoisonError;
@@ -22,6 +22,10 @@ use tch::{Device, Tensor};
 
 /// Number of steps whose losses CUDA keeps before they are read.
 const READ_EVERY_ON_CUDA: usize = 16;
+
+/// Pedestrians of a part of a batch, about. On the CPU, parts are computed by several threads, and their gradients are
+/// added. Smaller parts take more processor time.
+const PART: usize = 128;
 
 /// A network in training. A run that was stopped, saved and resumed gives the same weights as an uninterrupted run.
 #[derive(Debug)]
@@ -100,12 +104,13 @@ impl Trainer {
         if schedule.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
+        let kernels = network.kernels()?;
         let batches = PreparedBatches::new(
             (windows, goals),
             schedule.batches(),
             network.config().neighbour_box,
-            network.device(),
-            network.kind(),
+            kernels.is_some().then_some(PART),
+            (network.device(), network.kind()),
         );
         let gate = FiniteGate::new(network.device(), network.kind());
         let read_every = match network.device() {
@@ -114,7 +119,7 @@ impl Trainer {
         };
         Ok(Self {
             adam: Adam::new(network.parameters()),
-            kernels: network.kernels()?,
+            kernels,
             network,
             schedule,
             batches,
@@ -217,22 +222,7 @@ impl Trainer {
         let step = self.progress.steps;
         let draw = self.draw(step)?;
         self.update_kernels()?;
-        let batch = self.batch(step, &draw)?;
-        let (loss, pass) = {
-            // Hold the lock from seeding to the last draw of dropout.
-            let _generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
-            tch::manual_seed(draw.libtorch);
-            let batch = if self.config.jitter > 0.0 {
-                batch.jittered(self.config.jitter)
-            } else {
-                batch
-            };
-            let parameters = self.network.parameters();
-            let kernels = self.kernels.as_ref();
-            let pass = Pass::training(Mode::Train, draw.kernels, parameters, kernels);
-            (self.loss(&batch, draw.noise, &pass)?, pass)
-        };
-        let gradient = pass.gradient(&loss, self.network.parameters())?;
+        let (loss, gradient) = self.gradient(step, &draw)?;
         let norm = gradient.norm();
         let both = Tensor::f_stack(&[loss.detach(), norm.shallow_clone()], 0)?;
         self.gate.watch(&both);
@@ -296,34 +286,33 @@ impl Trainer {
         Ok(Some(sum / pairs.len() as f64))
     }
 
-    fn loss(&self, batch: &TrainingBatch, noise: Tensor, pass: &Pass) -> Result<Tensor, StarError> {
-        let (scenes, goals) = (&batch.scenes, &batch.goals);
-        let after = |frames: usize| {
-            let count = (WINDOW - frames) as i64;
-            scenes.positions().f_narrow(0, frames as i64, count)
-        };
-        match self.config.objective {
-            Objective::NextStep => {
-                let noise = NoiseInput::Draws(noise);
-                let forecast = self.network.teacher_forced_in(scenes, goals, &noise, pass);
-                Ok(mean_squared_distance(&forecast, &after(1)?))
+    /// The loss of a step and its gradient with respect to all learned numbers, as one vector.
+    fn gradient(&self, step: u64, draw: &StepDraw) -> Result<(Tensor, Tensor), StarError> {
+        // Held from seeding to the last draw: of jitter, and of dropout by libtorch.
+        let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
+        tch::manual_seed(draw.libtorch);
+        let mut parts = self.parts(step, draw)?;
+        let (network, objective) = (&self.network, self.config.objective);
+        match &self.kernels {
+            Some(kernels) => {
+                drop(generator);
+                gradient::by_kernels(network, kernels, objective, parts, draw)
             }
-            Objective::Walk => {
-                let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::Bounded));
-                let noise = NoiseInput::Expected;
-                let walk = self.network.roll_out_in(scenes, &goals, &noise, steps, pass);
-                Ok(mean_distance(&walk.positions.squeeze_dim(1), &after(OBSERVED)?))
-            }
+            None => gradient::by_torch(network, objective, &parts.remove(0), draw),
         }
     }
 
-    /// The batch of a step, transformed by its draws.
-    fn batch(&self, step: u64, draw: &StepDraw) -> Result<TrainingBatch, StarError> {
+    /// The parts of the batch of a step, transformed by its draws.
+    fn parts(&self, step: u64, draw: &StepDraw) -> Result<Vec<TrainingBatch>, StarError> {
         let index = self.schedule.batch_index(step);
-        let batch = self.batches.batch(index, self.schedule.batch(index))?;
-        Ok(match &draw.turn {
-            Some(images) => batch.turned(images),
-            None => batch.shared(),
+        let parts = self.batches.batch(index, self.schedule.batch(index))?.iter();
+        let turned = parts.map(|part| match &draw.turn {
+            Some(images) => part.turned(images),
+            None => part.shared(),
+        });
+        Ok(match self.config.jitter {
+            jitter if jitter > 0.0 => turned.map(|part| part.jittered(jitter)).collect(),
+            _ => turned.collect(),
         })
     }
 

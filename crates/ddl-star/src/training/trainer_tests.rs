@@ -37,6 +37,73 @@ fn state(trainer: &Trainer) -> [Tensor; 3] {
     [flat, &adam.first_moment, &adam.second_moment].map(|tensor| tensor.detach().copy())
 }
 
+/// A trainer whose batches have several parts.
+fn of_parts(star: StarConfig, training: TrainingConfig, kind: Kind) -> Trainer {
+    crate::set_threads(1);
+    let star = StarConfig {
+        feed_forward_width: 32,
+        ..star
+    };
+    let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
+    let network = TorchNetwork::with_precision(star, 5, cpu, kind).unwrap();
+    let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
+    let training = TrainingConfig {
+        batch_pedestrians: 3 * PART,
+        ..training
+    };
+    Trainer::new(network, windows, training).unwrap()
+}
+
+#[test]
+fn the_gradients_of_parts_add_up_to_that_of_the_batch() {
+    let star = StarConfig {
+        spatial_dropout: 0.0,
+        ..StarConfig::published(Variant::Full)
+    };
+    let gradient = |kind: Kind| {
+        let mut trainer = of_parts(star.clone(), TrainingConfig::published(), kind);
+        let parts = trainer.batches.batch(0, trainer.schedule.batch(0)).unwrap();
+        let sizes: Vec<usize> = parts.iter().map(|part| part.scenes.pedestrians()).collect();
+        assert_eq!(sizes.len(), if kind == Kind::Float { 3 } else { 1 }, "{sizes:?}");
+        assert!(
+            sizes.iter().all(|&size| size.abs_diff(sizes[0]) < PART / 2),
+            "{sizes:?}"
+        );
+        let draw = trainer.draw(0).unwrap();
+        let (loss, gradient) = trainer.gradient(0, &draw).unwrap();
+        (loss.double_value(&[]), gradient.to_kind(Kind::Double))
+    };
+    let ((loss, gradient), (known_loss, known)) = (gradient(Kind::Float), gradient(Kind::Double));
+    assert!((loss - known_loss).abs() < 1e-5 * known_loss, "{loss} {known_loss}");
+    let largest = |tensor: Tensor| tensor.abs().max().double_value(&[]);
+    let (error, size) = (largest(gradient - &known), largest(known));
+    assert!(error < 1e-5 * size, "{error} of {size}");
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let recommended = TrainingConfig {
+        jitter: 0.05,
+        ..TrainingConfig::recommended(Variant::Full)
+    };
+    for (star, training) in [
+        (StarConfig::published(Variant::Full), TrainingConfig::published()),
+        (StarConfig::recommended(Variant::Full), recommended),
+    ] {
+        let after = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut trainer = of_parts(star.clone(), training.clone(), Kind::Float);
+                for _ in 0..3 {
+                    trainer.step().unwrap();
+                }
+                state(&trainer)
+            })
+        };
+        assert_eq!(after(1), after(3));
+    }
+}
+
 #[test]
 fn the_interval_of_reading_losses_changes_nothing() {
     for kind in [Kind::Float, Kind::Double] {

@@ -1,0 +1,99 @@
+//! The loss of a batch, and its gradient with respect to all learned numbers as one vector.
+
+use super::draws::StepDraw;
+use super::loss::{mean_distance, mean_squared_distance};
+use super::prepared::TrainingBatch;
+use crate::StarError;
+use crate::model::{Layers, NoiseInput, Pass, TorchBackend, TorchNetwork};
+use ddl_data::{HORIZON, OBSERVED, WINDOW};
+use ddl_network::backend::{KernelBackend, Kernels, Mode};
+use ddl_network::seed::{Stage, stream};
+use ddl_network::{Objective, StepRule};
+use rand::Rng as _;
+use rayon::prelude::*;
+use std::sync::Arc;
+use tch::Tensor;
+
+/// By libtorch, whose generator draws the dropout.
+pub(crate) fn by_torch(
+    network: &TorchNetwork,
+    objective: Objective,
+    batch: &TrainingBatch,
+    draw: &StepDraw,
+) -> Result<(Tensor, Tensor), StarError> {
+    let parameters = network.parameters();
+    let torch = TorchBackend::training(parameters, Mode::Train);
+    let pass = (Pass::Torch(&torch), network.output());
+    let noise = draw.noise.shallow_clone();
+    let loss = loss(network.layers(), objective, batch, noise, pass)?;
+    let gradient = torch.gradient(&loss, parameters)?;
+    Ok((loss, gradient))
+}
+
+/// By kernels, the parts on several threads. The result does not depend on the number of threads.
+pub(crate) fn by_kernels(
+    network: &TorchNetwork,
+    kernels: &Arc<Kernels>,
+    objective: Objective,
+    parts: Vec<TrainingBatch>,
+    draw: &StepDraw,
+) -> Result<(Tensor, Tensor), StarError> {
+    let (layers, count) = (network.layers(), network.parameters().count());
+    let sizes = parts.iter().map(|part| part.scenes.pedestrians());
+    let pedestrians: usize = sizes.sum();
+    let jobs = parts.into_iter().zip(0..).map(|(part, index)| {
+        let seed = stream(draw.kernels, Stage::Step, index).next_u64();
+        (part, seed, draw.noise.shallow_clone(), network.copy_output())
+    });
+    let gradients: Vec<Result<(Tensor, Vec<f32>), StarError>> = jobs
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(|(part, seed, noise, output)| {
+            let backend = KernelBackend::training(Arc::clone(kernels), Mode::Train, seed);
+            let pass = (Pass::Kernels(&backend), output.each_ref());
+            let share = part.scenes.pedestrians() as f64 / pedestrians as f64;
+            let loss = loss(layers, objective, &part, noise, pass)? * share;
+            let gradient = layers.gradient_by_kernels(&backend, &loss, &output, count)?;
+            Ok((loss.detach(), gradient))
+        })
+        .collect();
+    // In the order of the parts, for the same sums with every number of threads.
+    let mut sums = vec![0.0; count];
+    let mut losses = Vec::new();
+    for of_part in gradients {
+        let (loss, gradient) = of_part?;
+        losses.push(loss);
+        for (sum, term) in sums.iter_mut().zip(gradient) {
+            *sum += term;
+        }
+    }
+    let loss = Tensor::f_stack(&losses, 0)?.f_sum(None)?;
+    Ok((loss, Tensor::f_from_slice(&sums)?))
+}
+
+/// The mean loss of the pedestrians of a batch, in a pass with the weights of the output layer.
+fn loss(
+    layers: &Layers,
+    objective: Objective,
+    batch: &TrainingBatch,
+    noise: Tensor,
+    pass: (Pass<'_>, [&Tensor; 2]),
+) -> Result<Tensor, StarError> {
+    let (scenes, goals) = (&batch.scenes, &batch.goals);
+    let after = |frames: usize| {
+        let count = (WINDOW - frames) as i64;
+        scenes.positions().f_narrow(0, frames as i64, count)
+    };
+    match objective {
+        Objective::NextStep => {
+            let noise = NoiseInput::Draws(noise);
+            let forecast = layers.teacher_forced(scenes, goals, &noise, pass);
+            Ok(mean_squared_distance(&forecast, &after(1)?))
+        }
+        Objective::Walk => {
+            let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::Bounded));
+            let walk = layers.roll_out(scenes, &goals, &NoiseInput::Expected, steps, pass);
+            Ok(mean_distance(&walk.positions.squeeze_dim(1), &after(OBSERVED)?))
+        }
+    }
+}
