@@ -101,7 +101,10 @@ impl PreparedBatches {
 
     /// Windows one after the other, with about the same number of pedestrians in each part.
     fn parts<'a>(&self, windows: &'a [usize]) -> impl Iterator<Item = &'a [usize]> {
-        let pedestrians = |windows: &[usize]| windows.iter().map(|&index| self.windows[index].len()).sum::<usize>();
+        let pedestrians = |windows: &[usize]| -> usize {
+            let each = windows.iter().map(|&index| self.windows[index].len());
+            each.sum()
+        };
         let all = pedestrians(windows);
         let count = self.part.map_or(1, |part| (all / part).max(1));
         let mut ends: Vec<usize> = (1..count)
