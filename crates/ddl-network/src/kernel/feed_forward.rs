@@ -7,6 +7,7 @@ mod dropout;
 mod forward;
 mod hidden;
 mod layer;
+mod matrix;
 mod product;
 #[cfg(test)]
 mod tests;

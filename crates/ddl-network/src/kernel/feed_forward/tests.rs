@@ -147,3 +147,41 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn zz_timing() {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .unwrap()
+        .install(|| {
+            for (rows, hidden) in [(5000, 2048)] {
+                for p in [0.0] {
+                    let case = Case::new(32, hidden, rows, Some(Dropout { p, seed: 3 }));
+                    for layer in layers(&case).into_iter().skip(3) {
+                        let mut y = vec![0.0; case.x.len()];
+                        let mut gx = vec![0.0; case.x.len()];
+                        let mut grads = super::Gradients::zeros(32, hidden);
+                        let (mut f, mut b) = (f64::MAX, f64::MAX);
+                        for _ in 0..(200_000_000 / (rows * hidden)).min(3000).max(10) {
+                            let t = std::time::Instant::now();
+                            layer.forward(&case.x, case.dropout, &mut y);
+                            f = f.min(t.elapsed().as_secs_f64());
+                            let t = std::time::Instant::now();
+                            layer.backward(&case.x, &case.gy, case.dropout, &mut gx, &mut grads);
+                            b = b.min(t.elapsed().as_secs_f64());
+                        }
+                        let ops = (rows * hidden * 128) as f64;
+                        println!(
+                            "{rows} {hidden} p {p} {:?}: forward {:.1} us {:.0} Gop/s, backward {:.1} us {:.0} Gop/s",
+                            layer.dispatch.instruction_set(),
+                            f * 1e6,
+                            ops / f / 1e9,
+                            b * 1e6,
+                            2.5 * ops / b / 1e9
+                        );
+                    }
+                }
+            }
+        });
+}
