@@ -4,10 +4,7 @@
 
 use std::fmt;
 
-#[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-use crate::amx::Amx;
 use crate::emulated::OnEmulated;
-use crate::matrix::MatrixKernel;
 use crate::pairs::PairKernel;
 use crate::portable::Portable;
 use crate::register::{Register, RegisterKernel};
@@ -33,12 +30,10 @@ pub enum InstructionSet {
     Avx2,
     /// 512-bit vectors (AVX-512 F and DQ).
     Avx512,
-    /// A matrix unit (AMX for bf16 numbers, under Linux), beside AVX-512.
-    Amx,
 }
 
 impl InstructionSet {
-    const ALL: [Self; 4] = [Self::Portable, Self::Avx2, Self::Avx512, Self::Amx];
+    const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
 
     /// The fastest one of this machine.
     pub fn detect() -> Self {
@@ -64,7 +59,6 @@ impl fmt::Display for InstructionSet {
             Self::Portable => "portable",
             Self::Avx2 => "AVX2",
             Self::Avx512 => "AVX-512",
-            Self::Amx => "AMX",
         })
     }
 }
@@ -80,8 +74,6 @@ enum Set {
     Avx2(Avx2),
     #[cfg(target_arch = "x86_64")]
     Avx512(Avx512),
-    #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-    Amx(Amx),
 }
 
 impl Dispatch {
@@ -95,10 +87,6 @@ impl Dispatch {
             InstructionSet::Avx512 => Avx512::detect().map(Set::Avx512),
             #[cfg(not(target_arch = "x86_64"))]
             InstructionSet::Avx2 | InstructionSet::Avx512 => None,
-            #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-            InstructionSet::Amx => Amx::detect().map(Set::Amx),
-            #[cfg(not(all(target_arch = "x86_64", target_os = "linux")))]
-            InstructionSet::Amx => None,
         };
         set.map(Self)
     }
@@ -116,8 +104,6 @@ impl Dispatch {
             Set::Avx2(_) => InstructionSet::Avx2,
             #[cfg(target_arch = "x86_64")]
             Set::Avx512(_) => InstructionSet::Avx512,
-            #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-            Set::Amx(_) => InstructionSet::Amx,
         }
     }
 
@@ -141,36 +127,7 @@ impl Dispatch {
             Set::Avx2(register) => register.run(kernel),
             #[cfg(target_arch = "x86_64")]
             Set::Avx512(register) => register.run(kernel),
-            #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-            Set::Amx(unit) => unit.avx512().run(kernel),
         }
-    }
-
-    /// The matrix unit of the instruction set.
-    pub fn matrix_unit(self) -> Option<MatrixDispatch> {
-        match self.0 {
-            #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-            Set::Amx(unit) => Some(MatrixDispatch(unit)),
-            _ => None,
-        }
-    }
-}
-
-/// A matrix unit that the machine is known to have.
-#[derive(Clone, Copy, Debug)]
-pub struct MatrixDispatch(
-    #[cfg(all(target_arch = "x86_64", target_os = "linux"))] Amx,
-    #[cfg(not(all(target_arch = "x86_64", target_os = "linux")))] std::convert::Infallible,
-);
-
-impl MatrixDispatch {
-    /// Runs `kernel`.
-    #[inline]
-    pub fn run<K: MatrixKernel>(self, kernel: K) {
-        #[cfg(all(target_arch = "x86_64", target_os = "linux"))]
-        self.0.run(kernel);
-        #[cfg(not(all(target_arch = "x86_64", target_os = "linux")))]
-        match self.0 {}
     }
 }
 

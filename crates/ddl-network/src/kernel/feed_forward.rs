@@ -7,7 +7,6 @@ mod dropout;
 mod forward;
 mod hidden;
 mod layer;
-mod matrix;
 mod product;
 #[cfg(test)]
 mod tests;

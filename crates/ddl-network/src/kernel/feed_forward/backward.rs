@@ -4,11 +4,10 @@
 
 use std::ops::DerefMut;
 
-use super::block::{BLOCK, Block, BlockRows, Panel, tile_mut};
+use super::block::{BLOCK, Block, BlockRows, Panel, ROWS, tile_mut};
 use super::dropout::UnitDecisions;
 use super::hidden::{activate, deactivate};
 use super::layer::FeedForward;
-use super::matrix::{RowFactors, SetRowFactors, UnitBackward};
 use super::product::{add_product, add_transposed_product, sum_of_rows};
 use super::weights::BlockWeights;
 use crate::kernel::dropout::Dropout;
@@ -59,54 +58,27 @@ impl FeedForward {
             }
         }
         let group = units.div_ceil(GROUPS);
-        let rows = (x.len() / width).min(SPAN).next_multiple_of(BLOCK);
+        let rows = (x.len() / width).min(SPAN).next_multiple_of(ROWS);
         let parts = grads.parts(width, group).into_iter();
         let mut parts: Vec<_> = parts.map(|part| (part, Scratch::new(rows, columns))).collect();
         let pieces = x.chunks(SPAN * width).zip(gy.chunks(SPAN * width));
-        let mut factors = match &self.factors {
-            Some(_) => vec![RowFactors::ZERO; rows / BLOCK * columns],
-            None => vec![],
-        };
         for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
+            let x = BlockRows::padded(x, width);
+            let gy = BlockRows::padded(gy, width);
             let groups: Vec<_> = parts.iter_mut().enumerate().collect();
-            let work = 5 * x.len() * hidden;
-            let decisions = decisions.as_ref();
-            let first = span * SPAN;
-            if let Some(of_weights) = &self.factors {
-                let pieces = x.chunks(BLOCK * width).zip(gy.chunks(BLOCK * width));
-                let pieces: Vec<_> = pieces.zip(factors.chunks_mut(columns)).collect();
-                let count = pieces.len() * columns;
-                each(pieces, x.len() * BLOCK, |((x, gy), factors), (): &mut ()| {
-                    of_weights.unit.run(SetRowFactors { width, x, gy, factors });
+            let work = 5 * x.rows() * width * hidden;
+            each(groups, work, |(g, (part, scratch)), (): &mut ()| {
+                self.dispatch.run(UnitsBackward {
+                    weights,
+                    decisions: decisions.as_ref(),
+                    first: span * SPAN,
+                    units: g * group,
+                    x: &x,
+                    gy: &gy,
+                    scratch,
+                    part,
                 });
-                each(groups, work, |(g, (part, scratch)), (): &mut ()| {
-                    of_weights.unit.run(UnitBackward {
-                        weights,
-                        factors: of_weights,
-                        decisions,
-                        first,
-                        units: g * group,
-                        rows: &factors[..count],
-                        scratch,
-                        part,
-                    });
-                });
-            } else {
-                let x = BlockRows::padded(x, width);
-                let gy = BlockRows::padded(gy, width);
-                each(groups, work, |(g, (part, scratch)), (): &mut ()| {
-                    self.dispatch.run(UnitsBackward {
-                        weights,
-                        decisions,
-                        first,
-                        units: g * group,
-                        x: &x,
-                        gy: &gy,
-                        scratch,
-                        part,
-                    });
-                });
-            }
+            });
             gx.fill(0.0);
             let work = gx.len() * parts.len();
             let pieces: Vec<_> = gx.chunks_mut(KEPT * width).enumerate().collect();
@@ -119,12 +91,12 @@ impl FeedForward {
     }
 }
 
-pub(super) struct Scratch {
-    pub(super) gx: BlockRows,
+struct Scratch {
+    gx: BlockRows,
     /// Gradients of W1 summed over a span, for one block of hidden units; rows are hidden units.
-    pub(super) w1: Vec<Panel>,
+    w1: Vec<Panel>,
     /// Gradients of W2 likewise; rows are entries of y.
-    pub(super) w2: Vec<Panel>,
+    w2: Vec<Panel>,
     hidden: Vec<Block>,
     gradient: Vec<Block>,
 }
@@ -133,8 +105,8 @@ impl Scratch {
     fn new(rows: usize, columns: usize) -> Self {
         Self {
             gx: BlockRows::zeros(rows, columns),
-            w1: vec![Block::ZERO_PANEL; columns],
-            w2: vec![Block::ZERO_PANEL; columns],
+            w1: vec![[Block::ZERO; BLOCK]; columns],
+            w2: vec![[Block::ZERO; BLOCK]; columns],
             hidden: vec![Block::ZERO; KEPT],
             gradient: vec![Block::ZERO; KEPT],
         }
@@ -179,11 +151,11 @@ impl TiledKernel for UnitsBackward<'_, '_> {
         for column in 0..weights.columns {
             gx.column_mut(column).fill(Block::ZERO);
         }
-        for u in 0..part.blocks() {
+        for (u, b1) in part.b1.chunks_mut(BLOCK).enumerate() {
             let unit = units + u;
             let of_unit = weights.unit(unit);
-            w1.fill(Block::ZERO_PANEL);
-            w2.fill(Block::ZERO_PANEL);
+            w1.fill([Block::ZERO; BLOCK]);
+            w2.fill([Block::ZERO; BLOCK]);
             for start in (0..x.rows()).step_by(KEPT) {
                 let count = KEPT.min(x.rows() - start);
                 for r in (0..count).step_by(R) {
@@ -201,7 +173,7 @@ impl TiledKernel for UnitsBackward<'_, '_> {
                     }
                 }
                 let (hidden, gradient) = (&hidden[..count], &gradient[..count]);
-                part.add_to_b1(u, &sum_of_rows::<S, V>(simd, gradient));
+                sum_of_rows::<S, V>(simd, gradient).add_to(b1);
                 for column in 0..weights.columns {
                     let x = &x.column(column)[start..][..count];
                     let gy = &gy.column(column)[start..][..count];
@@ -210,7 +182,14 @@ impl TiledKernel for UnitsBackward<'_, '_> {
                 }
             }
             for column in 0..weights.columns {
-                part.add(weights.width, u, column, &w1[column], &w2[column]);
+                let rows = part.w1.chunks_exact_mut(weights.width).skip(u * BLOCK);
+                for (row, sums) in rows.zip(&w1[column]) {
+                    sums.add_to(&mut row[column * BLOCK..]);
+                }
+                let rows = part.w2.iter_mut().skip(column * BLOCK);
+                for (row, sums) in rows.zip(&w2[column]) {
+                    sums.add_to(&mut row[u * BLOCK..]);
+                }
             }
         }
     }
@@ -271,27 +250,4 @@ pub(super) struct UnitGradients<'a> {
     pub(super) w1: &'a mut [f32],
     pub(super) b1: &'a mut [f32],
     pub(super) w2: Vec<&'a mut [f32]>,
-}
-
-impl UnitGradients<'_> {
-    /// Number of blocks of units.
-    pub(super) fn blocks(&self) -> usize {
-        self.b1.len().div_ceil(BLOCK)
-    }
-
-    pub(super) fn add_to_b1(&mut self, block: usize, sums: &Block) {
-        sums.add_to(&mut self.b1[block * BLOCK..]);
-    }
-
-    /// Adds to the gradients of a block of units for a block of columns: `w1` by units, `w2` by columns.
-    pub(super) fn add(&mut self, width: usize, block: usize, column: usize, w1: &Panel, w2: &Panel) {
-        let rows = self.w1.chunks_exact_mut(width).skip(block * BLOCK);
-        for (row, sums) in rows.zip(w1) {
-            sums.add_to(&mut row[column * BLOCK..]);
-        }
-        let rows = self.w2.iter_mut().skip(column * BLOCK);
-        for (row, sums) in rows.zip(w2) {
-            sums.add_to(&mut row[block * BLOCK..]);
-        }
-    }
 }

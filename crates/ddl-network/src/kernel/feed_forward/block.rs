@@ -1,10 +1,58 @@
 //! Blocks of 32 numbers, and rows that consist of them.
 
 use ddl_simd::LANES;
-pub(super) use ddl_simd::{BLOCK, Block, Panel};
 use std::cell::RefCell;
 
+pub(super) const BLOCK: usize = 32;
+
 pub(super) const PARTS: usize = BLOCK / LANES;
+
+/// A piece of a row of a matrix. It is aligned, because a load that crosses a cache line costs two loads.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Block(pub(super) [f32; BLOCK]);
+
+impl Block {
+    pub(super) const ZERO: Self = Self([0.0; BLOCK]);
+
+    #[inline(always)]
+    pub(super) fn padded(from: &[f32]) -> Self {
+        if let Some(whole) = from.first_chunk() {
+            return Self(*whole);
+        }
+        let mut block = Self::ZERO;
+        block.0[..from.len()].copy_from_slice(from);
+        block
+    }
+
+    /// The sixteen numbers from index 16 `part` on.
+    #[inline(always)]
+    pub(super) fn part(&self, part: usize) -> &[f32; LANES] {
+        &self.0.as_chunks().0[part]
+    }
+
+    #[inline(always)]
+    pub(super) fn part_mut(&mut self, part: usize) -> &mut [f32; LANES] {
+        &mut self.0.as_chunks_mut().0[part]
+    }
+
+    #[inline(always)]
+    pub(super) fn add_to(&self, sums: &mut [f32]) {
+        for (sum, term) in sums.iter_mut().zip(&self.0) {
+            *sum += term;
+        }
+    }
+}
+
+pub(super) type Panel = [Block; BLOCK];
+
+pub(super) fn transpose(panel: &Panel, into: &mut Panel) {
+    for (i, row) in into.iter_mut().enumerate() {
+        for (j, value) in row.0.iter_mut().enumerate() {
+            *value = panel[j].0[i];
+        }
+    }
+}
 
 #[inline]
 pub(super) fn tile<const R: usize>(rows: &[Block], first: usize) -> &[Block; R] {

@@ -1,10 +1,9 @@
 //! The forward pass, parallel over tiles of rows.
 
 use super::bf16::PairForward;
-use super::block::{BLOCK, BlockRows};
+use super::block::{BlockRows, ROWS};
 use super::dropout::UnitDecisions;
 use super::layer::FeedForward;
-use super::matrix::UnitForward;
 use super::tile::Tile;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::threads::each;
@@ -35,30 +34,18 @@ impl FeedForward {
         }
         // Each thread gets the same number of tiles. The result of a row does not depend on its tile.
         let tiles = rows.div_ceil(TILE).next_multiple_of(rayon::current_num_threads());
-        let size = rows.div_ceil(tiles).next_multiple_of(BLOCK);
+        let size = rows.div_ceil(tiles).next_multiple_of(ROWS);
         let tiles = x.chunks(size * width).zip(y.chunks_mut(size * width));
         let tiles: Vec<_> = tiles.enumerate().collect();
         let work = 2 * x.len() * weights.hidden;
-        let decisions = decisions.as_ref();
         each(tiles, work, |(tile, (x, y)), (): &mut ()| {
-            let first = tile * size;
-            match &self.factors {
-                Some(factors) => factors.unit.run(UnitForward {
-                    weights,
-                    factors,
-                    decisions,
-                    first,
-                    x,
-                    y,
-                }),
-                None => self.dispatch.run(Rows {
-                    layer: self,
-                    decisions,
-                    first,
-                    x,
-                    y,
-                }),
-            }
+            self.dispatch.run(Rows {
+                layer: self,
+                decisions: decisions.as_ref(),
+                first: tile * size,
+                x,
+                y,
+            });
         });
     }
 }

@@ -1,7 +1,6 @@
 //! The feed-forward block with its weights in the layout of the kernels.
 
 use super::bf16::Squares;
-use super::matrix::Factors;
 use super::weights::BlockWeights;
 use crate::Precision;
 #[cfg(test)]
@@ -16,8 +15,6 @@ use ddl_simd::{Dispatch, PairDispatch};
 pub(crate) struct FeedForward {
     pub(super) weights: BlockWeights,
     pub(super) rounded: Option<Squares>,
-    /// With a matrix unit, and in `f32`.
-    pub(super) factors: Option<Factors>,
     pub(super) dispatch: Dispatch,
     pub(super) pair_dispatch: PairDispatch,
 }
@@ -28,7 +25,6 @@ impl FeedForward {
         Self {
             weights: BlockWeights::new(width, hidden),
             rounded: None,
-            factors: None,
             dispatch: Dispatch::detect(),
             pair_dispatch: PairDispatch::detect(),
         }
@@ -38,10 +34,7 @@ impl FeedForward {
     /// has no backward pass.
     pub(crate) fn update(&mut self, weights: [&[f32]; 4], precision: Precision) {
         self.weights.update(weights);
-        (self.rounded, self.factors) = match precision {
-            Precision::F32 => (None, Factors::new(&self.weights, self.dispatch)),
-            Precision::Bf16 => (Some(Squares::round(&self.weights, self.pair_dispatch)), None),
-        };
+        self.rounded = (precision == Precision::Bf16).then(|| Squares::round(&self.weights, self.pair_dispatch));
     }
 
     /// The same with this instruction set and bf16 emulated; `None` if the processor does not support it.
@@ -49,9 +42,6 @@ impl FeedForward {
     pub(in crate::kernel) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
         self.dispatch = Dispatch::new(set)?;
         self.pair_dispatch = PairDispatch::emulated(self.dispatch);
-        if self.rounded.is_none() {
-            self.factors = Factors::new(&self.weights, self.dispatch);
-        }
         Some(self)
     }
 }

@@ -1,7 +1,6 @@
 //! The weights in the layout of the kernels.
 
-use super::block::{BLOCK, Block, Panel};
-use ddl_simd::transpose;
+use super::block::{BLOCK, Block, Panel, transpose};
 
 /// Squares of 32 x 32 weights, grouped by block of hidden units and padded with zeros. A unit of the padding is 0 and
 /// contributes nothing.
@@ -11,9 +10,9 @@ pub(super) struct BlockWeights {
     pub(super) hidden: usize,
     pub(super) columns: usize,
     pub(super) units: usize,
-    pub(super) w1: Vec<Panel>,
+    w1: Vec<Panel>,
     pub(super) w1_transposed: Vec<Panel>,
-    pub(super) w2: Vec<Panel>,
+    w2: Vec<Panel>,
     pub(super) w2_transposed: Vec<Panel>,
     b1: Vec<Block>,
     pub(super) b2: Vec<Block>,
@@ -23,7 +22,7 @@ impl BlockWeights {
     pub(super) fn new(width: usize, hidden: usize) -> Self {
         assert!(width > 0 && hidden > 0, "a width of 0");
         let (columns, units) = (width.div_ceil(BLOCK), hidden.div_ceil(BLOCK));
-        let squares = vec![Block::ZERO_PANEL; units * columns];
+        let squares = vec![[Block::ZERO; BLOCK]; units * columns];
         Self {
             width,
             hidden,
