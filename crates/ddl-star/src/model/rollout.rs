@@ -108,8 +108,8 @@ impl Layers {
         course.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
-    /// [`TorchNetwork::roll_out`] in a pass, with the weights of the output layer. Gradients flow back through positions
-    /// and memory only.
+    /// [`TorchNetwork::roll_out`] in a pass, with the weights of the output layer. Gradients flow back through
+    /// positions and memory only.
     pub(crate) fn roll_out(
         &self,
         batch: &SceneBatch,

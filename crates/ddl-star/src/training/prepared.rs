@@ -87,8 +87,8 @@ impl PreparedBatches {
         &self.windows[index]
     }
 
-    /// The parts of the batch of that index, which consists of `windows`, the same at every call. Shapes: all 20 frames,
-    /// with neighbours of the first 19.
+    /// The parts of the batch of that index, which consists of `windows`, the same at every call. Shapes: all 20
+    /// frames, with neighbours of the first 19.
     pub(crate) fn batch(&self, index: usize, windows: &[usize]) -> Result<&[TrainingBatch], StarError> {
         let place = &self.made[index];
         if let Some(parts) = place.get() {
