@@ -80,24 +80,21 @@ fn gradient(
     let parameters = network.parameters();
     let kernels = network.kernels().unwrap();
     assert_eq!(kernels.is_some(), matches!(by, By::Kernels), "{by:?}");
-    let (loss, gradient) = match kernels {
-        Some(kernels) => {
-            let backend = KernelBackend::training(kernels, Mode::Evaluate, 0);
-            let output = network.copy_output();
-            let loss = loss(&network, (Pass::Kernels(&backend), output.each_ref()));
-            let layers = network.layers();
-            let gradient = layers.gradient_by_kernels(&backend, &loss, &output, parameters.count());
-            (loss, Tensor::from_slice(&gradient.unwrap()))
-        }
-        None => {
-            let torch = match by {
-                By::Torch => TorchBackend::new(parameters, Mode::Evaluate),
-                _ => TorchBackend::training(parameters, Mode::Evaluate),
-            };
-            let loss = loss(&network, (Pass::Torch(&torch), network.output()));
-            let gradient = torch.gradient(&loss, parameters).unwrap();
-            (loss, gradient)
-        }
+    let (loss, gradient) = if let Some(kernels) = kernels {
+        let backend = KernelBackend::training(kernels, Mode::Evaluate, 0);
+        let output = network.copy_output();
+        let loss = loss(&network, (Pass::Kernels(&backend), output.each_ref()));
+        let layers = network.layers();
+        let gradient = layers.gradient_by_kernels(&backend, &loss, &output, parameters.count());
+        (loss, Tensor::from_slice(&gradient.unwrap()))
+    } else {
+        let torch = match by {
+            By::Torch => TorchBackend::new(parameters, Mode::Evaluate),
+            _ => TorchBackend::training(parameters, Mode::Evaluate),
+        };
+        let loss = loss(&network, (Pass::Torch(&torch), network.output()));
+        let gradient = torch.gradient(&loss, parameters).unwrap();
+        (loss, gradient)
     };
     (loss.double_value(&[]), gradient.to_kind(Kind::Double))
 }

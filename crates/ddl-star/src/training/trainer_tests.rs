@@ -38,18 +38,18 @@ fn state(trainer: &Trainer) -> [Tensor; 3] {
 }
 
 /// A trainer whose batches have several parts.
-fn of_parts(star: StarConfig, training: TrainingConfig, kind: Kind) -> Trainer {
+fn of_parts(star: &StarConfig, training: &TrainingConfig, kind: Kind) -> Trainer {
     crate::set_threads(1);
     let star = StarConfig {
         feed_forward_width: 32,
-        ..star
+        ..star.clone()
     };
     let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     let network = TorchNetwork::with_precision(star, 5, cpu, kind).unwrap();
     let windows = Dataset::simulated(1).recordings()[0].windows(WindowRule::Complete);
     let training = TrainingConfig {
         batch_pedestrians: 3 * PART,
-        ..training
+        ..training.clone()
     };
     Trainer::new(network, windows, training).unwrap()
 }
@@ -61,7 +61,7 @@ fn the_gradients_of_parts_add_up_to_that_of_the_batch() {
         ..StarConfig::published(Variant::Full)
     };
     let gradient = |kind: Kind| {
-        let mut trainer = of_parts(star.clone(), TrainingConfig::published(), kind);
+        let mut trainer = of_parts(&star, &TrainingConfig::published(), kind);
         let parts = trainer.batches.batch(0, trainer.schedule.batch(0)).unwrap();
         let sizes: Vec<usize> = parts.iter().map(|part| part.scenes.pedestrians()).collect();
         assert_eq!(sizes.len(), if kind == Kind::Float { 3 } else { 1 }, "{sizes:?}");
@@ -93,7 +93,7 @@ fn the_number_of_threads_changes_nothing() {
         let after = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let mut trainer = of_parts(star.clone(), training.clone(), Kind::Float);
+                let mut trainer = of_parts(&star, &training, Kind::Float);
                 for _ in 0..3 {
                     trainer.step().unwrap();
                 }
