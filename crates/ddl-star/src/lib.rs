@@ -61,9 +61,9 @@
 //! ## Devices and threads
 //!
 //! [`ComputeDevice::open`] comes first: CUDA can be opened only before the first tensor is made. Without CUDA, `Cuda`
-//! is an error and `Auto` takes the CPU. [`set_threads`] sets libtorch's threads for the process. One is enough on the
-//! CPU, because the kernels run on rayon's threads, with the same results for every number of them. Training seeds
-//! libtorch's process-wide generator at every step, for dropout.
+//! is an error and `Auto` takes the CPU. [`set_threads`] sets libtorch's threads for the process. Set one on the CPU:
+//! training computes parts of a batch on rayon's threads, with the same results for every number of them. It seeds
+//! libtorch's process-wide generator at every step, for jitter and dropout.
 
 mod device;
 mod error;

@@ -29,4 +29,4 @@ pub use network::TorchNetwork;
 pub(crate) use numbers::{numbers, tensor};
 pub use parameters::Parameters;
 pub use rollout::Rollout;
-pub(crate) use tensor_backend::Pass;
+pub(crate) use tensor_backend::{KernelPass, Pass};

@@ -37,6 +37,11 @@ impl TorchBackend {
         }
     }
 
+    /// Weight and bias of a layer.
+    pub(super) fn learned(&self, layer: Linear) -> [&Tensor; 2] {
+        [0, 1].map(|one| &self.tensors[layer.tensor + one])
+    }
+
     /// y = x W^T + b, with the weight of that index and the bias after it.
     /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
     fn affine(&self, x: &Tensor, weight: usize) -> Tensor {

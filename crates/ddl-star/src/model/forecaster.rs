@@ -47,7 +47,7 @@ impl TorchNetwork {
             }
         };
         let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
-        let pass = (Pass::Torch(&torch), self.output());
+        let pass = Pass::Torch(&torch);
         let steps = (HORIZON, batch.rule);
         let Rollout { positions, factors } = self.layers().roll_out(&scenes, &goals, &noise, steps, pass);
         Ok(BatchRollout {

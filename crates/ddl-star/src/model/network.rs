@@ -21,7 +21,7 @@ pub struct TorchNetwork {
     kind: Kind,
 }
 
-/// The layers of a network without its tensors, which threads cannot share.
+/// The layers of a network. Threads can share them, but not its tensors.
 #[derive(Debug)]
 pub(crate) struct Layers {
     pub(super) config: StarConfig,
@@ -102,10 +102,12 @@ impl TorchNetwork {
         self.kind
     }
 
-    /// Copies of [`output`](Self::output) that have gradients of their own.
+    /// Copies of weight and bias of the output layer, with gradients of their own.
     pub(crate) fn copy_output(&self) -> [Tensor; 2] {
-        self.output()
-            .map(|learned| learned.detach().copy().set_requires_grad(true))
+        [0, 1].map(|one| {
+            let learned = &self.parameters.tensors()[self.layers.output.tensor + one];
+            learned.detach().copy().set_requires_grad(true)
+        })
     }
 
     /// The weights in the form of the kernels; `None` if the kernels cannot compute it: on other devices than the CPU,
@@ -121,10 +123,5 @@ impl TorchNetwork {
 
     pub(crate) fn layers(&self) -> &Layers {
         &self.layers
-    }
-
-    /// Weight and bias of the output layer.
-    pub(crate) fn output(&self) -> [&Tensor; 2] {
-        [0, 1].map(|one| &self.parameters.tensors()[self.layers.output.tensor + one])
     }
 }

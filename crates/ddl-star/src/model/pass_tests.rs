@@ -5,7 +5,6 @@ use super::*;
 use crate::device::ComputeDevice;
 use crate::model::{NoiseInput, TorchNetwork};
 use ddl_data::{Dataset, WINDOW, Window, WindowRule};
-use ddl_network::backend::Mode;
 use ddl_network::{
     BackboneKind, DeviceChoice, ForecastWindows, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
 };
@@ -67,11 +66,7 @@ enum By {
 }
 
 /// A loss and its gradient, in double precision.
-fn gradient(
-    config: &StarConfig,
-    by: By,
-    loss: impl FnOnce(&TorchNetwork, (Pass<'_>, [&Tensor; 2])) -> Tensor,
-) -> (f64, Tensor) {
+fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'_>) -> Tensor) -> (f64, Tensor) {
     let kind = match by {
         By::Kernels => Kind::Float,
         By::SharedWeights | By::Torch => Kind::Double,
@@ -81,18 +76,16 @@ fn gradient(
     let kernels = network.kernels().unwrap();
     assert_eq!(kernels.is_some(), matches!(by, By::Kernels), "{by:?}");
     let (loss, gradient) = if let Some(kernels) = kernels {
-        let backend = KernelBackend::training(kernels, Mode::Evaluate, 0);
-        let output = network.copy_output();
-        let loss = loss(&network, (Pass::Kernels(&backend), output.each_ref()));
-        let layers = network.layers();
-        let gradient = layers.gradient_by_kernels(&backend, &loss, &output, parameters.count());
+        let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_output());
+        let loss = loss(&network, Pass::Kernels(&pass));
+        let gradient = pass.gradient(&loss, network.layers(), parameters.count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
     } else {
         let torch = match by {
             By::Torch => TorchBackend::new(parameters, Mode::Evaluate),
             _ => TorchBackend::training(parameters, Mode::Evaluate),
         };
-        let loss = loss(&network, (Pass::Torch(&torch), network.output()));
+        let loss = loss(&network, Pass::Torch(&torch));
         let gradient = torch.gradient(&loss, parameters).unwrap();
         (loss, gradient)
     };
@@ -100,7 +93,7 @@ fn gradient(
 }
 
 /// The mean square of single steps from true positions.
-fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: (Pass<'_>, [&Tensor; 2])) -> Tensor {
+fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) -> Tensor {
     let kind = network.kind();
     let batch = batch(windows, kind);
     let ones = Tensor::ones([1, 16], (kind, tch::Device::Cpu));
@@ -111,7 +104,7 @@ fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: (Pass<'_>, [
     (forecast - truth).square().mean(None::<Kind>)
 }
 
-fn walk(windows: &[Window], network: &TorchNetwork, pass: (Pass<'_>, [&Tensor; 2])) -> Tensor {
+fn walk(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) -> Tensor {
     let batch = batch(windows, network.kind());
     let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
     let (noise, steps) = (NoiseInput::Expected, (12, StepRule::Bounded));
@@ -121,10 +114,7 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: (Pass<'_>, [&Tensor; 2
 }
 
 /// A loss, with the largest relative errors of it and of its gradient.
-type Compared = (
-    fn(&[Window], &TorchNetwork, (Pass<'_>, [&Tensor; 2])) -> Tensor,
-    [f64; 2],
-);
+type Compared = (fn(&[Window], &TorchNetwork, Pass<'_>) -> Tensor, [f64; 2]);
 
 #[test]
 fn kernels_and_tape_give_the_gradients_of_libtorch() {

@@ -36,8 +36,7 @@ impl TorchNetwork {
     /// 1..T.
     pub fn teacher_forced(&self, batch: &SceneBatch, goals: &Tensor, noise: &NoiseInput, mode: Mode) -> Tensor {
         let torch = TorchBackend::new(self.parameters(), mode);
-        let pass = (Pass::Torch(&torch), self.output());
-        self.layers().teacher_forced(batch, goals, noise, pass)
+        self.layers().teacher_forced(batch, goals, noise, Pass::Torch(&torch))
     }
 
     /// Forecast positions: 8 observed frames, then every forecast is the input of the next step.
@@ -57,24 +56,24 @@ impl TorchNetwork {
         rule: StepRule,
     ) -> Rollout {
         let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
-        let pass = (Pass::Torch(&torch), self.output());
-        self.layers().roll_out(batch, goals, noise, (horizon, rule), pass)
+        let steps = (horizon, rule);
+        self.layers().roll_out(batch, goals, noise, steps, Pass::Torch(&torch))
     }
 }
 
 impl Layers {
-    /// [`TorchNetwork::teacher_forced`] in a pass, with the weights of the output layer.
+    /// [`TorchNetwork::teacher_forced`] in a pass.
     pub(crate) fn teacher_forced(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        (pass, output): (Pass<'_>, [&Tensor; 2]),
+        pass: Pass<'_>,
     ) -> Tensor {
-        let emission = Emission::new(output, noise, &self.config);
+        let emission = Emission::new(pass.output(self.output), noise, &self.config);
         match pass {
             Pass::Torch(backend) => self.teacher_forced_by(batch, goals, &emission, (backend, &*self.on_tensors)),
-            Pass::Kernels(backend) => self.teacher_forced_by(batch, goals, &emission, (backend, &*self.on_rows)),
+            Pass::Kernels(pass) => self.teacher_forced_by(batch, goals, &emission, (&pass.backend, &*self.on_rows)),
         }
     }
 
@@ -108,21 +107,20 @@ impl Layers {
         course.next_positions(&positions, goals, &emitted, (0, steps))
     }
 
-    /// [`TorchNetwork::roll_out`] in a pass, with the weights of the output layer. Gradients flow back through
-    /// positions and memory only.
+    /// [`TorchNetwork::roll_out`] in a pass. Gradients flow back through positions and memory only.
     pub(crate) fn roll_out(
         &self,
         batch: &SceneBatch,
         goals: &Tensor,
         noise: &NoiseInput,
         steps: (usize, StepRule),
-        (pass, output): (Pass<'_>, [&Tensor; 2]),
+        pass: Pass<'_>,
     ) -> Rollout {
-        let emission = Emission::new(output, noise, &self.config);
+        let emission = Emission::new(pass.output(self.output), noise, &self.config);
         let emission = (&emission, goals.size()[0].max(noise.count()));
         match pass {
             Pass::Torch(backend) => self.roll_out_by(batch, goals, emission, steps, (backend, &*self.on_tensors)),
-            Pass::Kernels(backend) => self.roll_out_by(batch, goals, emission, steps, (backend, &*self.on_rows)),
+            Pass::Kernels(pass) => self.roll_out_by(batch, goals, emission, steps, (&pass.backend, &*self.on_rows)),
         }
     }
 

@@ -1,9 +1,10 @@
-//! Backends that convert tokens from and to tensors, for the rollout of training.
+//! Backends that convert tokens from and to tensors, and passes of training with their gradients.
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
 use super::network::Layers;
-use ddl_network::backend::{Backend, Buffer, KernelBackend, Rows, VisibleScenes};
+use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, VisibleScenes};
+use ddl_network::weights::Linear;
 use std::ops::Range;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -101,38 +102,60 @@ pub(super) fn numbers(tensor: &Tensor) -> Buffer {
     numbers
 }
 
-/// One pass through a network: by libtorch, or by kernels where possible, on the CPU in `f32`.
+/// What computes one pass through a network.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Pass<'a> {
-    /// On any device, in any precision.
+    /// libtorch, on any device and in any precision.
     Torch(&'a TorchBackend),
-    /// Forwards and backwards.
-    Kernels(&'a KernelBackend),
+    /// Kernels, on the CPU in `f32`.
+    Kernels(&'a KernelPass),
 }
 
-impl Layers {
-    /// The gradient of `loss`, which a pass of `kernels` computed, with respect to all `count` learned numbers of the
-    /// network. `output` are the weights of the output layer of this pass, leaves of libtorch's graph.
+impl Pass<'_> {
+    /// Weight and bias of the output layer, which libtorch computes in both cases.
+    pub(super) fn output(&self, layer: Linear) -> [&Tensor; 2] {
+        match self {
+            Self::Torch(backend) => backend.learned(layer),
+            Self::Kernels(pass) => pass.output.each_ref(),
+        }
+    }
+}
+
+/// A training pass by kernels, which can run beside others on other threads.
+#[derive(Debug)]
+pub(crate) struct KernelPass {
+    pub(super) backend: KernelBackend,
+    /// Copies of the weights of the output layer, with gradients of their own.
+    output: [Tensor; 2],
+}
+
+impl KernelPass {
+    /// A pass with dropout by this seed. `output` is of `TorchNetwork::copy_output`.
+    pub(crate) fn new(kernels: &Arc<Kernels>, mode: Mode, seed: u64, output: [Tensor; 2]) -> Self {
+        Self {
+            backend: KernelBackend::training(Arc::clone(kernels), mode, seed),
+            output,
+        }
+    }
+
+    /// The gradient of `loss` with respect to all `count` learned numbers of the network.
     ///
     /// # Errors
     /// Those of libtorch.
-    pub(crate) fn gradient_by_kernels(
-        &self,
-        kernels: &KernelBackend,
-        loss: &Tensor,
-        output: &[Tensor; 2],
-        count: usize,
-    ) -> Result<Vec<f32>, TchError> {
+    pub(crate) fn gradient(&self, loss: &Tensor, layers: &Layers, count: usize) -> Result<Vec<f32>, TchError> {
         loss.f_backward()?;
         let mut sums = vec![0.0; count];
-        kernels.backward(&mut sums);
-        // libtorch computes the output layer.
-        let mut rest = &mut sums[self.output.span()];
-        for learned in output {
-            let part = rest.split_off_mut(..learned.numel()).unwrap_or_default();
+        self.backend.backward(&mut sums);
+        let mut of_output = sums[layers.output.span()].iter_mut();
+        for learned in &self.output {
             let gradient = learned.f_grad()?;
+            let places = of_output.by_ref().take(learned.numel());
             if gradient.defined() {
-                part.copy_from_slice(&numbers(&gradient));
+                for (place, term) in places.zip(numbers(&gradient).iter()) {
+                    *place = *term;
+                }
+            } else {
+                places.for_each(drop);
             }
         }
         Ok(sums)

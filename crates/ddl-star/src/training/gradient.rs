@@ -4,28 +4,28 @@ use super::draws::StepDraw;
 use super::loss::{mean_distance, mean_squared_distance};
 use super::prepared::TrainingBatch;
 use crate::StarError;
-use crate::model::{Layers, NoiseInput, Pass, TorchBackend, TorchNetwork};
+use crate::model::{KernelPass, Layers, NoiseInput, Pass, TorchBackend, TorchNetwork};
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
-use ddl_network::backend::{KernelBackend, Kernels, Mode};
+use ddl_network::backend::{Kernels, Mode};
 use ddl_network::seed::{Stage, stream};
 use ddl_network::{Objective, StepRule};
 use rand::Rng as _;
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, MutexGuard};
 use tch::Tensor;
 
-/// By libtorch, whose generator draws the dropout.
+/// By libtorch, whose generator draws the dropout; it is released before the backward pass.
 pub(crate) fn by_torch(
     network: &TorchNetwork,
     objective: Objective,
     batch: &TrainingBatch,
-    draw: &StepDraw,
+    noise: Tensor,
+    generator: MutexGuard<'_, ()>,
 ) -> Result<(Tensor, Tensor), StarError> {
     let parameters = network.parameters();
     let torch = TorchBackend::training(parameters, Mode::Train);
-    let pass = (Pass::Torch(&torch), network.output());
-    let noise = draw.noise.shallow_clone();
-    let loss = loss(network.layers(), objective, batch, noise, pass)?;
+    let loss = loss(network.layers(), objective, batch, noise, Pass::Torch(&torch))?;
+    drop(generator);
     let gradient = torch.gradient(&loss, parameters)?;
     Ok((loss, gradient))
 }
@@ -42,18 +42,17 @@ pub(crate) fn by_kernels(
     let sizes = parts.iter().map(|part| part.scenes.pedestrians());
     let pedestrians: usize = sizes.sum();
     let jobs = parts.into_iter().zip(0..).map(|(part, index)| {
-        let seed = stream(draw.kernels, Stage::Step, index).next_u64();
+        let seed = seed_of_part(draw.kernels, index);
         (part, seed, draw.noise.shallow_clone(), network.copy_output())
     });
     let gradients: Vec<Result<(Tensor, Vec<f32>), StarError>> = jobs
         .collect::<Vec<_>>()
         .into_par_iter()
         .map(|(part, seed, noise, output)| {
-            let backend = KernelBackend::training(Arc::clone(kernels), Mode::Train, seed);
-            let pass = (Pass::Kernels(&backend), output.each_ref());
+            let pass = KernelPass::new(kernels, Mode::Train, seed, output);
             let share = part.scenes.pedestrians() as f64 / pedestrians as f64;
-            let loss = loss(layers, objective, &part, noise, pass)? * share;
-            let gradient = layers.gradient_by_kernels(&backend, &loss, &output, count)?;
+            let loss = loss(layers, objective, &part, noise, Pass::Kernels(&pass))? * share;
+            let gradient = pass.gradient(&loss, layers, count)?;
             Ok((loss.detach(), gradient))
         })
         .collect();
@@ -71,13 +70,21 @@ pub(crate) fn by_kernels(
     Ok((loss, Tensor::f_from_slice(&sums)?))
 }
 
+/// The seed of a part's dropout. That of the first part is the seed of the step.
+fn seed_of_part(of_step: u64, part: u64) -> u64 {
+    match part {
+        0 => of_step,
+        part => stream(of_step, Stage::Step, part).next_u64(),
+    }
+}
+
 /// The mean loss of the pedestrians of a batch, in a pass with the weights of the output layer.
 fn loss(
     layers: &Layers,
     objective: Objective,
     batch: &TrainingBatch,
     noise: Tensor,
-    pass: (Pass<'_>, [&Tensor; 2]),
+    pass: Pass<'_>,
 ) -> Result<Tensor, StarError> {
     let (scenes, goals) = (&batch.scenes, &batch.goals);
     let after = |frames: usize| {
@@ -95,5 +102,19 @@ fn loss(
             let walk = layers.roll_out(scenes, &goals, &NoiseInput::Expected, steps, pass);
             Ok(mean_distance(&walk.positions.squeeze_dim(1), &after(OBSERVED)?))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_has_its_own_dropout() {
+        let mut seeds: Vec<u64> = (0..40).map(|at| seed_of_part(at / 20, at % 20)).collect();
+        assert_eq!([seeds[0], seeds[20]], [0, 1]);
+        seeds.sort_unstable();
+        seeds.dedup();
+        assert_eq!(seeds.len(), 40);
     }
 }

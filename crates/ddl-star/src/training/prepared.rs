@@ -4,6 +4,7 @@ use crate::StarError;
 use crate::model::{SceneBatch, tensor};
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
+use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
 /// Training windows as batches on the device of the network, each made at its first visit.
@@ -15,7 +16,7 @@ pub(crate) struct PreparedBatches {
     neighbour_box: f64,
     device: Device,
     kind: Kind,
-    /// Pedestrians of a part, about; `None` for whole batches.
+    /// Least mean number of pedestrians in the parts of a batch; `None` for whole batches.
     part: Option<usize>,
     /// The parts of each batch.
     made: Vec<OnceCell<Vec<TrainingBatch>>>,
@@ -64,7 +65,7 @@ impl TrainingBatch {
 
 impl PreparedBatches {
     /// Prepares `count` batches of `windows`, each with its future and with its goals unless these are the true
-    /// endpoints. Batches are in parts of about `part` pedestrians.
+    /// endpoints. The parts of a batch have at least `part` pedestrians on average.
     pub(crate) fn new(
         (windows, goals): (Vec<Window>, Option<Vec<Vec<Position>>>),
         count: usize,
@@ -94,32 +95,15 @@ impl PreparedBatches {
         if let Some(parts) = place.get() {
             return Ok(parts);
         }
-        let parts = self.parts(windows).map(|part| self.made_of(part));
-        let parts = parts.collect::<Result<_, _>>()?;
+        let sizes: Vec<usize> = windows.iter().map(|&index| self.windows[index].len()).collect();
+        let parts = parts(&sizes, self.part.unwrap_or(usize::MAX)).into_iter();
+        let parts = parts
+            .map(|part| self.part_of(&windows[part]))
+            .collect::<Result<_, _>>()?;
         Ok(place.get_or_init(|| parts))
     }
 
-    /// Windows one after the other, with about the same number of pedestrians in each part.
-    fn parts<'a>(&self, windows: &'a [usize]) -> impl Iterator<Item = &'a [usize]> {
-        let pedestrians = |windows: &[usize]| -> usize {
-            let each = windows.iter().map(|&index| self.windows[index].len());
-            each.sum()
-        };
-        let all = pedestrians(windows);
-        let count = self.part.map_or(1, |part| (all / part).max(1));
-        let mut ends: Vec<usize> = (1..count)
-            .map(|part| {
-                let before = |&end: &usize| pedestrians(&windows[..end]) * count < all * part;
-                (0..windows.len()).take_while(before).count()
-            })
-            .collect();
-        ends.push(windows.len());
-        ends.dedup();
-        let starts = std::iter::once(0).chain(ends.clone());
-        starts.zip(ends).map(|(start, end)| &windows[start..end])
-    }
-
-    fn made_of(&self, windows: &[usize]) -> Result<TrainingBatch, StarError> {
+    fn part_of(&self, windows: &[usize]) -> Result<TrainingBatch, StarError> {
         let scenes: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
         let scenes = SceneBatch::new(&scenes, WINDOW, WINDOW - 1, self.neighbour_box, self.device, self.kind)?;
         let goals = match &self.goals {
@@ -134,12 +118,52 @@ impl PreparedBatches {
     }
 }
 
+/// Divides windows with these numbers of pedestrians into parts with similar numbers, and at least `least` pedestrians
+/// on average.
+fn parts(sizes: &[usize], least: usize) -> Vec<Range<usize>> {
+    let all: usize = sizes.iter().sum();
+    let count = (all / least).max(1);
+    let mut parts = Vec::new();
+    let (mut start, mut before, mut reached) = (0, 0, 0);
+    for (index, size) in sizes.iter().enumerate() {
+        before += size;
+        // How many of equal parts end before or with this window.
+        let ended = before * count / all.max(1);
+        if ended > reached {
+            parts.push(start..index + 1);
+            (start, reached) = (index + 1, ended);
+        }
+    }
+    parts
+}
+
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
     use super::*;
     use ddl_data::{Dataset, WindowRule};
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn parts_are_consecutive_and_as_equal_as_the_windows_allow(
+            sizes in proptest::collection::vec(prop_oneof![9 => 1_usize..40, 1 => 40_usize..2000], 1..80),
+            least in 1_usize..400,
+        ) {
+            let parts = parts(&sizes, least);
+            let whole: Vec<usize> = parts.iter().cloned().flatten().collect();
+            prop_assert_eq!(whole, (0..sizes.len()).collect::<Vec<_>>());
+            let [all, largest] = [sizes.iter().sum::<usize>(), sizes.iter().copied().max().unwrap()];
+            let count = (all / least).max(1);
+            prop_assert!(parts.len() <= count);
+            for part in parts {
+                prop_assert!(!part.is_empty());
+                let pedestrians: usize = sizes[part].iter().sum();
+                prop_assert!(pedestrians <= all / count + largest + 1, "{} of {}", pedestrians, all);
+            }
+        }
+    }
 
     #[test]
     fn jitter_moves_only_observed_positions() {

@@ -23,8 +23,8 @@ use tch::{Device, Tensor};
 /// Number of steps whose losses CUDA keeps before they are read.
 const READ_EVERY_ON_CUDA: usize = 16;
 
-/// Pedestrians of a part of a batch, about. On the CPU, parts are computed by several threads, and their gradients are
-/// added. Smaller parts take more processor time.
+/// Least mean number of pedestrians in the parts of a batch. On the CPU, several threads compute the parts, and their
+/// gradients are added. Smaller parts take more processor time.
 const PART: usize = 128;
 
 /// A network in training. A run that was stopped, saved and resumed gives the same weights as an uninterrupted run.
@@ -288,32 +288,31 @@ impl Trainer {
 
     /// The loss of a step and its gradient with respect to all learned numbers, as one vector.
     fn gradient(&self, step: u64, draw: &StepDraw) -> Result<(Tensor, Tensor), StarError> {
-        // Held from seeding to the last draw: of jitter, and of dropout by libtorch.
-        let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
-        tch::manual_seed(draw.libtorch);
-        let mut parts = self.parts(step, draw)?;
-        let (network, objective) = (&self.network, self.config.objective);
-        match &self.kernels {
-            Some(kernels) => {
-                drop(generator);
-                gradient::by_kernels(network, kernels, objective, parts, draw)
-            }
-            None => gradient::by_torch(network, objective, &parts.remove(0), draw),
-        }
-    }
-
-    /// The parts of the batch of a step, transformed by its draws.
-    fn parts(&self, step: u64, draw: &StepDraw) -> Result<Vec<TrainingBatch>, StarError> {
         let index = self.schedule.batch_index(step);
         let parts = self.batches.batch(index, self.schedule.batch(index))?.iter();
         let turned = parts.map(|part| match &draw.turn {
             Some(images) => part.turned(images),
             None => part.shared(),
         });
-        Ok(match self.config.jitter {
+        // Held from seeding to the last draw: of jitter, and of dropout by libtorch.
+        let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
+        tch::manual_seed(draw.libtorch);
+        let mut parts: Vec<TrainingBatch> = match self.config.jitter {
             jitter if jitter > 0.0 => turned.map(|part| part.jittered(jitter)).collect(),
             _ => turned.collect(),
-        })
+        };
+        let (network, objective) = (&self.network, self.config.objective);
+        match (&self.kernels, parts.pop()) {
+            (None, Some(batch)) => {
+                gradient::by_torch(network, objective, &batch, draw.noise.shallow_clone(), generator)
+            }
+            (Some(kernels), last) => {
+                drop(generator);
+                parts.extend(last);
+                gradient::by_kernels(network, kernels, objective, parts, draw)
+            }
+            (None, None) => Err(StarError::NoTrainingWindows),
+        }
     }
 
     /// The draws of a step, made for the rest of its epoch at once.

@@ -105,6 +105,25 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
+fn a_run_with_parts_and_jitter_resumes_with_the_same_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.safetensors");
+    let star = StarConfig::recommended(Variant::Full);
+    let training = TrainingConfig {
+        jitter: 0.05,
+        ..TrainingConfig::recommended(Variant::Full)
+    };
+    let trainer = || of_parts(&star, &training, Kind::Float);
+    let (mut whole, mut resumed) = (trainer(), trainer());
+    whole.step().unwrap();
+    whole.save(&Origin::default(), &path).unwrap();
+    whole.step().unwrap();
+    resumed.resume(&Origin::default(), &path).unwrap();
+    resumed.step().unwrap();
+    assert_eq!(state(&resumed), state(&whole));
+}
+
+#[test]
 fn the_interval_of_reading_losses_changes_nothing() {
     for kind in [Kind::Float, Kind::Double] {
         let mut every = trainer(kind, 1);

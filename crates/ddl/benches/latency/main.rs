@@ -1,8 +1,8 @@
 //! The cost of a forecast: `cargo bench -p ddl-forecast --bench latency`; with `--features torch` also that of a
 //! training step.
 //!
-//! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of about
-//! 266 pedestrians with initial weights. The results are medians of several turns, each with empty caches: processor
+//! A forecast is of 25 simulated pedestrians with 20 hypotheses each by a built-in model. A training step is of
+//! 261 pedestrians with initial weights. The results are medians of several turns, each with empty caches: processor
 //! time for one thread, wall-clock time for two.
 //!
 //! `cargo bench -p ddl-forecast --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead, and
