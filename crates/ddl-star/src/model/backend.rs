@@ -37,15 +37,15 @@ impl TorchBackend {
         }
     }
 
-    /// Weight and bias of a layer.
-    pub(super) fn learned(&self, layer: Linear) -> [&Tensor; 2] {
-        [0, 1].map(|one| &self.tensors[layer.tensor + one])
+    /// The weight of that index and the bias after it.
+    pub(super) fn learned(&self, weight: usize) -> [&Tensor; 2] {
+        [weight, weight + 1].map(|number| &self.tensors[number])
     }
 
     /// y = x W^T + b, with the weight of that index and the bias after it.
     /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
     fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
-        let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
+        let [weight, bias] = self.learned(weight);
         match &self.shared {
             Some(shared) => shared.linear(x, weight, bias),
             None => x.linear(weight, Some(bias)),
@@ -72,7 +72,7 @@ impl TorchBackend {
 
     /// Layer normalisation over the last dimension (Ba et al. 2016), eps = 1e-5.
     fn norm(&self, x: &Tensor, weight: usize) -> Tensor {
-        let [weight, bias] = [weight, weight + 1].map(|number| &self.tensors[number]);
+        let [weight, bias] = self.learned(weight);
         x.layer_norm(weight.size(), Some(weight), Some(bias), 1e-5, true)
     }
 }

@@ -115,7 +115,7 @@ impl Pass<'_> {
     /// Weight and bias of the output layer, which libtorch computes in both cases.
     pub(super) fn output(&self, layer: Linear) -> [&Tensor; 2] {
         match self {
-            Self::Torch(backend) => backend.learned(layer),
+            Self::Torch(backend) => backend.learned(layer.tensor),
             Self::Kernels(pass) => pass.output.each_ref(),
         }
     }
@@ -146,17 +146,14 @@ impl KernelPass {
         loss.f_backward()?;
         let mut sums = vec![0.0; count];
         self.backend.backward(&mut sums);
-        let mut of_output = sums[layers.output.span()].iter_mut();
+        let mut rest = &mut sums[layers.output.span()];
         for learned in &self.output {
+            let (of_learned, after) = rest.split_at_mut(learned.numel());
             let gradient = learned.f_grad()?;
-            let places = of_output.by_ref().take(learned.numel());
             if gradient.defined() {
-                for (place, term) in places.zip(numbers(&gradient).iter()) {
-                    *place = *term;
-                }
-            } else {
-                places.for_each(drop);
+                of_learned.copy_from_slice(&numbers(&gradient));
             }
+            rest = after;
         }
         Ok(sums)
     }

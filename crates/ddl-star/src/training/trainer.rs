@@ -297,22 +297,21 @@ impl Trainer {
         // Held from seeding to the last draw: of jitter, and of dropout by libtorch.
         let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         tch::manual_seed(draw.libtorch);
-        let mut parts: Vec<TrainingBatch> = match self.config.jitter {
-            jitter if jitter > 0.0 => turned.map(|part| part.jittered(jitter)).collect(),
-            _ => turned.collect(),
+        let jitter = self.config.jitter;
+        let parts: Vec<TrainingBatch> = if jitter > 0.0 {
+            turned.map(|part| part.jittered(jitter)).collect()
+        } else {
+            turned.collect()
         };
         let (network, objective) = (&self.network, self.config.objective);
-        match (&self.kernels, parts.pop()) {
-            (None, Some(batch)) => {
-                gradient::by_torch(network, objective, &batch, draw.noise.shallow_clone(), generator)
-            }
-            (Some(kernels), last) => {
-                drop(generator);
-                parts.extend(last);
-                gradient::by_kernels(network, kernels, objective, parts, draw)
-            }
-            (None, None) => Err(StarError::NoTrainingWindows),
+        if let Some(kernels) = &self.kernels {
+            drop(generator);
+            return gradient::by_kernels(network, kernels, objective, parts, draw);
         }
+        let [batch] = &parts[..] else {
+            unreachable!("without kernels, batches are whole")
+        };
+        gradient::by_torch(network, objective, batch, draw.noise.shallow_clone(), generator)
     }
 
     /// The draws of a step, made for the rest of its epoch at once.

@@ -82,13 +82,10 @@ fn the_gradients_of_parts_add_up_to_that_of_the_batch() {
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
-    let recommended = TrainingConfig {
-        jitter: 0.05,
-        ..TrainingConfig::recommended(Variant::Full)
-    };
+    let [published, recommended] = [StarConfig::published, StarConfig::recommended].map(|star| star(Variant::Full));
     for (star, training) in [
-        (StarConfig::published(Variant::Full), TrainingConfig::published()),
-        (StarConfig::recommended(Variant::Full), recommended),
+        (published, TrainingConfig::published()),
+        (recommended, TrainingConfig::recommended(Variant::Full)),
     ] {
         let after = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -109,10 +106,8 @@ fn a_run_with_parts_and_jitter_resumes_with_the_same_bits() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("state.safetensors");
     let star = StarConfig::recommended(Variant::Full);
-    let training = TrainingConfig {
-        jitter: 0.05,
-        ..TrainingConfig::recommended(Variant::Full)
-    };
+    let training = TrainingConfig::recommended(Variant::Full);
+    assert!(training.jitter > 0.0);
     let trainer = || of_parts(&star, &training, Kind::Float);
     let (mut whole, mut resumed) = (trainer(), trainer());
     whole.step().unwrap();
