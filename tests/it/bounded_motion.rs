@@ -4,8 +4,7 @@
 
 use ddl::data::{Completion, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
-use ddl::{BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Precision, Variant};
-use ddl_tests::place::Place;
+use ddl::{BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Variant};
 use ddl_tests::{bits, crowd, drawn_model};
 use proptest::prelude::*;
 use std::sync::LazyLock;
@@ -142,7 +141,6 @@ fn the_certified_forecast_is_the_forecast() {
     let windows = crowd::windows(3, 10);
     for variant in [Variant::Full, Variant::NoGoalShift] {
         let model = drawn_model::of(variant);
-        let model = model.with_precision(Precision::Bf16).unwrap();
         let goals = model.goal_model().goals(&windows).unwrap();
         let many = model.forecast_certified(&windows).unwrap();
         let one = model.forecast_central_certified(&windows).unwrap();
@@ -162,17 +160,6 @@ fn the_certified_forecast_is_the_forecast() {
                 assert_eq!(one.goal(i, 0), Some(set.central(window.observed(i))));
             }
         }
-    }
-}
-
-#[test]
-fn reports_state_the_precision() {
-    let place = Place::with_model();
-    let evaluate = "evaluate --model run --precision bf16 --protocol single --test-pedestrians 20";
-    let report = place.json(&format!("{evaluate} --threads 1 --json"));
-    for conditions in report["rows"].as_array().unwrap().iter().map(|row| &row["conditions"]) {
-        let of_model = conditions["variant"].is_string();
-        assert_eq!(conditions["device"], if of_model { "cpu, bf16" } else { "cpu" });
     }
 }
 

@@ -17,14 +17,13 @@ pub(crate) mod view;
 pub(crate) mod windows;
 
 use crate::progress::ProgressMode;
-use crate::telling::tell;
 use crate::units::Units;
 use crate::{output, recordings, result_lines};
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
 use ddl::report::Report;
-use ddl::{BuiltinModel, Clearance, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, Precision, RunConfig};
+use ddl::{BuiltinModel, Clearance, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, RunConfig};
 use std::path::{Path, PathBuf};
 
 /// Seed of the simulated crowds, the same for all users.
@@ -77,27 +76,6 @@ impl Machine {
     /// As [`prepare`](Self::prepare), but with one thread by default, for work that a second thread would not speed up.
     pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads.or(Some(1)))
-    }
-}
-
-/// The precision of the network.
-#[derive(Debug, Args)]
-pub(crate) struct PrecisionOption {
-    /// Precision of the network's feed-forward blocks: f32, or bf16 (8 significant bits, sums in f32). bf16 is faster
-    /// on processors with AVX-512 BF16 and slower on others; it needs the CPU
-    #[arg(long, default_value = "f32")]
-    precision: Precision,
-}
-
-impl PrecisionOption {
-    pub(crate) fn precision(&self) -> Precision {
-        if !self.precision.is_native() {
-            tell(format_args!(
-                "warning: this processor has no {name} instructions; --precision {name} is emulated, slower than f32",
-                name = self.precision.name()
-            ));
-        }
-        self.precision
     }
 }
 

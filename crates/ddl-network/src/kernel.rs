@@ -1,5 +1,5 @@
-//! The expensive computations of the network. Each is written once, as a `Kernel` over any [`ddl_simd::Simd`] or
-//! [`ddl_simd::Pairs`], and runs with the fastest instructions of the processor. Results do not depend on the number of
+//! The expensive computations of the network. Each is written once, as a `Kernel` over any [`ddl_simd::Simd`],
+//! and runs with the fastest instructions of the processor. Results do not depend on the number of
 //! threads. Results of different instruction sets agree up to rounding.
 
 #![expect(

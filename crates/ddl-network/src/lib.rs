@@ -72,10 +72,6 @@
 //! rayon's threads. The same holds for the proposals of a pedestrian. They are computed in `f32` with the fastest
 //! instructions of the machine: AVX-512 or AVX2 on x86-64, otherwise portable code. Between instruction sets results
 //! agree up to rounding.
-//!
-//! [`MotionNetwork::with_precision`] multiplies the feed-forward blocks in bf16 ([`Precision`]); sums and everything
-//! else stay in `f32`. It is faster on processors with AVX-512 BF16; other processors emulate the same products bit for
-//! bit, slowly.
 #![cfg_attr(
     not(feature = "training"),
     allow(dead_code, reason = "only training uses the backward passes")
@@ -84,11 +80,11 @@
 pub mod backbone;
 pub mod backend;
 mod config;
+mod device;
 mod error;
 mod forecast;
 mod kernel;
 mod names;
-mod precision;
 pub mod proposal;
 pub mod seed;
 mod training_report;
@@ -98,11 +94,11 @@ pub use config::{
     BackboneKind, LearningRateSchedule, MemoryConfig, MemoryTraining, NetworkFrame, Objective, ProposalConfig,
     ProposalTraining, StarConfig, TrainingConfig, Variant,
 };
+pub use device::DeviceChoice;
 pub use error::NetworkError;
 pub use forecast::{
     BatchRollout, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout, length_unit,
     motion_bounds, visibility,
 };
-pub use precision::{DeviceChoice, Precision};
 pub use proposal::{PedestrianView, ProposalExample, ProposalNetwork, ProposeEndpoints, ProposedEndpoints};
 pub use training_report::{EpochReport, ProposalStep, StepReport};

@@ -41,18 +41,15 @@ pub(crate) use named;
 
 #[cfg(test)]
 mod tests {
-    use crate::{Precision, Variant};
+    use crate::{DeviceChoice, Variant};
 
     #[test]
     fn names_are_parsed_and_unknown_names_refused_with_the_list() {
         for variant in Variant::ALL {
             assert_eq!(variant.to_string().parse::<Variant>().unwrap(), variant);
         }
-        for precision in [Precision::F32, Precision::Bf16] {
-            assert_eq!(precision.name().parse::<Precision>().unwrap(), precision);
-        }
-        let error = "f16".parse::<Precision>().unwrap_err().to_string();
-        let expected = "configuration: precision = f16 is not allowed: one of f32, bf16";
+        let error = "gpu".parse::<DeviceChoice>().unwrap_err().to_string();
+        let expected = "configuration: device = gpu is not allowed: one of auto, cpu, cuda";
         assert_eq!(error, expected);
     }
 }

@@ -4,13 +4,11 @@
 
 use std::fmt;
 
-use crate::emulated::OnEmulated;
-use crate::pairs::PairKernel;
 use crate::portable::Portable;
 use crate::register::{Register, RegisterKernel};
 use crate::simd::Kernel;
 #[cfg(target_arch = "x86_64")]
-use crate::x86::{Avx2, Avx512, Avx512Bf16};
+use crate::x86::{Avx2, Avx512};
 
 /// Instruction sets that kernels can run with.
 ///
@@ -127,48 +125,6 @@ impl Dispatch {
             Set::Avx2(register) => register.run(kernel),
             #[cfg(target_arch = "x86_64")]
             Set::Avx512(register) => register.run(kernel),
-        }
-    }
-}
-
-/// Implementation of the arithmetic on pairs of bf16 numbers; all give the same bits.
-#[derive(Clone, Copy, Debug)]
-pub struct PairDispatch(PairSet);
-
-#[derive(Clone, Copy, Debug)]
-enum PairSet {
-    Emulated(Dispatch),
-    #[cfg(target_arch = "x86_64")]
-    Avx512Bf16(Avx512Bf16),
-}
-
-impl PairDispatch {
-    /// The fastest one of this machine.
-    pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(pairs) = Avx512Bf16::detect() {
-            return Self(PairSet::Avx512Bf16(pairs));
-        }
-        Self::emulated(Dispatch::detect())
-    }
-
-    /// Portable code, compiled for the instruction set.
-    pub fn emulated(dispatch: Dispatch) -> Self {
-        Self(PairSet::Emulated(dispatch))
-    }
-
-    /// Whether the machine has native instructions for bf16 pairs.
-    pub fn is_native(self) -> bool {
-        !matches!(self.0, PairSet::Emulated(_))
-    }
-
-    /// Runs `kernel`.
-    #[inline]
-    pub fn run<K: PairKernel>(self, kernel: K) {
-        match self.0 {
-            PairSet::Emulated(dispatch) => dispatch.run_on_registers(OnEmulated(kernel)),
-            #[cfg(target_arch = "x86_64")]
-            PairSet::Avx512Bf16(pairs) => pairs.run(kernel),
         }
     }
 }

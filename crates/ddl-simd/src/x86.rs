@@ -1,7 +1,7 @@
 //! Vector instructions of x86-64 processors: the only unsafe code of the crate.
 //!
-//! [`Avx2`], [`Avx512`] and [`Avx512Bf16`] are only created by their `detect`, which queries the processor. So a value
-//! of these types proves that the processor has the instructions.
+//! [`Avx2`] and [`Avx512`] are only created by their `detect`, which queries the processor. So a value of these types
+//! proves that the processor has the instructions.
 
 #![allow(
     unsafe_code,
@@ -14,7 +14,6 @@ use std::arch::x86_64::*;
 
 use crate::exp2::{COST_LIMIT, UPWARD_POLYNOMIAL, WIDE_ROUNDING, normal};
 use crate::lanes::{HALF, LANES, WIDE_LANES};
-use crate::pairs::{PairKernel, Pairs};
 use crate::register::{Register, RegisterKernel};
 use crate::simd::TiledKernel;
 use crate::sixteen::Sixteen;
@@ -26,10 +25,6 @@ pub(crate) struct Avx2(());
 /// The proof that the processor has AVX-512 F and DQ, beside AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Avx512(());
-
-/// The proof that the processor has AVX-512 BF16 and BW, beside F and DQ.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Avx512Bf16(Avx512);
 
 impl Avx2 {
     pub(crate) fn detect() -> Option<Self> {
@@ -43,23 +38,6 @@ impl Avx512 {
     pub(crate) fn detect() -> Option<Self> {
         let found = is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512dq");
         Avx2::detect().filter(|_| found).map(|_| Self(()))
-    }
-}
-
-impl Avx512Bf16 {
-    pub(crate) fn detect() -> Option<Self> {
-        let found = is_x86_feature_detected!("avx512bw") && is_x86_feature_detected!("avx512bf16");
-        Avx512::detect().filter(|_| found).map(Self)
-    }
-
-    #[inline]
-    pub(crate) fn run<K: PairKernel>(self, kernel: K) {
-        #[target_feature(enable = "avx2,fma,avx512f,avx512dq,avx512bw,avx512bf16")]
-        fn compiled<K: PairKernel>(pairs: Avx512Bf16, kernel: K) {
-            kernel.run(pairs);
-        }
-        // SAFETY: `self` is the proof that the processor has the instructions.
-        unsafe { compiled(self, kernel) }
     }
 }
 
@@ -280,49 +258,6 @@ impl Avx512 {
         fn above_floor(a: __m512) -> __m512 = _mm512_reduce_ps::<{ _MM_FROUND_FLOOR }>(a);
         fn scale_by_floor(power: __m512, exponent: __m512) -> __m512 = _mm512_scalef_ps(power, exponent);
     }
-}
-
-impl Pairs for Avx512Bf16 {
-    type Simd = Sixteen<Avx512, 1>;
-    type Words = __m512i;
-
-    #[inline(always)]
-    fn simd(self) -> Self::Simd {
-        Sixteen(self.0)
-    }
-
-    instructions! {
-        fn splat(pair: u32) -> __m512i = _mm512_set1_epi32(pair.cast_signed());
-        fn load(from: &[u32; LANES]) -> __m512i = _mm512_loadu_epi32(from.as_ptr().cast());
-        fn store(value: __m512i, into: &mut [u32; LANES]) -> () =
-            _mm512_storeu_epi32(into.as_mut_ptr().cast(), value);
-        fn neighbours(a: [__m512; 1], b: [__m512; 1]) -> __m512i = words(_mm512_cvtne2ps_pbh(b[0], a[0]));
-        // Pairs of a[i] and b[i], rounded: the numbers i and 16 + i of a followed by b.
-        fn across(a: [__m512; 1], b: [__m512; 1]) -> __m512i = _mm512_permutexvar_epi16(
-            _mm512_add_epi32(
-                _mm512_mullo_epi32(
-                    _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15),
-                    _mm512_set1_epi32(0x0001_0001),
-                ),
-                _mm512_set1_epi32(0x0010_0000),
-            ),
-            words(_mm512_cvtne2ps_pbh(b[0], a[0])),
-        );
-        fn dot(a: __m512i, b: __m512i, sum: [__m512; 1]) -> [__m512; 1] =
-            [_mm512_dpbf16_ps(sum[0], pairs(a), pairs(b))];
-    }
-}
-
-#[inline(always)]
-fn words(pairs: __m512bh) -> __m512i {
-    // SAFETY: both are any 512 bits.
-    unsafe { std::mem::transmute(pairs) }
-}
-
-#[inline(always)]
-fn pairs(words: __m512i) -> __m512bh {
-    // SAFETY: both are any 512 bits.
-    unsafe { std::mem::transmute(words) }
 }
 
 impl Register for Avx2 {

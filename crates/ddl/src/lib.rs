@@ -92,7 +92,7 @@ pub use ddl_softdtw as softdtw;
 pub use ddl_star as star;
 
 pub use ddl_eval::{Forecast, Forecaster, Protocol};
-pub use ddl_network::{DeviceChoice, Precision, Variant};
+pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{Device, cuda_status, prepare};
 pub use error::DdlError;
 pub use evaluation::baselines::measure_baselines;

@@ -1,6 +1,6 @@
 mod forecasts;
 
-use super::{KeepClear, Machine, PrecisionOption, RecordingsAt, Reporting, at_least_one};
+use super::{KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -52,8 +52,6 @@ pub(crate) struct Evaluate {
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
-    exactness: PrecisionOption,
-    #[command(flatten)]
     reporting: Reporting,
 }
 
@@ -88,7 +86,7 @@ impl Evaluate {
     fn measure(&self, source: &ModelSource) -> anyhow::Result<()> {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
-        let model = Ddl::open(source, self.machine.device)?.with_precision(self.exactness.precision())?;
+        let model = Ddl::open(source, self.machine.device)?;
         let model = self.clear.of(model)?;
         let request = EvaluationRequest {
             protocols: self.protocols.clone(),

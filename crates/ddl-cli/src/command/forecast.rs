@@ -5,7 +5,7 @@ mod left_out;
 mod live;
 mod table;
 
-use super::{KeepClear, Machine, ModelChoice, PrecisionOption};
+use super::{KeepClear, Machine, ModelChoice};
 use crate::clock::{Clock, FrameNumber};
 use crate::output::{ensure_not_input, write_output};
 use crate::telling::tell;
@@ -81,8 +81,6 @@ pub(crate) struct Forecast {
     clear: KeepClear,
     #[command(flatten)]
     machine: Machine,
-    #[command(flatten)]
-    exactness: PrecisionOption,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -174,10 +172,7 @@ impl Forecast {
     }
 
     fn model(&self) -> anyhow::Result<Ddl> {
-        let model = self
-            .model
-            .load(self.machine.device)?
-            .with_precision(self.exactness.precision())?;
+        let model = self.model.load(self.machine.device)?;
         Ok(self.clear.of(model)?)
     }
 

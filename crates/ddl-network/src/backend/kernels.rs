@@ -2,7 +2,6 @@
 
 use super::operations::{Backend, Mode};
 use super::rows::{Rows, Tape};
-use crate::Precision;
 use crate::kernel::{self, Buffer, Dropout, Dropouts, Remembered, Scenes};
 use crate::weights::{EncoderLayer, Layout, Linear};
 use std::cell::{Cell, RefCell};
@@ -16,7 +15,6 @@ pub struct Kernels {
     layout: Arc<Layout>,
     linears: Vec<Arc<kernel::LinearKernel>>,
     encoder_layers: Vec<Arc<kernel::EncoderKernel>>,
-    precision: Precision,
 }
 
 impl Kernels {
@@ -24,14 +22,13 @@ impl Kernels {
     ///
     /// # Panics
     /// If the count of `numbers` differs from the layout's.
-    pub fn new(layout: &Arc<Layout>, numbers: &[f32], precision: Precision) -> Self {
+    pub fn new(layout: &Arc<Layout>, numbers: &[f32]) -> Self {
         let linear = |layer: &Linear| Arc::new(kernel::LinearKernel::zeros(layer.inputs, layer.outputs));
         let encoder = |layer: &EncoderLayer| Arc::new(kernel::EncoderKernel::zeros(layer.sizes));
         let mut kernels = Self {
             layout: Arc::clone(layout),
             linears: layout.linears().iter().map(linear).collect(),
             encoder_layers: layout.encoder_layers().iter().map(encoder).collect(),
-            precision,
         };
         kernels.update(numbers);
         kernels
@@ -48,13 +45,8 @@ impl Kernels {
         }
         let layers = self.layout.encoder_layers();
         for (kernel, layer) in self.encoder_layers.iter_mut().zip(layers) {
-            Arc::make_mut(kernel).update(&numbers[layer.span()], self.precision);
+            Arc::make_mut(kernel).update(&numbers[layer.span()]);
         }
-    }
-
-    /// Precision of the products in feed-forward blocks.
-    pub fn precision(&self) -> Precision {
-        self.precision
     }
 }
 
@@ -338,7 +330,7 @@ mod tests {
         };
         let layer = layout.encoder_layer("layer", sizes, dropout);
         let numbers = vec![0.0; layout.count()];
-        let kernels = Kernels::new(&Arc::new(layout), &numbers, Precision::F32);
+        let kernels = Kernels::new(&Arc::new(layout), &numbers);
         (Arc::new(kernels), layer)
     }
 

@@ -3,7 +3,7 @@
 use super::batch::{BatchRollout, ForecastBatch, batches};
 use super::rollout::{Noise, StepRule, WindowRollout};
 use crate::weights::Weights;
-use crate::{NetworkError, Precision, StarConfig};
+use crate::{NetworkError, StarConfig};
 use ddl_data::{Position, Window};
 use std::fmt::Debug;
 
@@ -17,9 +17,6 @@ pub trait ForecastWindows: Debug + Send + Sync {
     /// # Errors
     /// If the weights cannot be copied from their device.
     fn copy_weights(&self) -> Result<Weights, NetworkError>;
-
-    /// Precision of the matrix products in the feed-forward blocks.
-    fn precision(&self) -> Precision;
 
     /// Forecasts one batch of windows.
     ///

@@ -9,7 +9,7 @@ use crate::backend::{KernelBackend, Kernels};
 use crate::config::BackboneKind;
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Linear, Weights};
-use crate::{NetworkError, Precision, StarConfig};
+use crate::{NetworkError, StarConfig};
 use std::sync::Arc;
 
 /// The forecasting network, computed by kernels on the CPU in `f32`.
@@ -74,7 +74,7 @@ impl MotionNetwork {
         let layout = Arc::new(layout);
         let weights = read(&layout)?;
         weights.check_layout(&layout)?;
-        let kernels = Kernels::new(&layout, weights.numbers(), Precision::F32);
+        let kernels = Kernels::new(&layout, weights.numbers());
         Ok(Self {
             spread: spread(&config, &weights, output),
             config,
@@ -92,23 +92,13 @@ impl MotionNetwork {
     pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
         weights.check_layout(self.weights.layout())?;
         let layout = weights.layout();
-        let kernels = Kernels::new(layout, weights.numbers(), self.precision());
+        let kernels = Kernels::new(layout, weights.numbers());
         Ok(Self {
             spread: spread(&self.config, &weights, self.output),
             kernels: Arc::new(kernels),
             weights,
             ..self
         })
-    }
-
-    /// The same network with feed-forward blocks in this precision.
-    #[must_use]
-    pub fn with_precision(self, precision: Precision) -> Self {
-        let kernels = Kernels::new(self.weights.layout(), self.weights.numbers(), precision);
-        Self {
-            kernels: Arc::new(kernels),
-            ..self
-        }
     }
 
     /// The weights.
@@ -135,10 +125,6 @@ impl ForecastWindows for MotionNetwork {
 
     fn copy_weights(&self) -> Result<Weights, NetworkError> {
         Ok(self.weights.clone())
-    }
-
-    fn precision(&self) -> Precision {
-        self.kernels.precision()
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {

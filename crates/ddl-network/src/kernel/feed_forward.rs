@@ -1,7 +1,6 @@
 //! The feed-forward block of an encoder layer: two affine maps with `ReLU` and dropout between them.
 
 mod backward;
-mod bf16;
 mod block;
 mod dropout;
 mod forward;

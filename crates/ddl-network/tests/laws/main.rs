@@ -5,7 +5,6 @@
 mod bounded;
 mod company;
 mod moved;
-mod precision;
 mod proposals;
 mod refused;
 mod same_bits;

@@ -2,7 +2,7 @@
 
 use super::scenes::{Question, WINDOWS, configs, with_threads};
 use ddl_data::Window;
-use ddl_network::{MotionNetwork, Noise, Precision, StarConfig, StepRule, Variant, WindowRollout};
+use ddl_network::{MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
@@ -32,12 +32,11 @@ proptest! {
     #[test]
     fn forecasts_have_the_same_bits_alone_and_among_others(
         config in prop::sample::select(configs()),
-        precision in prop::sample::select(vec![Precision::F32, Precision::Bf16]),
         question in questions(),
         chosen in prop::collection::vec(any::<Index>(), 1..10),
         threads in 1..4_usize,
     ) {
-        let network = MotionNetwork::new(config, 5).unwrap().with_precision(precision);
+        let network = MotionNetwork::new(config, 5).unwrap();
         let windows: Vec<&Window> = chosen.iter().map(|index| index.get(&WINDOWS)).collect();
         let together = with_threads(threads, || question.ask(&network, &windows));
         prop_assert_eq!(together.len(), windows.len());

@@ -11,7 +11,7 @@ use crate::StarError;
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
-use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, Precision, StarConfig};
+use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, StarConfig};
 use std::sync::{Mutex, PoisonError};
 use tch::Tensor;
 
@@ -80,10 +80,6 @@ impl ForecastWindows for TorchForecaster {
     fn copy_weights(&self) -> Result<Weights, NetworkError> {
         let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(network.parameters().to_weights()?)
-    }
-
-    fn precision(&self) -> Precision {
-        Precision::F32
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {

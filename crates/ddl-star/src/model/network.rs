@@ -8,7 +8,7 @@ use ddl_network::backbone::{Backbone, Perceptron, Star};
 use ddl_network::backend::{KernelBackend, Kernels};
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::{Layout, Linear};
-use ddl_network::{BackboneKind, Precision, StarConfig};
+use ddl_network::{BackboneKind, StarConfig};
 use std::sync::Arc;
 use tch::{Device, Kind, Tensor};
 
@@ -117,7 +117,7 @@ impl TorchNetwork {
             return Ok(None);
         }
         let weights = self.parameters.to_weights()?;
-        let kernels = Kernels::new(weights.layout(), weights.numbers(), Precision::F32);
+        let kernels = Kernels::new(weights.layout(), weights.numbers());
         Ok(Some(Arc::new(kernels)))
     }
 

@@ -52,7 +52,7 @@ impl Record {
         Self {
             request: request.clone(),
             recordings: dataset.recordings().iter().map(measured).collect(),
-            device: model.computed_on(),
+            device: model.device().words().to_owned(),
             clearance: model.clearance(),
             rows: ROWS,
             calibration: Calibration::digest(),

@@ -120,7 +120,7 @@ impl ResultRows<'_> {
             seed: Some(training.seed),
             epochs: Some(training.epochs),
             selection: Some(self.selection.to_owned()),
-            device: self.model.computed_on(),
+            device: self.model.device().words().to_owned(),
             training_subset: subset(training),
             recipe: Some(recipe(training, goals) + &self.besides()),
             ..plain

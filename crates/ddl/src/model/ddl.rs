@@ -13,8 +13,8 @@ use crate::run::directory::RunDirectory;
 use ddl_data::{HORIZON, Position, Window};
 use ddl_eval::{Forecast, ForecastError, Forecaster};
 use ddl_goal::GoalSet;
+use ddl_network::ForecastWindows;
 use ddl_network::weights::Weights;
-use ddl_network::{ForecastWindows, MotionNetwork, NetworkError, Precision};
 
 /// A trained model, ready to forecast.
 ///
@@ -67,30 +67,6 @@ impl Ddl {
         })
     }
 
-    /// The same model, with the feed-forward blocks of its network in this precision. The dynamics are still integrated
-    /// in `f64`: the guarantee does not depend on the precision.
-    ///
-    /// # Errors
-    /// For `bf16` on any device but the CPU.
-    pub fn with_precision(self, precision: Precision) -> Result<Self, DdlError> {
-        if precision != Precision::F32 && self.device != Device::CPU {
-            return Err(DdlError::Network(NetworkError::Config {
-                field: "precision",
-                value: precision.name().to_owned(),
-                rule: "f32, unless the network computes on the CPU",
-            }));
-        }
-        if precision == self.network.precision() {
-            return Ok(self);
-        }
-        let config = self.network.config().clone();
-        let network = MotionNetwork::reading(config, |_| self.network.copy_weights())?;
-        Ok(Self {
-            network: Box::new(network.with_precision(precision)),
-            ..self
-        })
-    }
-
     /// The configuration of the model.
     pub fn config(&self) -> &RunConfig {
         self.goals.config()
@@ -109,14 +85,6 @@ impl Ddl {
     /// The device that it computes on.
     pub fn device(&self) -> Device {
         self.device
-    }
-
-    pub(crate) fn computed_on(&self) -> String {
-        let device = self.device.words();
-        match self.network.precision() {
-            Precision::F32 => device.to_owned(),
-            Precision::Bf16 => format!("{device}, bf16"),
-        }
     }
 
     /// The clearance that its pedestrians keep from each other; `None` if they ignore each other.

@@ -1,6 +1,5 @@
 //! The weights of a layer: their order, and the layout for its passes.
 
-use crate::Precision;
 use crate::kernel::add_norm::AddNorm;
 use crate::kernel::affine::Affine;
 use crate::kernel::among_pedestrians::AmongPedestrians;
@@ -68,9 +67,8 @@ impl EncoderKernel {
         })
     }
 
-    /// Replaces the weights, in the order of [`Sizes`]. The feed-forward block computes in this precision; bf16 has no
-    /// backward pass.
-    pub(crate) fn update(&mut self, weights: &[f32], precision: Precision) {
+    /// Replaces the weights, in the order of [`Sizes`].
+    pub(crate) fn update(&mut self, weights: &[f32]) {
         let width = self.sizes.width;
         let [w, b, wo, bo, w1, b1, w2, b2, n1, c1, n2, c2] = self.sizes.pieces(weights);
         let parts = w.chunks_exact(width * width).zip(b.chunks_exact(width));
@@ -80,7 +78,7 @@ impl EncoderKernel {
         self.out.update(wo, bo);
         self.norm1.update(n1, c1);
         self.norm2.update(n2, c2);
-        self.feed_forward.update([w1, b1, w2, b2], precision);
+        self.feed_forward.update([w1, b1, w2, b2]);
     }
 }
 

@@ -1,7 +1,6 @@
 //! Properties of any layer. `ddl-star` compares it with the layer of libtorch.
 
 use super::{Dropouts, EncoderKernel, Remembered, Sizes};
-use crate::Precision;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::scenes::Scenes;
@@ -55,7 +54,7 @@ impl LayerCase {
 
     fn layer(&self, set: InstructionSet) -> EncoderKernel {
         let mut layer = EncoderKernel::zeros(self.sizes).with_instructions(set).unwrap();
-        layer.update(&self.weights, Precision::F32);
+        layer.update(&self.weights);
         layer
     }
 

@@ -37,7 +37,6 @@ impl FeedForward {
         gx: &mut [f32],
         grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
     ) {
-        assert!(self.rounded.is_none(), "a backward pass in bf16");
         let weights = &self.weights;
         let BlockWeights {
             width,

@@ -1,6 +1,5 @@
 //! The forward pass, parallel over tiles of rows.
 
-use super::bf16::PairForward;
 use super::block::{BlockRows, ROWS};
 use super::dropout::UnitDecisions;
 use super::layer::FeedForward;
@@ -19,9 +18,6 @@ impl FeedForward {
     /// For finite sums, the error of an entry is at most (width + hidden + 8) 2^-24 times the formula with the absolute
     /// values of all its terms and without `ReLU`. An entry depends neither on the number of threads nor on the other
     /// rows.
-    ///
-    /// In bf16, x, W1, W2 and the hidden activations are rounded first, with a relative error of at most 2^-9. Sums and
-    /// biases are `f32`, and the bound above holds for the formula with rounded numbers.
     pub(crate) fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
         let weights = &self.weights;
         let width = weights.width;
@@ -65,17 +61,13 @@ impl Kernel for Rows<'_> {
         let weights = &self.layer.weights;
         let x = BlockRows::padded(self.x, weights.width);
         let mut result = BlockRows::any(x.rows(), weights.columns);
-        let tile = Tile {
+        simd.run_tiled(Tile {
             weights,
             decisions: self.decisions,
             first: self.first,
             x: &x,
             y: &mut result,
-        };
-        match &self.layer.rounded {
-            None => simd.run_tiled(tile),
-            Some(squares) => self.layer.pair_dispatch.run(PairForward { tile, squares }),
-        }
+        });
         result.write(self.y, weights.width);
     }
 }

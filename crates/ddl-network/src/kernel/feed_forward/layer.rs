@@ -1,11 +1,9 @@
 //! The feed-forward block with its weights in the layout of the kernels.
 
-use super::bf16::Squares;
 use super::weights::BlockWeights;
-use crate::Precision;
+use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
-use ddl_simd::{Dispatch, PairDispatch};
 
 /// y = W2 d(relu(W1 x + b1)) + b2, with dropout d.
 ///
@@ -14,9 +12,7 @@ use ddl_simd::{Dispatch, PairDispatch};
 #[derive(Clone, Debug)]
 pub(crate) struct FeedForward {
     pub(super) weights: BlockWeights,
-    pub(super) rounded: Option<Squares>,
     pub(super) dispatch: Dispatch,
-    pub(super) pair_dispatch: PairDispatch,
 }
 
 impl FeedForward {
@@ -24,24 +20,19 @@ impl FeedForward {
     pub(crate) fn zeros(width: usize, hidden: usize) -> Self {
         Self {
             weights: BlockWeights::new(width, hidden),
-            rounded: None,
             dispatch: Dispatch::detect(),
-            pair_dispatch: PairDispatch::detect(),
         }
     }
 
-    /// Replaces the weights: W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, row-major. bf16
-    /// has no backward pass.
-    pub(crate) fn update(&mut self, weights: [&[f32]; 4], precision: Precision) {
+    /// Replaces the weights: W1 `[hidden, width]`, b1 `[hidden]`, W2 `[width, hidden]`, b2 `[width]`, row-major.
+    pub(crate) fn update(&mut self, weights: [&[f32]; 4]) {
         self.weights.update(weights);
-        self.rounded = (precision == Precision::Bf16).then(|| Squares::round(&self.weights, self.pair_dispatch));
     }
 
-    /// The same with this instruction set and bf16 emulated; `None` if the processor does not support it.
+    /// The same with this instruction set; `None` if the processor does not support it.
     #[cfg(test)]
     pub(in crate::kernel) fn with_instructions(mut self, set: InstructionSet) -> Option<Self> {
         self.dispatch = Dispatch::new(set)?;
-        self.pair_dispatch = PairDispatch::emulated(self.dispatch);
         Some(self)
     }
 }

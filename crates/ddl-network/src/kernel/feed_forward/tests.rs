@@ -1,6 +1,5 @@
 //! Comparison with the formula in double precision, and properties of any layer.
 
-mod bf16;
 mod exact;
 
 use super::FeedForward;
@@ -54,7 +53,6 @@ fn check(case: &Case) {
             assert_near(&name(what), &found[i], &exact.values, &bounds);
         }
     }
-    bf16::check(case);
 }
 
 #[test]
@@ -77,14 +75,11 @@ fn the_error_bounds_hold_at_the_edges() {
 fn what_is_not_a_number_stays_in_its_row() {
     let mut case = Case::new(32, 64, 12, None);
     case.x[5 * 32 + 3] = f32::NAN;
-    for layer in layers(&case).into_iter().chain(bf16::layers(&case)) {
-        for (r, row) in bf16::run(&case, &layer).chunks(32).enumerate() {
-            let way = (layer.dispatch, layer.pair_dispatch);
-            assert!(row.iter().all(|y| y.is_nan() == (r == 5)), "{way:?}, {r}");
-        }
-    }
     for layer in layers(&case) {
-        let (_, gx, grads) = case.run(&layer);
+        let (y, gx, grads) = case.run(&layer);
+        for (r, row) in y.chunks(32).enumerate() {
+            assert!(row.iter().all(|y| y.is_nan() == (r == 5)), "{:?}, {r}", layer.dispatch);
+        }
         // As in libtorch, the derivative of ReLU at NaN is 1.
         assert!(gx.iter().all(|gx| gx.is_finite()));
         assert!(grads.w2.iter().all(|g| g.is_nan()));

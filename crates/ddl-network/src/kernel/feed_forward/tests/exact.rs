@@ -1,6 +1,5 @@
 //! The formula in double precision, term by term.
 
-use crate::Precision;
 use crate::kernel::Dropout;
 use crate::kernel::feed_forward::dropout::reference;
 use crate::kernel::feed_forward::{FeedForward, Gradients};
@@ -72,7 +71,7 @@ impl Case {
 
     pub(super) fn layer(&self) -> FeedForward {
         let mut layer = FeedForward::zeros(self.width, self.hidden);
-        layer.update(self.weights(), Precision::F32);
+        layer.update(self.weights());
         layer
     }
 
