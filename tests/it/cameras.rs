@@ -2,9 +2,8 @@
 
 use ddl::data::{Completion, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
-use ddl::eval::{ForecastError, Forecaster};
 use ddl::memory::SceneMemory;
-use ddl::{DdlError, Forecast, LiveForecaster, LiveScenes, PlaceMemory, Variant};
+use ddl::{DdlError, Forecast, ForecastError, Forecaster, LiveForecaster, LiveScenes, PlaceMemory, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{bits, drawn_model, program};

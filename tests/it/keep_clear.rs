@@ -1,10 +1,11 @@
 //! `--keep-clear`: pedestrians avoid each other, and every certificate still holds.
 
 use ddl::data::{PedestrianId, Window};
-use ddl::eval::ForecastError;
 use ddl::eval::metric::collision::closest_approach;
 use ddl::report::Report;
-use ddl::{CertificateError, Clearance, Ddl, DdlError, Forecast, Forecaster as _, LiveForecaster, Variant};
+use ddl::{
+    CertificateError, Clearance, Ddl, DdlError, Forecast, ForecastError, Forecaster as _, LiveForecaster, Variant,
+};
 use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model};
 

@@ -3,9 +3,9 @@
 
 use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
 use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
-use ddl::eval::{Forecast, ForecastError, leak};
+use ddl::eval::leak;
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
-use ddl::{Ddl, Forecaster, Protocol, Remembering, Variant};
+use ddl::{Ddl, Forecast, ForecastError, Forecaster, Protocol, Remembering, Variant};
 use ddl_tests::one_forecast::One;
 use ddl_tests::{bits, crowd, drawn_model};
 

@@ -1,8 +1,7 @@
 //! Adaptive regions: of the program on a real recording, and frame by frame.
 
 use ddl::data::{Convention, Dataset, PedestrianId, Position, Recording};
-use ddl::eval::AdaptiveRegions;
-use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
+use ddl::{AdaptiveRegions, DdlError, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{bits, drawn_model, recordings};

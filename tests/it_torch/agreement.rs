@@ -1,8 +1,7 @@
 //! The kernels against libtorch: forecasts of the built-in models on their test scenes.
 
 use ddl::data::{Convention, Dataset, Position, Window, WindowRule};
-use ddl::eval::Forecast;
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource, Remembering};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, ModelSource, Remembering};
 use ddl_tests::recordings;
 use std::io::Write as _;
 

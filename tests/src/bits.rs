@@ -1,6 +1,6 @@
 //! Bitwise comparison of forecasts, because `==` on floats does not distinguish 0.0 and -0.0.
 
-use ddl_eval::Forecast;
+use ddl_core::Forecast;
 
 /// Every number of a forecast as bits: shape, then weights, whether certificates hold, positions and goals.
 pub fn of(forecast: &Forecast) -> Vec<u64> {

@@ -1,8 +1,7 @@
 //! The single forecast of a model, as used by robots and by the protocol `single`.
 
 use ddl::data::Window;
-use ddl::eval::ForecastError;
-use ddl::{Ddl, Forecast, Forecaster};
+use ddl::{Ddl, Forecast, ForecastError, Forecaster};
 
 /// A model restricted to its single forecast.
 #[derive(Debug)]

@@ -2,9 +2,8 @@
 
 use std::f64::consts::PI;
 
+use ddl_core::Position;
 use rand::{Rng, RngExt};
-
-use crate::Position;
 
 /// A rotation about the world's origin.
 ///

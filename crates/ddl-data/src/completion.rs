@@ -1,9 +1,9 @@
 //! Completion of observations that begin late or have gaps.
 
-use serde::{Deserialize, Serialize};
+use ddl_core::{CompletionCounts, OBSERVED, Position, is_finite};
 use thiserror::Error;
 
-use crate::track::{OBSERVED, Position, between, is_finite};
+use crate::observation::between;
 
 /// Longest gap that may be filled, in frames.
 const LONGEST_GAP: usize = 2;
@@ -105,27 +105,6 @@ impl Completion {
         // Interpolation between extremely large positions may overflow to NaN.
         let finite = positions.iter().all(|&position| is_finite(position));
         finite.then_some((positions, CompletionCounts { padded, filled }))
-    }
-}
-
-/// How many of the 8 observed positions of a pedestrian were filled in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct CompletionCounts {
-    /// Positions at the start, before the pedestrian was seen.
-    pub padded: usize,
-    /// Positions in gaps.
-    pub filled: usize,
-}
-
-impl CompletionCounts {
-    /// Whether all 8 positions were seen.
-    pub fn is_complete(self) -> bool {
-        self == Self::default()
-    }
-
-    /// How many positions were seen.
-    pub fn seen(self) -> usize {
-        OBSERVED - self.padded - self.filled
     }
 }
 

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use ddl_core::{PedestrianId, PedestrianName, Position};
 use thiserror::Error;
 
-use crate::{Convention, PedestrianId, PedestrianName, SceneName, SceneNameError};
+use crate::convention::Convention;
+use crate::scene_name::{SceneName, SceneNameError};
 
 /// A file of tracks cannot be read: the file, the line, the field and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -188,40 +190,10 @@ pub enum RecordingError {
     NotFinite {
         pedestrian: PedestrianId,
         frame: i64,
-        position: crate::Position,
+        position: Position,
     },
     #[error("pedestrian {pedestrian} is in frame {frame} twice")]
     Duplicate { pedestrian: PedestrianId, frame: i64 },
-}
-
-/// Tracks that cannot form a [`Window`](crate::Window).
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
-pub enum WindowError {
-    #[error("a window needs at least one pedestrian")]
-    Empty,
-    #[error("{pedestrians} pedestrian ids but {tracks} tracks; give one track for each id")]
-    Count { pedestrians: usize, tracks: usize },
-    #[error(
-        "pedestrian {pedestrian}: a track of {found} positions; every track of a window must have \
-         {observed} positions (observation only), or every track {whole} (with the future)",
-        observed = crate::OBSERVED,
-        whole = crate::WINDOW
-    )]
-    Length { pedestrian: PedestrianId, found: usize },
-    #[error("pedestrian {pedestrian}, position {index} of the track: {position:?} is not finite")]
-    NotFinite {
-        pedestrian: PedestrianId,
-        index: usize,
-        position: crate::Position,
-    },
-    #[error("pedestrian {pedestrian} is in the window twice")]
-    Duplicate { pedestrian: PedestrianId },
-    #[error(
-        "start frame {start_frame} with a step of {frame_step}: the step must lie in 1..=2^31 and frames below 2^53"
-    )]
-    Frames { start_frame: i64, frame_step: i64 },
 }
 
 /// A data set, or one of its files, cannot be loaded.

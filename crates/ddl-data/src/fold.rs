@@ -1,9 +1,11 @@
 //! Leave-one-out folds, and the chronological split that keeps validation apart from training.
 
+use ddl_core::Window;
+
 use crate::convention::{ConventionPlan, FoldPlan};
 use crate::error::DataError;
 use crate::recording::Recording;
-use crate::{Window, WindowRule};
+use crate::rule::WindowRule;
 
 /// One leave-one-out fold: some recordings to test on, all others to train on.
 #[derive(Debug, Clone)]

@@ -1,9 +1,12 @@
 //! Conversion from pixels of a camera to metres on the ground.
 
+use ddl_core::{PedestrianName, PedestrianNames, Position};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::{COORDINATE_LIMIT, Observation, PedestrianName, PedestrianNames, Position, Recording, RecordingError};
+use crate::error::RecordingError;
+use crate::observation::{COORDINATE_LIMIT, Observation};
+use crate::recording::Recording;
 
 const SIZE: usize = 3;
 

@@ -75,40 +75,38 @@ pub mod format;
 mod homography;
 mod live;
 mod locate;
-mod names;
 mod neighbours;
+mod observation;
 mod plausibility;
 mod rate;
 mod recording;
-mod remembered;
 mod rule;
 mod scene_name;
 pub mod simulate;
 mod summary;
-mod track;
 mod unknown_name;
-mod window;
 
 pub use atomic_file::{remove_temporary_files, write_atomically};
 pub use augment::Rotation;
-pub use completion::{Completion, CompletionCounts, CompletionError};
+pub use completion::{Completion, CompletionError};
 pub use convention::Convention;
 pub use dataset::Dataset;
-pub use error::{DataError, FormatError, RecordingError, WindowError};
+pub use ddl_core::{
+    CompletionCounts, HORIZON, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, RememberedTrack,
+    TIME_STEP, WINDOW, Window, WindowError,
+};
+pub use error::{DataError, FormatError, RecordingError};
 pub use fold::{Fold, SocialGanSplit, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
 pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
 pub use locate::{DATASETS_VARIABLE, locate};
-pub use names::{PedestrianName, PedestrianNames};
 pub use neighbours::{NEIGHBOUR_HALF_WIDTH, Neighbours, SpatialIndex};
+pub use observation::{COORDINATE_LIMIT, Observation};
 pub use plausibility::{Fastest, PlausibilityWarning};
 pub use rate::{RateError, ResampledRecording, whole_frame_step};
 pub use recording::Recording;
-pub use remembered::Remembered;
 pub use rule::WindowRule;
 pub use scene_name::{SceneName, SceneNameError};
 pub use summary::{Gap, Summary};
-pub use track::{COORDINATE_LIMIT, HORIZON, OBSERVED, Observation, PedestrianId, Position, TIME_STEP, WINDOW};
 pub use unknown_name::UnknownName;
-pub use window::Window;

@@ -3,10 +3,11 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, Window, is_finite, is_frame, is_frame_step};
 use thiserror::Error;
 
-use crate::track::{is_finite, is_frame, is_frame_step};
-use crate::{Completion, OBSERVED, PedestrianId, PedestrianNames, Position, Recording, Window};
+use crate::completion::Completion;
+use crate::recording::Recording;
 
 const NAME: &str = "live";
 

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::Convention;
+use crate::convention::Convention;
 use crate::error::DataError;
 
 /// Environment variable that names the folder of the recordings.

@@ -1,6 +1,6 @@
 //! Neighbours of pedestrians within a box, and a spatial index of positions.
 
-use crate::Position;
+use ddl_core::Position;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 

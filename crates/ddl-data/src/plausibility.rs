@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP};
 use serde::Serialize;
 use thiserror::Error;
 
-use crate::{Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP};
+use crate::observation::Observation;
+use crate::recording::Recording;
 
 /// Faster than a pedestrian walks (m/s). If half of the steps exceed this, the positions are probably in pixels, or the
 /// steps are not 0.4 s.

@@ -1,9 +1,12 @@
 //! Resampling of recordings to steps of 0.4 s.
 
+use ddl_core::{FRAME_LIMIT, FRAME_STEP_LIMIT, TIME_STEP};
 use thiserror::Error;
 
-use crate::track::{FRAME_LIMIT, FRAME_STEP_LIMIT, between};
-use crate::{Observation, Recording, RecordingError, TIME_STEP};
+use crate::error::RecordingError;
+use crate::observation::Observation;
+use crate::observation::between;
+use crate::recording::Recording;
 
 /// Largest relative deviation of a step from 0.4 s, smaller than the variation of walking speeds.
 const TOLERANCE: f64 = 0.005;

@@ -4,9 +4,12 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
+use ddl_core::{
+    HORIZON, OBSERVED, PedestrianId, PedestrianNames, Position, Window, is_finite, is_frame, is_frame_step,
+};
+
 use crate::error::RecordingError;
-use crate::track::{is_finite, is_frame, is_frame_step};
-use crate::{HORIZON, OBSERVED, Observation, PedestrianId, PedestrianNames, Position, Window};
+use crate::observation::Observation;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///

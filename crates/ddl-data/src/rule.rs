@@ -4,11 +4,11 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
+use ddl_core::{PedestrianId, Position, WINDOW, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::recording::Recording;
 use crate::unknown_name::UnknownName;
-use crate::{PedestrianId, Position, WINDOW, Window};
 
 /// Step at which the published loader requires a pedestrian to be seen again: one beyond the window.
 const STEPS_AHEAD: i64 = 20;

@@ -2,10 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP};
 use serde::Serialize;
 
+use crate::completion::Completion;
+use crate::observation::Observation;
 use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
-use crate::{Completion, Observation, PedestrianId, PedestrianName, Position, Recording, TIME_STEP, WindowRule};
+use crate::recording::Recording;
+use crate::rule::WindowRule;
 
 /// Summary of a recording, in steps of 0.4 s.
 ///

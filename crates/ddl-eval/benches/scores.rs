@@ -9,11 +9,10 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use ddl_core::{AdaptiveRegions, Forecast, Forecaster, RegionTable};
 use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
-use ddl_eval::{
-    AdaptiveRegions, Forecast, Forecaster, RegionTable, Scores,
-    baseline::{ConstantVelocity, SocialForce},
-};
+use ddl_eval::Scores;
+use ddl_eval::baseline::{ConstantVelocity, SocialForce};
 
 /// Pedestrians of univ under the published rule.
 const PEDESTRIANS: usize = 24_254;

@@ -1,13 +1,14 @@
 //! Results with the conditions under which they were measured.
 
-use ddl_data::{Convention, Window, WindowRule};
+use ddl_core::{Forecast, Forecaster, Window};
+use ddl_data::{Convention, WindowRule};
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    EvaluationError, Forecast, Forecaster, MeasureError, Protocol, Scores,
-    scene::indices_in_full,
-    significance::{BlockErrors, block_errors},
-};
+use crate::error::{EvaluationError, MeasureError};
+use crate::protocol::Protocol;
+use crate::scene::indices_in_full;
+use crate::scores::Scores;
+use crate::significance::{BlockErrors, block_errors};
 
 /// Conditions of a result. Results are comparable when convention, window rule, protocol and test subset agree.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -120,7 +121,7 @@ impl ResultRow {
                 && kept.len() < forecast.pedestrians()
                 && forecast.pedestrians() == full_window.len()
             {
-                *forecast = forecast.keeping(&kept);
+                *forecast = forecast.of_pedestrians(&kept);
             }
         }
         Ok(Self::score_among(conditions, windows, full_windows, &forecasts)?)

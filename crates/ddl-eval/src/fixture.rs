@@ -1,8 +1,6 @@
 //! Small scenes whose errors can be computed by hand.
 
-use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, WINDOW, Window};
-
-use crate::Forecast;
+use ddl_core::{Forecast, HORIZON, OBSERVED, PedestrianId, Position, WINDOW, Window};
 
 /// Each pedestrian stands at `starts[i]` while observed, then walks `steps[i]` per frame.
 pub(crate) fn window(starts: &[Position], steps: &[Position]) -> Window {

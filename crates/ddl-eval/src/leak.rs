@@ -1,8 +1,6 @@
 //! The leak test: whether a forecast changes with the future.
 
-use ddl_data::{OBSERVED, Position, WINDOW, Window};
-
-use crate::{Forecast, Forecaster, error::ForecastError};
+use ddl_core::{Forecast, ForecastError, Forecaster, OBSERVED, Position, WINDOW, Window};
 
 /// A change of the future that changed a forecast.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //!
 //! [`external::read`] reads the file of another program and [`external::measure`] scores it; `ddl evaluate --forecasts`
 //! does so for a fold, and `docs/your-model.md` describes the files. A model that certifies its hypotheses passes the
-//! results with [`Forecast::with_certified`]; the share of certified hypotheses is then scored too.
+//! results with [`Forecast::with_certified`](ddl_core::Forecast::with_certified); the share of certified hypotheses is then scored too.
 //!
 //! ## Cost
 //!
@@ -19,25 +19,18 @@ mod error;
 pub mod external;
 #[cfg(test)]
 mod fixture;
-mod forecast;
-mod forecaster;
 pub mod leak;
 pub mod metric;
 mod pedestrian_scores;
 mod protocol;
-pub mod region;
-pub mod representative;
 mod scene;
 mod scores;
 pub mod significance;
 
 pub use category::{Category, CategoryScores, MotionKind};
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
-pub use error::{EvaluationError, ForecastError, ForecastShapeError, MeasureError, WindowProblem};
-pub use forecast::Forecast;
-pub use forecaster::Forecaster;
+pub use error::{EvaluationError, MeasureError, WindowProblem};
 pub use metric::stability::StabilityScores;
 pub use protocol::Protocol;
-pub use region::{AdaptiveRegions, Disc, RegionTable, TrackedQuantiles};
 pub use scene::Scene;
 pub use scores::Scores;

@@ -1,17 +1,13 @@
 //! The metrics of one pedestrian of one window.
 
-use crate::{
-    Scene,
-    category::Category,
-    metric::{
-        amd::DistributionErrors,
-        collision::{self, PEDESTRIAN_RADIUS, collides, collides_with_true_futures},
-        displacement::{DisplacementErrors, expected, goal_fde},
-        diversity::Diversity,
-        kde::kde_nll,
-        region::{RegionScores, weight_log_loss},
-    },
-};
+use crate::category::Category;
+use crate::metric::amd::DistributionErrors;
+use crate::metric::collision::{self, PEDESTRIAN_RADIUS, collides, collides_with_true_futures};
+use crate::metric::displacement::{DisplacementErrors, expected, goal_fde};
+use crate::metric::diversity::Diversity;
+use crate::metric::kde::kde_nll;
+use crate::metric::region::{RegionScores, weight_log_loss};
+use crate::scene::Scene;
 
 /// Thresholds of the miss rate: 0.5 m, and those of other works; metres.
 const MISS_DISTANCES: [f64; 3] = [0.5, 1.0, 2.0];

@@ -2,10 +2,9 @@
 
 use std::{borrow::Cow, fmt, str::FromStr};
 
-use ddl_data::{UnknownName, Window};
+use ddl_core::{Forecast, ForecastError, Forecaster, Window};
+use ddl_data::UnknownName;
 use serde::{Deserialize, Serialize};
-
-use crate::{Forecast, Forecaster, error::ForecastError};
 
 /// An evaluation protocol. Numbers of different protocols are not comparable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -149,7 +148,7 @@ impl Protocol {
         {
             None => Ok(forecasts),
             Some(found) => Err(ForecastError::TooManyHypotheses {
-                protocol: self,
+                protocol: self.name(),
                 forecaster: forecaster.to_owned(),
                 allowed: self.hypotheses(),
                 found,

@@ -1,11 +1,8 @@
 //! A window with its forecast, checked against each other: the input of every metric.
 
-use ddl_data::{OBSERVED, PedestrianId, Position, Window};
+use ddl_core::{Forecast, OBSERVED, PedestrianId, Position, Window};
 
-use crate::{
-    Forecast,
-    error::{EvaluationError, WindowProblem},
-};
+use crate::error::{EvaluationError, WindowProblem};
 
 /// A window with a true future and the forecast of its pedestrians, among all pedestrians of the scene.
 #[derive(Debug, Clone, Copy)]

@@ -1,21 +1,17 @@
 //! All metrics of a test set in one value.
 
-use ddl_data::Window;
+use ddl_core::{Forecast, Window};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{
-    Forecast, Scene,
-    category::CategoryScores,
-    error::{EvaluationError, WindowProblem},
-    metric::{
-        amd::amv,
-        displacement::{DisplacementErrors, joint_ade, joint_fde},
-        gaussian::Covariance,
-        stability::{self, RolloutStability, StabilityScores},
-    },
-    pedestrian_scores::PedestrianScores,
-};
+use crate::category::CategoryScores;
+use crate::error::{EvaluationError, WindowProblem};
+use crate::metric::amd::amv;
+use crate::metric::displacement::{DisplacementErrors, joint_ade, joint_fde};
+use crate::metric::gaussian::Covariance;
+use crate::metric::stability::{self, RolloutStability, StabilityScores};
+use crate::pedestrian_scores::PedestrianScores;
+use crate::scene::Scene;
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///

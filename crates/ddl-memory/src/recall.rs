@@ -1,6 +1,6 @@
 //! Recall of earlier pedestrians with a similar motion.
 
-use ddl_data::{OBSERVED, PedestrianId, Position, Remembered};
+use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack};
 
 use crate::SceneMemory;
 use crate::piece::{Motion, Piece};
@@ -21,7 +21,12 @@ impl SceneMemory {
     /// `own` is the id of this pedestrian, whose running track is left out. If a component of the motion is not finite,
     /// the result is empty.
     #[must_use]
-    pub fn recall(&self, observed: &[Position; OBSERVED], own: Option<PedestrianId>, count: usize) -> Vec<Remembered> {
+    pub fn recall(
+        &self,
+        observed: &[Position; OBSERVED],
+        own: Option<PedestrianId>,
+        count: usize,
+    ) -> Vec<RememberedTrack> {
         let motion = Motion::of(observed);
         let running = self.running.iter().filter(|(id, _)| Some(**id) != own);
         let running = running.map(|(_, running)| &running.track);
@@ -40,7 +45,7 @@ impl SceneMemory {
             near.truncate(count);
         }
         near.sort_unstable_by(by_distance);
-        let remembered = |(distance, _, piece): (f32, usize, &Piece)| Remembered {
+        let remembered = |(distance, _, piece): (f32, usize, &Piece)| RememberedTrack {
             track: piece.segment(piece.nearest_lane(&motion)),
             distance: f64::from(distance),
         };

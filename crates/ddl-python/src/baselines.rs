@@ -3,12 +3,11 @@
 use crate::errors::of_any;
 use crate::forecasts::{EmptyFields, Forecasted, parts};
 use crate::observed::{Observed, completion};
-use ddl::Forecaster;
 use ddl::data::Window;
-use ddl::eval::ForecastError;
 use ddl::eval::baseline::{
     ConstantAcceleration, ConstantVelocity, GoalSource, SocialForce, StraightLine, WeightedGoals,
 };
+use ddl::{ForecastError, Forecaster};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

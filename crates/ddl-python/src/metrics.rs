@@ -3,13 +3,14 @@
 use crate::arrays::{Paths, array, forecast, tracks};
 use crate::errors::of_any;
 use crate::interruptible::run;
+use ddl::Forecast;
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::amd::DistributionErrors;
 use ddl::eval::metric::collision::{closest_approach, collides};
 use ddl::eval::metric::displacement::DisplacementErrors;
 use ddl::eval::metric::diversity::Diversity;
 use ddl::eval::metric::kde::kde_nll as kde_of;
-use ddl::eval::{Forecast, Scene, Scores};
+use ddl::eval::{Scene, Scores};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -7,12 +7,11 @@
 
 use std::{error::Error, f64::consts::TAU, path::Path};
 
+use ddl_core::{Forecast, ForecastError, Forecaster, distance};
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
-use ddl_eval::{
-    Conditions, Forecast, ForecastError, Forecaster, Protocol, ResultRow,
-    baseline::{self, GoalSource, StraightLine, WeightedGoals},
-    metric::{displacement::distance, stability::RolloutStability},
-};
+use ddl_eval::baseline::{self, GoalSource, StraightLine, WeightedGoals};
+use ddl_eval::metric::stability::RolloutStability;
+use ddl_eval::{Conditions, Protocol, ResultRow};
 use ddl_report::{
     EpochPoint, ForecastSnapshot, Report, TrainingCurve, gallery,
     page::{Page, Viewer},

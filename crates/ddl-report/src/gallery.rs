@@ -7,14 +7,11 @@ use ddl_data::{HORIZON, Position, Window};
 use serde::{Deserialize, Serialize};
 
 use crate::ForecastSnapshot;
-use ddl_eval::{
-    EvaluationError, Forecast, Scene,
-    category::{Interaction, MotionKind},
-    metric::{
-        collision::closest_approach,
-        displacement::{DisplacementErrors, distance},
-    },
-};
+use ddl_core::{Forecast, distance};
+use ddl_eval::category::{Interaction, MotionKind};
+use ddl_eval::metric::collision::closest_approach;
+use ddl_eval::metric::displacement::DisplacementErrors;
+use ddl_eval::{EvaluationError, Scene};
 
 /// Number of evenly spread moments of each recording.
 const MOMENTS_A_RECORDING: usize = 8;

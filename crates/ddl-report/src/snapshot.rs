@@ -4,11 +4,9 @@ use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Wi
 use serde::{Deserialize, Serialize};
 
 use crate::gallery::Highlight;
-use ddl_eval::{
-    EvaluationError, Forecast, Scene, WindowProblem,
-    metric::{displacement::average_displacement, stability::RolloutStability},
-    representative::medoid,
-};
+use ddl_core::{Forecast, average_displacement, medoid};
+use ddl_eval::metric::stability::RolloutStability;
+use ddl_eval::{EvaluationError, Scene, WindowProblem};
 
 const KEPT: f64 = 1e3;
 const REGION: f64 = 0.9;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_data::Remembered;
+use ddl_data::RememberedTrack;
 use ddl_network::weights::Origin;
 use ddl_network::{
     DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
@@ -45,7 +45,7 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
 }
 
 /// An earlier pedestrian: at first like [`view`] at 1 m/s, then turning by `angle` (radians).
-fn earlier(angle: f64) -> Remembered {
+fn earlier(angle: f64) -> RememberedTrack {
     let (sin, cos) = angle.sin_cos();
     let track = std::array::from_fn(|t| {
         let way = 0.4 * (t as f64 - 7.0);
@@ -55,7 +55,7 @@ fn earlier(angle: f64) -> Remembered {
             [way * cos, 0.1 + way * sin]
         }
     });
-    Remembered {
+    RememberedTrack {
         track,
         distance: 0.01 + angle.abs(),
     }

@@ -10,8 +10,8 @@
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 
 use ddl::data::{HORIZON, Window};
-use ddl::eval::{RegionTable, Scene, Scores};
-use ddl::{BuiltinModel, Calibration, Ddl, DeviceChoice, Forecast, Forecaster as _, Protocol};
+use ddl::eval::{Scene, Scores};
+use ddl::{BuiltinModel, Calibration, Ddl, DeviceChoice, Forecast, Forecaster as _, Protocol, RegionTable};
 use places::{Part, Place};
 use std::error::Error;
 use std::path::Path;

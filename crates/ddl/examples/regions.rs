@@ -13,10 +13,9 @@ mod page;
 mod places;
 
 use ddl::data::{Convention, Dataset, OBSERVED, Position, Recording, TIME_STEP, Window};
-use ddl::eval::AdaptiveRegions;
-use ddl::eval::region::{equivalent_radius, holds};
+use ddl::eval::metric::region::equivalent_radius;
 use ddl::report::figure::{CoveragePanel, coverage};
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _};
+use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _};
 use std::error::Error;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -174,8 +173,10 @@ impl Watched {
 
 fn held(forecast: &Forecast, ahead: &[Vec<Position>], level: f64) -> usize {
     let of_pedestrian = |(i, ahead): (usize, &Vec<Position>)| {
-        let inside =
-            |&(t, at): &(usize, &Position)| forecast.region(i, t, level).is_some_and(|region| holds(&region, *at));
+        let inside = |&(t, position): &(usize, &Position)| {
+            let region = forecast.region(i, t, level).unwrap_or_default();
+            region.iter().any(|disc| disc.contains(*position))
+        };
         ahead.iter().enumerate().filter(inside).count()
     };
     ahead.iter().enumerate().map(of_pedestrian).sum()

@@ -44,7 +44,7 @@ pub enum DdlError {
     )]
     WithoutLibtorch { what: &'static str },
     #[error(transparent)]
-    Forecast(#[from] ddl_eval::ForecastError),
+    Forecast(#[from] ddl_core::ForecastError),
     #[error(transparent)]
     Evaluation(#[from] ddl_eval::EvaluationError),
     #[error(transparent)]

@@ -91,7 +91,8 @@ pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
 
-pub use ddl_eval::{Forecast, Forecaster, Protocol};
+pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable};
+pub use ddl_eval::Protocol;
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{Device, cuda_status, prepare};
 pub use error::DdlError;

@@ -2,10 +2,10 @@
 
 use std::borrow::Cow;
 
-use crate::COORDINATE_LIMIT;
+use ddl_core::{FRAME_LIMIT, PedestrianName, is_frame};
+
 use crate::error::FormatProblem;
-use crate::names::is_plain;
-use crate::track::{FRAME_LIMIT, is_frame};
+use crate::observation::COORDINATE_LIMIT;
 
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;
@@ -49,7 +49,10 @@ impl PedestrianField {
 pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<PedestrianField, FormatProblem> {
     let text = text.trim();
     match integer(text, name) {
-        Ok(number) => Ok(PedestrianField::Number(number, (!is_plain(text)).then(|| text.into()))),
+        Ok(number) => {
+            let is_plain = matches!(PedestrianName::of_text(text), PedestrianName::Number(_));
+            Ok(PedestrianField::Number(number, (!is_plain).then(|| text.into())))
+        }
         Err(problem) if text.is_empty() || is_fraction_or_infinite(text) => Err(problem),
         Err(_) => Ok(PedestrianField::Word(text.into())),
     }

@@ -5,6 +5,7 @@
 mod blanks;
 mod field;
 mod kind;
+mod numbering;
 mod place;
 mod rows;
 mod star_csv;

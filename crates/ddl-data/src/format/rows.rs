@@ -2,12 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use ddl_core::{PedestrianId, PedestrianNames, Position};
+
 use super::field::{self, PedestrianField};
+use super::numbering::Numbering;
 use super::place::FilePlace;
 use crate::error::{DataError, FormatError, FormatProblem};
-use crate::names::Numbering;
+use crate::observation::Observation;
 use crate::recording::Recording;
-use crate::{Observation, PedestrianId, PedestrianNames, Position, SceneName};
+use crate::scene_name::SceneName;
 
 pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 

@@ -7,15 +7,17 @@ use std::io::{BufRead, Read as _};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position};
+
 use super::field::PedestrianField;
 use super::kind::Format;
+use super::numbering::Numbering;
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use super::table::TrackColumns;
 use super::{blanks, trajnet};
 use crate::error::{DataError, FormatError, FormatProblem};
-use crate::names::Numbering;
-use crate::{PedestrianId, PedestrianName, PedestrianNames, Position, SceneName};
+use crate::scene_name::SceneName;
 
 const LONGEST_LINE: usize = 1 << 16;
 /// Largest number of pedestrians in a frame, above that of any tracked crowd. It bounds the memory if the frame number

@@ -5,8 +5,8 @@ use csv::{ErrorKind, StringRecord};
 use super::field;
 use super::place::FilePlace;
 use super::rows::{FIELDS, TrackRow};
-use crate::SceneName;
 use crate::error::{FormatError, FormatProblem};
+use crate::scene_name::SceneName;
 
 /// Number of unknown columns that an error names.
 const UNKNOWN_NAMED: usize = 5;

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use ddl_core::{PedestrianName, Position};
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -11,7 +12,7 @@ use super::field::{self, PedestrianField};
 use super::place::FilePlace;
 use super::rows::TrackRow;
 use crate::error::{FormatError, FormatProblem};
-use crate::{PedestrianName, Position, SceneName};
+use crate::scene_name::SceneName;
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
 #[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 
+use ddl_core::PedestrianName;
 use serde::Serialize;
 
 use super::kind::Format;
 use crate::error::DataError;
+use crate::observation::Observation;
 use crate::recording::Recording;
-use crate::{Observation, PedestrianName};
 
 #[derive(Serialize)]
 struct TrackLine {

@@ -1,5 +1,6 @@
 //! The simulation loop: pedestrians enter, walk, stand and leave, in small time steps.
 
+use ddl_core::{PedestrianId, Position, TIME_STEP};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -8,7 +9,7 @@ use super::layout::{Leg, SceneLayout};
 use super::pedestrian::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
 use super::population::{self, Party};
 use super::vector::{add, norm, scale, sub, unit};
-use crate::{Observation, PedestrianId, Position, TIME_STEP};
+use crate::observation::Observation;
 
 /// Raw frames in one step of 0.4 s, as in most real recordings.
 pub(super) const FRAME_STEP: i64 = 10;

@@ -1,8 +1,9 @@
 //! The forces on a pedestrian, as accelerations (m/s²).
 
+use ddl_core::Position;
+
 use super::obstacle::{Pillar, Wall};
 use super::vector::{add, cross, dot, left, norm, scale, sub, unit};
-use crate::Position;
 
 /// Radius of a body (m).
 pub(super) const BODY: f64 = 0.2;

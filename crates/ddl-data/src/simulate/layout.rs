@@ -1,9 +1,10 @@
 //! Layouts of the five scenes: walls, pillars, entries and destinations.
 
+use ddl_core::Position;
+
 use super::obstacle::{Pillar, Wall};
 use super::scene::CrowdScene;
 use super::vector::{dot, left, lerp, norm, scale, sub, unit};
-use crate::Position;
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GateLine {

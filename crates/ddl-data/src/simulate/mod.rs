@@ -28,7 +28,8 @@ use rand_chacha::ChaCha8Rng;
 pub use obstacle::{Pillar, Wall};
 pub use scene::CrowdScene;
 
-use crate::{PedestrianId, Recording};
+use crate::recording::Recording;
+use ddl_core::PedestrianId;
 use engine::FRAME_STEP;
 use layout::SceneLayout;
 

@@ -1,7 +1,8 @@
 //! Obstacles of simulated scenes: walls and pillars.
 
+use ddl_core::Position;
+
 use super::vector::{add, cross, dot, norm, scale, sub, unit};
-use crate::Position;
 
 /// A straight wall between two points, without thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]

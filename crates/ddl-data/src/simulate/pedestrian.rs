@@ -1,9 +1,10 @@
 //! A simulated pedestrian: its target, desired velocity and arrival.
 
+use ddl_core::{PedestrianId, Position, TIME_STEP};
+
 use super::force::WalkingMotion;
 use super::layout::Leg;
 use super::vector::{add, dot, norm, scale, sub, unit};
-use crate::{PedestrianId, Position, TIME_STEP};
 
 /// Integration steps per step of 0.4 s.
 pub(super) const SUBSTEPS: i64 = 8;

@@ -1,6 +1,6 @@
 //! Plane geometry for the simulation, on `[x, y]` arrays.
 
-use crate::Position;
+use ddl_core::Position;
 
 pub(super) fn add(a: Position, b: Position) -> Position {
     [a[0] + b[0], a[1] + b[1]]

@@ -1,8 +1,8 @@
 //! Constant acceleration: the change between the last two steps continues.
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_core::{Forecast, ForecastError, Forecaster, HORIZON, OBSERVED, Position, Window};
 
-use crate::{Forecast, Forecaster, error::ForecastError, metric::displacement::minus};
+use crate::metric::displacement::minus;
 
 /// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres per frame and
 /// `a = v - (p(7) - p(6))` in metres per frame squared.

@@ -1,11 +1,9 @@
 //! Constant velocity: every pedestrian keeps its velocity.
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_core::{Forecast, ForecastError, Forecaster, HORIZON, OBSERVED, Position, Window};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
-
-use crate::{Forecast, Forecaster, error::ForecastError};
 
 const SAMPLES: usize = 20;
 /// Standard deviation of the noisy variant's angle, degrees.
@@ -110,7 +108,7 @@ fn stream(seed: u64, window: &Window) -> ChaCha8Rng {
 #[allow(clippy::float_cmp, reason = "sums and products of small integers are exact")]
 mod tests {
     use approx::assert_relative_eq;
-    use ddl_data::PedestrianId;
+    use ddl_core::PedestrianId;
 
     use super::*;
 

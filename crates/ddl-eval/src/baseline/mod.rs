@@ -5,14 +5,15 @@ mod constant_velocity;
 mod social_force;
 mod straight_line;
 
-use ddl_data::Window;
+use ddl_core::{Forecaster, Window};
 
 pub use constant_acceleration::ConstantAcceleration;
 pub use constant_velocity::ConstantVelocity;
 pub use social_force::SocialForce;
 pub use straight_line::{GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
 
-use crate::{Conditions, Forecaster, MeasureError, ResultRow};
+use crate::conditions::{Conditions, ResultRow};
+use crate::error::MeasureError;
 
 /// Default seed of the baseline with angular noise, so that its rows are reproducible.
 pub const NOISE_SEED: u64 = 1;
@@ -66,8 +67,8 @@ pub(crate) fn measure_among(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Protocol;
     use crate::fixture::walking;
+    use crate::protocol::Protocol;
     use ddl_data::{Convention, WindowRule};
 
     /// Constant velocity is exact for a pedestrian that keeps it. The oracle is measured only under protocols that show

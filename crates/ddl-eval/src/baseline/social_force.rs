@@ -1,9 +1,7 @@
 //! The social force model: pedestrians keep their velocity and avoid each other.
 
-use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, Window};
+use ddl_core::{Forecast, ForecastError, Forecaster, HORIZON, OBSERVED, Position, TIME_STEP, Window};
 use rayon::prelude::*;
-
-use crate::{Forecast, Forecaster, error::ForecastError};
 
 /// Relaxation time towards the desired velocity: tau, s.
 const RELAXATION: f64 = 0.5;
@@ -173,7 +171,8 @@ mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{fixture::walking, metric::displacement::distance};
+    use crate::fixture::walking;
+    use ddl_core::distance;
 
     fn pedestrians(all: &[(Position, Position)]) -> Window {
         walking(all, 8)

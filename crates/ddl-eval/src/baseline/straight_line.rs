@@ -1,11 +1,6 @@
 //! Straight lines to the goals: the quality of a goal estimator without a model.
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
-
-use crate::{
-    Forecast, Forecaster,
-    error::{ForecastError, ForecastShapeError},
-};
+use ddl_core::{Forecast, ForecastError, ForecastShapeError, Forecaster, HORIZON, OBSERVED, Position, Window};
 
 /// Possible goals of a pedestrian (metres) and their probabilities.
 #[derive(Debug, Clone, PartialEq)]
@@ -167,7 +162,8 @@ fn between(start: Position, goal: Position, t: usize) -> Position {
 #[allow(clippy::float_cmp, reason = "sums and products of small integers are exact")]
 mod tests {
     use super::*;
-    use crate::{Protocol, fixture::window};
+    use crate::fixture::window;
+    use crate::protocol::Protocol;
 
     struct Corners(usize);
     impl GoalSource for Corners {

@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
+use ddl_core::{HORIZON, OBSERVED, Position, WINDOW, Window, distance};
 use serde::{Deserialize, Serialize};
 
-use crate::metric::displacement::{distance, minus, turn};
+use crate::metric::displacement::{minus, turn};
 
 /// Number of frames over which a velocity is taken.
 const STRIDE: usize = 3;

@@ -10,7 +10,7 @@
 //! Noises and prior are those of `TrajNet++`'s filter, which adapts them by EM and averages random continuations. Here
 //! they are fixed, and the continuation is the expected one.
 
-use ddl_data::{HORIZON, Position};
+use ddl_core::{HORIZON, Position};
 
 /// Variance of the process noise in a frame: metres squared, and (metres per frame) squared.
 const TRANSITION: f64 = 1e-5;

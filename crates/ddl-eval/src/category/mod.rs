@@ -10,7 +10,7 @@ mod trajectory_type;
 
 use std::fmt;
 
-use ddl_data::Window;
+use ddl_core::Window;
 use serde::{Deserialize, Serialize};
 
 pub use interaction::Interaction;

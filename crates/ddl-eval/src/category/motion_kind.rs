@@ -2,10 +2,10 @@
 
 use std::fmt;
 
-use ddl_data::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW};
+use ddl_core::{HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance};
 use serde::{Deserialize, Serialize};
 
-use crate::metric::displacement::{distance, minus, turn};
+use crate::metric::displacement::{minus, turn};
 
 /// A pedestrian that stays this near to its first position stands (m).
 const STANDING: f64 = 1.0;

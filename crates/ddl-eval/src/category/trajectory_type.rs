@@ -2,11 +2,10 @@
 
 use std::fmt;
 
-use ddl_data::{OBSERVED, WINDOW, Window};
+use ddl_core::{OBSERVED, WINDOW, Window, distance};
 use serde::{Deserialize, Serialize};
 
 use super::{interaction::Interaction, kalman::expected_end};
-use crate::metric::displacement::distance;
 
 /// A static trajectory ends nearer to its start than this, metres.
 const STATIC: f64 = 1.0;
@@ -75,7 +74,7 @@ impl fmt::Display for TrajectoryType {
 #[cfg(test)]
 mod tests {
     use TrajectoryType::{Linear, NonInteracting, Static};
-    use ddl_data::Position;
+    use ddl_core::Position;
 
     use super::*;
     use crate::fixture::of_tracks;

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use ddl_data::PedestrianName;
+use ddl_core::{ForecastError, ForecastShapeError, PedestrianName};
 
-use crate::error::{EvaluationError, ForecastError, ForecastShapeError, MeasureError};
+use crate::error::{EvaluationError, MeasureError};
 
 /// Forecasts of another program cannot be read, matched or scored.
 #[derive(Debug, thiserror::Error)]

@@ -2,13 +2,12 @@
 
 use std::collections::HashMap;
 
-use ddl_data::{HORIZON, OBSERVED, Position, Window};
+use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
 
 use super::error::{ExternalError, ExternalProblem};
 use super::hint::Unknown;
 use super::lines::{Wrong, in_field, whole_line};
 use super::pedestrian_key::{PedestrianKey, frames_ahead, in_short, last_observed};
-use crate::Forecast;
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PedestrianForecast {

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use ddl_data::PedestrianName;
+use ddl_core::PedestrianName;
 use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use serde_json::{Number, Value};
 use serde_path_to_error::{Path, Segment};

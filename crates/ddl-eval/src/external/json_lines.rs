@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use ddl_data::{HORIZON, PedestrianName, Position};
+use ddl_core::{HORIZON, PedestrianName, Position};
 use serde::{Deserialize, Deserializer};
 
 use super::error::{ExternalError, ExternalProblem};
@@ -10,7 +10,7 @@ use super::expected::{ExpectedForecasts, PedestrianForecast};
 use super::json::{self, Whole};
 use super::lines::{Lines, Wrong, in_field, within_bounds};
 use super::pedestrian_key::PedestrianKey;
-use crate::Protocol;
+use crate::protocol::Protocol;
 
 /// Fields of other names are ignored.
 #[derive(Debug, Deserialize)]

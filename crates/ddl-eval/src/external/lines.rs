@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, Read as _};
 
-use ddl_data::{COORDINATE_LIMIT, Position};
+use ddl_core::Position;
+use ddl_data::COORDINATE_LIMIT;
 
 use super::error::{ExternalError, ExternalProblem};
 

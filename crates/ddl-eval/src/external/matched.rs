@@ -2,8 +2,7 @@
 
 use std::fmt::Write as _;
 
-use ddl_data::{HORIZON, Position, Window};
-
+use ddl_core::{Forecast, HORIZON, Position, Window};
 use sha2::{Digest as _, Sha256};
 
 use super::error::{ExternalError, ExternalProblem};
@@ -11,7 +10,6 @@ use super::expected::{ExpectedForecasts, Slot};
 use super::hint::NAMED;
 use super::lines::{whole_line, wrong};
 use super::pedestrian_key::{last_observed, named};
-use crate::Forecast;
 
 /// What to do if a file and the windows have different pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -183,7 +181,7 @@ impl ExpectedForecasts<'_> {
     }
 }
 
-fn forecast(slots: Vec<Slot>) -> Result<Forecast, crate::ForecastShapeError> {
+fn forecast(slots: Vec<Slot>) -> Result<Forecast, ddl_core::ForecastShapeError> {
     let pedestrians = slots.len();
     let hypotheses = slots.first().map_or(0, |slot| slot.forecast.hypotheses());
     let mut positions: Vec<Position> = Vec::with_capacity(pedestrians * hypotheses * HORIZON);

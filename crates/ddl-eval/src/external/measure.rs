@@ -1,11 +1,12 @@
 //! Scores of a file's forecasts and of the baselines on the same pedestrians.
 
-use ddl_data::{OBSERVED, Position};
+use ddl_core::{OBSERVED, Position, distance};
 
 use super::error::ExternalError;
 use super::matched::Matched;
-use crate::metric::displacement::distance;
-use crate::{Conditions, Protocol, ResultRow, baseline};
+use crate::baseline;
+use crate::conditions::{Conditions, ResultRow};
+use crate::protocol::Protocol;
 
 /// Distance (m) above that of any step of 0.4 s. If half of the forecasts start farther from their pedestrians, the
 /// file is refused.

@@ -23,7 +23,8 @@ use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::str::FromStr;
 
-use ddl_data::{UnknownName, Window};
+use ddl_core::Window;
+use ddl_data::UnknownName;
 
 pub use error::ExternalError;
 pub use matched::{Coverage, Matched};

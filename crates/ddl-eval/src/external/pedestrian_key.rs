@@ -1,10 +1,10 @@
 //! The pedestrian of a forecast, its frames, and the numbers of its hypotheses. Equal numbers are one joint future of
 //! the scene.
 
-use ddl_data::{HORIZON, OBSERVED, PedestrianName, Window};
+use ddl_core::{HORIZON, OBSERVED, PedestrianName, Window};
 
 use super::error::ExternalProblem;
-use crate::Protocol;
+use crate::protocol::Protocol;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct PedestrianKey {

@@ -2,15 +2,14 @@
 
 use std::io::BufRead;
 
-use ddl_data::{HORIZON, PedestrianName, Position};
+use ddl_core::{HORIZON, PedestrianName, Position};
 
 use super::error::{ExternalError, ExternalProblem};
-use super::lines::{self, Lines, Wrong, in_field, quoted, whole_line, within_bounds};
-
 use super::expected::{ExpectedForecasts, PedestrianForecast};
+use super::lines::{self, Lines, Wrong, in_field, quoted, whole_line, within_bounds};
 use super::pedestrian_key::{HypothesisNumbering, PedestrianKey, in_short};
 use super::table_rows::{AtLine, Fields, TableRows};
-use crate::Protocol;
+use crate::protocol::Protocol;
 
 const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];
 

@@ -7,14 +7,15 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
 
+use ddl_core::{HORIZON, OBSERVED, PedestrianName, Position, Window};
+use serde::Deserialize;
+
 use super::error::{ExternalError, ExternalProblem};
 use super::expected::{ExpectedForecasts, PedestrianForecast};
 use super::json::{self, Whole};
 use super::lines::{Lines, Wrong, in_field, whole_line, within_bounds};
 use super::pedestrian_key::{HypothesisNumbering, PedestrianKey, frames_ahead, in_short};
-use crate::Protocol;
-use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
-use serde::Deserialize;
+use crate::protocol::Protocol;
 
 /// Lines and fields of other names are ignored.
 #[derive(Debug, Deserialize)]

@@ -2,12 +2,12 @@
 
 use std::io::Write;
 
-use ddl_data::{PedestrianName, Position, Window};
+use ddl_core::{Forecast, PedestrianName, Position, Window};
 use serde::Serialize;
 
 use super::error::ExternalError;
 use super::pedestrian_key::last_observed;
-use crate::{EvaluationError, Forecast, WindowProblem};
+use crate::error::{EvaluationError, WindowProblem};
 
 #[derive(Serialize)]
 struct WrittenPedestrian<'a> {

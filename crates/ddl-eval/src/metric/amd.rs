@@ -21,13 +21,13 @@
 //! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness of Implicit
 //! Maximum Likelihood Estimation", ECCV 2022.
 
-use ddl_data::HORIZON;
+use ddl_core::HORIZON;
 
 use super::{
     gaussian::{Covariance, Moments},
     kde::MIN_DEVIATION,
 };
-use crate::Scene;
+use crate::scene::Scene;
 
 /// The distribution of one pedestrian's positions against the truth, mean over the frames.
 #[derive(Debug, Clone, Copy, PartialEq)]

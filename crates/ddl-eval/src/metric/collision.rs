@@ -18,9 +18,9 @@
 //! # References
 //! Kothari, Kreiss, Alahi, "Human Trajectory Forecasting in Crowds" (`TrajNet++`), T-ITS 2021.
 
-use ddl_data::Position;
+use ddl_core::Position;
 
-use crate::Scene;
+use crate::scene::Scene;
 
 /// Radius of a pedestrian, metres. Two collide when their centres are closer than twice this.
 pub const PEDESTRIAN_RADIUS: f64 = 0.2;
@@ -66,7 +66,7 @@ pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
     hit
 }
 
-/// The [representative](crate::Forecast::representative) forecast of each pedestrian, metres.
+/// The [representative](ddl_core::Forecast::representative) forecast of each pedestrian, metres.
 pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())

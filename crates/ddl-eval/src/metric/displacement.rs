@@ -23,41 +23,17 @@
 //! (best of K); DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section III-A; Weng et al., "Joint Metrics Matter",
 //! ICCV 2023.
 
-use ddl_data::Position;
+use ddl_core::{Forecast, Position, average_displacement, distance};
 
-use crate::{Forecast, Scene};
-
-/// Euclidean distance of two positions, metres.
-pub fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
-/// ADE: the mean distance of a forecast from the truth, metres.
-///
-/// # Panics
-/// When the two differ in length or are empty.
-pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
-    check(forecast, truth);
-    let sum: f64 = forecast.iter().zip(truth).map(|(f, t)| distance(*f, *t)).sum();
-    sum / truth.len() as f64
-}
+use crate::scene::Scene;
 
 /// FDE: the distance of the last forecast position from the last true one, metres.
 ///
 /// # Panics
 /// When the two differ in length or are empty.
 pub fn final_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
-    check(forecast, truth);
+    assert_eq!(forecast.len(), truth.len(), "lengths of forecast and truth");
     distance(forecast[forecast.len() - 1], truth[truth.len() - 1])
-}
-
-fn check(forecast: &[Position], truth: &[Position]) {
-    assert!(
-        forecast.len() == truth.len() && !truth.is_empty(),
-        "a forecast of {} positions cannot be compared with {} true ones",
-        forecast.len(),
-        truth.len()
-    );
 }
 
 /// ADE and FDE of every hypothesis of every pedestrian of a scene: two tables `[N][K]`, metres.

@@ -10,7 +10,7 @@
 //! # References
 //! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020 (APD).
 
-use crate::Scene;
+use crate::scene::Scene;
 
 /// Mean distances between the hypotheses of one pedestrian.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,7 +7,7 @@
 //! C = sum_k w_k (x_k - m) (x_k - m)^T       square metres (not the unbiased estimate)
 //! ```
 
-use ddl_data::Position;
+use ddl_core::Position;
 
 /// A symmetric 2 x 2 matrix, square metres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -12,7 +12,7 @@
 //! KDE NLL = - mean over frames and pedestrians of max(ln f(p), -20)        nats
 //! ```
 //!
-//! For a forecast with a [standard deviation](crate::Forecast::std_dev) s around its hypotheses, which is already a
+//! For a forecast with a [standard deviation](ddl_core::Forecast::std_dev) s around its hypotheses, which is already a
 //! Gaussian mixture, H is s^2 times the identity.
 //!
 //! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, except
@@ -26,10 +26,10 @@
 //! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV 2020; Mohamed et
 //! al., "Social-Implicit", ECCV 2022; Scott, "Multivariate Density Estimation", 1992.
 
-use ddl_data::Position;
+use ddl_core::Position;
 
 use super::gaussian::{Moments, PrincipalAxes};
-use crate::Scene;
+use crate::scene::Scene;
 
 /// Lower bound of log densities, nats, so that one large error does not dominate the mean.
 pub const MIN_LOG_DENSITY: f64 = -20.0;

@@ -1,17 +1,17 @@
 //! The log loss of the weights, and the coverage of regions.
 
-use ddl_data::HORIZON;
+use ddl_core::{Disc, HORIZON};
 
-use crate::{
-    Scene,
-    metric::displacement::final_displacement,
-    region::{equivalent_radius, holds},
-};
+use crate::metric::displacement::final_displacement;
+use crate::scene::Scene;
 
 /// Probabilities of the regions that are measured.
 pub const LEVELS: [f64; 2] = [0.5, 0.9];
 /// Smallest weight in the log loss.
 const SMALLEST_WEIGHT: f64 = 1e-6;
+
+/// Cells along each side of the grid on which the area of a region is measured.
+const CELLS: usize = 24;
 
 /// Coverage and size for one pedestrian, for each of the [`LEVELS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ impl RegionScores {
         Some(Self {
             coverage: LEVELS.map(|level| {
                 let truth = scene.truth(i).iter().enumerate();
-                let inside = truth.filter(|&(t, &at)| holds(&region(t, level), at));
+                let inside = truth.filter(|&(t, &at)| region(t, level).iter().any(|disc| disc.contains(at)));
                 inside.count() as f64 / HORIZON as f64
             }),
             end_radius: LEVELS.map(|level| equivalent_radius(&region(HORIZON - 1, level))),
@@ -53,16 +53,42 @@ pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
     (scene.hypotheses() > 1).then(|| -weight.ln())
 }
 
+/// The radius (m) of a disc with the area of the region, measured on a grid.
+pub fn equivalent_radius(region: &[Disc]) -> f64 {
+    let bound = |axis: usize, side: f64| {
+        let ends = region.iter().map(|disc| disc.centre[axis] + side * disc.radius);
+        ends.reduce(if side < 0.0 { f64::min } else { f64::max })
+            .unwrap_or_default()
+    };
+    let [left, right, low, high] = [bound(0, -1.0), bound(0, 1.0), bound(1, -1.0), bound(1, 1.0)];
+    let middle = |from: f64, to: f64, cell: usize| from + (to - from) * (cell as f64 + 0.5) / CELLS as f64;
+    let inside = (0..CELLS * CELLS)
+        .filter(|&cell| {
+            let centre = [middle(left, right, cell % CELLS), middle(low, high, cell / CELLS)];
+            region.iter().any(|disc| disc.contains(centre))
+        })
+        .count();
+    let area = (right - left) * (high - low) * inside as f64 / (CELLS * CELLS) as f64;
+    (area / std::f64::consts::PI).sqrt()
+}
+
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
 
     use super::*;
-    use crate::{
-        Forecast, RegionTable,
-        fixture::{walk, window},
-        metric::{amd::DistributionErrors, kde::kde_nll},
-    };
+    use crate::fixture::{walk, window};
+    use crate::metric::amd::DistributionErrors;
+    use crate::metric::kde::kde_nll;
+    use ddl_core::{Forecast, RegionTable};
+
+    #[test]
+    fn two_discs_side_by_side_are_as_large_as_one() {
+        let discs = [[0.0, 0.0], [9.0, 0.0]].map(|centre| Disc { centre, radius: 1.0 });
+        assert!((equivalent_radius(&discs) - 2.0_f64.sqrt()).abs() < 0.1);
+        assert!((equivalent_radius(&[discs[0]; 3]) - 1.0).abs() < 0.02);
+        assert!(equivalent_radius(&[]).abs() < 1e-12);
+    }
 
     /// Standing hypotheses at (0, 0) and (10, 0), weights 0.8 and 0.2; the truth stands 0.5 m from the second. With a
     /// spread of 0.5 m its score is 0.5 - ln(0.2 / 0.8) = 1.89: inside where the quantile is 3, outside where it is

@@ -15,11 +15,11 @@
 //! # References
 //! DDL (Wang, Zhi, Batista, Chandra, ICRA 2024), section II-E: v = -P grad Phi.
 
-use ddl_data::Position;
+use ddl_core::{Position, distance};
 use serde::{Deserialize, Serialize};
 
-use super::displacement::{distance, minus, turn};
-use crate::Scene;
+use crate::metric::displacement::{minus, turn};
+use crate::scene::Scene;
 
 /// Distance (metres) within which a pedestrian is at the goal, and length below which a step has no direction.
 pub const GOAL_TOLERANCE: f64 = 1e-3;

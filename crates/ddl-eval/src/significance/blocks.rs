@@ -2,12 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use ddl_data::Window;
+use ddl_core::{Forecast, Window};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::BlockMetric;
-use crate::{EvaluationError, Forecast, Scene, metric::displacement::DisplacementErrors};
+use crate::error::EvaluationError;
+use crate::metric::displacement::DisplacementErrors;
+use crate::scene::Scene;
 
 /// Length of a block in steps of 0.4 s: 20 s. A window belongs to the block in which it starts.
 pub const BLOCK_STEPS: i64 = 50;
@@ -96,7 +98,7 @@ pub(super) fn blocks_of(pedestrians: usize, errors: &[f64]) -> Vec<BlockErrors> 
 #[cfg(test)]
 mod tests {
     use approx::assert_relative_eq;
-    use ddl_data::{PedestrianId, Position};
+    use ddl_core::{PedestrianId, Position};
 
     use super::*;
 

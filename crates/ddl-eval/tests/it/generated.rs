@@ -1,7 +1,7 @@
 //! Strategies for windows and forecasts.
 
+use ddl_core::Forecast;
 use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
-use ddl_eval::Forecast;
 use proptest::{collection::vec, prelude::*};
 
 /// Positions up to 20 m from the origin, along each axis.

@@ -14,8 +14,10 @@
 //!
 //! The mean of s is 6.5: 0.1 * 6.5 = 0.65 and 0.25 * 6.5 = 1.625.
 
+use ddl_core::Forecast;
 use ddl_data::{PedestrianId, Position, Window};
-use ddl_eval::{Category, Forecast, MotionKind, Scores, category::TrajectoryType};
+use ddl_eval::category::TrajectoryType;
+use ddl_eval::{Category, MotionKind, Scores};
 
 type Path = fn(f64) -> Position;
 

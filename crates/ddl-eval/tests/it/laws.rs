@@ -1,10 +1,9 @@
 //! Properties of the metrics, for any forecast.
 
+use ddl_core::{Forecast, distance};
 use ddl_data::{PedestrianId, Position, Rotation, WINDOW, Window};
-use ddl_eval::{
-    Category, EvaluationError, Forecast, Scores, WindowProblem,
-    metric::{collision::closest_approach, displacement::distance},
-};
+use ddl_eval::metric::collision::closest_approach;
+use ddl_eval::{Category, EvaluationError, Scores, WindowProblem};
 use proptest::{collection::vec, prelude::*};
 use serde_json::Value;
 

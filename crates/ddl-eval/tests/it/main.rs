@@ -4,9 +4,7 @@
 
 mod distribution;
 mod external;
-mod forecast;
 mod generated;
 mod hand_example;
 mod laws;
 mod real_recordings;
-mod representative;

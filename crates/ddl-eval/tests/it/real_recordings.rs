@@ -1,12 +1,10 @@
 //! Categories and the leak test on the real recordings, against numbers computed independently.
 
+use ddl_core::Forecaster;
 use ddl_data::{Convention, Dataset, WindowRule, locate};
-use ddl_eval::{
-    Category, Conditions, Forecaster, Protocol, ResultRow,
-    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint},
-    category::{Interaction, TrajectoryType},
-    leak,
-};
+use ddl_eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint};
+use ddl_eval::category::{Interaction, TrajectoryType};
+use ddl_eval::{Category, Conditions, Protocol, ResultRow, leak};
 
 /// The recordings of the `star` convention; without them the test is skipped, except in CI.
 fn recordings() -> Option<Dataset> {

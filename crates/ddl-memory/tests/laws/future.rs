@@ -1,7 +1,7 @@
 //! Answers never contain unobserved data.
 
 use crate::{Frames, frames, memory_of, queries, step_of};
-use ddl_data::{PedestrianId, Remembered, WINDOW};
+use ddl_data::{PedestrianId, RememberedTrack, WINDOW};
 use ddl_memory::SceneMemory;
 
 /// The same frames with other positions from an index on.
@@ -16,7 +16,7 @@ fn with_noise_from(frames: &Frames, from: usize) -> Frames {
     noisy
 }
 
-fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<Remembered>> {
+fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<RememberedTrack>> {
     let queries = queries(now).into_iter();
     queries
         .map(|(id, observed)| memory.recall(&observed, Some(id), 12))

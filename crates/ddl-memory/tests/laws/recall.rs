@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::{Frames, memory_of, queries, step_of};
-use ddl_data::{OBSERVED, PedestrianId, Position, Remembered, WINDOW};
+use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack, WINDOW};
 use ddl_memory::{MAX_ABSENCE_STEPS, MAX_SQUARED_DISTANCE, SceneMemory};
 use proptest::prelude::*;
 
@@ -64,7 +64,7 @@ fn is_near(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-4 * (1.0 + a.abs())
 }
 
-fn is_alike(a: &[Remembered], b: &[Remembered]) -> bool {
+fn is_alike(a: &[RememberedTrack], b: &[RememberedTrack]) -> bool {
     let mut pairs = a.iter().zip(b);
     a.len() == b.len() && pairs.all(|(a, b)| is_near(a.distance, b.distance))
 }

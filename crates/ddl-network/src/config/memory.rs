@@ -2,7 +2,7 @@
 
 use super::range::{not_negative, positive, require};
 use crate::NetworkError;
-use ddl_data::Remembered;
+use ddl_data::RememberedTrack;
 use serde::{Deserialize, Serialize};
 
 /// Sizes of the memory branch: attention over earlier pedestrians of the place, and a separate readout. Its endpoints
@@ -64,7 +64,7 @@ impl MemoryConfig {
 
     /// Share of the probability given to the endpoints of the branch: n / (n + `half`). n is the sum of exp(-d /
     /// `fade`) over the earlier pedestrians attended to, d the squared distance of each. 0 without earlier pedestrians.
-    pub fn share(&self, remembered: &[Remembered]) -> f64 {
+    pub fn share(&self, remembered: &[RememberedTrack]) -> f64 {
         let looked_at = remembered.iter().take(self.remembered);
         let alike: f64 = looked_at.map(|other| (-other.distance / self.fade).exp()).sum();
         alike / (alike + self.half)

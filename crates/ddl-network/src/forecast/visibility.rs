@@ -1,7 +1,7 @@
 //! Visibility masks: which pedestrians attend to which.
 
 use crate::backend::Scenes;
-use ddl_data::Window;
+use ddl_data::{Neighbours, Window};
 
 /// The visibility masks of windows for each of the first `steps` time steps. A pedestrian attends to itself and to the
 /// pedestrians in a square around it with half the side `half_box` (m).
@@ -11,7 +11,7 @@ use ddl_data::Window;
 pub fn visibility(windows: &[&Window], steps: usize, half_box: f64) -> Scenes {
     let sizes: Vec<usize> = windows.iter().map(|window| window.len()).collect();
     let of_window = |window: &Window, step: usize| -> Vec<Vec<u32>> {
-        let neighbours = window.neighbours(step, half_box);
+        let neighbours = Neighbours::within_box(&window.positions_at(step), half_box);
         let lists = (0..window.len()).map(|i| {
             let others = neighbours.of(i);
             let before = others.partition_point(|&j| (j as usize) < i);

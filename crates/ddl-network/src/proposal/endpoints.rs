@@ -2,7 +2,7 @@
 
 use crate::weights::Weights;
 use crate::{NetworkError, ProposalConfig};
-use ddl_data::{HORIZON, OBSERVED, Position, Remembered};
+use ddl_data::{HORIZON, OBSERVED, Position, RememberedTrack};
 use std::fmt::Debug;
 
 /// Unit of length of the last layer (m). Endpoints are within a few metres of the extrapolation of the present
@@ -18,7 +18,7 @@ pub struct PedestrianView {
     /// Any number of other pedestrians of the scene, the nearest at the last observed time step first.
     pub neighbours: Vec<[Position; OBSERVED]>,
     /// Any number of earlier pedestrians of the place that moved similarly, the most similar first.
-    pub remembered: Vec<Remembered>,
+    pub remembered: Vec<RememberedTrack>,
 }
 
 /// A training example: a pedestrian with its future, in the frame of the view (metres).

@@ -1,7 +1,7 @@
 //! Proposals: shape, probabilities and dependence on the inputs.
 
 use super::scenes::{WINDOWS, distance, with_threads};
-use ddl_data::{OBSERVED, Position, Remembered, WINDOW, Window};
+use ddl_data::{OBSERVED, Position, RememberedTrack, WINDOW, Window};
 use ddl_network::{PedestrianView, ProposalConfig, ProposalNetwork, ProposeEndpoints as _, ProposedEndpoints};
 use proptest::prelude::*;
 use proptest::sample::Index;
@@ -64,9 +64,9 @@ fn view(speed: f64, neighbours: usize) -> PedestrianView {
 }
 
 /// An earlier pedestrian at 1 m/s, `aside` metres to the left.
-fn earlier(aside: f64) -> Remembered {
+fn earlier(aside: f64) -> RememberedTrack {
     let track: [Position; WINDOW] = std::array::from_fn(|t| [0.4 * (t as f64 - 7.0), aside]);
-    Remembered {
+    RememberedTrack {
         track,
         distance: aside * aside,
     }

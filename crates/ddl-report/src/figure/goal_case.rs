@@ -3,7 +3,8 @@
 use ddl_data::{OBSERVED, Position, WINDOW};
 
 use super::error::{FigureError, GoalCaseProblem};
-use ddl_eval::{Forecast, baseline::WeightedGoals, metric::displacement::distance};
+use ddl_core::{Forecast, distance};
+use ddl_eval::baseline::WeightedGoals;
 
 /// Positions farther from the pedestrian are an error (m).
 const FARTHEST: f64 = 1e6;

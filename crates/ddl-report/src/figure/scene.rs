@@ -1,7 +1,7 @@
 //! One scene: the past, future and forecast of every pedestrian.
 
+use ddl_core::{Disc, Forecast};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
-use ddl_eval::{Disc, Forecast};
 
 use super::{
     axes::{Axes, SCENE},

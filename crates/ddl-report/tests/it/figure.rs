@@ -1,10 +1,8 @@
 //! The content of pictures of scenes and of estimated goals.
 
+use ddl_core::Forecaster;
 use ddl_data::{PedestrianId, Position, WINDOW, Window};
-use ddl_eval::{
-    Forecaster,
-    baseline::{ConstantVelocity, StraightLine, TrueEndpoint, WeightedGoals},
-};
+use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint, WeightedGoals};
 use ddl_report::{
     FigureError,
     figure::{self, GoalCase},

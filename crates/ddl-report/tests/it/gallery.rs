@@ -1,11 +1,9 @@
 //! The selection of moments of a fold.
 
+use ddl_core::{Forecast, average_displacement};
 use ddl_data::{Dataset, Window, WindowRule};
-use ddl_eval::{
-    Forecast, Protocol,
-    baseline::{ConstantVelocity, StraightLine, TrueEndpoint},
-    metric::displacement::average_displacement,
-};
+use ddl_eval::Protocol;
+use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint};
 use ddl_report::{
     ForecastSnapshot,
     gallery::{self, HighlightKind},

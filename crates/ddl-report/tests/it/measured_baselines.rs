@@ -1,10 +1,9 @@
 //! The baselines of `ddl-eval` on the real recordings agree with the reference values in `literature.json`.
 
+use ddl_core::Forecaster;
 use ddl_data::{Convention, Dataset, Window, WindowRule, locate};
-use ddl_eval::{
-    Conditions, Forecaster, Protocol, ResultRow,
-    baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint},
-};
+use ddl_eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint};
+use ddl_eval::{Conditions, Protocol, ResultRow};
 use ddl_report::literature;
 
 /// The test windows of every fold; without recordings the tests are skipped, except in CI.

@@ -3,8 +3,7 @@
 use crate::Result;
 use crate::clock::Clock;
 use ddl::data::{OBSERVED, PedestrianId, Position, TIME_STEP, Window};
-use ddl::eval::{Forecast, ForecastError};
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster, LiveForecaster};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, ForecastError, Forecaster, LiveForecaster};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;

@@ -1,9 +1,10 @@
 use crate::error::DdlError;
 use crate::evaluation::goals::MeasuredGoals;
 use crate::goals::model::GoalModel;
+use ddl_core::ForecastError;
 use ddl_data::Window;
+use ddl_eval::MotionKind;
 use ddl_eval::baseline::WeightedGoals;
-use ddl_eval::{ForecastError, MotionKind};
 use ddl_goal::GoalSet;
 use ddl_report::figure::{self, GoalCase};
 

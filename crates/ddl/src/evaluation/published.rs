@@ -7,8 +7,9 @@ use crate::forecast::shaped;
 use crate::forecast::walk::Gait;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
+use ddl_core::{Forecast, ForecastError};
 use ddl_data::{Position, Window};
-use ddl_eval::{Forecast, ForecastError, Scores};
+use ddl_eval::Scores;
 use ddl_goal::GoalEstimator;
 use ddl_network::{ForecastWindows, NetworkFrame, Noise};
 

@@ -5,8 +5,9 @@ use crate::evaluation::test_set::TestSet;
 use crate::forecast::name;
 use crate::model::ddl::Ddl;
 use crate::training::words::{recipe, subset};
+use ddl_core::Forecast;
 use ddl_data::{Convention, Window, WindowRule};
-use ddl_eval::{Conditions, Forecast, Protocol, ResultRow, baseline};
+use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 
 /// Forecasts of one forecaster, one for each window of the test set.
 #[derive(Debug)]

@@ -1,9 +1,9 @@
 use crate::forecast::clearance::{Clearance, Others};
 use crate::forecast::walk::{Course, Gait, Walk};
 use crate::trust::calibration::Calibration;
+use ddl_core::{Forecast, ForecastError};
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
-use ddl_eval::{Forecast, ForecastError};
 use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
 use rayon::prelude::*;
 

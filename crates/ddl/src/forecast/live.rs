@@ -3,8 +3,8 @@ use crate::forecast::certified::{self, CertifiedForecast};
 use crate::forecast::place_memory::{MemoryMismatch, PlaceMemory};
 use crate::forecast::watch::Watch;
 use crate::model::ddl::Ddl;
+use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
 use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
-use ddl_eval::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
 use ddl_memory::SceneMemory;
 use std::borrow::Borrow;
 

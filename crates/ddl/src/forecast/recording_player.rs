@@ -1,8 +1,9 @@
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
+use ddl_core::{Forecast, Forecaster as _};
 use ddl_data::{OBSERVED, Recording, Window};
-use ddl_eval::{EvaluationError, Forecast, Forecaster as _};
+use ddl_eval::EvaluationError;
 use ddl_report::ForecastSnapshot;
 use ddl_report::page::Viewer;
 

@@ -3,8 +3,8 @@
 use crate::error::DdlError;
 use crate::forecast::place_memory::PlaceMemory;
 use crate::forecast::watch::Watch;
+use ddl_core::{Forecast, ForecastError, Forecaster};
 use ddl_data::{Completion, Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
-use ddl_eval::{Forecast, ForecastError, Forecaster};
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,7 @@ use std::time::{Duration, Instant};
 /// It keeps the state of a `LiveForecaster` for each scene, for at most [`MOST_SCENES`](Self::MOST_SCENES) scenes. A
 /// scene without a frame for [`IDLE_TIMEOUT`](Self::IDLE_TIMEOUT) is forgotten when another scene begins, or by
 /// [`forget_idle`](Self::forget_idle). For adaptive regions the caller keeps one
-/// [`AdaptiveRegions`](ddl_eval::AdaptiveRegions) per scene.
+/// [`AdaptiveRegions`](ddl_core::AdaptiveRegions) per scene.
 ///
 /// # Examples
 /// ```

@@ -4,8 +4,8 @@ use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
 use crate::forecast::walk::Gait;
 use crate::trust::calibration::Calibration;
+use ddl_core::{Forecast, ForecastError};
 use ddl_data::{Position, Window};
-use ddl_eval::{Forecast, ForecastError};
 use ddl_goal::GoalSet;
 use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 

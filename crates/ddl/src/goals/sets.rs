@@ -1,7 +1,7 @@
 //! Goals of whole windows, for the network and the straight-line forecasts.
 
+use ddl_core::ForecastError;
 use ddl_data::{Position, Window};
-use ddl_eval::ForecastError;
 use ddl_eval::baseline::WeightedGoals;
 use ddl_goal::{GoalEstimator, GoalSet};
 

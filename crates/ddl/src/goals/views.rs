@@ -1,6 +1,6 @@
 //! The input of a proposal network for the pedestrians of a window.
 
-use ddl_data::{OBSERVED, Position, Remembered, SpatialIndex, Window};
+use ddl_data::{OBSERVED, Position, RememberedTrack, SpatialIndex, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, length_unit};
 
@@ -16,7 +16,7 @@ pub(crate) struct Seen {
 /// Views of every pedestrian of a window with its `neighbours` nearest others, from the observed frames (`time_step` in
 /// seconds).
 pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<Seen>, TrackError> {
-    let last = window.hypotheses_at(OBSERVED - 1);
+    let last = window.positions_at(OBSERVED - 1);
     let places = SpatialIndex::new(&last);
     (0..window.len())
         .map(|i| {
@@ -32,7 +32,7 @@ pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> R
                 remembered: window
                     .remembered(i)
                     .iter()
-                    .map(|other| Remembered {
+                    .map(|other| RememberedTrack {
                         track: in_frame((&frame, unit), &other.track),
                         ..*other
                     })

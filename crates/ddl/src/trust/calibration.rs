@@ -3,8 +3,8 @@
 //! trained on.
 
 use crate::run::sha256;
+use ddl_core::RegionTable;
 use ddl_data::{HORIZON, Position};
-use ddl_eval::RegionTable;
 use ddl_goal::GoalSet;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};

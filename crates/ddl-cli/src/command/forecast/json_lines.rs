@@ -38,7 +38,7 @@ impl Region {
     fn of(forecast: &ddl::Forecast, i: usize, probability: f64) -> Option<Self> {
         let discs = |t: usize| {
             let region = forecast.region(i, t, probability)?;
-            let disc = |disc: &ddl::eval::Disc| [disc.centre[0], disc.centre[1], disc.radius];
+            let disc = |disc: &ddl::Disc| [disc.centre[0], disc.centre[1], disc.radius];
             Some(region.iter().map(disc).collect())
         };
         let discs = (0..HORIZON).map(discs).collect::<Option<_>>()?;

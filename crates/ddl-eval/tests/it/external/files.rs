@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
+use ddl_core::Forecast;
 use ddl_data::{Convention, HORIZON, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat, Matched};
-use ddl_eval::{Conditions, Forecast, Protocol};
+use ddl_eval::{Conditions, Protocol};
 
 /// Two windows of the recording `yard`, observed until 70 and until 80: pedestrians 3 and 5, then 5.
 pub(crate) fn windows() -> Vec<Window> {

@@ -1,8 +1,9 @@
 //! Properties of files of forecasts, for any content.
 
+use ddl_core::Forecast;
 use ddl_data::{OBSERVED, Position, Window};
+use ddl_eval::Scores;
 use ddl_eval::external::{self, Coverage, ExternalFormat};
-use ddl_eval::{Forecast, Scores};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use serde_json::Value;

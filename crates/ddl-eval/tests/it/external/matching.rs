@@ -1,11 +1,13 @@
 //! Reading, matching with windows, and scoring.
 
+use std::fmt::Write as _;
+
+use ddl_core::average_displacement;
+use ddl_core::{Forecast, Forecaster as _};
 use ddl_data::{Format, PedestrianId, Window, WindowRule, parse_recording};
 use ddl_eval::baseline::SocialForce;
 use ddl_eval::external::{self, Coverage, ExternalError, ExternalFormat};
-use ddl_eval::metric::displacement::average_displacement;
-use ddl_eval::{Conditions, Forecast, Forecaster as _, Protocol, Scores};
-use std::fmt::Write as _;
+use ddl_eval::{Conditions, Protocol, Scores};
 
 use super::files::{
     HEADER, complaint, conditions, expected, hypothesis, line, ndjson, of, read, rows, scene, still, table, tracks,

@@ -16,7 +16,8 @@
 //! Berger, "Statistical Decision Theory and Bayesian Analysis", 2nd ed. 1985, section 4.4 (Bayes actions); Kaufman,
 //! Rousseeuw, "Finding Groups in Data", 1990, chapter 2 (medoids).
 
-use crate::{Forecast, metric::displacement::average_displacement};
+use crate::forecast::Forecast;
+use crate::position::{Position, distance};
 
 /// Expected errors at most this far apart count as equal, metres.
 const EQUAL: f64 = 1e-9;
@@ -30,6 +31,21 @@ impl Forecast {
             average_displacement(self.hypothesis(i, k), self.hypothesis(i, j))
         })
     }
+}
+
+/// The mean distance of two paths, such as a forecast and the truth: its ADE (m).
+///
+/// # Panics
+/// When the two differ in length or are empty.
+pub fn average_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
+    assert!(
+        forecast.len() == truth.len() && !truth.is_empty(),
+        "a forecast of {} positions cannot be compared with {} true ones",
+        forecast.len(),
+        truth.len()
+    );
+    let sum: f64 = forecast.iter().zip(truth).map(|(f, t)| distance(*f, *t)).sum();
+    sum / truth.len() as f64
 }
 
 /// The weighted medoid: `argmin_k sum_j w_j d(k, j)`; of equal ones the one with the largest weight, then the first.

@@ -1,7 +1,6 @@
 //! Valid forecasts and errors.
 
-use ddl_data::{HORIZON, Position};
-use ddl_eval::{Forecast, ForecastShapeError};
+use ddl_core::{Forecast, ForecastShapeError, HORIZON, Position};
 
 fn constant(at: &[Position]) -> Vec<Position> {
     at.iter().flat_map(|&p| [p; HORIZON]).collect()

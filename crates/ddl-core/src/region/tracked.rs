@@ -20,10 +20,10 @@
 
 use std::sync::Arc;
 
-use ddl_data::HORIZON;
 use serde::{Deserialize, Serialize};
 
 use super::{LevelQuantiles, RegionTable};
+use crate::position::HORIZON;
 
 /// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places (`docs/regions.md`).
 const STEP: f64 = 0.06;

@@ -15,19 +15,16 @@
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
 
-use ddl_data::{HORIZON, Position};
 use serde::{Deserialize, Serialize};
 
-use crate::Forecast;
+use crate::forecast::Forecast;
+use crate::position::{HORIZON, Position};
 
 mod adaptive;
 mod tracked;
 
 pub use adaptive::AdaptiveRegions;
 pub use tracked::TrackedQuantiles;
-
-/// Cells along each side of the grid on which the area of a region is measured.
-const CELLS: usize = 24;
 
 /// Quantiles of scores, for levels and steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -77,7 +74,8 @@ pub struct Disc {
 }
 
 impl Disc {
-    fn holds(&self, at: Position) -> bool {
+    /// Whether the position (m) is in the disc or on its edge.
+    pub fn contains(&self, at: Position) -> bool {
         let [x, y] = [0, 1].map(|axis| at[axis] - self.centre[axis]);
         x * x + y * y <= self.radius * self.radius
     }
@@ -188,32 +186,6 @@ impl Forecast {
     }
 }
 
-/// Whether one of the discs contains the position.
-pub fn holds(region: &[Disc], at: Position) -> bool {
-    region.iter().any(|disc| disc.holds(at))
-}
-
-/// The radius (m) of a disc with the area of the region, measured on a grid.
-pub fn equivalent_radius(region: &[Disc]) -> f64 {
-    let bound = |axis: usize, side: f64| {
-        let ends = region.iter().map(|disc| disc.centre[axis] + side * disc.radius);
-        ends.reduce(if side < 0.0 { f64::min } else { f64::max })
-            .unwrap_or_default()
-    };
-    let [left, right, low, high] = [bound(0, -1.0), bound(0, 1.0), bound(1, -1.0), bound(1, 1.0)];
-    let middle = |from: f64, to: f64, cell: usize| from + (to - from) * (cell as f64 + 0.5) / CELLS as f64;
-    let inside = (0..CELLS * CELLS)
-        .filter(|&cell| {
-            holds(
-                region,
-                [middle(left, right, cell % CELLS), middle(low, high, cell / CELLS)],
-            )
-        })
-        .count();
-    let area = (right - left) * (high - low) * inside as f64 / (CELLS * CELLS) as f64;
-    (area / std::f64::consts::PI).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use proptest::{collection::vec, prelude::*};
@@ -238,14 +210,6 @@ mod tests {
         assert!(empty.is_err());
         assert_eq!(RegionTable::of(&[], &[0.5]), None);
         assert_eq!(RegionTable::of(&scores, &[0.9, 0.5]), None);
-    }
-
-    #[test]
-    fn two_discs_side_by_side_are_as_large_as_one() {
-        let discs = [[0.0, 0.0], [9.0, 0.0]].map(|centre| Disc { centre, radius: 1.0 });
-        assert!((equivalent_radius(&discs) - 2.0_f64.sqrt()).abs() < 0.1);
-        assert!((equivalent_radius(&[discs[0]; 3]) - 1.0).abs() < 0.02);
-        assert!(equivalent_radius(&[]).abs() < 1e-12);
     }
 
     proptest! {
@@ -276,7 +240,8 @@ mod tests {
             for (&at, score) in truths.iter().zip(&scores) {
                 // The score on the edge may be on either side.
                 if (score[5] - quantile).abs() > 1e-9 {
-                    prop_assert_eq!(holds(&region, at), score[5] < quantile);
+                    let inside = region.iter().any(|disc| disc.contains(at));
+                    prop_assert_eq!(inside, score[5] < quantile);
                 }
                 inside += usize::from(score[5] <= quantile);
             }

@@ -2,10 +2,42 @@
 
 use std::sync::Arc;
 
+use serde::{Deserialize, Serialize};
+
 use crate::error::WindowError;
-use crate::neighbours::Neighbours;
-use crate::track::{is_finite, is_frame, is_frame_step};
-use crate::{CompletionCounts, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, Remembered, WINDOW};
+use crate::pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
+use crate::position::{OBSERVED, Position, WINDOW, is_finite, is_frame, is_frame_step};
+
+/// How many of the 8 observed positions of a pedestrian were filled in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub struct CompletionCounts {
+    /// Positions at the start, before the pedestrian was seen.
+    pub padded: usize,
+    /// Positions in gaps.
+    pub filled: usize,
+}
+
+impl CompletionCounts {
+    /// Whether all 8 positions were seen.
+    pub fn is_complete(self) -> bool {
+        self == Self::default()
+    }
+
+    /// How many positions were seen.
+    pub fn seen(self) -> usize {
+        OBSERVED - self.padded - self.filled
+    }
+}
+
+/// 20 positions of an earlier pedestrian of the same place that moved like the one to forecast.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RememberedTrack {
+    /// `[x, y]` in metres, 0.4 s apart: 8 positions similar to the observed ones, and the 12 that followed.
+    pub track: [Position; WINDOW],
+    /// Dissimilarity of the first 8 positions to the observed ones: a squared distance of present position and
+    /// velocities, at least 0.
+    pub distance: f64,
+}
 
 /// The pedestrians of one scene over 8 observed steps and, where known, the 12 that follow.
 ///
@@ -14,14 +46,14 @@ use crate::{CompletionCounts, OBSERVED, PedestrianId, PedestrianName, Pedestrian
 /// unknown, `[x, y]` in metres, 0.4 s apart. Pedestrians and steps are counted from 0; an index out of range panics.
 ///
 /// ```
-/// use ddl_data::{PedestrianId, Window};
+/// use ddl_core::{PedestrianId, Window};
 ///
 /// let straight: Vec<_> = (0..20).map(|t| [0.5 * f64::from(t), 0.0]).collect();
 /// let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![straight])?;
 /// assert_eq!(window.observed(0).len(), 8);
 /// assert_eq!(window.end(0), Some([9.5, 0.0]));
 /// assert!(window.without_future().end(0).is_none());
-/// # Ok::<(), ddl_data::WindowError>(())
+/// # Ok::<(), ddl_core::WindowError>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Window {
@@ -36,7 +68,7 @@ pub struct Window {
     /// One entry per pedestrian, or empty if nothing was filled in.
     completion_counts: Vec<CompletionCounts>,
     /// One list per pedestrian, or empty if nothing is remembered.
-    remembered: Vec<Vec<Remembered>>,
+    remembered: Vec<Vec<RememberedTrack>>,
 }
 
 impl Window {
@@ -90,16 +122,23 @@ impl Window {
         Ok(Self::cut(recording, frame_step, frames, pedestrians, positions))
     }
 
-    /// A window cut from a recording, whose invariants make the checks of [`new`](Self::new) unnecessary.
-    pub(crate) fn cut(
+    /// A window cut from rows that are checked already: the positions are finite, the frames ascend, and the
+    /// pedestrians differ. The frames may be further apart than `frame_step`.
+    ///
+    /// # Shapes
+    /// `frames` `[T]`, 8 or 20; `positions` `[N][T]`, metres.
+    ///
+    /// # Panics
+    /// When the lengths of the arrays disagree.
+    pub fn cut(
         recording: Arc<str>,
         frame_step: i64,
         frames: Vec<i64>,
         pedestrians: Vec<PedestrianId>,
         positions: Vec<Position>,
     ) -> Self {
-        debug_assert!([OBSERVED, WINDOW].contains(&frames.len()));
-        debug_assert_eq!(positions.len(), pedestrians.len() * frames.len());
+        assert!([OBSERVED, WINDOW].contains(&frames.len()), "{} frames", frames.len());
+        assert_eq!(positions.len(), pedestrians.len() * frames.len(), "positions");
         Self {
             recording,
             frame_step,
@@ -129,15 +168,24 @@ impl Window {
         ids.position(|&id| self.names.names(id, name))
     }
 
-    pub(crate) fn with_completion_counts(mut self, counts: Vec<CompletionCounts>) -> Self {
-        debug_assert!(counts.is_empty() || counts.len() == self.len());
+    /// The same window with the numbers of positions that were filled in, `[N]`, or empty for none.
+    ///
+    /// # Panics
+    /// When there is another number of counts than of pedestrians.
+    #[must_use]
+    pub fn with_completion_counts(mut self, counts: Vec<CompletionCounts>) -> Self {
+        assert!(
+            counts.is_empty() || counts.len() == self.len(),
+            "{} counts",
+            counts.len()
+        );
         let whole = counts.iter().all(|counts| counts.is_complete());
         self.completion_counts = if whole { Vec::new() } else { counts };
         self
     }
 
-    /// The numbers of positions of the i-th pedestrian that were filled in; zero unless a
-    /// [`Completion`](crate::Completion) was requested.
+    /// The numbers of positions of the i-th pedestrian that were filled in; zero unless they are
+    /// [given](Self::with_completion_counts).
     ///
     /// # Panics
     /// If `i >= len()`.
@@ -151,7 +199,7 @@ impl Window {
     /// All of them must have been observed by the last observed frame of the window, or in another recording of the
     /// place.
     #[must_use]
-    pub fn with_remembered(self, remembered: impl FnMut(usize) -> Vec<Remembered>) -> Self {
+    pub fn with_remembered(self, remembered: impl FnMut(usize) -> Vec<RememberedTrack>) -> Self {
         let mut remembered: Vec<_> = (0..self.len()).map(remembered).collect();
         if remembered.iter().all(Vec::is_empty) {
             remembered.clear();
@@ -163,7 +211,7 @@ impl Window {
     ///
     /// # Panics
     /// If `i >= len()`.
-    pub fn remembered(&self, i: usize) -> &[Remembered] {
+    pub fn remembered(&self, i: usize) -> &[RememberedTrack] {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
         self.remembered.get(i).map_or(&[], Vec::as_slice)
     }
@@ -178,8 +226,8 @@ impl Window {
         self.frames[0]
     }
 
-    /// Raw frame of each of the T positions, ascending and `frame_step` apart. Windows of
-    /// [`WindowRule::SocialGan`](crate::WindowRule) may contain larger gaps.
+    /// Raw frame of each of the T positions, ascending and `frame_step` apart. Windows that were
+    /// [cut](Self::cut) from a recording may contain larger gaps.
     pub fn frames(&self) -> &[i64] {
         &self.frames
     }
@@ -236,14 +284,8 @@ impl Window {
 
     /// Positions of all pedestrians at one step, counted from 0 (m).
     #[must_use]
-    pub fn hypotheses_at(&self, step: usize) -> Vec<Position> {
+    pub fn positions_at(&self, step: usize) -> Vec<Position> {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
-    }
-
-    /// Neighbours at one step, counted from 0: see [`Neighbours::within_box`].
-    #[must_use]
-    pub fn neighbours(&self, step: usize, half_width_m: f64) -> Neighbours {
-        Neighbours::within_box(&self.hypotheses_at(step), half_width_m)
     }
 
     /// The observation alone, as known when a forecast is made.

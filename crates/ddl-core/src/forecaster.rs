@@ -1,15 +1,15 @@
-//! The interface of models and baselines for the evaluation.
+//! The interface of models and baselines.
 
 use std::sync::Arc;
 
-use ddl_data::Window;
-
-use crate::{Forecast, error::ForecastError};
+use crate::error::ForecastError;
+use crate::forecast::Forecast;
+use crate::window::Window;
 
 /// A forecaster of the pedestrians of a window: a baseline, the DDL model or any other.
 ///
 /// # Contract
-/// A forecaster reads only [`Window::observed`], which `leak::find` checks. If it also reads a visible future (protocol
+/// A forecaster reads only [`Window::observed`], which `ddl_eval::leak::find` checks. If it also reads a visible future (protocol
 /// `published`), it must work without it or fail with [`ForecastError::FutureMissing`].
 pub trait Forecaster {
     /// The name printed in tables, the same for every window.

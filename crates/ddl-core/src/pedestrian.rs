@@ -1,13 +1,21 @@
-//! How files and streams name pedestrians: by numbers, or by words such as UUIDs.
+//! Pedestrians: their numbers, and how files and streams name them, by numbers or by words such as UUIDs.
 
-use std::collections::{BTreeMap, HashMap, VecDeque};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use crate::PedestrianId;
-use crate::track::FRAME_LIMIT;
+/// The number of a pedestrian, unique only within its recording.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PedestrianId(pub i64);
+
+impl fmt::Display for PedestrianId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(f)
+    }
+}
 
 /// The name of a pedestrian in a file or stream.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -46,7 +54,7 @@ impl fmt::Display for PedestrianName {
 }
 
 /// Whether a whole number is written as it is printed, without `+`, leading zeros or decimals.
-pub(crate) fn is_plain(number: &str) -> bool {
+fn is_plain(number: &str) -> bool {
     let digits = number.strip_prefix('-').unwrap_or(number);
     digits.bytes().all(|byte| byte.is_ascii_digit()) && (number == "0" || !digits.starts_with('0'))
 }
@@ -56,7 +64,8 @@ pub(crate) fn is_plain(number: &str) -> bool {
 pub struct PedestrianNames(Option<Arc<BTreeMap<PedestrianId, Arc<str>>>>);
 
 impl PedestrianNames {
-    pub(crate) fn new(words: BTreeMap<PedestrianId, Arc<str>>) -> Self {
+    /// Names of these pedestrians; the others are named by their numbers.
+    pub fn new(words: BTreeMap<PedestrianId, Arc<str>>) -> Self {
         Self((!words.is_empty()).then(|| Arc::new(words)))
     }
 
@@ -85,65 +94,12 @@ impl PedestrianNames {
     }
 }
 
-/// Assigns numbers to words in order of arrival, from 2^53 on: above all numbers that files may use.
-#[derive(Debug)]
-pub(crate) struct Numbering {
-    numbers: HashMap<Arc<str>, i64>,
-    words: VecDeque<Arc<str>>,
-    forgotten: i64,
-    most: usize,
-}
-
-impl Numbering {
-    /// Remembers at most `most` words; a forgotten word gets a new number.
-    pub(crate) fn remembering(most: usize) -> Self {
-        Self {
-            numbers: HashMap::new(),
-            words: VecDeque::new(),
-            forgotten: 0,
-            most,
-        }
-    }
-
-    /// The number of a word, and the shared copy of the word.
-    pub(crate) fn number(&mut self, word: &str) -> (PedestrianId, Arc<str>) {
-        if let Some((word, &number)) = self.numbers.get_key_value(word) {
-            return (PedestrianId(number), Arc::clone(word));
-        }
-        if self.words.len() == self.most
-            && let Some(oldest) = self.words.pop_front()
-        {
-            self.numbers.remove(&oldest);
-            self.forgotten += 1;
-        }
-        let number = FRAME_LIMIT + self.forgotten + self.words.len() as i64;
-        let word: Arc<str> = word.into();
-        self.numbers.insert(Arc::clone(&word), number);
-        self.words.push_back(Arc::clone(&word));
-        (PedestrianId(number), word)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
     proptest! {
-        #[test]
-        fn the_last_words_keep_their_numbers(words in prop::collection::vec("[a-d]{1,3}", 0..200)) {
-            let mut numbering = Numbering::remembering(5);
-            let mut last = FRAME_LIMIT - 1;
-            for word in &words {
-                let known = numbering.numbers.get(word.as_str()).copied();
-                let (PedestrianId(number), kept) = numbering.number(word);
-                prop_assert_eq!(&*kept, word.as_str());
-                last += i64::from(known.is_none());
-                prop_assert_eq!(number, known.unwrap_or(last));
-                prop_assert!(numbering.words.len() <= 5 && numbering.numbers.len() <= 5);
-            }
-        }
-
         #[test]
         fn numbers_and_words_come_back_as_they_were_written(text in "[-+0-9a-c.]{1,5}") {
             prop_assert_eq!(PedestrianName::of_text(&text).to_string(), text);

@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use ddl_data::{HORIZON, Position};
-
-use crate::{error::ForecastShapeError, region::RegionTable};
+use crate::error::ForecastShapeError;
+use crate::position::{HORIZON, Position};
+use crate::region::RegionTable;
 
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///
@@ -239,8 +239,9 @@ impl Forecast {
         }
     }
 
-    /// The forecasts of the given pedestrians, at least one, in the given order.
-    pub(crate) fn keeping(&self, pedestrians: &[usize]) -> Self {
+    /// The forecasts of the given pedestrians, at least one, in the given order; an index out of range panics.
+    #[must_use]
+    pub fn of_pedestrians(&self, pedestrians: &[usize]) -> Self {
         fn rows<T: Copy>(all: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
             let row = |&i: &usize| &all[i * per_pedestrian..(i + 1) * per_pedestrian];
             pedestrians.iter().flat_map(row).copied().collect()

@@ -2,10 +2,11 @@
 
 use std::collections::VecDeque;
 
-use ddl_data::{HORIZON, OBSERVED, PedestrianId, Position, Window};
-
 use super::tracked::{Outcomes, TrackedQuantiles};
-use crate::Forecast;
+use crate::forecast::Forecast;
+use crate::pedestrian::PedestrianId;
+use crate::position::{HORIZON, OBSERVED, Position};
+use crate::window::Window;
 
 /// Adapts the regions of the forecasts of one place so that they keep their coverage. It takes every forecast, in order
 /// of time.
@@ -22,8 +23,7 @@ use crate::Forecast;
 ///
 /// # Examples
 /// ```
-/// use ddl_data::{HORIZON, PedestrianId, Window};
-/// use ddl_eval::{AdaptiveRegions, Forecast, RegionTable};
+/// use ddl_core::{AdaptiveRegions, Forecast, HORIZON, PedestrianId, RegionTable, Window};
 ///
 /// let scores: Vec<_> = (1..100).map(|n| [f64::from(n) / 20.0; HORIZON]).collect();
 /// let table = std::sync::Arc::new(RegionTable::of(&scores, &[0.5, 0.9]).expect("99 scores"));
@@ -159,7 +159,7 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
-    use crate::RegionTable;
+    use crate::region::RegionTable;
 
     /// The positions of all pedestrians, frame by frame.
     type Tracks = Vec<Vec<Position>>;

@@ -1,0 +1,22 @@
+#![doc = include_str!("../README.md")]
+
+mod error;
+mod forecast;
+mod forecaster;
+mod pedestrian;
+mod position;
+mod region;
+mod representative;
+mod window;
+
+pub use error::{ForecastError, ForecastShapeError, WindowError};
+pub use forecast::Forecast;
+pub use forecaster::Forecaster;
+pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
+pub use position::{
+    FRAME_LIMIT, FRAME_STEP_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance, is_finite, is_frame,
+    is_frame_step,
+};
+pub use region::{AdaptiveRegions, Disc, RegionTable, TrackedQuantiles};
+pub use representative::{average_displacement, medoid};
+pub use window::{CompletionCounts, RememberedTrack, Window};

@@ -1,0 +1,38 @@
+//! Positions on the ground, and the sampling of windows in time.
+
+/// A place on the ground plane, `[x, y]` in metres.
+pub type Position = [f64; 2];
+
+/// Seconds between two steps of a recording (s).
+pub const TIME_STEP: f64 = 0.4;
+/// Observed steps of a window (3.2 s).
+pub const OBSERVED: usize = 8;
+/// Steps to forecast (4.8 s).
+pub const HORIZON: usize = 12;
+/// Steps of a whole window: observed and to forecast.
+pub const WINDOW: usize = OBSERVED + HORIZON;
+
+/// Limit of frame numbers: exact in an `f64`, and far from overflow in sums.
+pub const FRAME_LIMIT: i64 = 1 << 53;
+/// Largest number of raw frames per step.
+pub const FRAME_STEP_LIMIT: i64 = 1 << 31;
+
+/// Whether a raw frame number is below [`FRAME_LIMIT`] in size.
+pub fn is_frame(frame: i64) -> bool {
+    frame.unsigned_abs() < FRAME_LIMIT.unsigned_abs()
+}
+
+/// Whether a number of raw frames per step is in 1..=[`FRAME_STEP_LIMIT`].
+pub fn is_frame_step(step: i64) -> bool {
+    (1..=FRAME_STEP_LIMIT).contains(&step)
+}
+
+/// Whether both coordinates are finite.
+pub fn is_finite(position: Position) -> bool {
+    position.iter().all(|coordinate| coordinate.is_finite())
+}
+
+/// Euclidean distance of two positions (m).
+pub fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}

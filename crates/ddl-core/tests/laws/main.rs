@@ -1,0 +1,7 @@
+//! Tests of the public interface.
+
+#![allow(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
+
+mod forecast;
+mod representative;
+mod window;

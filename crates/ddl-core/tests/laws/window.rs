@@ -1,0 +1,82 @@
+//! Windows: what is refused, and what stays when pedestrians or positions change.
+
+use ddl_core::{OBSERVED, PedestrianId, Position, RememberedTrack, Window, WindowError};
+
+fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
+    range.map(PedestrianId).collect()
+}
+
+#[test]
+fn invalid_windows_are_refused() {
+    let track = |length: usize| vec![[0.0, 0.0]; length];
+    let mut spoiled = track(20);
+    spoiled[11] = [0.0, f64::NAN];
+    let new = |start, step, ids, tracks| Window::new("r", start, step, ids, tracks).unwrap_err();
+    let refused = |ids, tracks, message: &str| {
+        let error = new(0, 10, ids, tracks).to_string();
+        assert!(error.starts_with(message), "{error}");
+    };
+    refused(vec![], vec![], "a window needs at least one pedestrian");
+    refused(ids(0..2), vec![track(20)], "2 pedestrian ids but 1 tracks");
+    refused(ids(0..1), vec![track(9)], "pedestrian 0: a track of 9 positions");
+    let unequal = vec![track(20), track(8)];
+    refused(ids(0..2), unequal, "pedestrian 1: a track of 8");
+    refused(ids(0..1), vec![spoiled], "pedestrian 0, position 11 of the track");
+    let twice = vec![PedestrianId(1), PedestrianId(1)];
+    refused(twice, vec![track(8); 2], "pedestrian 1 is in the window twice");
+    for (start, step) in [(0, 0), (0, -10), (i64::MAX, 10), (0, i64::MAX)] {
+        let refused = new(start, step, ids(0..1), vec![track(20)]);
+        assert!(matches!(refused, WindowError::Frames { .. }));
+    }
+}
+
+#[test]
+fn changing_positions_changes_nothing_else() {
+    let tracks = vec![(0..20).map(|t| [f64::from(t), 0.0]).collect(), vec![[5.0, 5.0]; 20]];
+    let window = Window::new("r", 100, 6, ids(4..6), tracks).unwrap();
+    let alone = window.filter_pedestrians(|i| i == 1).unwrap();
+    assert_eq!(alone.pedestrians(), ids(5..6));
+    assert_eq!(
+        (alone.track(0), window.filter_pedestrians(|_| false)),
+        (window.track(1), None)
+    );
+    let later = |_, step, [x, y]: Position| {
+        if step >= OBSERVED { [x + 1.0, y] } else { [x, y] }
+    };
+    let changed = window.map_positions(later);
+    assert_eq!(window.reversed().track(0)[..2], [[19.0, 0.0], [18.0, 0.0]]);
+    assert_eq!(window.reversed().reversed(), window);
+    assert_eq!(changed.without_future(), window.without_future());
+    assert_ne!(changed.end(0), window.end(0));
+    assert_eq!(
+        (window.frames()[19], window.steps(), window.has_future()),
+        (214, 20, true)
+    );
+    let observation = window.without_future();
+    assert_eq!((observation.frames().len(), observation.has_future()), (8, false));
+    assert!(observation.future(0).is_empty() && observation.end(0).is_none());
+    assert_eq!(observation.track(0), window.observed(0));
+}
+
+#[test]
+fn remembered_tracks_stay_with_their_pedestrian() {
+    let tracks = (0..3).map(|i| vec![[f64::from(i), 0.0]; 20]).collect();
+    let ids = (1..4).map(PedestrianId).collect();
+    let remembered = |i: usize| RememberedTrack {
+        track: [[i as f64, 1.0]; 20],
+        distance: i as f64,
+    };
+    let window = Window::new("yard", 0, 10, ids, tracks).unwrap();
+    assert!((0..3).all(|i| window.remembered(i).is_empty()));
+    let remembering = window
+        .clone()
+        .with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
+    assert_eq!(remembering.remembered(2), [remembered(2); 2]);
+    assert_eq!(remembering.without_future().remembered(2), [remembered(2); 2]);
+    let kept = remembering.filter_pedestrians(|i| i != 1).unwrap();
+    assert_eq!(kept.remembered(0), []);
+    assert_eq!(kept.remembered(1), [remembered(2); 2]);
+    // Reversal drops it, because it would lie in the future.
+    assert_eq!(remembering.reversed(), window.reversed());
+    assert_eq!(remembering.with_remembered(|_| Vec::new()), window);
+}

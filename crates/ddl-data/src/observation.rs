@@ -1,0 +1,36 @@
+//! A single observation of a pedestrian.
+
+use ddl_core::{PedestrianId, Position};
+use serde::{Deserialize, Serialize};
+
+/// Largest coordinate (m) accepted from files and streams; UTM coordinates reach 10,000 km.
+pub const COORDINATE_LIMIT: f64 = 1e7;
+
+/// Position of one pedestrian at one frame.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Observation {
+    /// Raw frame number of the recording; steps of 0.4 s are a fixed number of raw frames apart.
+    pub frame: i64,
+    /// The pedestrian.
+    pub pedestrian: PedestrianId,
+    /// Its position, `[x, y]` (m).
+    pub position: Position,
+}
+
+impl Observation {
+    /// An observation of a pedestrian at a frame and position (m).
+    #[must_use]
+    pub fn new(frame: i64, pedestrian: PedestrianId, position: Position) -> Self {
+        Self {
+            frame,
+            pedestrian,
+            position,
+        }
+    }
+}
+
+/// The point at `frame` of the straight line between two observations.
+pub(crate) fn between(before: (i64, Position), after: (i64, Position), frame: i64) -> Position {
+    let share = (frame - before.0) as f64 / (after.0 - before.0) as f64;
+    [0, 1].map(|axis| before.1[axis] + share * (after.1[axis] - before.1[axis]))
+}
