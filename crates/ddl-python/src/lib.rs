@@ -54,7 +54,7 @@ mod _core {
     #[pymodule_export]
     use crate::recording::Recording;
     #[pymodule_export]
-    use crate::soft_dtw::{SearchIndex, SlidingIndex, value, value_and_gradient};
+    use crate::soft_dtw::{SearchIndex, value, value_and_gradient};
 
     use pyo3::prelude::*;
 

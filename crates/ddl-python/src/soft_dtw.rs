@@ -3,7 +3,7 @@
 use crate::arrays::array;
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::softdtw::{Band, Cost, SearchIndex as Index, SlidingIndex as Sliding, SoftDtw, WindowNeighbour};
+use ddl::softdtw::{Band, Cost, Neighbour, SearchError, SearchIndex as Index, SoftDtw};
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -32,8 +32,8 @@ macro_rules! in_dimension {
                 const $D: usize = 128;
                 $body
             }
-            found => Err(PyValueError::new_err(format!(
-                "a step must have 1 to 128 components, found {found}"
+            components => Err(PyValueError::new_err(format!(
+                "a step must have 1 to 128 components, found {components}"
             ))),
         }
     };
@@ -199,64 +199,25 @@ pub(crate) fn value_and_gradient(
     })
 }
 
+/// A search, ready to run without the GIL.
+type Work = Box<dyn FnOnce() -> Result<Vec<Vec<Neighbour>>, SearchError> + Send>;
+
 /// A search index with a number of components that is known at run time.
 trait Search: Send + Sync {
-    fn nearest(
-        &self,
-        queries: &[PyReadonlyArray2<'_, f64>],
-        components: usize,
-    ) -> PyResult<Box<dyn FnOnce(usize) -> Found + Send>>;
+    /// The search for the `n` nearest of each query.
+    fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work>;
     fn len(&self) -> usize;
 }
 
-/// The neighbours of each query: index of the sequence, offset of the window in it, and distance.
-type Found = Result<Vec<Vec<WindowNeighbour>>, String>;
-
 impl<const D: usize> Search for Arc<Index<D>> {
-    fn nearest(
-        &self,
-        queries: &[PyReadonlyArray2<'_, f64>],
-        components: usize,
-    ) -> PyResult<Box<dyn FnOnce(usize) -> Found + Send>> {
+    fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work> {
         let queries = all_steps::<D>(queries, components, "queries")?;
         let index = Arc::clone(self);
-        Ok(Box::new(move |n| {
-            let found = index.nearest_batch(&queries, n);
-            let found = found.map_err(|error| error.to_string())?;
-            let of_query = |found: Vec<ddl::softdtw::Neighbour>| {
-                let neighbours = found.into_iter().map(|found| WindowNeighbour {
-                    track: found.index,
-                    offset: 0,
-                    distance: found.distance,
-                });
-                neighbours.collect()
-            };
-            Ok(found.into_iter().map(of_query).collect())
-        }))
+        Ok(Box::new(move || index.nearest_batch(&queries, n)))
     }
 
     fn len(&self) -> usize {
         Index::len(self)
-    }
-}
-
-impl<const D: usize> Search for Arc<Sliding<D>> {
-    fn nearest(
-        &self,
-        queries: &[PyReadonlyArray2<'_, f64>],
-        components: usize,
-    ) -> PyResult<Box<dyn FnOnce(usize) -> Found + Send>> {
-        let queries = all_steps::<D>(queries, components, "queries")?;
-        let index = Arc::clone(self);
-        Ok(Box::new(move |n| {
-            let found = index.nearest_windows_batch(&queries, n);
-            let found = found.map_err(|error| error.to_string())?;
-            Ok(found.into_iter().flatten().collect())
-        }))
-    }
-
-    fn len(&self) -> usize {
-        Sliding::len(self)
     }
 }
 
@@ -282,19 +243,6 @@ fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<u
     let first = arrays.first();
     let first = first.ok_or_else(|| PyValueError::new_err(format!("{name} is empty; give at least one sequence")))?;
     Ok(first.shape()[1])
-}
-
-/// Searches without the GIL; Ctrl-C ends the call.
-fn search(
-    py: Python<'_>,
-    index: &dyn Search,
-    components: usize,
-    queries: &[Bound<'_, PyAny>],
-    n: usize,
-) -> PyResult<Vec<Vec<WindowNeighbour>>> {
-    let queries = sequences(queries, "queries")?;
-    let work = index.nearest(&queries, components)?;
-    run(py, move |_| work(n))?.map_err(PyValueError::new_err)
 }
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
@@ -332,80 +280,13 @@ impl SearchIndex {
 
     /// Indices `(q, n)` and distances `(q, n)`, nearest first.
     fn nearest(&self, py: Python<'_>, queries: Vec<Bound<'_, PyAny>>, n: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let found = search(py, &*self.index, self.components, &queries, n)?;
-        let shape = [found.len(), n.min(self.index.len())];
-        let flat = || found.iter().flatten();
-        let indices = flat().map(|found| found.track as i64).collect();
-        let distances = flat().map(|found| found.distance).collect();
+        let queries = sequences(&queries, "queries")?;
+        let search = self.index.prepared(&queries, self.components, n)?;
+        let neighbours = run(py, move |_| search())?.map_err(|error| of_any(&error))?;
+        let shape = [neighbours.len(), n.min(self.index.len())];
+        let flat = || neighbours.iter().flatten();
+        let indices = flat().map(|neighbour| neighbour.index as i64).collect();
+        let distances = flat().map(|neighbour| neighbour.distance).collect();
         Ok((array(py, indices, shape)?, array(py, distances, shape)?))
-    }
-}
-
-#[pyclass(frozen, module = "ddl_forecast._core")]
-pub(crate) struct SlidingIndex {
-    index: Box<dyn Search>,
-    components: usize,
-    length: usize,
-}
-
-#[pymethods]
-impl SlidingIndex {
-    #[new]
-    #[pyo3(signature = (tracks, length, gamma = 1.0, *, tail = 0, cost = "squared_euclidean", band = None))]
-    fn new(
-        py: Python<'_>,
-        tracks: Vec<Bound<'_, PyAny>>,
-        length: usize,
-        gamma: f64,
-        tail: usize,
-        cost: &str,
-        band: Option<usize>,
-    ) -> PyResult<Self> {
-        let dtw = distance(gamma, cost, band)?;
-        let arrays = sequences(&tracks, "tracks")?;
-        let components = components_of(&arrays, "tracks")?;
-        let index: Box<dyn Search> = in_dimension!(components, D => {
-            let tracks = all_steps::<D>(&arrays, components, "tracks")?;
-            let built = run(py, move |_| Sliding::build(&dtw, &tracks, length, tail))?;
-            let built: Box<dyn Search> = Box::new(Arc::new(built.map_err(|error| of_any(&error))?));
-            Ok(built)
-        })?;
-        Ok(Self {
-            index,
-            components,
-            length,
-        })
-    }
-
-    fn __len__(&self) -> usize {
-        self.index.len()
-    }
-
-    /// Tracks, offsets and distances, `(w, n)` each, of the windows nearest to each of the w windows of the track
-    /// `query`.
-    fn nearest(
-        &self,
-        py: Python<'_>,
-        query: Bound<'_, PyAny>,
-        n: usize,
-    ) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
-        let steps = sequence(&query, "query")?.shape()[0];
-        if steps < self.length {
-            return Err(PyValueError::new_err(format!(
-                "query has {steps} steps, fewer than the {} of a window",
-                self.length
-            )));
-        }
-        let found = search(py, &*self.index, self.components, &[query], n)?;
-        let shape = [found.len(), n.min(self.index.len())];
-        let flat = || found.iter().flatten();
-        let tracks = flat().map(|found| found.track as i64).collect();
-        let offsets = flat().map(|found| found.offset as i64).collect();
-        let distances = flat().map(|found| found.distance).collect();
-        Ok((
-            array(py, tracks, shape)?,
-            array(py, offsets, shape)?,
-            array(py, distances, shape)?,
-        ))
     }
 }

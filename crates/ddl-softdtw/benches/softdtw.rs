@@ -1,5 +1,4 @@
-//! Speed of the value, the gradient, the batch and the search (pairs per second on one thread, for each instruction
-//! set). The windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of
+//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set). The windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of
 //! the benchmarks say which.
 
 mod recordings;
@@ -7,7 +6,7 @@ mod recordings;
 use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use ddl_softdtw::{BatchGradients, Cost, InstructionSet, SearchIndex, SoftDtw, SoftDtwBatch};
+use ddl_softdtw::{Cost, InstructionSet, SearchIndex, SoftDtw};
 use recordings::Windows;
 use recordings::walks::Numbers;
 
@@ -40,29 +39,16 @@ fn pairs(criterion: &mut Criterion) {
     pair::<8>(criterion, &wave(256, 0.0), &wave(256, 0.3));
 }
 
-fn batch(criterion: &mut Criterion) {
+fn search(criterion: &mut Criterion) {
     let windows = Windows::load(8);
     let queries = windows.some_queries(24);
     let sequences = &windows.candidates[..4096];
-    let weights = vec![1.0; sequences.len()];
-    let name = format!("batch 8x8x2, {} windows", windows.source);
+    let name = format!("search 8x8x2, {} windows", windows.source);
     let mut group = criterion.benchmark_group(name);
     group.sample_size(20);
     let pairs = (sequences.len() * queries.len()) as u64;
     group.throughput(Throughput::Elements(pairs));
     for set in InstructionSet::available() {
-        let batch = SoftDtwBatch::build(&dtw(), sequences).expect("valid");
-        let batch = batch.with_instruction_set(set).expect("available");
-        let mut results = BatchGradients::default();
-        group.bench_function(BenchmarkId::new("values and gradients", set), |b| {
-            b.iter(|| {
-                for x in &queries {
-                    batch
-                        .values_and_gradients_into(black_box(x), &mut results)
-                        .expect("valid");
-                }
-            });
-        });
         let index = SearchIndex::build(&dtw(), sequences).expect("valid");
         let index = index.with_instruction_set(set).expect("available");
         group.bench_function(BenchmarkId::new("100 nearest", set), |b| {
@@ -72,16 +58,9 @@ fn batch(criterion: &mut Criterion) {
                 }
             });
         });
-        group.bench_function(BenchmarkId::new("weighted sum", set), |b| {
-            b.iter(|| {
-                for x in &queries {
-                    black_box(batch.weighted_sum(x, &weights)).expect("valid");
-                }
-            });
-        });
     }
     group.finish();
 }
 
-criterion_group!(benches, pairs, batch);
+criterion_group!(benches, pairs, search);
 criterion_main!(benches);

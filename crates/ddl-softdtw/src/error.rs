@@ -56,10 +56,6 @@ pub enum SearchError {
     NoCandidates,
     #[error("candidate {index}: {source}")]
     Candidate { index: usize, source: SoftDtwError },
-    #[error("{weights} weights for {sequences} sequences: give one for each")]
-    Weights { weights: usize, sequences: usize },
-    #[error("weight {index} is {weight}: must be finite")]
-    Weight { index: usize, weight: f64 },
     #[error("this processor has no {set} instructions: choose one of InstructionSet::available()")]
     InstructionSet { set: InstructionSet },
     #[error("query: {0}")]

@@ -25,8 +25,6 @@ struct Format {
     floor: f64,
     /// log2 of the largest number, minus two for rounding and for the sums of three terms.
     top: f64,
-    /// log2 of the largest start of a backward recursion, for which sums of differences do not overflow.
-    largest_seed: i16,
     /// log2 of the factor by which an accurate score must exceed the error of clamp and floor.
     headroom: f64,
 }
@@ -36,7 +34,6 @@ const NARROW: Format = Format {
     cost_limit: COST_LIMIT as f64,
     floor: FLOOR as f64,
     top: 125.0,
-    largest_seed: 100,
     headroom: 24.0,
 };
 
@@ -45,7 +42,6 @@ const WIDE: Format = Format {
     cost_limit: COST_LIMIT_64,
     floor: WIDE_FLOOR,
     top: 1020.0,
-    largest_seed: 900,
     headroom: 56.0,
 };
 
@@ -101,20 +97,6 @@ impl Range {
         let clamp = start + self.paths_log2 - self.format.cost_limit;
         let floor = self.format.floor.log2() + self.tails_log2;
         clamp.max(floor) + 1.0 + self.format.headroom
-    }
-
-    /// log2 of the start of the backward recursion β, which sums the paths from a cell to the last one.
-    pub(crate) fn seed_log2(&self) -> i16 {
-        self.start_log2.min(self.format.largest_seed)
-    }
-
-    /// The smallest score (log2, start included) for which the expected alignment α β / (seed · score) of each of n m
-    /// `cells` is also accurate. The floor that a cell adds to β is multiplied by at most α = 2^`top`. Over all cells
-    /// it changes the expected alignment by at most cells · floor · 2^`top` / (seed · score).
-    pub(crate) fn smallest_aligned_log2(&self, cells: usize) -> f64 {
-        let floors = (cells as f64 * self.format.floor).log2() + self.format.top;
-        let smallest = floors + self.format.headroom - f64::from(self.seed_log2());
-        smallest.max(self.smallest_accurate_log2())
     }
 
     /// Bound on the error of log2(score) in `f32` for scores of at least `score_log2` (start included), for inputs of

@@ -7,9 +7,8 @@
 //! every product is a normal number. [`crate::range`] bounds the effect of both on small scores.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
-#![expect(clippy::needless_range_loop, reason = "arrays of registers that advance together")]
 
-use ddl_simd::{Lanes, Register};
+use ddl_simd::Register;
 
 use crate::blocks::Step;
 use crate::range::{FLOOR, FUSED_FLOOR};
@@ -58,25 +57,6 @@ pub(crate) fn recursion<S: Register, const D: usize, const G: usize>(
     left
 }
 
-/// 2^−|x − y|² of a step x and all steps y of one part of a block.
-#[inline(always)]
-pub(crate) fn similarities_of_row<S: Register, const D: usize, const G: usize>(
-    simd: S,
-    x: &[f32; D],
-    block: &[Step<D>],
-    part: usize,
-    into: &mut [Lanes],
-) {
-    for first in (0..block.len()).step_by(G) {
-        let ks = similarities::<S, D, G>(simd, x, block, first, part);
-        for g in 0..G {
-            if let Some(line) = into.get_mut(first + g) {
-                simd.store(ks[g], &mut line.0, part);
-            }
-        }
-    }
-}
-
 /// 2^−|x − y|² of a query step x and up to G steps y from `first` on.
 #[inline(always)]
 fn similarities<S: Register, const D: usize, const G: usize>(
@@ -117,15 +97,5 @@ pub(crate) fn cell<S: Register>(
         simd.mul_add(k, left, others)
     } else {
         simd.mul(k, simd.add(simd.add(others, simd.splat(FLOOR)), left))
-    }
-}
-
-/// K b, with the floor added as in [`cell`].
-#[inline(always)]
-pub(crate) fn weigh<S: Register>(simd: S, k: S::Floats, b: S::Floats) -> S::Floats {
-    if S::FUSED {
-        simd.mul_add(k, b, simd.splat(FUSED_FLOOR))
-    } else {
-        simd.mul(k, simd.add(b, simd.splat(FLOOR)))
     }
 }

@@ -10,10 +10,10 @@ use crate::range::{Range, WIDE_FLOOR};
 use crate::value::SoftDtw;
 
 /// Range of γ. Outside of it, the squares of differences may leave the range of `f64` although their cost does not.
-pub(crate) const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+const GAMMAS: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
 
 /// Number of cells whose similarities are computed together, to hide the latency of the operations.
-pub(crate) const WIDE_GROUP: usize = 4;
+const WIDE_GROUP: usize = 4;
 
 pub(crate) type WideLanes = [f64; WIDE_LANES];
 
@@ -118,7 +118,7 @@ impl PairValues {
     }
 }
 
-pub(crate) fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut [[WideLanes; D]]) {
+fn spread<const D: usize>(steps: &[[f64; D]], lane: usize, into: &mut [[WideLanes; D]]) {
     for (step, into) in steps.iter().zip(into) {
         for (value, lanes) in step.iter().zip(into) {
             lanes[lane] = *value;

@@ -65,7 +65,7 @@ impl SoftDtw {
 
     /// Restricts the warping paths to `band`. The time of a value is then proportional to the width of the band.
     ///
-    /// Searches and batches evaluate pair by pair with a band, which takes up to a hundred times as long.
+    /// Searches evaluate pair by pair with a band, which takes up to a hundred times as long.
     #[must_use]
     pub fn with_band(self, band: Band) -> Self {
         Self {

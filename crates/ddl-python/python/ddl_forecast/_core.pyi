@@ -15,7 +15,6 @@ __all__ = [
     "Model",
     "Recording",
     "SearchIndex",
-    "SlidingIndex",
     "TestSet",
     "UNFAMILIAR",
     "__version__",
@@ -164,21 +163,6 @@ class SearchIndex:
     ) -> SearchIndex: ...
     def __len__(self) -> int: ...
     def nearest(self, queries: Sequence[ArrayLike], n: int) -> tuple[Integers, Floats]: ...
-
-@final
-class SlidingIndex:
-    def __new__(
-        cls,
-        tracks: Sequence[ArrayLike],
-        length: int,
-        gamma: float = 1.0,
-        *,
-        tail: int = 0,
-        cost: str = "squared_euclidean",
-        band: int | None = None,
-    ) -> SlidingIndex: ...
-    def __len__(self) -> int: ...
-    def nearest(self, query: ArrayLike, n: int) -> tuple[Integers, Integers, Floats]: ...
 
 @final
 class GoalEstimator:

@@ -23,7 +23,7 @@ from ddl_forecast import _core
 from ddl_forecast._arrays import Floats, Integers
 from ddl_forecast._core import value, value_and_gradient
 
-__all__ = ["SearchIndex", "SlidingIndex", "value", "value_and_gradient"]
+__all__ = ["SearchIndex", "value", "value_and_gradient"]
 
 
 class SearchIndex:
@@ -67,38 +67,3 @@ class SearchIndex:
     def nearest_all(self, queries: Sequence[ArrayLike], n: int = 1) -> tuple[Integers, Floats]:
         """Indices (q, n) and distances (q, n) for each of q sequences, on all threads."""
         return self._core.nearest(list(queries), n)
-
-
-class SlidingIndex:
-    """An index of all windows of one length of longer tracks, without copies.
-
-    Parameters
-    ----------
-    tracks
-        Sequences of any lengths.
-    length
-        Number of steps of a window.
-    gamma, cost, band
-        As for :func:`value`.
-    tail
-        Number of steps that a track must continue after a window, for instance to read the continuation.
-    """
-
-    def __init__(
-        self,
-        tracks: Sequence[ArrayLike],
-        length: int,
-        gamma: float = 1.0,
-        *,
-        tail: int = 0,
-        cost: str = "squared_euclidean",
-        band: int | None = None,
-    ) -> None:
-        self._core = _core.SlidingIndex(list(tracks), length, gamma, tail=tail, cost=cost, band=band)
-
-    def __len__(self) -> int:
-        return len(self._core)
-
-    def nearest(self, query: ArrayLike, n: int = 1) -> tuple[Integers, Integers, Floats]:
-        """Tracks, first steps and distances, (w, n) each, of the windows nearest to each of the w of ``query``."""
-        return self._core.nearest(query, n)

@@ -39,14 +39,6 @@ impl Numbers {
         (0..steps).map(velocity).collect()
     }
 
-    pub(crate) fn pedestrians<const D: usize>(&mut self, count: usize, longest: usize) -> Vec<Track<D>> {
-        let mut pedestrian = || {
-            let steps = (self.next() * (longest + 1) as f64) as usize;
-            self.pedestrian(steps)
-        };
-        (0..count).map(|_| pedestrian()).collect()
-    }
-
     /// Velocities of a standing pedestrian: half of them exactly 0, the others multiples of 1 mm/s.
     pub(crate) fn standing(&mut self, steps: usize) -> Track<2> {
         let height = if self.next() < 0.5 { 0.0 } else { 4.0 };
