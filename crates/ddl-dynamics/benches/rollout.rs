@@ -24,7 +24,7 @@ fn rollouts<T: Real, const D: usize>(
     group.bench_function(name, |b| {
         b.iter(|| {
             for hypothesis in &hypotheses {
-                let MadeUpWalk { flow, start } = black_box(hypothesis);
+                let MadeUpWalk { flow, start, .. } = black_box(hypothesis);
                 rollout_into(flow, integrator, *start, dt, &mut positions).expect("finite");
                 black_box(&positions);
             }
@@ -35,7 +35,7 @@ fn rollouts<T: Real, const D: usize>(
 fn certificates<T: Real, const D: usize>(group: &mut BenchmarkGroup<'_, WallTime>, name: &str) {
     let hypotheses: Vec<MadeUpWalk<T, D>> = drawn(COUNT, SEED);
     let dt = T::rounded(TIME_STEP);
-    let follow = |MadeUpWalk { flow, start }: &_| rollout(flow, &StableEuler, *start, dt, STEPS);
+    let follow = |MadeUpWalk { flow, start, .. }: &_| rollout(flow, &StableEuler, *start, dt, STEPS);
     let paths: Vec<_> = hypotheses
         .iter()
         .map(|hypothesis| follow(hypothesis).expect("finite"))
@@ -43,8 +43,7 @@ fn certificates<T: Real, const D: usize>(group: &mut BenchmarkGroup<'_, WallTime
     group.bench_function(name, |b| {
         b.iter(|| {
             for (hypothesis, path) in hypotheses.iter().zip(&paths) {
-                let flow = &black_box(hypothesis).flow;
-                let metrics = flow.source().metrics();
+                let MadeUpWalk { flow, metrics, .. } = black_box(hypothesis);
                 let certificate = LyapunovCertificate::new(path, metrics, flow.attractor(), dt);
                 black_box(certificate.expect("finite").verify()).expect("stable");
             }

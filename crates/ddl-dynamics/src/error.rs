@@ -21,34 +21,12 @@ pub enum DynamicsError {
     NotLowerTriangular { row: usize, column: usize, value: f64 },
     #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
     FactorTooLarge,
-    #[error("the map is not finite or has no inverse: the transformed P would not be positive definite")]
-    SingularMap,
     #[error("the share is {0}: it must be above 0, so that P stays positive definite, and at most 1")]
     InvalidShare(f64),
     #[error("the direction is the zero vector: its length must be positive")]
     NoDirection,
-    #[error(
-        "the flow is too stiff: {steps} inner steps were not enough for {covered} s of a time step; \
-         use StableEuler, a larger tolerance or a shorter time step"
-    )]
-    TooStiff { steps: usize, covered: f64 },
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]
     DistanceTooLarge,
-    #[error(
-        "the local translation is not invertible: sqrt(2/e) rho |v| is {contraction}, and must be at most {largest}; \
-         shorten the translation v or lower the rate rho"
-    )]
-    NotInvertible { contraction: f64, largest: f64 },
-    #[error(
-        "a path of {points} points and {length} m cannot be straightened: it needs at least two different points, and \
-         a finite length"
-    )]
-    InvalidPathLength { points: usize, length: f64 },
-    #[error(
-        "the path turns back on itself {along:.2} m after its start: straighten the parts before and after it, or \
-         round the turn"
-    )]
-    PathTurnsBack { along: f64 },
     #[error("the metric schedule is empty: give the metric of at least one step")]
     EmptySchedule,
     #[error("{positions} positions and {metrics} metrics: a rollout of n steps has n + 1 positions and n metrics")]

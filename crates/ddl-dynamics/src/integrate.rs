@@ -1,6 +1,5 @@
 //! Integrators: from a velocity field to a sequence of positions.
 
-mod dormand_prince;
 mod euler;
 mod stable_euler;
 
@@ -8,9 +7,8 @@ use nalgebra::SVector;
 
 use crate::{error::DynamicsError, flow::Flow, real::Real, state::State};
 
-pub use dormand_prince::DormandPrince;
 pub use euler::Euler;
-pub use stable_euler::{StableEuler, StableStep, StepLimit};
+pub use stable_euler::StableEuler;
 
 /// An integration rule for one time step.
 pub trait Integrator<T: Real, const D: usize> {
@@ -22,7 +20,7 @@ pub trait Integrator<T: Real, const D: usize> {
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
-        state: &State<'_, T, D>,
+        state: &State<T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError>;
 }

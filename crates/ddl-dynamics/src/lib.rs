@@ -23,7 +23,7 @@
 //!
 //! // The longest possible duration: distance over the smallest eigenvalue (of the continuous flow).
 //! let slowest = metric.eigenvalue_range().smallest;
-//! println!("{:.1} s", cup.potential(&path[0]) / slowest);
+//! println!("{:.1} s", cup.distance(&path[0]) / slowest);
 //!
 //! // The same with a pillar in the way: the hand passes it and still reaches the cup.
 //! let pillar = Ball::new(Vector3::new(0.3, 0.08, 0.12), 0.1)?;
@@ -35,51 +35,22 @@
 //! # Ok::<(), ddl_dynamics::DynamicsError>(())
 //! ```
 //!
-//! ## A robot that goes around the end of a wall
-//!
-//! A metric alone never turns the motion more than 90 degrees away from the goal. A demonstrated path does:
-//!
-//! ```rust
-//! use ddl_dynamics::{
-//!     Chain, CholeskyMetric, DiffeomorphicFlow, LyapunovCertificate, StableEuler, rollout,
-//! };
-//! use nalgebra::Vector2;
-//!
-//! // The goal is 1 m away, on the other side of the wall.
-//! let shown = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [0.0, 1.0]].map(Vector2::from);
-//! let straightening = Chain::straightening(&shown, 150)?; // 0.1 s; debug builds take a few seconds
-//! assert!(straightening.mean_residual < 0.02); // metres
-//!
-//! let identity = CholeskyMetric::identity(); // 1 m/s along the path
-//! let flow = DiffeomorphicFlow::in_chart(shown[3], straightening.chain, identity)?;
-//! let path = rollout(&flow, &StableEuler, shown[0], 0.4, 24)?;
-//! assert_eq!(path[24], shown[3]);
-//! assert!(LyapunovCertificate::of_rollout(&flow, &path, 0.4)?.verify().is_ok());
-//! # Ok::<(), ddl_dynamics::DynamicsError>(())
-//! ```
-//!
-//! From every other start the goal is reached as well. The map encodes the demonstrated path and not the wall: a path
-//! from another start may cross the wall.
-//!
 //! ## What is guaranteed, and when
 //!
 //! | | guaranteed | condition |
 //! |---|---|---|
 //! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min` seconds | `P` positive definite: every [`CholeskyMetric`] |
-//! | [`DiffeomorphicFlow`] | `V = Phi o psi` falls; turns of more than 90 degrees are possible | `psi` invertible, with its Jacobian |
 //! | [`AvoidingFlow`] | `Phi` falls outside the balls; no ball is entered; the goal is the only attractor | balls stand still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
 //! | [`Euler`] | `Phi` falls in a step | only if `dt < 2 Phi u^T P u / \|P u\|^2`: never near the goal |
 //! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32` or `f64` |
 //! | [`StableEuler`] | `Phi <= tolerance` in a bounded number of steps | eigenvalues within `[m, M]`, `m > 0` |
-//! | [`DormandPrince`] | decrease as above, estimated error below a tolerance | flows that are not too stiff |
 //! | [`LyapunovCertificate`] | names the first step of a path that violates the decrease | none: any path |
 //!
 //! The smallest eigenvalue `sigma` of the paper, 1e-8, is lost when `P` is formed in `f32`; here `P` is applied through
-//! its factor and never formed. Certificates and chains are `serde` types: with the feature `float_roundtrip` of
+//! its factor and never formed. Certificates are `serde` types: with the feature `float_roundtrip` of
 //! `serde_json` they keep every bit.
 
 mod attractor;
-mod diffeomorphism;
 mod error;
 mod flow;
 mod integrate;
@@ -95,11 +66,10 @@ mod spectrum;
 mod state;
 
 pub use attractor::Attractor;
-pub use diffeomorphism::{Chain, Diffeomorphism, LocalTranslation, Straightening};
 pub use error::DynamicsError;
-pub use flow::{AvoidingFlow, DiffeomorphicFlow, Flow, NaturalGradientFlow};
-pub use integrate::{DormandPrince, Euler, Integrator, StableEuler, StableStep, StepLimit};
-pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Violation};
+pub use flow::{AvoidingFlow, Flow, NaturalGradientFlow};
+pub use integrate::{Euler, Integrator, StableEuler};
+pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Obstacles, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};
 pub use metric_source::{ArrivingSchedule, MetricSchedule, MetricSource};
 pub use motion_bounds::{MotionBounds, StepTime};

@@ -18,16 +18,14 @@ use crate::{
 };
 
 pub use certified_step::CertifiedStep;
-pub use motion::{Bounded, MotionEvidence};
+pub use motion::{Bounded, MotionEvidence, Obstacles};
 pub use violation::Violation;
 
 /// Evidence that a rollout approached its goal: the quantities of the stability proof for every step.
 ///
 /// It is computed from the positions alone, for any integrator, so it can also check rollouts of other programs. It
 /// does not check that the positions follow from the metrics, that the pedestrian arrived
-/// ([`final_potential`](Self::final_potential) is the remaining distance), or that obstacles were avoided. With a
-/// [chart](Flow::chart) goal, potentials, eigenvalues and angles are those of the chart, not of space. `Phi` is the
-/// distance to the goal, also for a quadratic attractor.
+/// ([`final_potential`](Self::final_potential) is the remaining distance), or that obstacles were avoided.
 ///
 /// JSON keeps it exactly with the feature `float_roundtrip` of `serde_json`. Without the feature, rounding can change
 /// the result of the strict check for a pedestrian that hardly moves.
@@ -65,18 +63,17 @@ impl<T: Real> LyapunovCertificate<T> {
     /// checks these as well.
     ///
     /// # Shapes
-    /// `path`: the positions of the certificate (metres), the start first. Set `alone` unless obstacles were avoided.
-    /// Obstacles may delay a pedestrian, so only its speed is then bounded.
+    /// `path`: the positions of the certificate (metres), the start first.
     ///
     /// # Errors
     /// [`DynamicsError::LengthMismatch`], or [`DynamicsError::OtherPath`] if the distances from the goal differ from
-    /// those of the certificate, as with a [chart](Flow::chart).
+    /// those of the certificate.
     pub fn within(
         self,
         path: &[SVector<T, 2>],
         attractor: &Attractor<T, 2>,
         bounds: &MotionBounds<T>,
-        alone: bool,
+        obstacles: Obstacles,
     ) -> Result<Self, DynamicsError> {
         if path.len() != self.steps.len() + 1 {
             return Err(DynamicsError::LengthMismatch {
@@ -91,7 +88,7 @@ impl<T: Real> LyapunovCertificate<T> {
         if let Some(position) = distances.zip(certified).position(|(a, b)| a != b) {
             return Err(DynamicsError::OtherPath { position });
         }
-        let motion = MotionEvidence::new(path, attractor, bounds, self.time_step, alone);
+        let motion = MotionEvidence::new(path, attractor, bounds, self.time_step, obstacles);
         Ok(Self {
             motion: Some(motion),
             ..self
@@ -149,8 +146,7 @@ impl<T: Real> LyapunovCertificate<T> {
 
     /// The certificate of a rollout of `flow` with steps of `dt` seconds.
     ///
-    /// The flow is queried for its metric at each position, with the history so far. With a [`chart`](Flow::chart), all
-    /// quantities are in its coordinates.
+    /// The flow is queried for its metric at each position.
     ///
     /// # Errors
     /// Those of [`new`](Self::new), and, inside [`DynamicsError::Step`], those of the flow's metric.
@@ -162,20 +158,13 @@ impl<T: Real> LyapunovCertificate<T> {
         let steps = path.len().saturating_sub(1);
         let mut metrics = Vec::with_capacity(steps);
         for (step, position) in path[..steps].iter().enumerate() {
-            let time = dt * T::rounded(step as f64);
-            let state = State::new(*position, step, time, &path[..=step]);
+            let state = State::new(*position, step, dt * T::rounded(step as f64));
             metrics.push(flow.metric(&state).map_err(|cause| DynamicsError::Step {
                 step,
                 cause: Box::new(cause),
             })?);
         }
-        match flow.chart() {
-            None => Self::new(path, &metrics, flow.attractor(), dt),
-            Some(psi) => {
-                let images: Vec<_> = path.iter().map(|position| psi.apply(position)).collect();
-                Self::new(&images, &metrics, flow.attractor(), dt)
-            }
-        }
+        Self::new(path, &metrics, flow.attractor(), dt)
     }
 
     /// Checks the guarantee: `P` positive definite, `d Phi / dt < 0` and `Phi` strictly smaller after every step away
@@ -197,11 +186,6 @@ impl<T: Real> LyapunovCertificate<T> {
     /// The goal (metres), `D` components.
     pub fn goal(&self) -> &[T] {
         &self.goal
-    }
-
-    /// The time step (seconds).
-    pub fn time_step(&self) -> T {
-        self.time_step
     }
 
     /// The evidence of each step, in order.

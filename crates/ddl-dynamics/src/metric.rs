@@ -1,6 +1,6 @@
 //! The metric `P = L L^T + sigma I`, stored as its Cholesky factor.
 
-mod transform;
+mod damping;
 
 use nalgebra::{SMatrix, SVector};
 
@@ -122,8 +122,8 @@ impl<T: Real, const D: usize> CholeskyMetric<T, D> {
         self.transposed_times(u).norm_squared() + self.sigma * u.norm_squared()
     }
 
-    /// `P` as a matrix (m/s), exactly symmetric, for display and tests; see the type's numerics.
-    pub fn to_matrix(&self) -> SMatrix<T, D, D> {
+    /// `P` as a matrix (m/s), exactly symmetric, see the type's numerics.
+    pub(crate) fn to_matrix(self) -> SMatrix<T, D, D> {
         SMatrix::from_fn(|i, j| {
             let mut sum = if i == j { self.sigma } else { T::zero() };
             for k in 0..=i.min(j) {

@@ -18,11 +18,11 @@ pub trait MetricSource<T: Real, const D: usize> {
     ///
     /// # Errors
     /// If the source cannot give a metric, for instance because a factor is not finite.
-    fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
+    fn metric(&self, state: &State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>;
 }
 
 impl<T: Real, const D: usize> MetricSource<T, D> for CholeskyMetric<T, D> {
-    fn metric(&self, _state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
+    fn metric(&self, _state: &State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         Ok(*self)
     }
 }
@@ -30,9 +30,9 @@ impl<T: Real, const D: usize> MetricSource<T, D> for CholeskyMetric<T, D> {
 impl<T, const D: usize, F> MetricSource<T, D> for F
 where
     T: Real,
-    F: Fn(&State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>,
+    F: Fn(&State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError>,
 {
-    fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
+    fn metric(&self, state: &State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         self(state)
     }
 }
@@ -54,15 +54,10 @@ impl<T: Real, const D: usize> MetricSchedule<T, D> {
         }
         Ok(Self { metrics })
     }
-
-    /// The metrics, one per step; never empty.
-    pub fn metrics(&self) -> &[CholeskyMetric<T, D>] {
-        &self.metrics
-    }
 }
 
 impl<T: Real, const D: usize> MetricSource<T, D> for MetricSchedule<T, D> {
-    fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
+    fn metric(&self, state: &State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let last = self.metrics.len() - 1;
         Ok(self.metrics[state.step.min(last)])
     }
@@ -97,19 +92,14 @@ impl<T: Real> ArrivingSchedule<T> {
             time_step,
         })
     }
-
-    /// The bounds of the motion.
-    pub fn bounds(&self) -> &MotionBounds<T> {
-        &self.bounds
-    }
 }
 
 impl<T: Real> MetricSource<T, 2> for ArrivingSchedule<T> {
-    fn metric(&self, state: &State<'_, T, 2>) -> Result<CholeskyMetric<T, 2>, DynamicsError> {
+    fn metric(&self, state: &State<T, 2>) -> Result<CholeskyMetric<T, 2>, DynamicsError> {
         let metric = self.metrics.metric(state)?;
         let time = StepTime {
             done: state.step,
-            left: self.metrics.metrics().len().saturating_sub(state.step),
+            left: self.metrics.metrics.len().saturating_sub(state.step),
             dt: self.time_step,
         };
         let towards = self.attractor.goal() - state.position;

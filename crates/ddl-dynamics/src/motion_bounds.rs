@@ -64,9 +64,9 @@ impl<T: Real> MotionBounds<T> {
     /// ... and the constant added to it (m/s).
     pub const SPEED_MARGIN: f64 = 0.45;
     /// Weight of the pedestrian's own velocity in the neutral motion at the start (no unit).
-    pub const MOMENTUM: f64 = 0.75;
+    const MOMENTUM: f64 = 0.75;
     /// Time in which that weight falls by a factor e (s).
-    pub const RELAXATION: f64 = 1.0;
+    const RELAXATION: f64 = 1.0;
     /// Largest lateral component of the neutral motion, relative to its component towards the goal (no unit).
     pub const MAX_LATERAL_RATIO: f64 = 2.0;
 
@@ -122,7 +122,7 @@ impl<T: Real> MotionBounds<T> {
 
     /// The speed at which a pedestrian `distance` metres from its goal arrives in `left` steps of `dt` seconds (m/s),
     /// at most the [top speed](Self::top_speed).
-    pub fn arriving_speed(&self, distance: T, left: usize, dt: T) -> T {
+    fn arriving_speed(&self, distance: T, left: usize, dt: T) -> T {
         let steps = T::rounded(left.max(1) as f64);
         // Positive, so that it is a valid eigenvalue also at the goal.
         (distance / (steps * dt)).min(self.top_speed).max(T::MIN_POSITIVE)

@@ -55,11 +55,11 @@ impl<T: Real, const D: usize> Ball<T, D> {
 /// Implemented by arrays and vectors of balls (constant in time) and by [`ObstacleSchedule`].
 pub trait ObstacleSource<T: Real, const D: usize> {
     /// The obstacles at `state`.
-    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>];
+    fn obstacles(&self, state: &State<T, D>) -> &[Ball<T, D>];
 }
 
 impl<T: Real, const D: usize, O: AsRef<[Ball<T, D>]>> ObstacleSource<T, D> for O {
-    fn obstacles(&self, _state: &State<'_, T, D>) -> &[Ball<T, D>] {
+    fn obstacles(&self, _state: &State<T, D>) -> &[Ball<T, D>] {
         self.as_ref()
     }
 }
@@ -85,13 +85,13 @@ impl<T: Real, const D: usize> ObstacleSchedule<T, D> {
 }
 
 impl<T: Real, const D: usize> ObstacleSource<T, D> for ObstacleSchedule<T, D> {
-    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+    fn obstacles(&self, state: &State<T, D>) -> &[Ball<T, D>] {
         self.in_step(state.step)
     }
 }
 
 impl<T: Real, const D: usize> ObstacleSource<T, D> for &ObstacleSchedule<T, D> {
-    fn obstacles(&self, state: &State<'_, T, D>) -> &[Ball<T, D>] {
+    fn obstacles(&self, state: &State<T, D>) -> &[Ball<T, D>] {
         self.in_step(state.step)
     }
 }

@@ -61,7 +61,7 @@ fn allocates_nothing<T: Real, const D: usize>(integrator: &impl Integrator<T, D>
     // 40 steps: all pedestrians reach their goals, so every branch of a step is covered.
     let mut positions = [SVector::<T, D>::zeros(); 41];
     let made = allocations(|| {
-        for MadeUpWalk { flow, start } in &hypotheses {
+        for MadeUpWalk { flow, start, .. } in &hypotheses {
             rollout_into(flow, integrator, *start, dt, &mut positions).unwrap();
             black_box(&positions);
         }
@@ -83,7 +83,7 @@ fn no_step_allocates() {
 fn around_obstacles() {
     let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(300, 7);
     let mut positions = [SVector::<f64, 2>::zeros(); 41];
-    for MadeUpWalk { flow, start } in &hypotheses {
+    for MadeUpWalk { flow, start, .. } in &hypotheses {
         let goal = flow.attractor().goal();
         let ball = |along: f64, aside: f64| {
             let way = goal - start;
@@ -103,7 +103,7 @@ fn around_obstacles() {
 #[test]
 fn a_rollout_that_owns_its_positions_allocates_once() {
     let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(1, 7);
-    let MadeUpWalk { flow, start } = &hypotheses[0];
+    let MadeUpWalk { flow, start, .. } = &hypotheses[0];
     let made = allocations(|| {
         black_box(rollout(flow, &StableEuler, *start, TIME_STEP, STEPS).unwrap());
     });

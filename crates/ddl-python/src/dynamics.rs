@@ -48,7 +48,7 @@ impl Flow {
     fn velocity(&self, py: Python<'_>, position: PyReadonlyArray2<'_, f64>, step: usize) -> PyResult<Py<PyAny>> {
         let points = points("position", &position)?;
         let velocities = points.iter().map(|&point| {
-            let state = State::new(point.into(), step, 0.0, &[]);
+            let state = State::new(point.into(), step, 0.0);
             let velocity = self.0.velocity(&state).map_err(wrong)?;
             Ok([velocity.x, velocity.y])
         });

@@ -12,6 +12,9 @@ pub(crate) const TIME_STEP: f64 = 0.4;
 pub(crate) struct MadeUpWalk<T, const D: usize> {
     pub(crate) start: SVector<T, D>,
     pub(crate) flow: NaturalGradientFlow<T, D, MetricSchedule<T, D>>,
+    /// One for each step.
+    #[allow(dead_code, reason = "for the certificates of the benchmark")]
+    pub(crate) metrics: Vec<CholeskyMetric<T, D>>,
 }
 
 /// Pedestrians at about 1 m/s, 2 to 6 m from their goals in any direction, with deviations to either side. About half
@@ -34,12 +37,13 @@ pub(crate) fn drawn<T: Real, const D: usize>(count: usize, seed: u64) -> Vec<Mad
                 let factor = factor.map(|entry| T::rounded(entry * sway));
                 CholeskyMetric::new(factor, T::rounded(PUBLISHED_SIGMA)).expect("finite")
             };
-            let metrics = (0..STEPS).map(|_| metric()).collect();
-            let schedule = MetricSchedule::new(metrics).expect("12 metrics");
+            let metrics: Vec<_> = (0..STEPS).map(|_| metric()).collect();
+            let schedule = MetricSchedule::new(metrics.clone()).expect("12 metrics");
             let attractor = Attractor::new(goal.map(T::rounded)).expect("finite");
             MadeUpWalk {
                 start: start.map(T::rounded),
                 flow: NaturalGradientFlow::new(attractor, schedule),
+                metrics,
             }
         })
         .collect()

@@ -1,6 +1,5 @@
-//! Draws the pictures of `docs/stability.md` into a folder: `cargo run -p ddl-dynamics --example pictures -- docs`
+//! Draws the picture of `docs/stability.md` into a folder: `cargo run -p ddl-dynamics --example pictures -- docs`
 
-mod around;
 mod circling;
 mod drawing;
 
@@ -10,6 +9,5 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = env::args_os().nth(1);
     let folder = PathBuf::from(folder.ok_or("name the folder: ... --example pictures -- docs")?);
     fs::write(folder.join("stability.svg"), circling::draw()?)?;
-    fs::write(folder.join("around.svg"), around::draw()?)?;
     Ok(())
 }

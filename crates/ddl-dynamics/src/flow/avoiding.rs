@@ -26,7 +26,7 @@ use crate::{
 /// ball is not slowed by it. With one ball near, the velocity is continuous.
 ///
 /// # What is guaranteed
-/// For balls that do not move (Lemma 6 and Theorem 7 of `PROOFS.md`):
+/// For balls that do not move (Lemma 5 and Theorem 6 of `PROOFS.md`):
 /// - *The distance to the goal still falls* everywhere outside the balls: `P' >= share P` is positive definite.
 /// - *No ball is entered*: the pedestrian moves away from each ball or is slowed, `|n^T v'| <= sqrt(2 share)
 ///   lambda_max`.
@@ -78,7 +78,7 @@ where
         })
     }
 
-    fn surfaces<'a>(&'a self, state: &'a State<'_, T, D>) -> impl Iterator<Item = (T, SVector<T, D>)> + 'a {
+    fn surfaces<'a>(&'a self, state: &'a State<T, D>) -> impl Iterator<Item = (T, SVector<T, D>)> + 'a {
         let balls = self.obstacles.obstacles(state).iter();
         balls.map(|ball| ball.gap_and_normal(&state.position))
     }
@@ -94,7 +94,7 @@ where
         self.flow.attractor()
     }
 
-    fn metric(&self, state: &State<'_, T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
+    fn metric(&self, state: &State<T, D>) -> Result<CholeskyMetric<T, D>, DynamicsError> {
         let free = self.flow.metric(state)?;
         let gradient = self.attractor().gradient(&state.position);
         let mut metric = free;
@@ -109,8 +109,8 @@ where
         for round in 0..near().count() {
             let mut slowed = false;
             for (share, normal) in near() {
-                let left = metric.quadratic_form(&normal);
-                let slow = round > 0 && left <= free.quadratic_form(&normal) * (share + share);
+                let remaining = metric.quadratic_form(&normal);
+                let slow = round > 0 && remaining <= free.quadratic_form(&normal) * (share + share);
                 if !slow && normal.dot(&metric.apply(&gradient)) > T::zero() {
                     metric = metric.damped_along(&normal, share)?;
                     slowed = true;
@@ -123,12 +123,7 @@ where
         Ok(metric)
     }
 
-    fn velocity(&self, state: &State<'_, T, D>) -> Result<SVector<T, D>, DynamicsError> {
-        let metric = self.metric(state)?;
-        Ok(-metric.apply(&self.attractor().gradient(&state.position)))
-    }
-
-    fn longest_step(&self, state: &State<'_, T, D>, velocity: &SVector<T, D>) -> Option<T> {
+    fn longest_step(&self, state: &State<T, D>, velocity: &SVector<T, D>) -> Option<T> {
         self.surfaces(state)
             .filter_map(|(gap, normal)| {
                 let approach = -normal.dot(velocity);

@@ -27,7 +27,7 @@ impl<T: Real, const D: usize> Integrator<T, D> for Euler {
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
-        state: &State<'_, T, D>,
+        state: &State<T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError> {
         ensure_time_step(dt)?;

@@ -1,7 +1,6 @@
 //! Euler steps that keep the stability guarantee.
 
 use nalgebra::SVector;
-use serde::{Deserialize, Serialize};
 
 use super::Integrator;
 use crate::{
@@ -23,14 +22,14 @@ const ARRIVAL: f64 = 8.0;
 /// p' = p + min(dt, dt*) v        dt* = |e| u^T P u / |P u|^2
 /// ```
 ///
-/// with `e = p - p*`, `u = e / |e|`, `v = -P u` (on a quadratic attractor `v = -P e`: read `|e| P` for `P` below).
-/// While `dt <= dt*` this is exactly the plain Euler step; at the goal the pedestrian stays.
+/// with `e = p - p*`, `u = e / |e|`, `v = -P u`. While `dt <= dt*` this is exactly the plain Euler step; at the goal the
+/// pedestrian stays.
 ///
 /// # What is guaranteed
 /// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.
-/// - *Convergence in a bounded number of steps* for the distance potential, if the eigenvalues of the metrics stay in
-///   `[m, M]`, `m > 0`: with `r = (M - m) / (M + m)`, `Phi <= tolerance` after at most
-///   `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)` steps, rounded up one by one.
+/// - *Convergence in a bounded number of steps*, if the eigenvalues of the metrics stay in `[m, M]`, `m > 0`: with `r =
+///   (M - m) / (M + m)`, `Phi <= tolerance` after at most `2 Phi(0) / (dt m) + ln(Phi(0) / tolerance) / ln(1 / r)`
+///   steps, rounded up one by one.
 ///
 /// The proofs are Theorems 3 and 4 of `PROOFS.md`.
 ///
@@ -42,134 +41,79 @@ const ARRIVAL: f64 = 8.0;
 ///   [`apply`](crate::CholeskyMetric::apply)), is replaced by the smallest move straight to the goal that changes the
 ///   distance: about `epsilon max(|p|, |p*|)`, doubled until it does.
 ///
-/// So every computed rollout ends on the goal after enough steps. [`StableStep::limit`] states which case applied.
+/// So every computed rollout ends on the goal after enough steps.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct StableEuler;
 
-/// The limit of the length of a [`StableEuler`] step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum StepLimit {
-    /// The time step: a plain Euler step.
-    TimeStep,
-    /// The point of the line of motion closest to the goal, possibly the goal itself.
-    ClosestApproach,
-    /// The spacing of floating-point numbers: the smallest move that changes the distance.
-    Resolution,
-    /// The pedestrian was at the goal and did not move.
-    AtGoal,
-}
-
-/// A [`StableEuler`] step: its end, and its limit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct StableStep<T, const D: usize> {
-    /// The next position (metres).
-    pub position: SVector<T, D>,
-    /// The limit of the length of the step.
-    pub limit: StepLimit,
-}
-
 impl StableEuler {
-    /// One step from `position` (metres) with `velocity` (m/s) for at most `dt` (seconds).
+    /// The position after one step from `position` (metres) with `velocity` (m/s) for at most `dt` (seconds).
     ///
     /// # Errors
     /// [`DynamicsError::NotPositive`] for the time step; [`DynamicsError::NonFinite`] for the position or the velocity;
     /// [`DynamicsError::DistanceTooLarge`] if the distance to the goal overflows.
+    #[inline]
     pub fn advance<T: Real, const D: usize>(
         attractor: &Attractor<T, D>,
         position: &SVector<T, D>,
         velocity: &SVector<T, D>,
         dt: T,
-    ) -> Result<StableStep<T, D>, DynamicsError> {
-        descend(attractor, position, velocity, dt, |next| *next)
-    }
-}
+    ) -> Result<SVector<T, D>, DynamicsError> {
+        ensure_time_step(dt)?;
+        ensure_finite("position", position)?;
+        ensure_finite("velocity", velocity)?;
+        let (distance, away) = attractor.distance_and_gradient(position);
+        if !distance.is_finite() {
+            return Err(DynamicsError::DistanceTooLarge);
+        }
+        if distance.is_zero() {
+            return Ok(*position);
+        }
+        // Spacing of floating-point numbers at the coarser of the two points; never 0, so that doubling works.
+        let resolution = (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
 
-/// [`StableEuler::advance`], but `settled` is applied to a position before its distance is measured. It transforms the
-/// position to another space and back, so that the decrease holds for the rounded values.
-#[inline]
-fn descend<T: Real, const D: usize>(
-    attractor: &Attractor<T, D>,
-    position: &SVector<T, D>,
-    velocity: &SVector<T, D>,
-    dt: T,
-    settled: impl Fn(&SVector<T, D>) -> SVector<T, D>,
-) -> Result<StableStep<T, D>, DynamicsError> {
-    ensure_time_step(dt)?;
-    ensure_finite("position", position)?;
-    ensure_finite("velocity", velocity)?;
-    let (distance, away) = attractor.distance_and_direction(position);
-    if !distance.is_finite() {
-        return Err(DynamicsError::DistanceTooLarge);
-    }
-    let ended = |position, limit| Ok(StableStep { position, limit });
-    if distance.is_zero() {
-        return ended(*position, StepLimit::AtGoal);
-    }
-    // Spacing of floating-point numbers at the coarser of the two points; never 0, so that doubling works.
-    let resolution = (T::EPSILON * position.amax().max(attractor.goal().amax())).max(T::MIN_POSITIVE);
-
-    let (speed, heading) = polar(velocity);
-    let cosine = -away.dot(&heading);
-    if cosine > T::zero() {
-        let reach = distance * cosine;
-        let (next, limit) = if dt * speed <= reach {
-            (position + velocity * dt, StepLimit::TimeStep)
-        } else {
-            (position + heading * reach, StepLimit::ClosestApproach)
-        };
-        let left = attractor.distance(&settled(&next));
-        if limit == StepLimit::ClosestApproach && left <= T::rounded(ARRIVAL) * resolution {
-            return ended(*attractor.goal(), limit);
+        let (speed, heading) = polar(velocity);
+        let cosine = -away.dot(&heading);
+        if cosine > T::zero() {
+            let reach = distance * cosine;
+            let full = dt * speed <= reach;
+            let next = if full {
+                position + velocity * dt
+            } else {
+                position + heading * reach
+            };
+            let left = attractor.distance(&next);
+            if !full && left <= T::rounded(ARRIVAL) * resolution {
+                return Ok(*attractor.goal());
+            }
+            if left < distance {
+                return Ok(next);
+            }
         }
-        if left < distance {
-            return ended(next, limit);
+        // The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed distance, or the
+        // goal. There are few doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
+        let mut length = resolution;
+        while length < distance {
+            let next = position - away * length;
+            if attractor.distance(&next) < distance {
+                return Ok(next);
+            }
+            length += length;
         }
-    }
-    // The shortest of the moves `resolution * 2^k` straight to the goal that lowers the computed distance, or the goal.
-    // There are few doublings, because the distance is at most `2 sqrt(D) resolution / epsilon`.
-    let mut length = resolution;
-    loop {
-        if length >= distance {
-            return ended(*attractor.goal(), StepLimit::Resolution);
-        }
-        let next = position - away * length;
-        if attractor.distance(&settled(&next)) < distance {
-            return ended(next, StepLimit::Resolution);
-        }
-        length += length;
+        Ok(*attractor.goal())
     }
 }
 
 impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
-    /// For a flow with a [`chart`](Flow::chart) the step is taken in the coordinates of the chart.
     fn step<F: Flow<T, D> + ?Sized>(
         &self,
         flow: &F,
-        state: &State<'_, T, D>,
+        state: &State<T, D>,
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError> {
-        let Some(psi) = flow.chart() else {
-            let velocity = flow.velocity(state)?;
-            let dt = flow
-                .longest_step(state, &velocity)
-                .map_or(dt, |longest| longest.min(dt));
-            return Self::advance(flow.attractor(), &state.position, &velocity, dt).map(|step| step.position);
-        };
-        // In the coordinates of the chart the flow is a natural gradient: take the step there and transform back.
-        let image = psi.apply(&state.position);
-        let velocity = -flow.metric(state)?.apply(&flow.attractor().gradient(&image));
-        let attractor = flow.attractor();
-        let step = descend(attractor, &image, &velocity, dt, |next| psi.apply(&psi.inverse(next)))?;
-        match step.limit {
-            StepLimit::AtGoal => Ok(state.position),
-            _ if step.position == *attractor.goal() => Ok(*flow.goal()),
-            _ => {
-                let next = psi.inverse(&step.position);
-                ensure_finite("next position", &next).copied()
-            }
-        }
+        let velocity = flow.velocity(state)?;
+        let dt = flow
+            .longest_step(state, &velocity)
+            .map_or(dt, |longest| longest.min(dt));
+        Self::advance(flow.attractor(), &state.position, &velocity, dt)
     }
 }

@@ -12,10 +12,10 @@ use crate::{attractor::Attractor, metric::CholeskyMetric, polar::polar, real::Re
 pub struct CertifiedStep<T> {
     /// `Phi`: the distance to the goal at the start of the step (metres).
     pub potential: T,
-    /// `d Phi / dt = -u^T P grad Phi` at the start of the step (m/s); 0 only at the goal. A value too small for `T` is
+    /// `d Phi / dt = -u^T P u` at the start of the step (m/s); 0 only at the goal. A value too small for `T` is
     /// replaced by the smallest normal number.
     pub rate: T,
-    /// The smallest eigenvalue of the step's metric (m/s; 1/s on a quadratic attractor).
+    /// The smallest eigenvalue of the step's metric (m/s).
     pub min_eigenvalue: T,
     /// `1 - dt / dt_max`, where `dt_max = -2 Phi (d Phi / dt) / |v|^2` is the bound below which a plain Euler step
     /// lowers `Phi` (no unit). `None` at the goal, where every step is too long.
@@ -32,15 +32,13 @@ impl<T: Real> CertifiedStep<T> {
         attractor: &Attractor<T, D>,
         dt: T,
     ) -> Self {
-        let (potential, away) = attractor.distance_and_direction(from);
-        // grad Phi is as long as the velocity with P = I: 1, or |e| if quadratic.
-        let (slope, _) = polar(&attractor.gradient(from));
-        let mut descent = metric.quadratic_form(&away) * slope;
-        if descent.is_zero() && !slope.is_zero() {
-            // Both factors are positive, but their product may underflow.
+        let (potential, away) = attractor.distance_and_gradient(from);
+        let mut descent = metric.quadratic_form(&away);
+        if descent.is_zero() && !potential.is_zero() {
+            // It is positive, but may underflow.
             descent = T::MIN_POSITIVE;
         }
-        let speed = polar(&metric.apply(&away)).0 * slope;
+        let (speed, _) = polar(&metric.apply(&away));
         // Divided twice: the square of the speed could overflow or underflow.
         let bound = potential * (descent / speed) / speed * T::rounded(2.0);
         let step_margin = Some(T::one() - dt / bound).filter(T::is_finite);

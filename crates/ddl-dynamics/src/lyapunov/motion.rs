@@ -27,6 +27,15 @@ impl<T: Real> Bounded<T> {
     }
 }
 
+/// Whether a motion had to avoid obstacles, which may delay it, so that only its speed is bounded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Obstacles {
+    /// There were none.
+    Absent,
+    /// They were avoided.
+    Avoided,
+}
+
 /// Quantities of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. For a
 /// motion that avoids obstacles, which may delay it, `deviation` and `distance_left` have no bound.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -45,14 +54,13 @@ pub struct MotionEvidence<T> {
 }
 
 impl<T: Real> MotionEvidence<T> {
-    /// The evidence of `path` (metres, finite; the start first), with steps of `dt` seconds within `bounds`. Set
-    /// `alone` unless obstacles were avoided.
+    /// The evidence of `path` (metres, finite; the start first), with steps of `dt` seconds within `bounds`.
     pub(super) fn new(
         path: &[SVector<T, 2>],
         attractor: &Attractor<T, 2>,
         bounds: &MotionBounds<T>,
         dt: T,
-        alone: bool,
+        obstacles: Obstacles,
     ) -> Self {
         let coordinates = path.iter().chain([attractor.goal()]);
         let largest_coordinate = coordinates.map(SVector::amax).fold(T::zero(), T::max);
@@ -71,6 +79,7 @@ impl<T: Real> MotionEvidence<T> {
                 most_change = most_change.max((range.largest - before.smallest).max(before.largest - range.smallest));
             }
         }
+        let alone = obstacles == Obstacles::Absent;
         let top = bounds.top_speed();
         let speed = Bounded {
             largest: fastest,
@@ -156,7 +165,7 @@ mod tests {
         let path: Vec<Vector2<f64>> = (0..13).map(|t| place(f64::from(t)).into()).collect();
         let attractor = Attractor::new(Vector2::new(4.8, 0.0)).unwrap();
         let bounds = MotionBounds::default();
-        let evidence = MotionEvidence::new(&path, &attractor, &bounds, 0.4, true);
+        let evidence = MotionEvidence::new(&path, &attractor, &bounds, 0.4, Obstacles::Absent);
         evidence
             .check()
             .map_or_else(|violation| violation.to_string(), |()| String::new())

@@ -2,15 +2,18 @@
 
 use ddl_dynamics::{
     Attractor, AvoidingFlow, Ball, CholeskyMetric, Flow, LyapunovCertificate, NaturalGradientFlow, ObstacleSchedule,
-    Real, StableEuler, State, rollout,
+    Real, StableEuler, rollout,
 };
-use nalgebra::{Rotation2, Vector2};
+use nalgebra::{Matrix2, Rotation2, Vector2};
 use proptest::{collection::vec, prelude::*, test_runner::TestCaseResult};
 
-use crate::{draw::SceneDraw, for_every_space};
+use crate::{
+    draw::{SceneDraw, at},
+    for_every_space,
+};
 
 fn straight_to(goal: Vector2<f64>) -> NaturalGradientFlow<f64, 2, CholeskyMetric<f64, 2>> {
-    NaturalGradientFlow::straight(Attractor::new(goal).unwrap())
+    NaturalGradientFlow::new(Attractor::new(goal).unwrap(), CholeskyMetric::identity())
 }
 
 /// Balls along the path of the scene: two that stay in place, one on the goal, one on the start.
@@ -67,18 +70,20 @@ fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMet
     let factor = (-0.7..0.0_f64, 0.0..std::f64::consts::PI);
     (vec((place(), 0.2..1.5_f64), 0..14), place(), factor, 0.3..3.0_f64).prop_map(
         |(pillars, start, (slow, turn), margin)| {
-            let mut kept: Vec<Ball<f64, 2>> = Vec::new();
+            let mut pillars_apart: Vec<Ball<f64, 2>> = Vec::new();
             for (centre, radius) in pillars {
                 let ball = Ball::new(centre, radius).unwrap();
                 let clear = |point: &Vector2<f64>, gap| ball.gap_and_normal(point).0 > gap;
                 let apart = |other: &Ball<f64, 2>| clear(other.centre(), other.radius() + 0.02);
-                if clear(&start, 0.02) && clear(&Vector2::zeros(), 0.05) && kept.iter().all(apart) {
-                    kept.push(ball);
+                if clear(&start, 0.02) && clear(&Vector2::zeros(), 0.05) && pillars_apart.iter().all(apart) {
+                    pillars_apart.push(ball);
                 }
             }
             let turn = Rotation2::new(turn);
-            let metric = CholeskyMetric::planar(1.0, 0.0, 10_f64.powf(slow), 1e-8).unwrap();
-            (kept, start, metric.transformed_by(turn.matrix()).unwrap(), margin)
+            let diagonal = Matrix2::from_diagonal(&Vector2::new(1.0, 10_f64.powf(2.0 * slow)));
+            let turned = turn * diagonal * turn.inverse();
+            let metric = CholeskyMetric::new(turned.cholesky().unwrap().l(), 1e-8).unwrap();
+            (pillars_apart, start, metric, margin)
         },
     )
 }
@@ -110,10 +115,10 @@ proptest! {
         let flow = AvoidingFlow::new(pedestrian, pillars.clone(), margin).unwrap();
         let outwards = Vector2::new(angle.cos(), angle.sin());
         for beside in &pillars {
-            let at = beside.centre() + outwards * (beside.radius() + 10_f64.powf(exponent));
-            let velocity = flow.velocity(&State::at(at)).unwrap();
+            let place = beside.centre() + outwards * (beside.radius() + 10_f64.powf(exponent));
+            let velocity = flow.velocity(&at(place)).unwrap();
             for pillar in &pillars {
-                let (gap, normal) = pillar.gap_and_normal(&at);
+                let (gap, normal) = pillar.gap_and_normal(&place);
                 let share = (gap / margin).max(f64::EPSILON);
                 let largest = (2.0 * share).sqrt() * metric.eigenvalue_range().largest;
                 prop_assert!(-normal.dot(&velocity) <= largest * (1.0 + 1e-6));
@@ -144,8 +149,8 @@ fn the_velocity_is_continuous() {
     for gap in [1e-6, 0.3, 0.999] {
         let velocity = |k: u32| {
             let angle = f64::from(k) * std::f64::consts::TAU / 20_000.0;
-            let at = Vector2::new(angle.cos(), angle.sin()) * (1.0 + gap);
-            flow.velocity(&State::at(at)).unwrap()
+            let place = Vector2::new(angle.cos(), angle.sin()) * (1.0 + gap);
+            flow.velocity(&at(place)).unwrap()
         };
         let jump = (0..20_000).map(|k| (velocity(k + 1) - velocity(k)).norm());
         assert!(jump.fold(0.0, f64::max) < 2e-3);

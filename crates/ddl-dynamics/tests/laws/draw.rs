@@ -1,12 +1,10 @@
 //! Random scenes, drawn as `f64` in three dimensions and reduced to the space under test.
 
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, EigenvalueRange, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
+    Attractor, CholeskyMetric, EigenvalueRange, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real, State,
 };
 use nalgebra::{SMatrix, SVector};
 use proptest::{array::uniform3, collection::vec, prelude::*};
-
-pub(crate) use crate::map_draw::{any_bent_scene, any_maps, any_polygon, wild_bent_scene, wild_maps};
 
 pub(crate) const METRICS: usize = 12;
 
@@ -81,12 +79,12 @@ pub(crate) fn wild_scene() -> impl Strategy<Value = SceneDraw> {
     })
 }
 
-pub(crate) fn wild() -> impl Strategy<Value = f64> + Copy {
+fn wild() -> impl Strategy<Value = f64> + Copy {
     use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO
 }
 
-pub(crate) fn vector<T: Real, const D: usize>(draw: &[f64; 3]) -> SVector<T, D> {
+fn vector<T: Real, const D: usize>(draw: &[f64; 3]) -> SVector<T, D> {
     // A draw too large for f32 becomes its largest number and stays finite.
     SVector::from_fn(|i, _| {
         let largest = T::MAX.as_f64();
@@ -130,6 +128,11 @@ impl SceneDraw {
 fn metric<T: Real, const D: usize>((entries, sigma): &MetricDraw) -> CholeskyMetric<T, D> {
     let factor = SMatrix::from_fn(|row, column| T::rounded(if column > row { 0.0 } else { entries[row][column] }));
     CholeskyMetric::new(factor, T::rounded(*sigma)).unwrap()
+}
+
+/// The state at the start of a rollout.
+pub(crate) fn at<T: Real, const D: usize>(position: SVector<T, D>) -> State<T, D> {
+    State::new(position, 0, T::zero())
 }
 
 /// Sine of the largest angle between a flow and the direction to its goal (Wielandt's form of the Kantorovich

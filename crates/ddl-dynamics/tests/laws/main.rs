@@ -6,16 +6,11 @@
 mod avoiding;
 mod certificate;
 mod convergence;
-mod diffeomorphic_flow;
-mod diffeomorphism;
-mod dormand_prince;
+mod damping;
 mod draw;
-mod map_draw;
 mod metric;
 mod motion_bounds;
 mod stable_euler;
-mod straightening;
-mod transform;
 
 /// Runs a law, a function `fn law<T: Real, const D: usize>(draw) -> TestCaseResult`, on random draws of a strategy in
 /// every number type and dimension.

@@ -18,11 +18,9 @@ fn applied_as_formed<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResu
         let p = formed(&metric);
         let tolerance = 8.0 * D as f64 * T::EPSILON.as_f64() * p.norm();
         prop_assert!((metric.apply(&u).map(Real::as_f64) - p * u64).norm() <= tolerance);
-        prop_assert!((metric.to_matrix().map(Real::as_f64) - p).norm() <= tolerance);
         let form = metric.quadratic_form(&u).as_f64();
         prop_assert!((form - u64.dot(&(p * u64))).abs() <= tolerance);
-        // As computed: `P = P^T` exactly, and `u^T P u >= sigma` up to one rounding of `|u|^2`.
-        prop_assert_eq!(metric.to_matrix(), metric.to_matrix().transpose());
+        // As computed: `u^T P u >= sigma` up to one rounding of `|u|^2`.
         prop_assert!(form > 0.0);
         prop_assert!(form >= metric.sigma().as_f64() * (1.0 - 8.0 * T::EPSILON.as_f64()));
     }

@@ -1,8 +1,8 @@
 //! Motions within bounds: limited speed, nearer to the goal at every step, never past it, and on it with the last step.
 
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Real,
-    StableEuler, StepTime, rollout,
+    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Obstacles,
+    Real, StableEuler, StepTime, rollout,
 };
 use nalgebra::Vector2;
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -39,7 +39,9 @@ fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, own, absolute): BoundsD
     let flow = NaturalGradientFlow::new(attractor, schedule);
     let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
-    let certificate = certificate.within(&path, &attractor, &bounds, true).unwrap();
+    let certificate = certificate
+        .within(&path, &attractor, &bounds, Obstacles::Absent)
+        .unwrap();
     Some((path, attractor, bounds, certificate))
 }
 
@@ -173,7 +175,7 @@ fn shaped_by_hand() {
         (within(arriving, 1.0), [0.5_f64.sqrt(); 2], [0.5, 0.0, 0.5]),
     ] {
         let metric = CholeskyMetric::planar(a, 0.0, c, 1e-12).unwrap();
-        let shaped = bounds.shape(&metric, &Vector2::new(4.8, 0.0), first).to_matrix();
+        let shaped = formed(&bounds.shape(&metric, &Vector2::new(4.8, 0.0), first));
         for (found, expected) in [shaped.m11, shaped.m12, shaped.m22].iter().zip(expected) {
             assert!((found - expected).abs() < 2e-12, "{shaped}");
         }
@@ -191,7 +193,9 @@ fn a_goal_out_of_reach_is_reported() {
     let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 12).unwrap();
     assert!((path[12] - Vector2::new(9.6, 0.0)).norm() < 1e-12);
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4).unwrap();
-    let certificate = certificate.within(&path, &attractor, &bounds, true).unwrap();
+    let certificate = certificate
+        .within(&path, &attractor, &bounds, Obstacles::Absent)
+        .unwrap();
     assert_eq!(certificate.verify(), Ok(()));
     let left = certificate.motion().unwrap().distance_left.unwrap();
     assert!((left.largest - 10.4).abs() < 1e-9 && (left.bound - 10.4).abs() < 1e-6);

@@ -99,7 +99,7 @@ mod tests {
         let others = Others::new(Clearance::new(0.4).unwrap(), likeliest);
         let others = others.near(1, [1.0, 0.0], [1.0, 4.0]).unwrap();
         for step in 0..HORIZON {
-            let state = State::new(Vector2::new(9.0, 9.0), step, 0.0, &[]);
+            let state = State::new(Vector2::new(9.0, 9.0), step, 0.0);
             let centres: Vec<_> = others.obstacles(&state).iter().map(Ball::centre).collect();
             let now = step as f64;
             assert_eq!(centres, [&Vector2::new(0.0, now), &Vector2::new(2.0, now)]);

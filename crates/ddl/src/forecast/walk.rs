@@ -6,7 +6,7 @@ use crate::forecast::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
     ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow, LyapunovCertificate, MetricSource,
-    MotionBounds, NaturalGradientFlow, ObstacleSchedule, StableEuler, State, rollout_into,
+    MotionBounds, NaturalGradientFlow, ObstacleSchedule, Obstacles, StableEuler, State, rollout_into,
 };
 use ddl_network::StepRule;
 use nalgebra::Vector2;
@@ -61,7 +61,7 @@ struct Remembered {
 }
 
 impl MetricSource<f64, 2> for Remembered {
-    fn metric(&self, state: &State<'_, f64, 2>) -> Result<CholeskyMetric<f64, 2>, DynamicsError> {
+    fn metric(&self, state: &State<f64, 2>) -> Result<CholeskyMetric<f64, 2>, DynamicsError> {
         let mut known = self.known.borrow_mut();
         match known.get(state.step) {
             Some((position, metric)) if *position == state.position => Ok(*metric),
@@ -79,7 +79,7 @@ impl MetricSource<f64, 2> for Remembered {
 impl Course {
     /// Integrates the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
-        self.follow(&self.flow(factors)?, true)
+        self.follow(&self.flow(factors)?, Obstacles::Absent)
     }
 
     pub(crate) fn walk_among(
@@ -88,7 +88,7 @@ impl Course {
         factors: &[[f64; 3]],
     ) -> Result<Walk, DynamicsError> {
         let flow = AvoidingFlow::new(self.flow(factors)?, others.clone(), Clearance::MARGIN)?;
-        self.follow(&flow, false)
+        self.follow(&flow, Obstacles::Avoided)
     }
 
     fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
@@ -101,13 +101,13 @@ impl Course {
         Ok(NaturalGradientFlow::new(attractor, metrics))
     }
 
-    fn follow(&self, flow: &impl Flow<f64, 2>, alone: bool) -> Result<Walk, DynamicsError> {
+    fn follow(&self, flow: &impl Flow<f64, 2>, obstacles: Obstacles) -> Result<Walk, DynamicsError> {
         let mut path = [Vector2::zeros(); HORIZON + 1];
         let start = Vector2::from(self.start);
         rollout_into(flow, &StableEuler, start, self.time_step, &mut path)?;
         let certificate = LyapunovCertificate::of_rollout(flow, &path, self.time_step)?;
         Ok(Walk {
-            certificate: certificate.within(&path, flow.attractor(), &self.bounds, alone)?,
+            certificate: certificate.within(&path, flow.attractor(), &self.bounds, obstacles)?,
             positions: std::array::from_fn(|t| path[t + 1].into()),
         })
     }

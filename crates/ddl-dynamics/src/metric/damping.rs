@@ -1,4 +1,4 @@
-//! Transformations of metrics: by a linear map, or slowed along one direction.
+//! A metric whose flow is slowed along one direction.
 
 use nalgebra::{SMatrix, SVector, Vector2};
 
@@ -10,31 +10,6 @@ use crate::{
 };
 
 impl<T: Real, const D: usize> CholeskyMetric<T, D> {
-    /// `J P J^T`: the transformation of `P` when space is mapped by an invertible matrix `J`.
-    ///
-    /// The result is positive definite: its smallest eigenvalue is at least `lambda_min(P) s_min(J)^2`.
-    ///
-    /// # Errors
-    /// - [`DynamicsError::SingularMap`] if `J` is not finite or has no inverse in `T`.
-    /// - [`DynamicsError::FactorTooLarge`] as for [`CholeskyMetric::new`].
-    ///
-    /// # Numerics
-    /// `P` is not formed: the triangular factor of `[J L, sqrt(sigma) J]` is computed by rotations. The result is `J P
-    /// J^T (1 + epsilon)`, where the last term replaces `sigma`.
-    pub fn transformed_by(&self, map: &SMatrix<T, D, D>) -> Result<Self, DynamicsError> {
-        // s_min(J)^2 >= 1 / |J^-1|^2 (Frobenius).
-        let inverse = map.try_inverse();
-        let shrinks = inverse
-            .map(|inverse| T::one() / inverse.norm_squared())
-            .filter(|&shrinks| shrinks.is_finite() && shrinks > T::zero());
-        let Some(shrinks) = shrinks else {
-            return Err(DynamicsError::SingularMap);
-        };
-        let root = self.sigma.sqrt();
-        let factor = lower_triangular(map * self.factor, map * root);
-        Self::new(factor, remainder(self.sigma * shrinks))
-    }
-
     /// `P` with the velocity along `direction` scaled by `share`, and the smallest possible change otherwise.
     ///
     /// With `n` along `direction` and `q = P n`,
