@@ -1,5 +1,5 @@
 //! External faults: full disks, damaged files, closed outputs, crowds, days of input. Each fault is tried a few times
-//! here. `cargo xtask faults` tries it many times and records the results.
+//! here. `cargo xtask nightly faults` tries it many times and records the results.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![cfg(unix)]

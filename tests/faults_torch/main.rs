@@ -1,5 +1,5 @@
 //! External faults during training: killed processes, full disks, damaged files. Each fault is tried a few times here.
-//! `cargo xtask faults` tries it many times and records the results.
+//! `cargo xtask nightly faults` tries it many times and records the results.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 #![cfg(unix)]

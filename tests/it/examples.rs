@@ -61,7 +61,7 @@ const EXAMPLES: [(&str, &[&str]); 10] = [
     ),
 ];
 
-/// Examples that are not run here: `cargo xtask page` runs `report_page`; the others need minutes for recordings, some
+/// Examples that are not run here: `cargo xtask ci` runs `report_page`; the others need minutes for recordings, some
 /// of them of other places.
 const ELSEWHERE: [&str; 5] = [
     "ddl-forecast calibrate",

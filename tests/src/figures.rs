@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::fs::OpenOptions;
 use std::io::Write as _;
 
-/// Environment variable with the file of the figures, set by `cargo xtask faults`. If set, every fault is tried the
-/// full number of times.
+/// Environment variable with the file of the figures, set by `cargo xtask nightly faults`. If set, every fault is tried
+/// the full number of times.
 const VARIABLE: &str = "DDL_FAULTS_FIGURES";
 
 /// Whether the full number of rounds is requested.

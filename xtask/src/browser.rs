@@ -1,56 +1,46 @@
 //! A browser and its driver, for the checks of pages.
 
-mod chromium;
-mod playwright;
-
+use std::env;
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use crate::process::run_within;
-use crate::python::Python;
+use crate::debian;
+use crate::process::{find_on_path, run};
+use crate::tools::Tools;
+use crate::workspace::Workspace;
 
-/// Installations and checks take minutes; after this time they are assumed to hang.
-const LIMIT: Duration = Duration::from_mins(15);
+const NAMES: [&str; 5] = [
+    "chromium",
+    "chromium-browser",
+    "google-chrome",
+    "google-chrome-stable",
+    "chrome",
+];
 
-#[derive(Debug)]
-pub(crate) struct Browser {
-    program: PathBuf,
-    python: Python,
-    modules: PathBuf,
+/// Runs a Python script that drives the browser with Playwright: `script FOLDER --browser PROGRAM [--screenshots DIR]`.
+pub(crate) fn check(workspace: &Workspace, script: &str, folder: &Path, screenshots: Option<&Path>) -> Result<()> {
+    let browser = find_or_install()?;
+    let mut command = Tools::ensure(workspace)?.python(&workspace.path(script));
+    command.arg(folder).arg("--browser").arg(&browser);
+    if let Some(folder) = screenshots {
+        command.arg("--screenshots").arg(folder);
+    }
+    run(&mut command).with_context(|| format!("the check with {} failed (above)", browser.display()))
 }
 
-impl Browser {
-    /// Finds the browser and the driver. A missing one is installed if possible; otherwise the error names what to
-    /// install.
-    pub(crate) fn ready() -> Result<Self> {
-        let program = chromium::find_or_install()?;
-        let python = Python::find()?;
-        let modules = playwright::ensure(&python)?;
-        Ok(Self {
-            program,
-            python,
-            modules,
-        })
+/// `$DDL_BROWSER`, a Chromium on the search path, or a newly installed one.
+pub(crate) fn find_or_install() -> Result<PathBuf> {
+    if let Some(named) = env::var_os("DDL_BROWSER").filter(|value| !value.is_empty()) {
+        let missing = || format!("DDL_BROWSER={} is not a program", named.display());
+        return find_on_path(&named).with_context(missing);
     }
-
-    /// Runs a Python script that drives the browser with Playwright: `script FOLDER --browser PROGRAM MORE...`.
-    pub(crate) fn run_check<'a>(
-        &self,
-        script: &Path,
-        folder: &Path,
-        more: impl IntoIterator<Item = &'a Path>,
-    ) -> Result<()> {
-        let mut command = self.python.file(script);
-        command
-            .arg(folder)
-            .arg("--browser")
-            .arg(&self.program)
-            .args(more)
-            .env("PYTHONPATH", &self.modules)
-            .env("PYTHONDONTWRITEBYTECODE", "1");
-        run_within(&mut command, LIMIT)
-            .with_context(|| format!("the check with {} failed (above)", self.program.display()))
+    let find = || NAMES.iter().find_map(|name| find_on_path(OsStr::new(name)));
+    if let Some(browser) = find() {
+        return Ok(browser);
     }
+    let advice = "name a browser with DDL_BROWSER=/path/to/program";
+    debian::ensure_program("chromium", &["chromium", "fonts-dejavu-core"]).context(advice)?;
+    find().context("apt-get installed a browser, but it is not on the search path")
 }

@@ -1,10 +1,14 @@
-//! The user's cache, which is kept between calls: libtorch, tools and packages, one folder each.
+//! The user's cache, which is kept between calls: libtorch and tools, one folder each. Files and folders are whole or
+//! absent.
 
 use std::env;
+use std::fmt::Write as _;
 use std::fs;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use sha2::{Digest as _, Sha256};
 
 /// `$XDG_CACHE_HOME/ddl`, or `~/.cache/ddl`.
 pub(crate) fn folder() -> Result<PathBuf> {
@@ -44,6 +48,44 @@ pub(crate) fn fill(
     }
 }
 
+/// Writes a file whole or not at all; its folder is created if necessary.
+pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
+    let write = || -> Result<()> {
+        let folder = path.parent().context("a file lies in a folder")?;
+        fs::create_dir_all(folder)?;
+        let mut builder = tempfile::Builder::new();
+        // Temporary files are private by default.
+        #[cfg(unix)]
+        builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o644));
+        let file = builder.prefix(".incoming-").tempfile_in(folder)?;
+        fs::write(file.path(), bytes)?;
+        file.as_file().sync_all()?;
+        file.persist(path)?;
+        Ok(())
+    };
+    write().with_context(|| format!("{} cannot be written", path.display()))
+}
+
+/// The SHA-256 of a file, in hexadecimal digits.
+pub(crate) fn sha256(path: &Path) -> Result<String> {
+    let failed = || format!("{} cannot be read", path.display());
+    let mut file = fs::File::open(path).with_context(failed)?;
+    let mut hasher = Sha256::new();
+    let mut block = vec![0; 1 << 16];
+    loop {
+        match file.read(&mut block).with_context(failed)? {
+            0 => break,
+            length => hasher.update(&block[..length]),
+        }
+    }
+    let digits = hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    });
+    Ok(digits)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -56,10 +98,8 @@ mod tests {
         let is_whole = |folder: &Path| folder.join("whole").is_file();
         let make = |file: &'static str| {
             move |work: &Path| {
-                let finished = work.join("finished");
-                fs::create_dir(&finished)?;
-                fs::write(finished.join(file), "")?;
-                Ok(finished)
+                write_file(&work.join("finished").join(file), b"")?;
+                Ok(work.join("finished"))
             }
         };
         assert!(fill(&folder, is_whole, |_| bail!("no network")).is_err());

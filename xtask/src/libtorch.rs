@@ -4,54 +4,35 @@
 mod config;
 mod fetch;
 mod locate;
-mod pin;
 
 use std::env;
 use std::ffi::OsStr;
-use std::fmt;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 
-pub(crate) use pin::VERSION;
-
 use crate::cache;
-use crate::workspace::{Workspace, absolute, program_on_path};
+use crate::process::find_on_path;
+use crate::workspace::{Workspace, absolute};
+
+/// Version of libtorch that the binding in `Cargo.lock` requires.
+pub(crate) const VERSION: &str = "2.11.0";
+
+/// The origin of newly fetched libraries.
+pub(crate) const FETCHED: &str = "from the pinned wheels";
 
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Request {
     pub(crate) cache: Option<PathBuf>,
     /// Folder with the pinned wheels, for machines without a package index.
     pub(crate) wheel_dir: Option<PathBuf>,
-    pub(crate) verify: bool,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Origin {
-    Variable,
-    /// An earlier set-up, read from the generated configuration.
-    Configured,
-    /// The folder of unpacked libraries, filled earlier.
-    Cache,
-    /// The pinned wheels, fetched now.
-    Fetched,
-}
-
-impl fmt::Display for Origin {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Variable => "from the variable LIBTORCH",
-            Self::Configured => "as set up before",
-            Self::Cache => "from the cache",
-            Self::Fetched => "from the pinned wheels",
-        })
-    }
 }
 
 #[derive(Debug, Clone)]
 pub(crate) struct Ready {
     pub(crate) folder: PathBuf,
-    pub(crate) origin: Origin,
+    /// Where it was found: a clause.
+    pub(crate) origin: &'static str,
     /// Whether the generated cargo configuration had to be written.
     pub(crate) reconfigured: bool,
 }
@@ -61,9 +42,6 @@ pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> 
     require_compiler()?;
     let generated = workspace.path(config::GENERATED);
     let (folder, origin) = choose(&generated, request)?;
-    if request.verify {
-        fetch::verify(&folder)?;
-    }
     let reconfigured = config::write(&generated, &folder)?;
     Ok(Ready {
         folder,
@@ -72,7 +50,7 @@ pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> 
     })
 }
 
-fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
+fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, &'static str)> {
     let configured = config::read(generated);
     let variable = env::var_os("LIBTORCH")
         .filter(|value| !value.is_empty())
@@ -88,23 +66,23 @@ fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, Origin)> {
                 folder.display()
             );
         }
-        return Ok((folder, Origin::Variable));
+        return Ok((folder, "from the variable LIBTORCH"));
     }
     let asked = request.cache.is_some() || request.wheel_dir.is_some();
     if let Some(folder) = configured.filter(|folder| !asked && locate::validate(folder).is_ok()) {
-        return Ok((folder, Origin::Configured));
+        return Ok((folder, "as set up before"));
     }
     let kept = match &request.cache {
         Some(folder) => absolute(folder)?,
         None => cache::folder()?,
     };
-    let folder = kept.join(pin::folder_name());
+    let folder = kept.join(format!("libtorch-{VERSION}"));
     if fetch::is_complete(&folder) && locate::validate(&folder).is_ok() {
-        return Ok((folder, Origin::Cache));
+        return Ok((folder, "from the cache"));
     }
     fetch::fetch(&folder, request.wheel_dir.as_deref())
         .with_context(|| format!("libtorch {VERSION} could not be set up"))?;
-    Ok((folder, Origin::Fetched))
+    Ok((folder, FETCHED))
 }
 
 /// The binding of libtorch is a C++ file: without a compiler the build would fail after minutes.
@@ -115,11 +93,33 @@ fn require_compiler() -> Result<()> {
         .as_deref()
         .and_then(OsStr::to_str)
         .map_or("c++", |text| text.split_whitespace().next().unwrap_or("c++"));
-    if !program_on_path(OsStr::new(program)) {
+    if find_on_path(OsStr::new(program)).is_none() {
         bail!(
             "a C++ compiler is missing ({program} is not on the search path): install one, on \
              Debian or Ubuntu with `apt install g++`"
         );
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The binding's build script fixes the libtorch version that it requires.
+    #[test]
+    fn the_version_belongs_to_the_locked_binding_and_is_the_one_that_runs_record() {
+        let workspace = Workspace::find().unwrap();
+        let text = |file: &str| std::fs::read_to_string(workspace.path(file)).unwrap();
+        let lock = text("Cargo.lock");
+        for binding in ["tch", "torch-sys"] {
+            assert!(
+                lock.contains(&format!("name = \"{binding}\"\nversion = \"0.24.0\"\n")),
+                "{binding}"
+            );
+        }
+        assert!(text("xtask/libtorch.txt").contains(&format!("torch=={VERSION} ")));
+        let recorded = format!("LIBTORCH_VERSION: &str = \"{VERSION}\"");
+        assert!(text("crates/ddl-star/src/device.rs").contains(&recorded));
+    }
 }

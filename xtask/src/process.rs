@@ -1,28 +1,55 @@
-//! Processes with a time limit.
+//! Programs that this one starts.
 
-use std::process::Command;
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use std::env;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 
-/// Runs a program to its end. It is an error if the program fails, or exceeds the time limit and is stopped.
-pub(crate) fn run_within(command: &mut Command, limit: Duration) -> Result<()> {
-    let name = command.get_program().display().to_string();
-    let mut child = command.spawn().with_context(|| format!("{name} cannot be started"))?;
-    let start = Instant::now();
-    loop {
-        match child.try_wait().context("the state of a program cannot be read")? {
-            Some(status) if status.success() => return Ok(()),
-            Some(status) => bail!("{name} failed: {status}"),
-            None if start.elapsed() < limit => sleep(Duration::from_millis(50)),
-            None => {
-                child.kill().context("a program cannot be stopped")?;
-                child.wait().context("the state of a program cannot be read")?;
-                bail!("{name} did not finish within {} s and was stopped", limit.as_secs());
-            }
-        }
+/// Prints the command and runs it to its end. A failure is an error.
+pub(crate) fn run(command: &mut Command) -> Result<()> {
+    let line = shown(command);
+    eprintln!("$ {line}");
+    let status = command.stdin(Stdio::null()).status();
+    let status = status.with_context(|| format!("{} cannot be started", name(command)))?;
+    ensure!(status.success(), "`{line}` failed: {status}");
+    Ok(())
+}
+
+/// Runs a command silently and returns what it prints. The error is the last line of its standard error.
+pub(crate) fn read(command: &mut Command) -> Result<String> {
+    let output = command.stdin(Stdio::null()).output();
+    let output = output.with_context(|| format!("{} cannot be started", name(command)))?;
+    if !output.status.success() {
+        let text = String::from_utf8_lossy(&output.stderr);
+        let last = text.lines().map(str::trim).rfind(|line| !line.is_empty());
+        bail!("{}", last.unwrap_or("it stopped without an error message"));
     }
+    String::from_utf8(output.stdout).with_context(|| format!("the output of {} is not text", name(command)))
+}
+
+fn name(command: &Command) -> String {
+    command.get_program().display().to_string()
+}
+
+/// The file name of the program and its arguments, for messages.
+pub(crate) fn shown(command: &Command) -> String {
+    let program = Path::new(command.get_program()).file_name().unwrap_or_default();
+    let words = [program].into_iter().chain(command.get_args());
+    let words: Vec<String> = words.map(|word| word.display().to_string()).collect();
+    words.join(" ")
+}
+
+/// The program of this name on the search path (or the path itself, if it is one).
+pub(crate) fn find_on_path(name: &OsStr) -> Option<PathBuf> {
+    if Path::new(name).components().count() > 1 {
+        return Path::new(name).is_file().then(|| name.into());
+    }
+    let path = env::var_os("PATH")?;
+    env::split_paths(&path)
+        .map(|folder| folder.join(name))
+        .find(|program| program.is_file())
 }
 
 #[cfg(test)]
@@ -30,16 +57,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn success_failure_and_timeout_are_distinguished() {
-        let run = |script: &str, limit| {
+    fn output_and_errors_of_a_program_are_passed_on() {
+        let shell = |script: &str| {
             let mut shell = Command::new("sh");
-            let outcome = run_within(shell.args(["-c", script]), Duration::from_millis(limit));
-            outcome.map_err(|error| error.to_string())
+            shell.args(["-c", script]);
+            shell
         };
-        assert_eq!(run("exit 0", 60_000), Ok(()));
-        let failed = run("exit 3", 60_000).unwrap_err();
-        assert!(failed.contains("sh failed") && failed.contains('3'), "{failed}");
-        let stopped = run("exec sleep 60", 100).unwrap_err();
-        assert!(stopped.contains("was stopped"), "{stopped}");
+        assert_eq!(read(&mut shell("echo hello")).unwrap(), "hello\n");
+        let error = read(&mut shell("echo first >&2; echo 'no network' >&2; exit 1")).unwrap_err();
+        assert_eq!(error.to_string(), "no network");
+        let error = run(&mut shell("exit 3")).unwrap_err().to_string();
+        assert!(
+            error.contains("`sh -c exit 3` failed") && error.contains('3'),
+            "{error}"
+        );
+        let error = run(&mut Command::new("./no such program")).unwrap_err().to_string();
+        assert!(error.contains("cannot be started"), "{error}");
     }
 }

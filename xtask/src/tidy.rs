@@ -1,170 +1,199 @@
-//! Rules that no other tool checks: names and lengths of files, columns, words, links between files, and inherited
-//! lints. Recordings and paths of a developer's machine must not be tracked.
-
-mod columns;
-mod links;
-mod sizes;
-mod words;
+//! Rules of this repository that no other tool checks: recordings and paths of a developer's machine must not be
+//! tracked; names, lengths and columns of files; sizes of pages.
 
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 
-use crate::data::{Manifest, RECORDED};
-use crate::digest::measure;
+use crate::cache::sha256;
+use crate::recordings::{Manifest, RECORDED};
 use crate::workspace::Workspace;
-use sizes::Sizes;
 
-/// Length (lines) above which a file should probably be split.
-const SOFT_LIMIT: usize = 300;
-const HARD_LIMIT: usize = 500;
+/// Largest number of lines of a Rust file, and of columns of Rust and Markdown.
+const LINES: usize = 500;
+const COLUMNS: usize = 120;
+/// Largest sizes in bytes: the README, that of a crate, a page of `docs`, all of these.
+const README: usize = 7_000;
+const CRATE_README: usize = 4_000;
+const PAGE: usize = 12_000;
+const ALL_PAGES: usize = 150_000;
 /// Names that do not describe the content.
-const EMPTY_NAMES: [&str; 9] = [
-    "utils", "util", "common", "helpers", "helper", "misc", "stuff", "tools", "shared",
-];
+const EMPTY_NAMES: [&str; 6] = ["utils", "util", "common", "helpers", "helper", "misc"];
 /// The content of `datasets`: descriptions, and a simulated recording that a test generates again.
 const DESCRIPTIONS: [&str; 4] = ["README.md", "manifest.toml", "folds.json", "sample.csv"];
 // Spelled in pieces, so that this file does not find itself.
 const HOME_FOLDERS: [&str; 3] = [concat!("/ho", "me/"), concat!("/ro", "ot/"), concat!("/Use", "rs/")];
 
-#[derive(Debug, Default)]
-struct Findings {
-    faults: Vec<String>,
-    notes: Vec<String>,
-}
-
 pub(crate) fn run(workspace: &Workspace) -> Result<()> {
-    let Findings { faults, notes } = check(workspace)?;
-    for note in &notes {
-        println!("note: {note}");
+    let manifest = Manifest::load(workspace)?;
+    let entries = RECORDED.iter().filter_map(|name| manifest.entry(name).ok());
+    let recordings = entries.flat_map(|entry| &entry.files);
+    let recordings: Vec<[&str; 2]> = recordings
+        .map(|file| [file.name.as_str(), file.sha256.as_str()])
+        .collect();
+    let summary = std::fs::read_to_string(workspace.path("docs/SUMMARY.md")).context("docs/SUMMARY.md")?;
+    let mut faults = Vec::new();
+    let mut pages = 0;
+    for file in workspace.files()? {
+        let path = workspace.root().join(&file);
+        let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
+        let mut of_file: Vec<String> = recording_fault(&file, &sha256(&path)?, &recordings)
+            .into_iter()
+            .collect();
+        // Only text files have lines to check.
+        if let Ok(text) = std::str::from_utf8(&bytes) {
+            of_file.extend(text_faults(&file, text));
+            if is_page(&file) {
+                pages += written(text);
+                let name = file.file_name().unwrap_or_default().display();
+                if !summary.contains(&format!("({name})")) && file != Path::new("docs/SUMMARY.md") {
+                    of_file.push("docs/SUMMARY.md does not list it".to_owned());
+                }
+            }
+        }
+        faults.extend(of_file.iter().map(|fault| format!("{}: {fault}", file.display())));
     }
-    for fault in &faults {
-        println!("fault: {fault}");
+    if pages > ALL_PAGES {
+        faults.push(format!("docs: {pages} bytes of pages; at most {ALL_PAGES}"));
     }
-    if !faults.is_empty() {
-        bail!("tidy: {} faults (above)", faults.len());
-    }
-    println!("tidy: no faults, {} notes", notes.len());
+    ensure!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
     Ok(())
 }
 
-fn check(workspace: &Workspace) -> Result<Findings> {
-    let manifest = Manifest::load(workspace)?;
-    let recordings: Vec<(&str, &str)> = RECORDED
-        .into_iter()
-        .flat_map(|convention| manifest.entry(convention))
-        .flat_map(|entry| &entry.files)
-        .map(|file| (file.name.as_str(), file.sha256.as_str()))
-        .collect();
-    let files = workspace.files()?;
-    let mut findings = Findings::default();
-    let mut sizes = Sizes::default();
-    for file in &files {
-        let path = workspace.path(&file.to_string_lossy());
-        if !path.is_file() {
-            continue; // a link to a folder
-        }
-        let (sha256, _) = measure(&path)?;
-        let named = name_fault(file).or_else(|| recording_fault(file, &sha256, &recordings));
-        let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
-        let said = named.into_iter().map(|what| format!("{}: {what}", file.display()));
-        findings.faults.extend(said);
-        // Only text files have lines to check.
-        if let Ok(text) = std::str::from_utf8(&bytes) {
-            check_text(file, text, &mut findings);
-            findings.faults.extend(links::faults(file, text, &files));
-            findings.faults.extend(columns::faults(file, text));
-            findings.faults.extend(words::faults(file, text));
-            findings.faults.extend(sizes.fault(file, text));
-        }
-    }
-    findings.faults.extend(sizes.fault_of_all());
-    Ok(findings)
-}
-
-fn name_fault(file: &Path) -> Option<String> {
-    let folders = file.parent().into_iter().flat_map(Path::iter);
-    let mut names = folders.chain(file.file_stem()).filter_map(|name| name.to_str());
-    let name = names.find(|name| EMPTY_NAMES.contains(name))?;
-    Some(format!("{name:?} is not descriptive: name the file after its concept"))
-}
-
 /// The terms of the recordings do not clearly allow redistribution, so none may be tracked under any name.
-fn recording_fault(file: &Path, sha256: &str, recordings: &[(&str, &str)]) -> Option<String> {
+fn recording_fault(file: &Path, sha256: &str, recordings: &[[&str; 2]]) -> Option<String> {
     let name = file.file_name()?.to_str()?;
-    let is_recording = |&&(recording, pinned): &&(&str, &str)| recording == name || pinned == sha256;
-    if let Some((recording, _)) = recordings.iter().find(is_recording) {
+    if let Some([recording, _]) = recordings
+        .iter()
+        .find(|recording| recording.contains(&name) || recording[1] == sha256)
+    {
         return Some(format!(
-            "this is the recording {recording}; remove it, no recording may be committed"
+            "this is the recording {recording}; no recording may be committed"
         ));
     }
     let is_data = file.starts_with("datasets") && !DESCRIPTIONS.contains(&name);
     is_data.then(|| "datasets/ holds descriptions and the simulated sample, no data".to_owned())
 }
 
-fn check_text(file: &Path, text: &str, findings: &mut Findings) {
-    let name = file.display();
-    let lines = text.lines().count();
-    if file.extension().is_some_and(|extension| extension == "rs") && lines > SOFT_LIMIT {
-        if lines > HARD_LIMIT {
-            findings
-                .faults
-                .push(format!("{name}: {lines} lines, more than {HARD_LIMIT}: split it"));
-        } else {
-            findings.notes.push(format!(
-                "{name}: {lines} lines, more than {SOFT_LIMIT}: consider splitting it"
-            ));
-        }
-    }
-    if file.file_name() == Some("Cargo.toml".as_ref())
-        && text.contains(".workspace = true")
-        && !text.contains("[lints]\nworkspace = true")
-    {
-        findings.faults.push(format!("{name}: add `[lints] workspace = true`"));
-    }
-    for (number, line) in (1..).zip(text.lines()) {
-        if HOME_FOLDERS.iter().any(|folder| names_home(line, folder)) {
-            findings
-                .faults
-                .push(format!("{name}:{number}: a path in a home folder; remove it"));
-        }
-    }
+fn is_page(file: &Path) -> bool {
+    file.starts_with("docs") && file.extension().is_some_and(|extension| extension == "md")
 }
 
-/// Whether a line names a folder below a home folder, as opposed to an address or a longer path that contains the same
-/// word.
-fn names_home(line: &str, folder: &str) -> bool {
-    line.match_indices(folder).any(|(at, _)| {
-        let before = line[..at].chars().next_back();
-        let after = line[at + folder.len()..].chars().next();
-        let begins = before.is_none_or(|c| !c.is_alphanumeric() && !"/.-_}~*".contains(c));
-        begins && after.is_some_and(|c| c.is_alphanumeric() || c == '.')
-    })
+fn text_faults(file: &Path, text: &str) -> Vec<String> {
+    let mut faults = Vec::new();
+    let mut names = file.iter().chain(file.file_stem()).filter_map(|name| name.to_str());
+    if let Some(name) = names.find(|name| EMPTY_NAMES.contains(name)) {
+        faults.push(format!("{name:?} is not descriptive: name the file after its concept"));
+    }
+    let kind = file
+        .extension()
+        .and_then(|extension| extension.to_str())
+        .unwrap_or_default();
+    let is_crate_page = file.starts_with("crates") && file.ends_with("README.md");
+    let (size, limit, unit) = match file {
+        _ if is_page(file) => (written(text), PAGE, "bytes"),
+        _ if is_crate_page => (text.len(), CRATE_README, "bytes"),
+        _ if file == Path::new("README.md") => (text.len(), README, "bytes"),
+        _ if kind == "rs" => (text.lines().count(), LINES, "lines"),
+        _ => (0, 0, ""),
+    };
+    if size > limit {
+        faults.push(format!("{size} {unit}; at most {limit}"));
+    }
+    if is_crate_page && text.contains("](../") {
+        faults.push("this page is read elsewhere, too: name files of other folders without a link".to_owned());
+    }
+    let inherits = text.contains("[lints]\nworkspace = true");
+    if file.ends_with("Cargo.toml") && text.contains(".workspace = true") && !inherits {
+        faults.push("add `[lints] workspace = true`".to_owned());
+    }
+    let mut is_code = false;
+    for (number, line) in (1..).zip(text.lines()) {
+        is_code ^= line.trim_start().starts_with("```");
+        // Rows of tables, code blocks of pages and link targets may be longer.
+        let is_row = line.trim_start_matches(['/', '!', ' ']).starts_with('|');
+        let is_free = is_row || kind == "md" && is_code;
+        let targets = line.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+        let columns = line.chars().count() - targets.map(|(target, _)| target.chars().count()).sum::<usize>();
+        if ["rs", "md"].contains(&kind) && !is_free && columns > COLUMNS {
+            faults.push(format!("line {number} has more than {COLUMNS} columns"));
+        }
+        let mut words = line.split([' ', '"', '\'', '(', '=', '`', ',', '\\']);
+        if words.any(|word| {
+            HOME_FOLDERS
+                .iter()
+                .any(|home| word.len() > home.len() && word.starts_with(home))
+        }) {
+            faults.push(format!("line {number} has a path in a home folder"));
+        }
+    }
+    faults
+}
+
+/// Bytes of a page without generated parts. These are the text between the comments `<!-- ... generated ... -->` and
+/// `<!-- ... end ... -->`, and the output of shown commands, which a test compares with the real output.
+fn written(text: &str) -> usize {
+    let (mut is_generated, mut is_console) = (false, false);
+    let counted = text.lines().filter(|line| {
+        if let Some(kind) = line.strip_prefix("```") {
+            is_console = kind == "console";
+        } else if is_console && !line.starts_with('$') {
+            return false;
+        }
+        if line.starts_with("<!--") {
+            let comment = line.to_lowercase();
+            is_generated = comment.contains("generated") || is_generated && !comment.contains("end");
+        }
+        !is_generated
+    });
+    counted.map(|line| line.len() + 1).sum()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn found(file: &str, text: &str) -> Findings {
-        let mut findings = Findings::default();
-        check_text(Path::new(file), text, &mut findings);
-        findings
-    }
-
     #[test]
-    fn names_that_are_not_descriptive_are_found_in_files_and_folders() {
-        for file in ["crates/a/src/utils.rs", "helpers.py", "docs/misc/page.md"] {
-            assert!(name_fault(Path::new(file)).is_some(), "{file}");
-        }
-        for file in ["crates/a/src/window.rs", "src/utilisation.rs", "common_law.rs"] {
-            assert!(name_fault(Path::new(file)).is_none(), "{file}");
+    fn each_fault_is_found_and_what_is_right_passes() {
+        let long = "word ".repeat(30);
+        let target = "x".repeat(120);
+        let home = HOME_FOLDERS[0];
+        for (file, text, fault) in [
+            ("crates/a/src/utils.rs", String::new(), "not descriptive"),
+            ("src/utilisation.rs", String::new(), ""),
+            ("a.rs", "//\n".repeat(LINES + 1), "501 lines; at most 500"),
+            ("a.rs", "//\n".repeat(LINES), ""),
+            ("README.md", "x\n".repeat(README), "14000 bytes; at most 7000"),
+            ("docs/a.md", "x\n".repeat(PAGE), "24000 bytes"),
+            ("docs/a.svg", "x\n".repeat(PAGE), ""),
+            ("crates/a/README.md", "x\n".repeat(CRATE_README), "8000 bytes"),
+            ("crates/a/README.md", "[a](../b.md)".to_owned(), "without a link"),
+            (
+                "crates/a/Cargo.toml",
+                "version.workspace = true\n".to_owned(),
+                "[lints]",
+            ),
+            ("a.rs", format!("x\n{long}\n"), "line 2 has more than 120 columns"),
+            ("a.rs", format!("    /// | {long} |\n"), ""),
+            ("a.md", format!("{long}\n"), "line 1"),
+            (
+                "a.md",
+                format!("| {long} |\n```console\n{long}\n```\nsee [this]({target})\n"),
+                "",
+            ),
+            ("a.toml", format!("{long}\n"), ""),
+            ("a.md", format!("see {home}someone/x"), "home folder"),
+            ("a.md", format!("https://host{home}page, a{home}b"), ""),
+        ] {
+            let faults = text_faults(Path::new(file), &text);
+            assert_eq!(faults.len(), usize::from(!fault.is_empty()), "{file}: {faults:?}");
+            assert!(faults.iter().all(|found| found.contains(fault)), "{file}: {faults:?}");
         }
     }
 
     #[test]
     fn a_recording_is_found_by_place_by_name_and_by_contents() {
-        let fault = |file: &str, sha256| recording_fault(Path::new(file), sha256, &[("eth.csv", "abc")]);
+        let fault = |file: &str, sha256| recording_fault(Path::new(file), sha256, &[["eth.csv", "abc"]]);
         assert_eq!(fault("datasets/folds.json", "x"), None);
         assert!(fault("datasets/new.csv", "x").unwrap().contains("no data"));
         for (file, sha256) in [("eth.csv", "x"), ("renamed.txt", "abc")] {
@@ -173,36 +202,10 @@ mod tests {
     }
 
     #[test]
-    fn length_is_a_note_and_then_a_fault() {
-        let counts = |file, lines| {
-            let findings = found(file, &"//\n".repeat(lines));
-            (findings.notes.len(), findings.faults.len())
-        };
-        assert_eq!(counts("a.rs", SOFT_LIMIT), (0, 0));
-        assert_eq!(counts("a.rs", SOFT_LIMIT + 1), (1, 0));
-        assert_eq!(counts("a.rs", HARD_LIMIT + 1), (0, 1));
-        assert_eq!(counts("table.md", 9999), (0, 0));
-    }
-
-    #[test]
-    fn lints_are_inherited() {
-        let manifest = "[package]\nversion.workspace = true\n";
-        assert_eq!(found("crates/a/Cargo.toml", manifest).faults.len(), 1);
-        let whole = format!("{manifest}\n[lints]\nworkspace = true\n");
-        assert!(found("crates/a/Cargo.toml", &whole).faults.is_empty());
-    }
-
-    #[test]
-    fn home_folders_are_found_and_addresses_are_not() {
-        for folder in HOME_FOLDERS {
-            assert_eq!(
-                found("a.md", &format!("\nsee {folder}someone/x")).faults.len(),
-                1,
-                "{folder}"
-            );
-            for text in ["https://host{}page", "a{}b", "{} alone"] {
-                assert!(found("a.md", &text.replace("{}", folder)).faults.is_empty(), "{text}");
-            }
-        }
+    fn what_a_command_generates_does_not_count() {
+        let page = "a\n<!-- figures: begin. Generated by it. -->\n| table |\n<!-- figures: end -->\nb\n";
+        assert_eq!(written(page), "a\n<!-- figures: end -->\nb\n".len());
+        let page = "a\n```console\n$ ddl data\nan answer\n```\nb\n```rust\nlet c = 1;\n```\n";
+        assert_eq!(written(page), page.len() - "an answer\n".len());
     }
 }

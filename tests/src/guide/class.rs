@@ -24,7 +24,7 @@ pub const LONG: &[(&str, &str)] = &[
 pub const ELSEWHERE: &[(&str, &str)] = &[
     ("docs/gpu.md", ""),
     ("docs/libtorch.md", "export LIBTORCH="),
-    ("docs/rust.md", "eval \"$(cargo xtask env)\""),
+    ("docs/rust.md", "eval \"$(cargo xtask setup --env)\""),
 ];
 
 /// Folds of the recordings; without recordings, their commands are only started.

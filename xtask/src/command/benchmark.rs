@@ -8,7 +8,8 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 
 use super::set_up;
-use crate::data::{self, Chosen};
+use crate::process::run;
+use crate::recordings;
 use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
@@ -30,40 +31,29 @@ impl Arguments {
 }
 
 /// The cargo command that builds the program and replaces itself by it.
-pub(super) fn command(workspace: &Workspace, mut options: Vec<String>) -> Result<Command> {
+fn command(workspace: &Workspace, mut options: Vec<String>) -> Result<Command> {
     let cargo_profile = take(&mut options, "--cargo-profile")?;
     let asked = take(&mut options, "--convention")?;
-    let asked = asked.map(|name| name.parse()).transpose()?;
     let data = take(&mut options, "--data")?.map(PathBuf::from);
-    let mut attempts = Vec::new();
-    let chosen = data::choose(workspace, asked, data.as_deref(), &mut |text| {
-        attempts.push(text.to_owned());
-    })?;
+    let chosen = recordings::choose(workspace, asked.as_deref(), data.as_deref())?;
     eprintln!("data convention: {} ({})", chosen.convention, chosen.reason);
-    for attempt in attempts {
-        eprintln!("{attempt}");
-    }
-    // The report shows baselines of the other convention if its recordings are present, so these must not be wrong.
-    if let Some(folder) = chosen.folder.as_deref() {
-        for convention in data::RECORDED {
-            data::find_right(workspace, convention, None)?;
-            data::find_right(workspace, convention, Some(folder))?;
-        }
-    }
     set_up(workspace)?;
-    let cargo_profile = cargo_profile.as_deref().unwrap_or("release");
-    let mut cargo = workspace.cargo_process();
+    let mut cargo = workspace.cargo("run --package ddl-cli --bin ddl --features torch --profile".split(' '));
     cargo
-        .args(["run", "--package", "ddl-cli", "--bin", "ddl"])
-        .args(["--features", "torch", "--profile", cargo_profile])
+        .arg(cargo_profile.as_deref().unwrap_or("release"))
         .args(["--", "benchmark"])
-        .args(handed_over(workspace.root(), &chosen, options));
+        .args(handed_over(
+            workspace.root(),
+            &chosen.convention,
+            chosen.folder.as_deref(),
+            options,
+        ));
     Ok(cargo)
 }
 
-fn handed_over(root: &Path, chosen: &Chosen, options: Vec<String>) -> Vec<String> {
-    let mut words = vec!["--convention".to_owned(), chosen.convention.to_string()];
-    if let Some(folder) = &chosen.folder {
+fn handed_over(root: &Path, convention: &str, data: Option<&Path>, options: Vec<String>) -> Vec<String> {
+    let mut words = vec!["--convention".to_owned(), convention.to_owned()];
+    if let Some(folder) = data {
         words.extend(["--data".to_owned(), folder.display().to_string()]);
     }
     for option in options {
@@ -101,37 +91,24 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
     let options = "--profile smoke --protocol published,fair,single --cargo-profile dev --out";
     let mut options: Vec<String> = options.split(' ').map(str::to_owned).collect();
     options.push(out.display().to_string());
-    let status = command(workspace, options)?
-        .status()
-        .context("cargo cannot be started")?;
-    if !status.success() {
-        bail!("the smoke benchmark failed (above)");
-    }
-    Ok(())
+    run(&mut command(workspace, options)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ddl_data::Convention;
 
     #[test]
     fn own_options_are_removed_and_the_rest_is_passed_on() {
-        let words = "--profile smoke --convention=star --publish --data here --seeds 1";
-        let mut options: Vec<String> = words.split(' ').map(str::to_owned).collect();
+        let words = "--profile smoke --convention=star --publish --data here --seeds 1".split(' ');
+        let mut options: Vec<String> = words.map(str::to_owned).collect();
         let mut taken = |name| take(&mut options, name).unwrap();
         assert_eq!(taken("--convention").as_deref(), Some("star"));
         assert_eq!(taken("--data").as_deref(), Some("here"));
         assert_eq!(taken("--cargo-profile"), None);
-        let chosen = Chosen {
-            convention: Convention::Star,
-            folder: Some("/found/here".into()),
-            reason: String::new(),
-        };
-        assert_eq!(
-            handed_over(Path::new("/checkout"), &chosen, options).join(" "),
-            "--convention star --data /found/here --profile smoke --publish /checkout --seeds 1"
-        );
+        let words = handed_over(Path::new("/checkout"), "star", Some(Path::new("/found")), options);
+        let expected = "--convention star --data /found --profile smoke --publish /checkout --seeds 1";
+        assert_eq!(words.join(" "), expected);
         let error = take(&mut vec!["--data".to_owned()], "--data").unwrap_err();
         assert_eq!(error.to_string(), "--data needs a value");
     }

@@ -1,87 +1,114 @@
-//! `cargo xtask ci`: all checks, cheapest first, tests last.
+//! `cargo xtask ci`: all checks, cheapest first, tests last. `cargo xtask check`: the quick ones.
 
+use std::path::Path;
 use std::thread;
 use std::time::Instant;
 
 use anyhow::{Context, Result};
-use ddl_data::Convention;
 
-use super::{benchmark, data, deny, docs, package, page, python, set_up, test};
+use super::{benchmark, docs, python, set_up, test};
+use crate::browser;
+use crate::process::run as run_command;
+use crate::recordings::Manifest;
 use crate::tidy;
-use crate::workspace::{Workspace, step};
+use crate::tools::Tools;
+use crate::workspace::Workspace;
 
 type Check = (&'static str, fn(&Workspace) -> Result<()>);
 
-const CHECKS: [Check; 10] = [
-    ("format", format),
-    ("tidy", tidy::run),
-    ("packages", package::check),
-    ("recordings from the package index", recordings),
-    ("dependencies", deny::run),
-    ("set-up", set_up),
-    ("lints", |workspace| lints(workspace, "ddl-cli/torch,ddl-tests/torch")),
-    (
-        "documentation, report page, benchmark; Python wheel",
-        pages_benchmark_and_wheel,
-    ),
-    ("Python package", python::test_built),
+/// The features of everything that is built here.
+const FEATURES: &str = "ddl-cli/torch,ddl-tests/torch";
+
+const CHECKS: [Check; 9] = [
+    ("text", text),
+    ("libtorch, recordings, browser, Python packages", bring_in),
+    ("dependencies and packages", dependencies),
+    ("lints", |workspace| lints(workspace, FEATURES)),
+    ("documentation site", |workspace| docs::build(workspace, FEATURES)),
+    ("report page in a browser", report_page),
+    ("benchmark", benchmark::smoke),
+    ("Python package", python::check),
     // The tests are last, so that their results are at the end of the log.
     ("tests", test::run_all),
 ];
 
-pub(crate) fn run(workspace: &Workspace) -> Result<()> {
+pub(super) fn run(workspace: &Workspace) -> Result<()> {
     let start = Instant::now();
-    for (index, (name, check)) in CHECKS.iter().enumerate() {
-        eprintln!(
-            "==== {}/{} {name} (after {:.0} s) ====",
-            index + 1,
-            CHECKS.len(),
-            start.elapsed().as_secs_f64()
-        );
+    for (index, (name, check)) in (1..).zip(CHECKS) {
+        let seconds = start.elapsed().as_secs();
+        eprintln!("==== {index}/{} {name} (after {seconds} s) ====", CHECKS.len());
         check(workspace).with_context(|| format!("ci stopped at: {name}"))?;
     }
+    eprintln!("==== all passed after {} s ====", start.elapsed().as_secs());
     Ok(())
 }
 
-pub(super) fn format(workspace: &Workspace) -> Result<()> {
-    step(
-        "`cargo fmt --all --check`",
-        &workspace.cargo(["fmt", "--all", "--check"]),
-    )
-    .context("run `cargo fmt --all`")
+pub(super) fn check(workspace: &Workspace) -> Result<()> {
+    text(workspace)?;
+    // The feature `doc-only` also compiles the code for libtorch, without libtorch.
+    lints(workspace, "ddl-cli/torch,ddl-tests/torch,ddl-cli/doc-only")
 }
 
-pub(super) fn lints(workspace: &Workspace, features: &str) -> Result<()> {
+/// Format, spelling, rules of this repository, and links between its files.
+fn text(workspace: &Workspace) -> Result<()> {
+    run_command(&mut workspace.cargo(["fmt", "--all", "--check"])).context("run `cargo fmt --all`")?;
+    tidy::run(workspace)?;
+    let tools = Tools::ensure(workspace)?;
+    run_command(tools.program(workspace, "ruff").args(["format", "--check", "--quiet"]))
+        .context("run `ruff format`")?;
+    run_command(tools.program(workspace, "ruff").args(["check", "--quiet"]))?;
+    run_command(tools.program(workspace, "typos").args(["--format", "brief"])).context("see _typos.toml")?;
+    let files = workspace.files()?;
+    let pages = files
+        .iter()
+        .filter(|file| file.extension().is_some_and(|extension| extension == "md"));
+    run_command(tools.program(workspace, "lychee").args(pages)).context("links lead nowhere (above)")
+}
+
+fn lints(workspace: &Workspace, features: &str) -> Result<()> {
     // Warnings are denied here and not by RUSTFLAGS, which would replace the path to libtorch.
-    let arguments = [
-        "clippy",
-        "--workspace",
-        "--all-targets",
-        "--features",
-        features,
-        "--quiet",
-        "--",
-        "-D",
-        "warnings",
-    ];
-    step("clippy", &workspace.cargo(arguments))
+    let arguments = format!("clippy --workspace --all-targets --quiet --features {features} -- -D warnings");
+    run_command(&mut workspace.cargo(arguments.split(' ')))
 }
 
-/// The pages and the benchmark use one core; the wheel, in a separate build folder, uses another.
-fn pages_benchmark_and_wheel(workspace: &Workspace) -> Result<()> {
+/// Everything that comes from elsewhere, at the same time.
+fn bring_in(workspace: &Workspace) -> Result<()> {
+    // On a machine with no other network access, the package index is the only source of real recordings.
+    let recordings = |workspace: &Workspace| {
+        let manifest = Manifest::load(workspace)?;
+        let (_, reason) = manifest.entry("social-gan")?.obtain(workspace, "social-gan", None)?;
+        println!("social-gan: {reason}");
+        Ok(())
+    };
+    let fetch = |workspace: &Workspace| run_command(&mut workspace.cargo(["fetch", "--locked", "--quiet"]));
+    // One after the other, because both may call apt-get.
+    let programs = |workspace: &Workspace| {
+        browser::find_or_install()
+            .map(drop)
+            .and_then(|()| python::prepare(workspace))
+    };
+    let jobs: [&(dyn Fn(&Workspace) -> Result<()> + Sync); 4] = [&set_up, &recordings, &fetch, &programs];
     thread::scope(|scope| {
-        let wheel = scope.spawn(|| python::build_wheel(&Workspace::find()?));
-        docs::check(workspace)
-            .context("documentation site")
-            .and_then(|()| page::check(workspace).context("report page in a browser"))
-            .and_then(|()| benchmark::smoke(workspace).context("benchmark"))?;
-        let built = wheel.join();
-        built.unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        let jobs = jobs.map(|job| scope.spawn(|| job(workspace)));
+        jobs.into_iter()
+            .try_for_each(|job| job.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })
 }
 
-/// On a machine with no other network access, the package index is the only source of real recordings.
-fn recordings(workspace: &Workspace) -> Result<()> {
-    println!("{}", data::fetch_one(workspace, Convention::SocialGan, None)?);
-    Ok(())
+/// The dependencies against deny.toml, and the packages of the crates as for a registry.
+fn dependencies(workspace: &Workspace) -> Result<()> {
+    let mut deny = Tools::ensure(workspace)?.program(workspace, "cargo-deny");
+    // Advisories are left out, because their database changes daily.
+    deny.args("--offline --locked --all-features check bans licenses sources".split(' '));
+    run_command(&mut deny).context("deny.toml forbids a dependency: remove it, or allow it there with a reason")?;
+    let package = "package --workspace --no-verify --allow-dirty --quiet";
+    run_command(&mut workspace.cargo(package.split(' ')))
+}
+
+/// The report page of the simulated crowds.
+fn report_page(workspace: &Workspace) -> Result<()> {
+    let folder = workspace.path("target/report-page");
+    let build = "run --quiet -p ddl-report --example report_page --";
+    run_command(workspace.cargo(build.split(' ')).arg(&folder))?;
+    browser::check(workspace, "tests/page/check_page.py", &folder, None::<&Path>)
 }

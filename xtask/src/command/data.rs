@@ -1,12 +1,11 @@
 //! `cargo xtask data`: find, fetch and verify the recordings.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail, ensure};
 use clap::{Args, ValueEnum};
-use ddl_data::{Convention, locate};
 
-use crate::data::{self, Manifest, RECORDED};
+use crate::recordings::{Manifest, RECORDED, SIMULATED};
 use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
@@ -15,7 +14,7 @@ pub(crate) struct Arguments {
     action: Action,
     /// Only this convention: star or social-gan
     #[arg(long)]
-    convention: Option<Convention>,
+    convention: Option<String>,
     /// Folder of the recordings [default: `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
@@ -33,101 +32,58 @@ enum Action {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        if self.convention == Some(Convention::Simulated) {
-            println!("simulated: generated on demand, needs no files");
+        if self.convention.as_deref() == Some(SIMULATED) {
+            println!("{SIMULATED}: generated on demand, needs no files");
             return Ok(());
         }
-        match self.action {
-            Action::Fetch => self.fetch(workspace),
-            Action::Verify => self.verify(workspace),
-            Action::Where => self.locate(workspace),
-        }
-    }
-
-    /// Without a convention: the preferred one that is available.
-    fn fetch(&self, workspace: &Workspace) -> Result<()> {
+        let manifest = Manifest::load(workspace)?;
+        let conventions = self
+            .convention
+            .as_deref()
+            .map_or_else(|| RECORDED.to_vec(), |one| vec![one]);
         let mut reasons = Vec::new();
-        for convention in self.conventions() {
-            match fetch_one(workspace, convention, self.data.as_deref()) {
-                Ok(message) => {
-                    println!("{message}");
-                    return Ok(());
-                }
-                Err(error) => {
-                    if self.convention.is_none() {
-                        eprintln!("{convention}: {error:#}");
+        for convention in &conventions {
+            let entry = manifest.entry(convention)?;
+            if self.action == Action::Fetch {
+                match entry.obtain(workspace, convention, self.data.as_deref()) {
+                    Ok((_, reason)) => {
+                        println!("{convention}: {reason}");
+                        // Without a convention: the preferred one that is available.
+                        return Ok(());
                     }
-                    reasons.push(error);
+                    Err(error) => reasons.push(format!("{error:#}")),
                 }
+                continue;
             }
-        }
-        match (self.convention, reasons.pop()) {
-            (Some(_), Some(error)) => Err(error),
-            _ => bail!(
-                "no recordings could be fetched (reasons above); copy them by hand as \
-                 docs/recordings.md says, or work with `--convention simulated`"
-            ),
-        }
-    }
-
-    fn verify(&self, workspace: &Workspace) -> Result<()> {
-        let manifest = Manifest::load(workspace)?;
-        let mut absent = Vec::new();
-        for convention in self.conventions() {
-            let folder = match locate(convention, self.data.as_deref()) {
-                Ok(folder) => folder,
-                Err(error) => {
-                    absent.push(error.to_string());
-                    continue;
+            match entry.locate(workspace, convention, self.data.as_deref()) {
+                Ok(folder) if self.action == Action::Verify => {
+                    entry.check(&folder)?;
+                    println!(
+                        "{convention}: {} files verified in {}",
+                        entry.files.len(),
+                        folder.display()
+                    );
                 }
-            };
-            let entry = manifest.entry(convention)?;
-            data::check(&folder, entry).with_context(|| format!("{convention} in {}", folder.display()))?;
-            let files = entry.files.len();
-            println!("{convention}: {files} files verified in {}", folder.display());
-        }
-        if absent.len() == self.conventions().len() {
-            bail!(
-                "no recordings to verify: fetch them with `cargo xtask data fetch` ({})",
-                absent.join("; ")
-            );
-        }
-        Ok(())
-    }
-
-    fn locate(&self, workspace: &Workspace) -> Result<()> {
-        let manifest = Manifest::load(workspace)?;
-        for convention in self.conventions() {
-            match locate(convention, self.data.as_deref()) {
                 Ok(folder) => println!("{convention}: {}", folder.display()),
-                Err(error) => println!("{convention}: {error}"),
+                Err(error) => reasons.push(error.to_string()),
             }
-            let entry = manifest.entry(convention)?;
-            println!("  {}", entry.description);
-            println!("  terms: {}", entry.terms);
-            for citation in manifest.citations(entry) {
-                println!("  cite: {citation}");
+            if self.action == Action::Where {
+                println!("  {}\n  terms: {}", entry.description, entry.terms);
+                entry
+                    .cite
+                    .iter()
+                    .for_each(|key| println!("  cite: {}", manifest.citation[key]));
             }
+        }
+        let reasons_text = reasons.join("; ");
+        match self.action {
+            Action::Fetch => bail!("{reasons_text}; or work with `--convention {SIMULATED}`"),
+            Action::Verify => ensure!(
+                reasons.len() < conventions.len(),
+                "no recordings to verify: fetch them with `cargo xtask data fetch` ({reasons_text})"
+            ),
+            Action::Where => reasons.iter().for_each(|reason| println!("{reason}")),
         }
         Ok(())
     }
-
-    fn conventions(&self) -> Vec<Convention> {
-        self.convention.map_or_else(|| RECORDED.to_vec(), |one| vec![one])
-    }
-}
-
-pub(super) fn fetch_one(workspace: &Workspace, convention: Convention, folder: Option<&Path>) -> Result<String> {
-    if let Ok(Some(there)) = data::find_right(workspace, convention, folder) {
-        return Ok(format!(
-            "{convention}: the files are already present in {}",
-            there.display()
-        ));
-    }
-    let say = &mut |text: &str| eprintln!("{text}");
-    let (folder, source) = data::fetch_to(workspace, convention, folder, say)?;
-    Ok(format!(
-        "{convention}: fetched from {source} to {}, hashes verified",
-        folder.display()
-    ))
 }

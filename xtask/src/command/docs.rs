@@ -1,14 +1,20 @@
-//! `cargo xtask docs`: the guide and the interface of every crate, as one site.
+//! `cargo xtask docs`: the guide (mdBook) and the interface of every crate (rustdoc), as one site. It can be opened
+//! from the file system or served as it is; it loads nothing from a network.
 
-use std::ffi::OsStr;
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 
-use crate::browser::Browser;
-use crate::site;
+use crate::browser;
+use crate::cache::write_file;
+use crate::process::{run, shown};
+use crate::tools::Tools;
 use crate::workspace::{Workspace, absolute};
+
+const BOOK: &str = "docs";
+pub(super) const SITE: &str = "target/site";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -23,25 +29,113 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        let first = site::build(workspace)?;
+        // The complete interface, also on a machine without libtorch.
+        build(workspace, "ddl-cli/torch,ddl-cli/doc-only")?;
+        let site = workspace.path(SITE);
+        let first = site.join("index.html");
         println!("{}", first.display());
         if let Some(folder) = self.screenshots {
-            let folder = absolute(&folder)?;
-            let script = workspace.path("tests/page/check_site.py");
-            let site = first.parent().context("the site must be in a folder")?;
-            let options = [OsStr::new("--screenshots").as_ref(), folder.as_path()];
-            Browser::ready()?.run_check(&script, site, options)?;
+            browser::check(workspace, "tests/page/check_site.py", &site, Some(&absolute(&folder)?))?;
         }
         if self.open {
+            let page = first.display();
             open::that_detached(&first)
-                .with_context(|| format!("no browser could be started; open {} yourself", first.display()))?;
+                .with_context(|| format!("no browser could be started; open {page} yourself"))?;
         }
         Ok(())
     }
 }
 
-pub(super) fn check(workspace: &Workspace) -> Result<()> {
-    site::build(workspace).map(drop)
+/// Builds the site and checks its links. The features are those of another build, so that nothing is compiled twice.
+pub(super) fn build(workspace: &Workspace, features: &str) -> Result<()> {
+    let (site, made) = (workspace.path(SITE), workspace.path("target/doc"));
+    for folder in [&site, &made] {
+        if folder.exists() {
+            fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
+        }
+    }
+    // rustdoc links to an item of another crate only if that crate's folder exists.
+    for folder in fs::read_dir(workspace.path("crates"))?.flatten() {
+        fs::create_dir_all(made.join(module(&folder.file_name().display().to_string())))?;
+    }
+    // Every warning is an error (`[workspace.lints.rustdoc]`). With one job, no other crate is rendered while cargo has
+    // removed a crate's folder.
+    let arguments = format!("doc --jobs=1 --workspace --no-deps --quiet --target-dir target --features {features}");
+    run(&mut workspace.cargo(arguments.split(' ')))?;
+    let tools = Tools::ensure(workspace)?;
+    render_book(workspace, &tools, &site.join("guide"))?;
+    let api = site.join("api");
+    fs::rename(&made, &api).context("the interface cannot be moved to the site")?;
+    fs::copy(workspace.path("docs/theme/landing.html"), site.join("index.html")).context("no first page")?;
+    // rustdoc's pages link to a list of crates, which is on the first page of the site.
+    redirect(&api.join("index.html"), "../index.html#crates")?;
+    lead_out(workspace, &site)?;
+    let fronts = fs::read_dir(&api)?
+        .flatten()
+        .map(|folder| folder.path().join("index.html"));
+    let mut lychee = tools.program(workspace, "lychee");
+    lychee
+        .arg("--root-dir")
+        .arg(&site)
+        .arg(site.join("index.html"))
+        .arg(site.join("guide"));
+    run(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
+}
+
+/// The name of a crate in addresses, from its folder.
+fn module(folder: &str) -> String {
+    folder.replace('-', "_")
+}
+
+/// Renders the book; every warning of mdBook is an error.
+fn render_book(workspace: &Workspace, tools: &Tools, out: &Path) -> Result<()> {
+    let mut mdbook = tools.program(workspace, "mdbook");
+    mdbook.args(["build", BOOK, "--dest-dir"]).arg(out);
+    let output = mdbook.output().context("mdbook cannot be started")?;
+    let messages = String::from_utf8_lossy(&output.stderr);
+    // mdBook continues after most faults and only logs them.
+    let is_quiet = !messages.contains("WARN") && !messages.contains("ERROR");
+    ensure!(
+        output.status.success() && is_quiet,
+        "`{}` does not accept the pages:\n{}",
+        shown(&mdbook),
+        messages.trim()
+    );
+    Ok(())
+}
+
+/// The targets of the book's links to other files of the repository: on the site, the README of a crate is the first
+/// page of its interface, and other files are copied.
+fn lead_out(workspace: &Workspace, site: &Path) -> Result<()> {
+    for page in fs::read_dir(workspace.path(BOOK))?.flatten() {
+        let text = fs::read(page.path()).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
+        for target in text
+            .split("](../")
+            .skip(1)
+            .filter_map(|rest| rest.split([')', '#']).next())
+        {
+            let of_crate = target
+                .strip_prefix("crates/")
+                .and_then(|rest| rest.strip_suffix("/README.md"));
+            if let Some(folder) = of_crate {
+                let interface = format!("../../api/{}/index.html", module(folder));
+                redirect(&site.join(target).with_extension("html"), &interface)?;
+            } else {
+                let bytes = fs::read(workspace.path(target)).with_context(|| format!("a page links to {target}"))?;
+                write_file(&site.join(target), &bytes)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn redirect(page: &Path, to: &str) -> Result<()> {
+    let text = format!(
+        "<!doctype html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n<title>Moved</title>\n<meta \
+         http-equiv=\"refresh\" content=\"0;URL={to}\">\n<a href=\"{to}\">Moved</a>\n</html>\n"
+    );
+    write_file(page, text.as_bytes())
 }
 
 #[cfg(test)]
@@ -56,12 +150,12 @@ mod tests {
     #[test]
     fn every_call_of_this_program_in_the_documentation_is_valid() {
         let workspace = Workspace::find().unwrap();
-        let mut understood = 0;
+        let mut calls = 0;
         for page in workspace.files().unwrap() {
-            if page.extension() != Some(OsStr::new("md")) {
+            if page.extension().is_none_or(|extension| extension != "md") {
                 continue;
             }
-            let text = std::fs::read_to_string(workspace.root().join(&page)).unwrap();
+            let text = fs::read_to_string(workspace.root().join(&page)).unwrap();
             for command in console::commands(&text) {
                 let words = command.words().unwrap_or_default();
                 if let ["cargo", "xtask", arguments @ ..] | ["./xtask", arguments @ ..] = words.as_slice() {
@@ -69,11 +163,11 @@ mod tests {
                     if let Err(error) = crate::Arguments::try_parse_from(call) {
                         panic!("{}:{}: {}\n{error}", page.display(), command.line, command.typed);
                     }
-                    understood += 1;
+                    calls += 1;
                 }
             }
         }
-        assert!(understood > 10, "only {understood} calls were found");
+        assert!(calls > 10, "only {calls} calls were found");
         assert!(crate::Arguments::try_parse_from(["cargo xtask", "docs", "--none"]).is_err());
     }
 }

@@ -1,18 +1,22 @@
 //! `cargo xtask python`: the wheel of the Python package, tested in a virtual environment.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
-use xshell::Cmd;
 
 use crate::debian;
+use crate::process::run;
 use crate::python::Python;
-use crate::workspace::{Workspace, absolute, program_on_path, step};
+use crate::workspace::{Workspace, absolute};
 
 /// Pinned packages of the test environment, besides the wheel.
 const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
+/// Default folder of the wheel and its test environment.
+const FOLDER: &str = "target/python";
 /// The virtual environment, beside the wheel.
 const ENVIRONMENT: &str = "environment";
 /// Largest size of a wheel in bytes: `pip install` should not fetch more.
@@ -33,13 +37,11 @@ pub(crate) struct Arguments {
     rest: Vec<String>,
 }
 
-/// Default folder of the wheel and its test environment.
-const FOLDER: &str = "target/python";
-
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let out = absolute(&workspace.root().join(&self.out))?;
-        let wheel = make(workspace, &out, RELEASED)?;
+        make_environment(workspace, &out)?;
+        let wheel = build(workspace, &out, RELEASED)?;
         println!("{}", wheel.display());
         if !self.no_tests {
             test(workspace, &out, &wheel, &self.rest)?;
@@ -48,131 +50,107 @@ impl Arguments {
     }
 }
 
-/// The first half of the check in `ci`.
-pub(super) fn build_wheel(workspace: &Workspace) -> Result<()> {
-    // The profile of the tests, so that dependencies are built only once.
-    make(workspace, &workspace.path(FOLDER), "dev").map(drop)
+/// The wheel for users, and its tests.
+pub(super) fn make_and_test(workspace: &Workspace, rest: &[String]) -> Result<()> {
+    let arguments = Arguments {
+        out: FOLDER.into(),
+        no_tests: false,
+        rest: rest.to_vec(),
+    };
+    arguments.run(workspace)
 }
 
-/// The second half: tests the wheel of the first half.
-pub(super) fn test_built(workspace: &Workspace) -> Result<()> {
+/// The first part of the check in `ci`.
+pub(super) fn prepare(workspace: &Workspace) -> Result<()> {
+    // Without the MQTT broker a test prints what is missing, and fails in CI.
+    if let Err(error) = debian::ensure_program("mosquitto_sub", &["mosquitto", "mosquitto-clients"]) {
+        eprintln!("{error:#}");
+    }
+    make_environment(workspace, &workspace.path(FOLDER))
+}
+
+/// The second part: the wheel in the profile of the tests, so that dependencies are built only once.
+pub(super) fn check(workspace: &Workspace) -> Result<()> {
     let out = workspace.path(FOLDER);
-    test(workspace, &out, &wheel_in(&out)?, &[])
-}
-
-/// Creates the environment and builds the wheel.
-fn make(workspace: &Workspace, out: &Path, profile: &str) -> Result<PathBuf> {
-    let environment = out.join(ENVIRONMENT);
-    make_environment(workspace, &environment)?;
-    build(workspace, &environment, out, profile)
+    let wheel = build(workspace, &out, "dev")?;
+    test(workspace, &out, &wheel, &[])
 }
 
 /// A new virtual environment with the packages needed for building and testing.
-fn make_environment(workspace: &Workspace, folder: &Path) -> Result<()> {
-    let python = Python::with_pip()?;
-    if folder.exists() {
-        fs::remove_dir_all(folder).with_context(|| format!("{} cannot be removed", folder.display()))?;
-    }
-    let made = python.module("venv").arg(folder).status();
-    if !made.is_ok_and(|status| status.success()) {
-        bail!(
-            "no virtual environment could be created: install Python's venv, on Debian or Ubuntu with \
-             `apt install python3-venv`"
-        );
-    }
-    let pip = in_environment(workspace, folder, "pip")
-        .args(["install", "--quiet", "--disable-pip-version-check"])
-        .args(["--only-binary=:all:", "--requirement", REQUIREMENTS]);
-    step("pip install", &pip)
+fn make_environment(workspace: &Workspace, out: &Path) -> Result<()> {
+    let python = Python::find()?;
+    run(python.call(["-m", "venv", "--clear"]).arg(out.join(ENVIRONMENT))).context(
+        "no virtual environment could be created: install Python's venv, on Debian or Ubuntu with \
+         `apt install python3-venv`",
+    )?;
+    let options = ["--only-binary=:all:", "--requirement", REQUIREMENTS];
+    run(pip_install(workspace, out).args(options))
 }
 
-fn build(workspace: &Workspace, environment: &Path, out: &Path, profile: &str) -> Result<PathBuf> {
+fn build(workspace: &Workspace, out: &Path, profile: &str) -> Result<PathBuf> {
     let wheels = out.join("wheels");
     if wheels.exists() {
         fs::remove_dir_all(&wheels).with_context(|| format!("{} cannot be removed", wheels.display()))?;
     }
-    let maturin = in_environment(workspace, environment, "maturin")
+    let mut maturin = in_environment(workspace, out, "maturin");
+    maturin
         .args(["build", "--quiet", "--profile", profile])
         .args(["--manifest-path", "crates/ddl-python/Cargo.toml", "--out"])
         .arg(&wheels)
         .arg("--interpreter")
-        .arg(environment.join("bin/python"));
-    step("maturin build", &maturin)?;
-    let wheel = wheel_in(out)?;
+        .arg(out.join(ENVIRONMENT).join("bin/python"));
+    run(&mut maturin)?;
+    let mut built = fs::read_dir(&wheels).context("no wheel was built")?.flatten();
+    let is_wheel = |path: &PathBuf| path.extension() == Some(OsStr::new("whl"));
+    let wheel = built.find_map(|entry| Some(entry.path()).filter(is_wheel));
+    let wheel = wheel.context("no wheel was built")?;
     let size = fs::metadata(&wheel)?.len();
-    if profile == RELEASED && size > LARGEST {
-        bail!(
-            "{} has {size} bytes, more than {LARGEST}: find out which files grew",
-            wheel.display()
-        );
-    }
+    ensure!(
+        profile != RELEASED || size <= LARGEST,
+        "{} has {size} bytes, more than {LARGEST}: find out which files grew",
+        wheel.display()
+    );
     Ok(wheel)
 }
 
-fn wheel_in(out: &Path) -> Result<PathBuf> {
-    let built = fs::read_dir(out.join("wheels")).context("no wheel was built")?;
-    built
-        .filter_map(Result::ok)
-        .map(|entry| entry.path())
-        .find(|path| path.extension().is_some_and(|extension| extension == "whl"))
-        .context("no wheel was built")
-}
-
 fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Result<()> {
-    let environment = &out.join(ENVIRONMENT);
-    let install = in_environment(workspace, environment, "pip")
-        .args([
-            "install",
-            "--quiet",
-            "--disable-pip-version-check",
-            "--no-deps",
-            "--force-reinstall",
-        ])
-        .arg(wheel);
-    step("pip install of the wheel", &install)?;
-    bring_in_broker();
-    let tests = workspace.path("crates/ddl-python/tests");
-    let checks = [
-        ("mypy", vec!["-m", "mypy", "--strict", "-p", "ddl_forecast"]),
-        ("stubtest", vec!["-m", "mypy.stubtest", "ddl_forecast._core"]),
-    ];
-    for (name, arguments) in checks {
-        // Run in a folder from which the package cannot be imported unless it is installed.
-        let check = in_environment(workspace, environment, "python").args(arguments);
-        step(name, &check)?;
+    run(pip_install(workspace, out)
+        .args(["--no-deps", "--force-reinstall"])
+        .arg(wheel))?;
+    for check in [
+        ["mypy", "--strict", "-p", "ddl_forecast"].as_slice(),
+        &["mypy.stubtest", "ddl_forecast._core"],
+    ] {
+        run(in_environment(workspace, out, "python").arg("-m").args(check))?;
     }
-    let mut pytest = in_environment(workspace, environment, "python")
+    let mut pytest = in_environment(workspace, out, "python");
+    pytest
         .args(["-m", "pytest", "--quiet", "--durations", "5", "-c"])
         .arg(workspace.path("crates/ddl-python/pyproject.toml"))
-        .arg(tests)
+        .arg(workspace.path("crates/ddl-python/tests"))
         .args(rest)
         .env("MPLBACKEND", "Agg");
     // In CI the benchmark has just built it.
     let program = workspace.path("target/debug/ddl");
     if std::env::var_os("CI").is_some() && program.is_file() {
-        pytest = pytest.env("DDL_PROGRAM", program);
+        pytest.env("DDL_PROGRAM", program);
     }
-    if let Some(folder) = super::test::recordings(workspace)? {
-        pytest = pytest.env("DDL_DATASETS", folder);
+    if let Some(folder) = workspace.recordings()? {
+        pytest.env("DDL_DATASETS", folder);
     }
-    step("pytest", &pytest)
+    run(&mut pytest)
 }
 
-/// Installs the MQTT broker for a test, if possible. Without it the test prints what is missing, and fails in CI.
-fn bring_in_broker() {
-    if !program_on_path("mosquitto_sub".as_ref()) && debian::can_install() {
-        let installed = debian::install(&["mosquitto", "mosquitto-clients"]);
-        if let Err(error) = installed {
-            eprintln!("{error:#}");
-        }
-    }
+fn pip_install(workspace: &Workspace, out: &Path) -> Command {
+    let mut pip = in_environment(workspace, out, "pip");
+    pip.args(["install", "--quiet", "--disable-pip-version-check"]);
+    pip
 }
 
 /// A program of the environment, with the environment variables of a plain cargo.
-fn in_environment<'a>(workspace: &'a Workspace, environment: &Path, program: &str) -> Cmd<'a> {
-    let path = environment.join("bin").join(program);
-    workspace
-        .program(&path)
-        .env("VIRTUAL_ENV", environment)
-        .env_remove("PYTHONPATH")
+fn in_environment(workspace: &Workspace, out: &Path, program: &str) -> Command {
+    let environment = out.join(ENVIRONMENT);
+    let mut command = workspace.program(environment.join("bin").join(program));
+    command.env("VIRTUAL_ENV", environment).env_remove("PYTHONPATH");
+    command
 }

@@ -1,6 +1,6 @@
-//! `cargo xtask setup` and `cargo xtask env`.
+//! `cargo xtask setup`: libtorch, and cargo's configuration for it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use anyhow::{Context, Result};
@@ -17,9 +17,10 @@ pub(crate) struct Arguments {
     /// Folder for the unpacked libraries [default: the user's cache, `~/.cache/ddl`]
     #[arg(long, value_name = "DIR")]
     cache: Option<PathBuf>,
-    /// Hash the libraries again
+    /// Print shell lines that set libtorch's variables, for tools that do not use cargo's configuration:
+    /// `eval "$(cargo xtask setup --env)"`
     #[arg(long)]
-    verify: bool,
+    env: bool,
 }
 
 impl Arguments {
@@ -28,15 +29,16 @@ impl Arguments {
         let request = Request {
             cache: self.cache,
             wheel_dir: self.wheel_dir,
-            verify: self.verify,
         };
         let ready = libtorch::ensure(workspace, &request)?;
+        if self.env {
+            return print_environment(&ready.folder);
+        }
         println!(
-            "libtorch {}: {} ({}{}), {:.1} s",
+            "libtorch {}: {} ({}), {:.1} s",
             libtorch::VERSION,
             ready.folder.display(),
             ready.origin,
-            if self.verify { ", hashes verified" } else { "" },
             start.elapsed().as_secs_f64()
         );
         let written = if ready.reconfigured { "written" } else { "up to date" };
@@ -45,10 +47,8 @@ impl Arguments {
     }
 }
 
-/// Prints `export` lines for a shell: `eval "$(cargo xtask env)"`.
-pub(crate) fn print_environment(workspace: &Workspace) -> Result<()> {
-    let ready = libtorch::ensure(workspace, &Request::default())?;
-    let folder = ready.folder.to_str().context("libtorch's path is not valid Unicode")?;
+fn print_environment(libtorch: &Path) -> Result<()> {
+    let folder = libtorch.to_str().context("libtorch's path is not valid Unicode")?;
     let quoted = format!("'{}'", folder.replace('\'', "'\\''"));
     println!("export LIBTORCH={quoted}");
     println!("export LD_LIBRARY_PATH={quoted}/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}");

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Result, bail};
 
-use crate::whole_file;
+use crate::cache::write_file;
 
 /// Relative to the workspace root; git ignores it.
 pub(super) const GENERATED: &str = ".cargo/config.generated.toml";
@@ -16,7 +16,7 @@ pub(super) fn write(file: &Path, libtorch: &Path) -> Result<bool> {
     let text = render(libtorch)?;
     let is_there = fs::read_to_string(file).is_ok_and(|present| present == text);
     if !is_there {
-        whole_file::write(file, text.as_bytes())?;
+        write_file(file, text.as_bytes())?;
     }
     Ok(!is_there)
 }
@@ -61,39 +61,23 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_folder_is_read_back_and_the_flags_point_into_it() {
+    fn a_configuration_is_written_when_it_changes_and_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(".cargo/config.generated.toml");
-        // Quotes and spaces are legal in a folder's name.
-        let libtorch = Path::new("/opt/a \"quoted\" folder/libtorch");
-        assert!(write(&file, libtorch).unwrap());
-        assert_eq!(read(&file).as_deref(), Some(libtorch));
-        let table: toml::Table = fs::read_to_string(&file).unwrap().parse().unwrap();
-        let flags = table["target"]["cfg(all(unix, not(ddl_xtask)))"]["rustflags"]
-            .as_array()
-            .unwrap();
-        assert_eq!(
-            flags[1].as_str(),
-            Some("link-arg=-Wl,-rpath,/opt/a \"quoted\" folder/libtorch/lib")
-        );
-        assert_eq!(table["build"]["rustdocflags"].as_array(), Some(flags));
-    }
-
-    #[test]
-    fn an_unchanged_configuration_is_not_written_and_a_damaged_one_is_replaced() {
-        let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("config.generated.toml");
         assert_eq!(read(&file), None);
+        // Quotes and spaces are legal in a folder's name.
+        for libtorch in ["/opt/a \"quoted\" folder/libtorch", "/opt/two"].map(Path::new) {
+            assert!(write(&file, libtorch).unwrap());
+            assert!(!write(&file, libtorch).unwrap());
+            assert_eq!(read(&file).as_deref(), Some(libtorch));
+            let table: toml::Table = fs::read_to_string(&file).unwrap().parse().unwrap();
+            let flags = &table["target"]["cfg(all(unix, not(ddl_xtask)))"]["rustflags"];
+            let rpath = format!("link-arg=-Wl,-rpath,{}/lib", libtorch.display());
+            assert_eq!(flags[1].as_str(), Some(rpath.as_str()));
+            assert_eq!(&table["build"]["rustdocflags"], flags);
+        }
         fs::write(&file, "[env\nLIBTORCH = ").unwrap();
         assert_eq!(read(&file), None);
-        assert!(write(&file, Path::new("/opt/one")).unwrap());
-        assert!(!write(&file, Path::new("/opt/one")).unwrap());
-        assert!(write(&file, Path::new("/opt/two")).unwrap());
-        assert_eq!(read(&file).as_deref(), Some(Path::new("/opt/two")));
-    }
-
-    #[test]
-    fn paths_that_the_linker_would_cut_off_are_refused() {
         let message = render(Path::new("/opt/one,two")).unwrap_err().to_string();
         assert!(message.contains("comma"), "{message}");
     }

@@ -4,7 +4,7 @@ use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::fs;
 use std::path::Path;
 
-use super::pin::VERSION;
+use super::VERSION;
 
 /// A header that exists only in a libtorch with its C++ interface.
 const HEADER: &str = "include/torch/csrc/api/include/torch/torch.h";
@@ -44,44 +44,37 @@ fn version(folder: &Path) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::whole_file;
-
-    fn reason(version_file: &str, contents: &str, missing: &str) -> Result<(), String> {
-        let folder = tempfile::tempdir().unwrap();
-        let libraries = ["torch", "torch_cpu", "c10"];
-        let libraries = libraries.map(|name| format!("lib/{DLL_PREFIX}{name}{DLL_SUFFIX}"));
-        let empty = libraries.iter().map(String::as_str).chain([HEADER]);
-        for (file, text) in empty.map(|file| (file, "")).chain([(version_file, contents)]) {
-            if file != missing {
-                whole_file::write(&folder.path().join(file), text.as_bytes()).unwrap();
-            }
-        }
-        validate(folder.path())
-    }
+    use crate::cache::write_file;
 
     #[test]
-    fn both_kinds_of_folder_are_accepted_and_other_versions_are_refused_by_name() {
-        assert_eq!(reason("build-version", "2.11.0\n", ""), Ok(()));
-        let python = "__version__ = '2.11.0+cu130'\ncuda = '13.0'\n";
-        assert_eq!(reason("version.py", python, ""), Ok(()));
-        for (file, contents, version) in [
-            ("build-version", "2.7.0", "2.7.0"),
+    fn both_kinds_of_folder_are_accepted_and_others_are_refused_with_a_reason() {
+        let library = |name: &str| format!("lib/{DLL_PREFIX}{name}{DLL_SUFFIX}");
+        for (version_file, contents, missing, reason) in [
+            ("build-version", "2.11.0\n", "", ""),
+            ("version.py", "__version__ = '2.11.0+cu130'\ncuda = '13.0'\n", "", ""),
+            ("build-version", "2.7.0", "", "it is libtorch 2.7.0"),
             // A longer version with the same beginning is a different one.
-            ("version.py", "__version__ = '2.11.01'", "2.11.01"),
+            ("version.py", "__version__ = '2.11.01'", "", "it is libtorch 2.11.01"),
+            ("NOTES", "", "", "neither build-version nor version.py"),
+            ("build-version", VERSION, HEADER, "torch.h"),
+            ("build-version", VERSION, &library("torch_cpu"), "torch_cpu"),
         ] {
-            let message = format!("it is libtorch {version}");
-            assert_eq!(reason(file, contents, ""), Err(message));
+            let folder = tempfile::tempdir().unwrap();
+            let files = ["torch", "torch_cpu", "c10"]
+                .map(library)
+                .into_iter()
+                .chain([HEADER.to_owned()]);
+            for file in files.filter(|file| file != missing) {
+                write_file(&folder.path().join(file), b"").unwrap();
+            }
+            write_file(&folder.path().join(version_file), contents.as_bytes()).unwrap();
+            let message = validate(folder.path()).err().unwrap_or_default();
+            assert!(
+                message.is_empty() == reason.is_empty() && message.contains(reason),
+                "{message}"
+            );
         }
-        assert!(reason("NOTES", "", "").unwrap_err().contains("build-version"));
-    }
-
-    #[test]
-    fn missing_files_are_reported() {
-        let missing = |file: &str| reason("build-version", VERSION, file).unwrap_err();
-        assert!(missing(HEADER).contains("torch.h"));
-        let library = format!("lib/{DLL_PREFIX}torch_cpu{DLL_SUFFIX}");
-        assert_eq!(missing(&library), format!("it has no {library}"));
-        let gone = validate(Path::new("/nowhere/libtorch")).unwrap_err();
-        assert_eq!(gone, "the folder does not exist");
+        let message = validate(Path::new("/nowhere/libtorch")).unwrap_err();
+        assert_eq!(message, "the folder does not exist");
     }
 }

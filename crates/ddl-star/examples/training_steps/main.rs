@@ -11,7 +11,7 @@
 //! (docs/performance.md), without views and allocations. A step is half the difference between three steps and one:
 //!
 //! ```console
-//! $ eval "$(cargo xtask env)"
+//! $ eval "$(cargo xtask setup --env)"
 //! $ cd crates/ddl-star/examples/training_steps
 //! $ g++ -O1 -std=c++17 -shared -fPIC -I$LIBTORCH/include operations.cpp -o operations.so -L$LIBTORCH/lib -lc10
 //! -ltorch_cpu

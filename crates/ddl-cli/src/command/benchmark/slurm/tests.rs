@@ -1,4 +1,5 @@
-//! The script of a task with stand-ins for `ddl` and `scontrol`. `cargo xtask cluster` tests it with a real Slurm.
+//! The script of a task with stand-ins for `ddl` and `scontrol`. `cargo xtask nightly cluster` tests it with a real
+//! Slurm.
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 

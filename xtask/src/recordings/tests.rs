@@ -1,0 +1,128 @@
+//! Tests of fetching and of the choice of a convention, without a network.
+
+use super::*;
+use crate::cache::write_file;
+
+const ONE: &[u8] = b"1,2,3\n1,1,1\n0.5,0.6,0.7\n8.1,8.2,8.3\n";
+const TWO: &[u8] = b"6,12,18\n2,2,2\n1.5,1.6,1.7\n9.1,9.2,9.3\n";
+
+/// Two files, and sources in this folder. Each source has the first file and, if given, these bytes as the second.
+fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> Entry {
+    let mut text = "description = ''\nterms = ''\ncite = []\n".to_owned();
+    for (index, second) in seconds.iter().enumerate() {
+        let source = folder.join(format!("source {index}"));
+        if let Some(second) = second {
+            write_file(&source.join("one.csv"), ONE).unwrap();
+            write_file(&source.join("two.csv"), second).unwrap();
+        }
+        let address = format!("file://{}/source%20{index}/{{path}}", folder.display());
+        text += &format!("[[source]]\nname = 'source {index}'\nkind = 'address'\naddress = '{address}'\n");
+    }
+    for (name, bytes) in [("one.csv", ONE), ("two.csv", TWO)] {
+        write_file(&folder.join(name), bytes).unwrap();
+        let (sum, length) = (sha256(&folder.join(name)).unwrap(), bytes.len());
+        text += &format!("[[file]]\nname = '{name}'\npath = '{name}'\nbytes = {length}\nsha256 = '{sum}'\n");
+    }
+    toml::from_str(&text).unwrap()
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let files = fs::read_dir(folder).unwrap().flatten();
+    let mut names: Vec<String> = files.map(|file| file.file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_second_fetch_uses_no_source_and_a_damaged_file_is_fetched_again() {
+    let [from, to] = [0, 1].map(|_| tempfile::tempdir().unwrap());
+    // The first sources lack the second file.
+    let entry = entry(from.path(), &[None, Some(b"half"), Some(TWO)]);
+    let fetched = || entry.fetch("star", to.path()).unwrap();
+    assert_eq!(fetched(), "source 2");
+    assert_eq!(fs::read(to.path().join("one.csv")).unwrap(), ONE);
+    assert_eq!(names(to.path()), ["one.csv", "two.csv"]);
+    assert_eq!(fetched(), "an earlier run");
+    fs::write(to.path().join("one.csv"), &ONE[..5]).unwrap();
+    let message = entry.check(to.path()).unwrap_err().to_string();
+    assert!(
+        message.contains("1 of 2 files") && message.contains("(one.csv)"),
+        "{message}"
+    );
+    assert_eq!(fetched(), "source 1");
+    entry.check(to.path()).unwrap();
+}
+
+#[test]
+fn a_wrong_file_is_reported_and_only_right_ones_stay() {
+    let swapped: Vec<u8> = TWO.iter().rev().copied().collect();
+    for (second, complaint) in [(&TWO[..10], "10 bytes instead of"), (&swapped, "wrong contents")] {
+        let [from, to] = [0, 1].map(|_| tempfile::tempdir().unwrap());
+        let entry = entry(from.path(), &[Some(second)]);
+        let message = format!("{:#}", entry.fetch("star", to.path()).unwrap_err());
+        assert!(message.contains("two.csv") && message.contains(complaint), "{message}");
+        assert!(!message.contains('\n'), "{message}");
+        assert_eq!(names(to.path()), ["one.csv"]);
+    }
+}
+
+/// A workspace whose manifest leads nowhere.
+fn offline() -> (tempfile::TempDir, Workspace) {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(Workspace::find().unwrap().path(MANIFEST)).unwrap();
+    let lines = text.lines().map(|line| match line.split_once(" = ") {
+        Some(("address", _)) => "address = \"file:///nowhere/{path}\"",
+        Some(("package", _)) => "package = \"..//no such package\"",
+        _ => line,
+    });
+    let text = lines.collect::<Vec<_>>().join("\n");
+    write_file(&folder.path().join(MANIFEST), text.as_bytes()).unwrap();
+    let workspace = Workspace::at(folder.path());
+    (folder, workspace)
+}
+
+#[test]
+fn what_cannot_be_had_is_an_error_and_the_simulated_crowd_needs_nothing() {
+    let (folder, workspace) = offline();
+    let data = folder.path().join("empty");
+    for (asked, complaint) in [
+        (Some("star"), "cannot be fetched"),
+        (Some("own"), "name one of star, social-gan"),
+        (None, "correct --data"),
+    ] {
+        let message = format!("{:#}", choose(&workspace, asked, Some(&data)).unwrap_err());
+        assert!(message.contains(complaint), "{message}");
+    }
+    let chosen = choose(&workspace, Some(SIMULATED), None).unwrap();
+    assert_eq!((chosen.convention.as_str(), chosen.folder), (SIMULATED, None));
+}
+
+#[test]
+fn wrong_files_are_neither_used_nor_replaced_silently() {
+    let (folder, workspace) = offline();
+    let data = folder.path().join("star");
+    for file in &Manifest::load(&workspace).unwrap().star.files {
+        write_file(&data.join(&file.name), b"1,2\n1,1\n0,0\n0,0\n").unwrap();
+    }
+    // Also if they are in the folder beside the named one.
+    let beside = folder.path().join("social-gan");
+    fs::create_dir(&beside).unwrap();
+    for (asked, place) in [(Some("star"), &data), (None, &data), (Some("star"), &beside)] {
+        let message = format!("{:#}", choose(&workspace, asked, Some(place)).unwrap_err());
+        assert!(message.contains("8 of 8 files"), "{message}");
+    }
+}
+
+#[test]
+fn the_manifest_pins_the_files_of_the_folds() {
+    let manifest = Manifest::load(&Workspace::find().unwrap()).unwrap();
+    for convention in [ddl_data::Convention::Star, ddl_data::Convention::SocialGan] {
+        let entry = manifest.entry(convention.name()).unwrap();
+        let mut used: Vec<&str> = convention.file_names().collect();
+        let mut pinned: Vec<&str> = entry.files.iter().map(|file| file.name.as_str()).collect();
+        used.sort_unstable();
+        pinned.sort_unstable();
+        assert_eq!(used, pinned, "{convention}");
+        assert!(entry.cite.iter().all(|key| manifest.citation.contains_key(key)));
+    }
+}

@@ -1,0 +1,67 @@
+//! Programs of others that the checks run: pinned wheels, fetched once per machine into the user's cache.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use anyhow::{Context, Result};
+
+use crate::cache::{self, sha256};
+use crate::process::{read, run};
+use crate::python::Python;
+use crate::workspace::Workspace;
+
+/// Names, versions and SHA-256 sums, for pip.
+const LIST: &str = "xtask/tools.txt";
+
+/// The folder of the tools, for Python's search path; its `bin` holds the programs.
+#[derive(Debug)]
+pub(crate) struct Tools {
+    folder: PathBuf,
+    python: Python,
+}
+
+impl Tools {
+    /// The tools from the cache, or from the package index.
+    pub(crate) fn ensure(workspace: &Workspace) -> Result<Self> {
+        let python = Python::find()?;
+        let list = workspace.path(LIST);
+        // Some packages are compiled for one minor version of Python.
+        let version = read(&mut python.call(["-c", "import sys; print('%d.%d' % sys.version_info[:2])"]))?;
+        let name = format!("tools-{}-{}", version.trim(), &sha256(&list)?[..12]);
+        let folder = cache::folder()?.join(name);
+        if !folder.is_dir() {
+            eprintln!("fetching the tools of {LIST} with pip, once");
+            cache::fill(&folder, Path::is_dir, |work| {
+                let target = work.join("tools");
+                let mut pip = python.pip("install");
+                pip.args("--no-deps --require-hashes --no-warn-script-location --target".split(' '));
+                run(pip.arg(&target).arg("--requirement").arg(&list)).context("connect to a package index")?;
+                Ok(target)
+            })?;
+        }
+        Ok(Self { folder, python })
+    }
+
+    /// A program of these, with the environment of a plain cargo.
+    pub(crate) fn program(&self, workspace: &Workspace, name: &str) -> Command {
+        workspace.program(self.folder.join("bin").join(name))
+    }
+
+    /// Python with the packages of these.
+    pub(crate) fn python(&self, script: &Path) -> Command {
+        let mut command = self.python.call([script]);
+        command
+            .env("PYTHONPATH", &self.folder)
+            .env("PYTHONDONTWRITEBYTECODE", "1");
+        command
+    }
+}
+
+/// A cargo subcommand of others that no wheel has, built once per machine into the user's cache.
+pub(crate) fn cargo_tool(workspace: &Workspace, name: &str, version: &str) -> Result<PathBuf> {
+    let folder = cache::folder()?.join("cargo-tools");
+    let mut install = workspace.cargo(["install", name, "--locked", "--quiet", "--version", version, "--root"]);
+    // Tools must not use the configuration of the workspace, which has the path to libtorch.
+    run(install.arg(&folder).current_dir(std::env::temp_dir()))?;
+    Ok(folder.join("bin").join(name))
+}
