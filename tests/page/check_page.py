@@ -13,9 +13,8 @@ import pathlib
 import sys
 import tempfile
 
-from playwright.sync_api import sync_playwright
-
 from expected_tables import Group, expected, spread
+from playwright.sync_api import sync_playwright
 
 HERE = pathlib.Path(__file__).parent
 WIDE = {"width": 1280, "height": 800}

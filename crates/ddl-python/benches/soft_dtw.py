@@ -12,12 +12,11 @@ import time
 from collections.abc import Callable
 from importlib.metadata import version
 
+import ddl_forecast
 import numpy as np
 from aeon.distances import soft_dtw_distance
-from tslearn.metrics import SoftDTW, SquaredEuclidean, soft_dtw
-
-import ddl_forecast
 from ddl_forecast import soft_dtw as ours
+from tslearn.metrics import SoftDTW, SquaredEuclidean, soft_dtw
 
 SHAPES = [(8, 2), (20, 2), (64, 2), (256, 8)]
 GAMMA = 1.0

@@ -10,10 +10,9 @@ import os
 import sys
 from pathlib import Path
 
+import ddl_forecast as ddl
 from dask.distributed import Client, LocalCluster, as_completed
 from forecast_file import forecast_file
-
-import ddl_forecast as ddl
 
 
 def forecast_folder(client: Client, folder: Path, out: Path, model: str = "hotel") -> list[str]:

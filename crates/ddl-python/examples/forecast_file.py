@@ -3,9 +3,8 @@
 import os
 from pathlib import Path
 
-import pandas as pd
-
 import ddl_forecast as ddl
+import pandas as pd
 
 
 def forecast_file(path: str, out: str, forecaster: ddl.Forecaster) -> str:

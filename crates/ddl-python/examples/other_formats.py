@@ -8,9 +8,8 @@ writes the most likely forecast of the last frame as AgentFormer does, and print
 import sys
 
 import numpy as np
-from numpy.typing import NDArray
-
 from ddl_forecast import Forecast, Forecaster, read
+from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 TrajNet = dict[int, tuple[Floats, Floats]]

@@ -8,9 +8,8 @@ import sys
 
 import numpy as np
 import torch
-from numpy.typing import NDArray
-
 from ddl_forecast import evaluate, windows
+from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 

@@ -7,10 +7,9 @@ python ray_folder.py FOLDER OUT
 import sys
 from pathlib import Path
 
+import ddl_forecast as ddl
 import ray
 from forecast_file import forecast_file
-
-import ddl_forecast as ddl
 
 if __name__ == "__main__":
     folder, out = Path(sys.argv[1]), Path(sys.argv[2])

@@ -15,9 +15,8 @@ import sys
 import threading
 from pathlib import Path
 
-import zenoh
-
 import ddl_forecast as ddl
+import zenoh
 
 
 class Cameras:

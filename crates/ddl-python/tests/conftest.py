@@ -5,10 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import ddl_forecast as ddl
 import numpy as np
 import pytest
-
-import ddl_forecast as ddl
 
 
 @pytest.fixture(scope="session")

@@ -2,11 +2,10 @@
 
 import json
 
+import ddl_forecast as ddl
 import numpy as np
 import pytest
 from conftest import run
-
-import ddl_forecast as ddl
 from ddl_forecast import baselines
 
 

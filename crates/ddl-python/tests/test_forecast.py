@@ -6,11 +6,10 @@ import pickle
 import threading
 import warnings
 
+import ddl_forecast as ddl
 import numpy as np
 import pytest
 from conftest import run
-
-import ddl_forecast as ddl
 from ddl_forecast import baselines, metrics
 
 

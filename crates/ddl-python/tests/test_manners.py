@@ -8,11 +8,10 @@ import tempfile
 import threading
 import time
 
+import ddl_forecast as ddl
 import numpy as np
 import pytest
 from conftest import run
-
-import ddl_forecast as ddl
 from ddl_forecast import metrics, soft_dtw
 
 

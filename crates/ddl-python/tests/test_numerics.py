@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-
 from ddl_forecast import dynamics, goals, metrics, soft_dtw
 
 

@@ -2,10 +2,9 @@
 
 import pickle
 
+import ddl_forecast as ddl
 import numpy as np
 import pytest
-
-import ddl_forecast as ddl
 from ddl_forecast._recording import FORMATS
 
 

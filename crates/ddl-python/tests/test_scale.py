@@ -11,10 +11,9 @@ import sys
 import time
 from pathlib import Path
 
+import ddl_forecast as ddl
 import numpy as np
 import pytest
-
-import ddl_forecast as ddl
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 

@@ -3,9 +3,10 @@
 # Also prints the end that a Kalman filter with whole matrices expects (src/category/kalman.rs), and the
 # numbers of the hand example (tests/hand_example.rs).
 import json
+
 import numpy as np
-from scipy.stats import gaussian_kde, multivariate_normal
 from scipy.special import logsumexp
+from scipy.stats import gaussian_kde, multivariate_normal
 
 FLOOR = 1e-4  # (1 cm)^2
 

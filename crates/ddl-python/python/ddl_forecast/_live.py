@@ -17,7 +17,6 @@ from ddl_forecast._arrays import Integers, floats
 from ddl_forecast._forecast import DoubtWarning, Forecast
 from ddl_forecast._forecaster import Forecaster
 
-
 #: Words are numbered from here on.
 FIRST_WORD = 2**52
 #: Number of words that are kept: far more than pedestrians can be present.
