@@ -33,12 +33,15 @@ fn name(command: &Command) -> String {
     command.get_program().display().to_string()
 }
 
-/// The file name of the program and its arguments, for messages.
+/// The file name of the program and its first arguments, for messages.
 pub(crate) fn shown(command: &Command) -> String {
     let program = Path::new(command.get_program()).file_name().unwrap_or_default();
     let words = [program].into_iter().chain(command.get_args());
     let words: Vec<String> = words.map(|word| word.display().to_string()).collect();
-    words.join(" ")
+    let line = words.join(" ");
+    line.char_indices()
+        .nth(200)
+        .map_or(line.clone(), |(end, _)| format!("{} ...", &line[..end]))
 }
 
 /// The program of this name on the search path (or the path itself, if it is one).

@@ -9,8 +9,8 @@ use crate::window::Window;
 /// A forecaster of the pedestrians of a window: a baseline, the DDL model or any other.
 ///
 /// # Contract
-/// A forecaster reads only [`Window::observed`], which `ddl_eval::leak::find` checks. If it also reads a visible future (protocol
-/// `published`), it must work without it or fail with [`ForecastError::FutureMissing`].
+/// A forecaster reads only [`Window::observed`], which `ddl_eval::leak::find` checks. If it also reads a visible future
+/// (protocol `published`), it must work without it or fail with [`ForecastError::FutureMissing`].
 pub trait Forecaster {
     /// The name printed in tables, the same for every window.
     fn name(&self) -> String;

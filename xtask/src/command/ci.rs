@@ -87,9 +87,9 @@ fn bring_in(workspace: &Workspace) -> Result<()> {
             .map(drop)
             .and_then(|()| python::prepare(workspace))
     };
-    let jobs: [&(dyn Fn(&Workspace) -> Result<()> + Sync); 4] = [&set_up, &recordings, &fetch, &programs];
+    let jobs: [fn(&Workspace) -> Result<()>; 4] = [set_up, recordings, fetch, programs];
     thread::scope(|scope| {
-        let jobs = jobs.map(|job| scope.spawn(|| job(workspace)));
+        let jobs = jobs.map(|job| scope.spawn(move || job(workspace)));
         jobs.into_iter()
             .try_for_each(|job| job.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
     })

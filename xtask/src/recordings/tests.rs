@@ -8,7 +8,7 @@ const TWO: &[u8] = b"6,12,18\n2,2,2\n1.5,1.6,1.7\n9.1,9.2,9.3\n";
 
 /// Two files, and sources in this folder. Each source has the first file and, if given, these bytes as the second.
 fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> Entry {
-    let mut text = "description = ''\nterms = ''\ncite = []\n".to_owned();
+    let mut parts = vec!["description = ''\nterms = ''\ncite = []\n".to_owned()];
     for (index, second) in seconds.iter().enumerate() {
         let source = folder.join(format!("source {index}"));
         if let Some(second) = second {
@@ -16,14 +16,18 @@ fn entry(folder: &Path, seconds: &[Option<&[u8]>]) -> Entry {
             write_file(&source.join("two.csv"), second).unwrap();
         }
         let address = format!("file://{}/source%20{index}/{{path}}", folder.display());
-        text += &format!("[[source]]\nname = 'source {index}'\nkind = 'address'\naddress = '{address}'\n");
+        parts.push(format!(
+            "[[source]]\nname = 'source {index}'\nkind = 'address'\naddress = '{address}'\n"
+        ));
     }
     for (name, bytes) in [("one.csv", ONE), ("two.csv", TWO)] {
         write_file(&folder.join(name), bytes).unwrap();
         let (sum, length) = (sha256(&folder.join(name)).unwrap(), bytes.len());
-        text += &format!("[[file]]\nname = '{name}'\npath = '{name}'\nbytes = {length}\nsha256 = '{sum}'\n");
+        parts.push(format!(
+            "[[file]]\nname = '{name}'\npath = '{name}'\nbytes = {length}\nsha256 = '{sum}'\n"
+        ));
     }
-    toml::from_str(&text).unwrap()
+    toml::from_str(&parts.concat()).unwrap()
 }
 
 fn names(folder: &Path) -> Vec<String> {
