@@ -58,6 +58,7 @@ fn finish(place: &Place) -> Contents {
         "proposal.safetensors",
         "report.json",
         "moments.json",
+        "summary.md",
     ];
     contents.retain(|name, _| kept.iter().any(|kept| name.ends_with(kept)));
     for (name, bytes) in &mut contents {
@@ -76,7 +77,9 @@ fn a_killed_benchmark_ends_in_the_same_results() {
     let clock = Instant::now();
     let expected = finish(&Place::empty());
     let takes = clock.elapsed();
-    assert!(expected.contains_key(std::path::Path::new("report.json")));
+    for file in ["report.json", "summary.md"] {
+        assert!(expected.contains_key(std::path::Path::new(file)), "{file}");
+    }
     let rounds = figures::rounds(2, 50);
     let mut chance = Chance::new("killed benchmark");
     for round in 0..rounds {

@@ -6,7 +6,6 @@ mod agreement;
 mod from_training;
 mod golden_forecasts;
 mod own_training;
-mod published_benchmark;
 mod train_resume;
 mod training_memory;
 

@@ -10,7 +10,7 @@ use std::io::{IsTerminal as _, Write as _};
 use std::time::{Duration, Instant};
 
 /// Interval of the lines in a log; shorter work prints none.
-pub(crate) const LINE_EVERY: Duration = Duration::from_secs(30);
+const LINE_EVERY: Duration = Duration::from_secs(30);
 
 /// How progress is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -29,7 +29,7 @@ pub(crate) struct Progress {
     mode: ProgressMode,
     bar: ProgressBar,
     /// The time of the last line, where there is no bar.
-    told: Cell<Instant>,
+    last_line: Cell<Instant>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -69,7 +69,7 @@ impl Progress {
             stage,
             mode,
             bar,
-            told: Cell::new(Instant::now()),
+            last_line: Cell::new(Instant::now()),
         }
     }
 
@@ -78,9 +78,9 @@ impl Progress {
         self.bar.set_position(done);
         self.bar.set_message(message.to_owned());
         let line_is_due =
-            self.mode == ProgressMode::Auto && self.bar.is_hidden() && self.told.get().elapsed() >= LINE_EVERY;
+            self.mode == ProgressMode::Auto && self.bar.is_hidden() && self.last_line.get().elapsed() >= LINE_EVERY;
         if line_is_due {
-            self.told.set(Instant::now());
+            self.last_line.set(Instant::now());
             tell(format_args!("{}: {done} of {total} {message}", self.stage));
         }
         if self.mode == ProgressMode::Json {
@@ -91,6 +91,15 @@ impl Progress {
                 message: message.into(),
             }
             .print();
+        }
+    }
+
+    /// Prints a line above the bar.
+    pub(crate) fn say(&self, line: &str) {
+        if self.bar.is_hidden() {
+            tell(format_args!("{line}"));
+        } else {
+            self.bar.println(line);
         }
     }
 }

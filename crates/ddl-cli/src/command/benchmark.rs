@@ -1,17 +1,15 @@
+//! `ddl benchmark`: trains and measures a model of every fold, here or on a cluster, and makes the report.
+
 mod child;
 mod choice;
-mod cost;
 mod display;
 #[cfg(test)]
 mod fixture;
 mod method;
 mod plan;
-mod processor;
 mod profile;
-mod publish;
 mod record;
 mod report;
-mod section;
 mod slurm;
 mod work;
 
@@ -19,18 +17,17 @@ pub(crate) use method::Method;
 pub(crate) use plan::{Plan, Task};
 pub(crate) use profile::Profile;
 
-use super::{Reporting, at_least_one};
+use crate::command::{Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::output::shell_word;
 use crate::telling::{human, tell};
 use anyhow::{Context as _, bail, ensure};
-use choice::Choice;
+use child::this_program;
+use choice::PlanOptions;
 use clap::{Args, ValueEnum};
 use ddl::data::remove_temporary_files;
-use ddl::report::Report;
 use ddl::{DdlError, RunLock};
 use display::Display;
-use publish::Making;
 use record::Record;
 use slurm::Slurm;
 use std::fs;
@@ -43,7 +40,7 @@ use work::{End, Workers, side_by_side};
 enum Executor {
     /// This machine
     Local,
-    /// Slurm: an array of jobs, and one job that makes the report; this program watches them
+    /// Slurm: an array of jobs, and one job that makes the report; this program submits them and ends
     Slurm,
     /// Elsewhere, by --task and --collect: this command writes the plan only
     None,
@@ -61,7 +58,7 @@ enum Executor {
 )]
 pub(crate) struct Benchmark {
     #[command(flatten)]
-    choice: Choice,
+    choice: PlanOptions,
     /// Where the tasks run; with slurm the variables of `sbatch` (`SBATCH_PARTITION`, `SBATCH_ACCOUNT`,
     /// `SBATCH_TIMELIMIT`, ...) apply
     #[arg(long, value_enum, default_value_t = Executor::Local)]
@@ -71,11 +68,11 @@ pub(crate) struct Benchmark {
         long,
         value_name = "N",
         requires = "out",
-        conflicts_with_all = ["Choice", "executor", "jobs", "publish", "collect"]
+        conflicts_with_all = ["PlanOptions", "executor", "jobs", "collect"]
     )]
     task: Option<usize>,
     /// Only make the report of the plan in --out, from the tasks that are finished
-    #[arg(long, requires = "out", conflicts_with_all = ["Choice", "executor", "jobs"])]
+    #[arg(long, requires = "out", conflicts_with_all = ["PlanOptions", "executor", "jobs"])]
     collect: bool,
     /// Processes that run at the same time and share the cores [default: one for each core; on cuda all tasks, at most
     /// five; with slurm all tasks]
@@ -88,9 +85,6 @@ pub(crate) struct Benchmark {
     /// `runs/CONVENTION-PROFILE-published` with the protocol published]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Also write the main results into the section of the convention in docs/results.md of the checkout in this folder
-    #[arg(long, value_name = "DIR")]
-    publish: Option<PathBuf>,
     #[command(flatten)]
     reporting: Reporting,
 }
@@ -106,28 +100,20 @@ impl Benchmark {
         if let (Some(index), Some(out)) = (self.task, &self.out) {
             return self.do_task(index, out);
         }
-        ensure!(
-            self.publish.is_none() || self.executor != Executor::None,
-            "--publish needs results: with `--executor none`, publish when the tasks are finished, by `--collect \
-             --publish DIR`"
-        );
         let plan = self.choice.plan()?;
-        if let Some(checkout) = &self.publish {
-            publish::check(checkout, &plan)?;
-        }
         let out = self.out.clone().unwrap_or_else(|| choice::usual_folder(&plan));
         fs::create_dir_all(&out).with_context(|| format!("cannot make {}", out.display()))?;
-        let claimed = RunLock::take(&out)?;
+        let _claimed = RunLock::take(&out)?;
         // The folders of tasks are left alone, because a process of an earlier benchmark may still write there.
         remove_temporary_files(&out);
         match self.executor {
             Executor::Local => self.run_here(&plan, &out),
-            Executor::Slurm => self.run_on_slurm(&plan, &out, claimed),
+            Executor::Slurm => self.run_on_slurm(&plan, &out),
             Executor::None => {
                 plan.write(&out)?;
-                let of = format!("ddl benchmark --out {}", shell_word(&out));
+                let command = format!("ddl benchmark --out {}", shell_word(&out));
                 tell(format_args!(
-                    "plan: {} tasks; `{of} --task N` runs one (N from 0 to {}), then `{of} --collect` makes the report",
+                    "plan: {} tasks; `{command} --task N` runs one (N from 0 to {}), then `{command} --collect` makes the report",
                     plan.tasks.len(),
                     plan.tasks.len() - 1
                 ));
@@ -150,48 +136,35 @@ impl Benchmark {
             );
             return Err(anyhow::Error::new(DdlError::Interrupted).context(progress));
         }
-        let report = self.report(plan, out)?;
+        self.report(plan, out)?;
         tell(format_args!("wall time: {}", human(start.elapsed())));
-        self.publish(plan, &report, out)
-    }
-
-    fn publish(&self, plan: &Plan, report: &Report, out: &Path) -> anyhow::Result<()> {
-        let Some(checkout) = &self.publish else {
-            return Ok(());
-        };
-        let making = Making::of(plan, report, out);
-        publish::publish(checkout, plan, report, &making)?;
-        tell(format_args!("published: {}", publish::PAGE));
         Ok(())
     }
 
-    /// Submits the unfinished tasks, unless jobs of the folder are in the queue, and watches until all jobs have ended.
-    fn run_on_slurm(&self, plan: &Plan, out: &Path, claimed: RunLock) -> anyhow::Result<()> {
+    /// Submits the unfinished tasks, unless jobs of the folder are in the queue. Without unfinished tasks it makes the
+    /// report.
+    fn run_on_slurm(&self, plan: &Plan, out: &Path) -> anyhow::Result<()> {
         let slurm = Slurm::new(out, &self.reporting.commit)?;
-        let live = slurm.queue()?;
-        if live.is_empty() {
-            plan.write(out)?;
-            slurm.submit(plan, self.jobs, self.threads.unwrap_or(1))?;
-        } else {
-            let ids = slurm::ids(&live);
+        let jobs = slurm.queue()?.join(" ");
+        if !jobs.is_empty() {
             ensure!(
                 Plan::read(out)? == *plan,
-                "jobs of another plan run in {}: wait for their end, cancel them with `scancel {ids}`, or choose \
+                "jobs of another plan run in {}: wait for their end, cancel them with `scancel {jobs}`, or choose \
                  another --out",
                 out.display()
             );
             tell(format_args!(
-                "jobs {ids} of this folder are in the queue: this command watches them and submits nothing"
+                "jobs {jobs} of this folder are in the queue: nothing is submitted"
             ));
+            return Ok(());
         }
-        // The job that makes the report takes the lock.
-        drop(claimed);
-        let interrupt = Interrupt::catch()?;
-        let display = Display::new(&plan.tasks, self.reporting.telling.progress);
-        let watched = slurm.watch(plan, &display, &interrupt);
-        display.close();
-        watched?;
-        self.collect(out)
+        plan.write(out)?;
+        let is_unfinished = |index: &usize| Record::of(&plan.tasks[*index], out).is_none();
+        let unfinished: Vec<usize> = (0..plan.tasks.len()).filter(is_unfinished).collect();
+        if unfinished.is_empty() {
+            return self.report(plan, out);
+        }
+        slurm.submit(&unfinished, self.jobs, self.threads.unwrap_or(1))
     }
 
     fn do_task(&self, index: usize, out: &Path) -> anyhow::Result<()> {
@@ -209,7 +182,6 @@ impl Benchmark {
         let watch = |task: &Task, event: work::Event<'_>| display.hear(task, event);
         let end = workers.run_task(&plan, task, out, &watch, &interrupt);
         watch(task, work::Event::Ended(&end));
-        display.close();
         match end {
             End::Finished { .. } | End::Kept => Ok(()),
             End::Failed { .. } => bail!("{} failed (above)", task.id),
@@ -220,12 +192,7 @@ impl Benchmark {
     fn collect(&self, out: &Path) -> anyhow::Result<()> {
         let _claimed = RunLock::take(out)?;
         remove_temporary_files(out);
-        let plan = Plan::read(out)?;
-        if let Some(checkout) = &self.publish {
-            publish::check(checkout, &plan)?;
-        }
-        let report = self.report(&plan, out)?;
-        self.publish(&plan, &report, out)
+        self.report(&Plan::read(out)?, out)
     }
 
     /// Makes the report of the finished tasks.
@@ -233,11 +200,11 @@ impl Benchmark {
     /// # Errors
     /// When the report cannot be written, or tasks are not finished; then the report of the finished ones is written
     /// before.
-    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<Report> {
+    fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<()> {
         let (finished, missing): (Vec<&Task>, Vec<&Task>) =
             plan.tasks.iter().partition(|task| Record::of(task, out).is_some());
         let runs = finished.iter().map(|task| task.run_folder(out)).collect();
-        let report = report::write(plan, runs, out, &self.reporting)?;
+        report::write(plan, runs, out, &self.reporting)?;
         let names: Vec<&str> = missing.iter().map(|task| task.id.as_str()).collect();
         ensure!(
             names.is_empty(),
@@ -247,7 +214,7 @@ impl Benchmark {
             plan.tasks.len(),
             names.join(", ")
         );
-        Ok(report)
+        Ok(())
     }
 
     fn work_off(&self, plan: &Plan, out: &Path) -> anyhow::Result<Vec<End>> {
@@ -262,7 +229,6 @@ impl Benchmark {
         let watch = |task: &Task, event: work::Event<'_>| display.hear(task, event);
         let workers = self.workers(jobs, threads)?;
         let ends = workers.run(plan, out, &watch, &interrupt);
-        display.close();
         Ok(ends)
     }
 
@@ -276,8 +242,8 @@ impl Benchmark {
     }
 
     fn cores(&self) -> usize {
-        let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        self.threads.unwrap_or_else(all)
+        let all_cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        self.threads.unwrap_or_else(all_cores)
     }
 }
 
@@ -290,8 +256,4 @@ fn catch() -> anyhow::Result<Interrupt> {
         )),
         _ => tell(format_args!("\nstopping at once")),
     })
-}
-
-fn this_program() -> anyhow::Result<PathBuf> {
-    std::env::current_exe().context("cannot find the path of this program")
 }

@@ -4,6 +4,7 @@ use crate::interrupt::Interrupt;
 use crate::telling::tell;
 use anyhow::Context as _;
 use std::io::{BufRead as _, BufReader};
+use std::path::PathBuf;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
@@ -11,6 +12,11 @@ use std::time::Duration;
 
 /// Time between two checks for a request to stop and for the end of a process.
 pub(super) const BEAT: Duration = Duration::from_millis(20);
+
+/// The path of this program.
+pub(super) fn this_program() -> anyhow::Result<PathBuf> {
+    std::env::current_exe().context("cannot find the path of this program")
+}
 
 /// Runs a process to its end in its own process group, which Ctrl-C does not reach. The first request to stop is passed
 /// on as SIGTERM: the process then saves its state. Further requests kill it.
@@ -37,7 +43,7 @@ pub(super) fn run(
             }
         }
     });
-    let mut told = 0;
+    let mut passed_on = 0;
     loop {
         let has_closed = match lines.recv_timeout(BEAT) {
             Ok(line) => {
@@ -47,7 +53,7 @@ pub(super) fn run(
             Err(RecvTimeoutError::Timeout) => false,
             Err(RecvTimeoutError::Disconnected) => true,
         };
-        if (has_closed || told > 1)
+        if (has_closed || passed_on > 1)
             && let Some(status) = child.try_wait()?
         {
             return Ok(status);
@@ -56,8 +62,8 @@ pub(super) fn run(
             thread::sleep(BEAT);
         }
         let wishes = interrupt.wishes();
-        if wishes > told {
-            told = wishes;
+        if wishes > passed_on {
+            passed_on = wishes;
             stop(&mut child, wishes > 1);
         }
     }

@@ -1,10 +1,10 @@
 //! The options that choose folds, methods and protocols, and the plan made of them.
 
-use super::super::folder;
-use super::super::recipe::Recipe;
-use super::method::Method;
-use super::plan::{Plan, Settings, Training};
-use super::profile::Profile;
+use crate::command::benchmark::method::Method;
+use crate::command::benchmark::plan::{Plan, Settings, Training};
+use crate::command::benchmark::profile::Profile;
+use crate::command::folder;
+use crate::command::recipe::Recipe;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -13,7 +13,7 @@ use ddl::{DeviceChoice, Protocol};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
-pub(super) struct Choice {
+pub(super) struct PlanOptions {
     /// How much work
     #[arg(long, value_enum, default_value_t = Profile::Quick)]
     profile: Profile,
@@ -56,7 +56,7 @@ pub(super) struct Choice {
     epochs: Option<usize>,
 }
 
-impl Choice {
+impl PlanOptions {
     /// The plan; prints the data convention where no option names it.
     pub(super) fn plan(&self) -> anyhow::Result<Plan> {
         let (convention, data) = self.recordings()?;
@@ -82,14 +82,14 @@ impl Choice {
                 }
             }
         };
-        let found = match convention {
+        let folder_of_recordings = match convention {
             Convention::Simulated => None,
             recorded => Some(std::path::absolute(folder(recorded, data)?)?),
         };
         if self.convention.is_none() {
             tell(format_args!("data convention: {convention}"));
         }
-        Ok((convention, found))
+        Ok((convention, folder_of_recordings))
     }
 
     fn plan_of(&self, convention: Convention, data: Option<PathBuf>) -> anyhow::Result<Plan> {
@@ -110,13 +110,13 @@ impl Choice {
             );
         }
         let work = self.profile.work(name);
-        let known: Vec<&str> = convention.fold_names().collect();
+        let fold_names: Vec<&str> = convention.fold_names().collect();
         let folds: Vec<String> = if self.folds.is_empty() {
-            let first = known.iter().take(work.folds);
+            let first = fold_names.iter().take(work.folds);
             first.map(|&fold| fold.to_owned()).collect()
         } else {
             for fold in &self.folds {
-                one_of("fold", fold, &known)?;
+                one_of("fold", fold, &fold_names)?;
             }
             self.folds.clone()
         };
@@ -164,9 +164,9 @@ pub(super) fn usual_folder(plan: &Plan) -> PathBuf {
     Path::new("runs").join(name)
 }
 
-fn one_of(what: &str, name: &str, known: &[&str]) -> anyhow::Result<usize> {
-    let index = known.iter().position(|known| *known == name);
-    index.with_context(|| format!("unknown {what} {name:?}: choose from {}", known.join(", ")))
+fn one_of(what: &str, name: &str, names: &[&str]) -> anyhow::Result<usize> {
+    let index = names.iter().position(|known_name| *known_name == name);
+    index.with_context(|| format!("unknown {what} {name:?}: choose from {}", names.join(", ")))
 }
 
 #[cfg(test)]

@@ -4,10 +4,10 @@ use clap::Parser;
 #[derive(Debug, Parser)]
 struct Line {
     #[command(flatten)]
-    choice: Choice,
+    choice: PlanOptions,
 }
 
-fn parsed(words: &str) -> Choice {
+fn parsed(words: &str) -> PlanOptions {
     let words = std::iter::once("benchmark").chain(words.split_whitespace());
     Line::try_parse_from(words).unwrap().choice
 }

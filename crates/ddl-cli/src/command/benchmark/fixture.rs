@@ -1,7 +1,9 @@
-use super::super::recipe::Recipe;
-use super::method::Method;
-use super::plan::{Plan, Settings, Training};
-use super::profile::Profile;
+//! A plan for tests.
+
+use crate::command::benchmark::method::Method;
+use crate::command::benchmark::plan::{Plan, Settings, Training};
+use crate::command::benchmark::profile::Profile;
+use crate::command::recipe::Recipe;
 use ddl::data::Convention;
 use ddl::{DeviceChoice, Protocol};
 

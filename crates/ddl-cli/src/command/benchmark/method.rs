@@ -1,3 +1,5 @@
+//! What a benchmark trains: variants, and other networks.
+
 use ddl::Variant;
 use ddl::network::BackboneKind;
 use serde::{Deserialize, Serialize};

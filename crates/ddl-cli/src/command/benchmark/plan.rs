@@ -1,9 +1,8 @@
 //! The plan: which models are trained and scored, as data.
 
-use super::super::recipe::Recipe;
-use super::cost;
-use super::method::Method;
-use super::profile::{Optimiser, Profile};
+use crate::command::benchmark::method::Method;
+use crate::command::benchmark::profile::{Optimiser, Profile};
+use crate::command::recipe::Recipe;
 use anyhow::{Context as _, bail, ensure};
 use ddl::data::{Convention, write_atomically};
 use ddl::{DeviceChoice, Protocol};
@@ -19,13 +18,13 @@ const FORMAT: u32 = 3;
 pub(crate) struct Plan {
     format: u32,
     pub(crate) settings: Settings,
-    /// Longest first.
+    /// Those of the first method first: the others use their goals.
     pub(crate) tasks: Vec<Task>,
 }
 
 /// The part of `plan.json` that every version has.
 #[derive(Deserialize)]
-struct Layout {
+struct PlanLayout {
     format: u32,
 }
 
@@ -62,16 +61,9 @@ pub(crate) struct Task {
     pub(crate) fold: String,
     pub(crate) variant: Method,
     pub(crate) seed: u64,
-    /// Share of a plan's expected time, in arbitrary units, for training and for scoring.
-    pub(super) train_cost: f64,
-    evaluate_cost: f64,
 }
 
 impl Task {
-    pub(super) fn cost(&self) -> f64 {
-        self.train_cost + self.evaluate_cost
-    }
-
     pub(crate) fn run_folder(&self, out: &Path) -> PathBuf {
         self.folder(out).join("run")
     }
@@ -81,9 +73,9 @@ impl Task {
     }
 }
 
-struct Words(Vec<String>);
+struct Arguments(Vec<String>);
 
-impl Words {
+impl Arguments {
     fn of(command: &str) -> Self {
         Self(vec![command.to_owned()])
     }
@@ -109,37 +101,21 @@ impl Plan {
     pub(crate) fn new(settings: Settings, folds: &[String], methods: &[Method], seeds: &[u64]) -> anyhow::Result<Self> {
         ensure!(settings.epochs > 0, "training needs at least one epoch");
         let mut tasks: Vec<Task> = Vec::new();
-        for fold in folds {
-            let (train_cost, evaluate_cost) = cost::expected(
-                fold,
-                settings.recipe.name,
-                settings.epochs,
-                settings.train_pedestrians,
-                settings.test_pedestrians,
-            );
-            for (&variant, &seed) in methods
-                .iter()
-                .flat_map(|variant| seeds.iter().map(move |seed| (variant, seed)))
-            {
-                let id = format!("{fold}-{}-{seed}", variant.name());
-                ensure!(tasks.iter().all(|task| task.id != id), "the options ask for {id} twice");
-                tasks.push(Task {
-                    id,
-                    fold: fold.clone(),
-                    variant,
-                    seed,
-                    train_cost,
-                    evaluate_cost,
-                });
+        // The tasks of the first method come first, because the others use the goals that they train.
+        for &variant in methods {
+            for fold in folds {
+                for &seed in seeds {
+                    let id = format!("{fold}-{}-{seed}", variant.name());
+                    ensure!(tasks.iter().all(|task| task.id != id), "the options ask for {id} twice");
+                    tasks.push(Task {
+                        id,
+                        fold: fold.clone(),
+                        variant,
+                        seed,
+                    });
+                }
             }
         }
-        // The first method comes first, because the others use the goals that it trains. The sort is stable: equal
-        // tasks keep their order.
-        let first = |task: &Task| methods.first() == Some(&task.variant);
-        tasks.sort_by(|one, other| {
-            let by_cost = other.cost().total_cmp(&one.cost());
-            first(other).cmp(&first(one)).then(by_cost)
-        });
         Ok(Self {
             format: FORMAT,
             settings,
@@ -157,7 +133,7 @@ impl Plan {
     pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let settings = &self.settings;
         let optimiser = settings.recipe.optimiser.as_ref();
-        let words = Words::of("train")
+        let words = Arguments::of("train")
             .option("--convention", Some(settings.convention))
             .option("--data", settings.data.as_ref().map(|data| data.display()))
             .option("--fold", Some(&task.fold))
@@ -167,9 +143,15 @@ impl Plan {
             .option("--train-pedestrians", settings.train_pedestrians)
             .option("--proposal-steps", settings.proposal_steps)
             .option("--recipe", Some(settings.recipe.name))
-            .option("--batch-pedestrians", optimiser.map(|of| of.batch_pedestrians))
-            .option("--learning-rate", optimiser.map(|of| of.learning_rate))
-            .option("--learning-rate-schedule", optimiser.map(|of| of.schedule))
+            .option(
+                "--batch-pedestrians",
+                optimiser.map(|optimiser| optimiser.batch_pedestrians),
+            )
+            .option("--learning-rate", optimiser.map(|optimiser| optimiser.learning_rate))
+            .option(
+                "--learning-rate-schedule",
+                optimiser.map(|optimiser| optimiser.schedule),
+            )
             .path("--out", &task.run_folder(out));
         // Only `published` chooses an epoch, with the true future.
         let last_alone = !settings.protocols.contains(&Protocol::Published);
@@ -181,7 +163,7 @@ impl Plan {
 
     pub(super) fn evaluate_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
-        let words = Words::of("evaluate")
+        let words = Arguments::of("evaluate")
             .path("--model", &task.run_folder(out))
             .option("--data", data);
         let protocols = self.settings.protocols.iter();
@@ -192,7 +174,7 @@ impl Plan {
 
     pub(super) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
-        let words = Words::of("goals")
+        let words = Arguments::of("goals")
             .flag("--json", true)
             .path("--model", &task.run_folder(out))
             .option("--measure", Some("test"))
@@ -202,7 +184,7 @@ impl Plan {
         self.on_machine(words, threads).0
     }
 
-    fn on_machine(&self, words: Words, threads: usize) -> Words {
+    fn on_machine(&self, words: Arguments, threads: usize) -> Arguments {
         words
             .option("--device", Some(self.settings.device))
             .option("--threads", Some(threads))
@@ -217,7 +199,7 @@ impl Plan {
         match fs::read(&file) {
             Ok(text) => {
                 let damaged = || format!("{} is damaged: delete it or choose another --out", file.display());
-                let Layout { format } = serde_json::from_slice(&text).with_context(damaged)?;
+                let PlanLayout { format } = serde_json::from_slice(&text).with_context(damaged)?;
                 ensure!(
                     format == FORMAT,
                     "{} holds results of another version of the benchmark (its plan has layout {format}, this version \

@@ -10,7 +10,7 @@ fn of_eth() -> Plan {
 }
 
 #[test]
-fn every_combination_is_there_once_and_the_longest_comes_first() {
+fn every_combination_is_there_once_and_the_first_method_comes_first() {
     let methods = [Method::FULL, Method::ALL[3]];
     let plan = published(&["eth", "univ", "zara2"], &methods, &[1, 2]).unwrap();
     assert_eq!(plan.tasks.len(), 12);
@@ -18,14 +18,12 @@ fn every_combination_is_there_once_and_the_longest_comes_first() {
     for of_method in plan.tasks.chunks(6) {
         let variant = of_method[0].variant;
         assert!(of_method.iter().all(|task| task.variant == variant));
-        let mut pairs = of_method.windows(2);
-        assert!(pairs.all(|pair| pair[0].cost() >= pair[1].cost()));
     }
     let same_goals = |task: &Task| plan.with_same_goals(task).map(|other| other.id.as_str());
     assert!(plan.tasks[..6].iter().all(|task| same_goals(task).is_none()));
-    assert_eq!(same_goals(&plan.tasks[6]), Some("univ-full-1"));
+    assert_eq!(same_goals(&plan.tasks[6]), Some("eth-full-1"));
     let ids: Vec<&str> = plan.tasks[..4].iter().map(|task| task.id.as_str()).collect();
-    assert_eq!(ids, ["univ-full-1", "univ-full-2", "zara2-full-1", "zara2-full-2"]);
+    assert_eq!(ids, ["eth-full-1", "eth-full-2", "univ-full-1", "univ-full-2"]);
     let twice = published(&["eth", "eth"], &[Method::FULL], &[1]);
     let message = twice.unwrap_err().to_string();
     assert_eq!(message, "the options ask for eth-full-1 twice");

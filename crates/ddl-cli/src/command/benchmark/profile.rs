@@ -1,6 +1,6 @@
 //! The amount of work of each profile.
 
-use super::super::recipe::Recipe;
+use crate::command::recipe::Recipe;
 use clap::ValueEnum;
 use ddl::network::{LearningRateSchedule, TrainingConfig};
 use serde::{Deserialize, Serialize};

@@ -1,7 +1,6 @@
 //! The file of a finished task. A second run skips tasks that have one.
 
-use super::plan::Task;
-use super::processor;
+use crate::command::benchmark::plan::Task;
 use anyhow::Context as _;
 use ddl::data::write_atomically;
 use serde::{Deserialize, Serialize};
@@ -14,10 +13,8 @@ const FILE: &str = "finished.json";
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Record {
     task: String,
-    pub(super) seconds: f64,
-    /// `None` in records of version 0.1.
-    #[serde(default)]
-    pub(super) processor: Option<String>,
+    /// Wall-clock time that the task took, for the reader of the file.
+    seconds: f64,
 }
 
 impl Record {
@@ -33,7 +30,6 @@ impl Record {
         let record = Self {
             task: task.id.clone(),
             seconds,
-            processor: Some(processor::name()),
         };
         let text = serde_json::to_vec(&record)?;
         write_atomically(&file, &text).with_context(|| format!("cannot write {}", file.display()))

@@ -1,17 +1,19 @@
 //! The report of all finished runs, with the baselines in the other data convention.
 
-use super::super::{Reporting, baselines};
-use super::plan::{Plan, Settings};
-use super::profile::Profile;
+use crate::command::benchmark::plan::{Plan, Settings};
+use crate::command::benchmark::profile::Profile;
+use crate::command::{Reporting, baselines};
 use crate::output;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
 use ddl::data::{Convention, Dataset, locate};
-use ddl::report::Report;
-use ddl::{Protocol, Results};
+use ddl::{BaselineRequest, Protocol, Results};
 use std::path::{Path, PathBuf};
 
-pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Reporting) -> anyhow::Result<Report> {
+/// The main tables of the headline window rule, as docs/results.md shows them.
+const SUMMARY: &str = "summary.md";
+
+pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Reporting) -> anyhow::Result<()> {
     let settings = &plan.settings;
     let profile = match settings.profile {
         Profile::Smoke => "smoke (a test of the program: the numbers mean nothing)".to_owned(),
@@ -22,23 +24,32 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
         settings.convention, settings.recipe.name
     );
     if runs.is_empty() {
-        return Ok(Report::new(title, [])?);
+        return Ok(());
     }
     let mut folders = runs;
     folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
     let results = Results::of(title, &folders)?;
     results.save(out)?;
+    let summary = results.report.summary(settings.convention);
+    if let Some(summary) = &summary {
+        let text = format!(
+            "minADE/minFDE in metres:\n\n{:#}\nMean over the folds, with 95 % intervals:\n\n{:#}",
+            summary.errors, summary.metrics
+        );
+        output::write_output(Some(&out.join(SUMMARY)), &text)?;
+    }
     if reporting.telling.json {
         output::print(&(results.report.to_json()? + "\n"))?;
     } else if reporting.telling.progress != ProgressMode::Json {
         // The main table: the whole report has more than a thousand lines.
-        let text = match results.report.summary(settings.convention) {
+        let text = match &summary {
             Some(summary) => format!("minADE/minFDE in metres:\n\n{}", summary.errors),
             None => results.report.to_markdown(),
         };
         output::print(&format!("\n{}\n\n", text.trim_end()))?;
     }
     for (what, name) in [
+        ("main tables", SUMMARY),
         ("report", "report.md"),
         ("", "report.json"),
         ("for a paper", "report.tex"),
@@ -47,7 +58,7 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
     ] {
         tell(format_args!("{what:12} {}", out.join(name).display()));
     }
-    Ok(results.report)
+    Ok(())
 }
 
 /// The baselines in the other recorded convention, if its recordings are there. These rows need no training, and show
@@ -69,9 +80,13 @@ fn baselines_elsewhere(settings: &Settings, out: &Path, commit: &str) -> anyhow:
         return Ok(None);
     }
     let dataset = Dataset::load(other, &folder)?;
-    let folds: Vec<String> = other.fold_names().map(str::to_owned).collect();
-    let part = (protocols.as_slice(), settings.test_pedestrians);
-    let report = baselines::measure(&dataset, &folds, part, commit)?;
+    let request = BaselineRequest {
+        folds: other.fold_names().map(str::to_owned).collect(),
+        protocols,
+        test_pedestrians: settings.test_pedestrians,
+        commit: commit.to_owned(),
+    };
+    let report = baselines::measure(&dataset, &request)?;
     let folder = out.join(format!("baselines-{other}"));
     Results::new(report, Vec::new()).save(&folder)?;
     Ok(Some(folder))

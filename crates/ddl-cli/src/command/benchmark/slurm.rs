@@ -4,33 +4,15 @@
 mod array;
 mod queue;
 
-use super::display::Display;
-use super::plan::Plan;
-use super::record::Record;
-use super::this_program;
-use super::work::{End, Event};
-use crate::interrupt::Interrupt;
+use crate::command::benchmark::child::this_program;
 use crate::output::shell_word;
 use crate::telling::tell;
 use anyhow::{Context as _, ensure};
-use ddl::DdlError;
 use ddl::data::write_atomically;
-use queue::Job;
-use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread;
-use std::time::{Duration, Instant};
-
-pub(super) use queue::ids;
-
-/// Time between two calls of `squeue`.
-const EVERY: Duration = Duration::from_secs(3);
-
-/// Time between two checks for a request to stop.
-const BEAT: Duration = Duration::from_millis(50);
 
 #[derive(Debug)]
 pub(super) struct Slurm {
@@ -51,8 +33,8 @@ impl Slurm {
         Ok(Self { out, arguments })
     }
 
-    /// The jobs of this folder that have not ended.
-    pub(super) fn queue(&self) -> anyhow::Result<Vec<Job>> {
+    /// The numbers of the jobs of this folder that have not ended.
+    pub(super) fn queue(&self) -> anyhow::Result<Vec<String>> {
         let mut squeue = Command::new("squeue");
         // Filters that the user has set would hide jobs.
         for (name, _) in std::env::vars_os() {
@@ -60,26 +42,20 @@ impl Slurm {
                 squeue.env_remove(name);
             }
         }
-        squeue.args(["--me", "--noheader", "--array", "--format", queue::FORMAT]);
+        squeue.args(["--me", "--noheader", "--format", queue::FORMAT]);
         Ok(queue::jobs_in(&self.out, &answer(&mut squeue)?))
     }
 
-    /// Submits the unfinished tasks, `jobs` of them at a time, and a job that makes the report after them.
-    pub(super) fn submit(&self, plan: &Plan, jobs: Option<usize>, threads: usize) -> anyhow::Result<()> {
-        let unfinished: Vec<usize> = (0..plan.tasks.len())
-            .filter(|&index| Record::of(&plan.tasks[index], &self.out).is_none())
-            .collect();
-        if unfinished.is_empty() {
-            return Ok(());
-        }
+    /// Submits these tasks of the plan, `jobs` of them at a time, and a job that makes the report after them.
+    pub(super) fn submit(&self, tasks: &[usize], jobs: Option<usize>, threads: usize) -> anyhow::Result<()> {
         let logs = self.out.join("slurm");
         fs::create_dir_all(&logs).with_context(|| format!("cannot make {}", logs.display()))?;
         let config = answer(Command::new("scontrol").args(["show", "config"]))?;
         let at_a_time = jobs.map_or_else(String::new, |jobs| format!("%{jobs}"));
         let mut submitted: Vec<String> = Vec::new();
-        for array in array::arrays(&unfinished, array::longest(&config)?) {
+        for array in array::arrays(tasks, array::longest(&config)?) {
             let mut options = vec![
-                format!("--job-name={}{}", queue::TASKS, array.first),
+                format!("--job-name={}{}", queue::NAME, array.first),
                 format!("--array={}{at_a_time}", array.indices),
                 format!("--cpus-per-task={threads}"),
             ];
@@ -89,17 +65,14 @@ impl Slurm {
             }
             let first = [OsString::from(array.first.to_string())];
             let script = ("task.sh", include_str!("slurm/task.sh"));
-            let id = self.sbatch(&options, script, &first).with_context(|| {
-                let before = submitted.join(" ");
-                let some = format!(
-                    "only some tasks are submitted, as jobs {before}; run the same command again later for the rest"
-                );
-                if submitted.is_empty() {
-                    "no task is submitted".to_owned()
-                } else {
-                    some
-                }
-            })?;
+            let id = self
+                .sbatch(&options, script, &first)
+                .with_context(|| match submitted.join(" ") {
+                    none if none.is_empty() => "no task is submitted".to_owned(),
+                    some => format!(
+                        "only some tasks are submitted, as jobs {some}; run the same command again later for the rest"
+                    ),
+                })?;
             submitted.push(id);
         }
         let options = [
@@ -113,18 +86,12 @@ impl Slurm {
             "the tasks are submitted, but not the job that makes the report: run the same command again, or use \
              `--collect`",
         )?;
+        let submitted = submitted.join(" ");
         tell(format_args!(
-            "submitted: {} of {} tasks with {threads} threads each as job {}, and job {report} for the report; logs \
-             are in {}",
-            unfinished.len(),
-            plan.tasks.len(),
-            submitted.join(" "),
+            "submitted: {} tasks with {threads} threads each as job {submitted}, and job {report} for the report; logs \
+             are in {}; `squeue --me` shows the jobs, `scancel {submitted} {report}` cancels them",
+            tasks.len(),
             logs.display()
-        ));
-        tell(format_args!(
-            "Ctrl-C does not stop the jobs, and the same command watches them again; `scancel {} {report}` cancels \
-             them",
-            submitted.join(" ")
         ));
         Ok(())
     }
@@ -142,63 +109,14 @@ impl Slurm {
             .arg(&file)
             .args(first)
             .args(&self.arguments);
-        let told = answer(&mut sbatch)?;
+        let answer_of_sbatch = answer(&mut sbatch)?;
         // On a site with several clusters Slurm prints `number;cluster`.
-        let id = told.trim().split(';').next().unwrap_or_default();
+        let id = answer_of_sbatch.trim().split(';').next().unwrap_or_default();
         ensure!(
             !id.is_empty() && id.bytes().all(|byte| byte.is_ascii_digit()),
-            "`sbatch` printed {told:?} instead of the number of a job"
+            "`sbatch` printed {answer_of_sbatch:?} instead of the number of a job"
         );
         Ok(id.to_owned())
-    }
-
-    /// Shows the progress of the tasks until all jobs of this folder have ended.
-    ///
-    /// # Errors
-    /// [`DdlError::Interrupted`] after a request to stop, which does not stop the jobs.
-    pub(super) fn watch(&self, plan: &Plan, display: &Display, interrupt: &Interrupt) -> anyhow::Result<()> {
-        let mut told: BTreeMap<usize, String> = BTreeMap::new();
-        let mut open: Vec<usize> = (0..plan.tasks.len()).collect();
-        let mut is_first = true;
-        let mut is_deaf = false;
-        loop {
-            let live = self.queue();
-            if let (Err(error), false) = (&live, is_deaf) {
-                display.say(&format!("{error:#}; trying again"), true);
-            }
-            is_deaf = live.is_err();
-            open.retain(|&index| {
-                let Some(Record { seconds, .. }) = Record::of(&plan.tasks[index], &self.out) else {
-                    return true;
-                };
-                let now = End::Finished { seconds };
-                let end = if is_first { &End::Kept } else { &now };
-                display.hear(&plan.tasks[index], Event::Ended(end));
-                false
-            });
-            is_first = false;
-            if let Ok(live) = live {
-                if live.is_empty() {
-                    return Ok(());
-                }
-                for (index, state) in live.iter().filter_map(|job| Some((job.task?, job.state()))) {
-                    if open.contains(&index) && told.get(&index) != Some(&state) {
-                        display.say(&format!("{}: {state}", plan.tasks[index].id), false);
-                        told.insert(index, state);
-                    }
-                }
-            }
-            let asked = Instant::now();
-            while asked.elapsed() < EVERY {
-                if interrupt.wishes() > 0 {
-                    return Err(anyhow::Error::new(DdlError::Interrupted).context(format!(
-                        "no longer watching {}; its jobs continue, and the same command watches them again",
-                        shell_word(&self.out)
-                    )));
-                }
-                thread::sleep(BEAT);
-            }
-        }
     }
 }
 

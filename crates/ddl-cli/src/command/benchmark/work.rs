@@ -1,8 +1,8 @@
 //! Runs the tasks of a plan in parallel, in processes of the program.
 
-use super::child::{self, BEAT};
-use super::plan::{Plan, Task};
-use super::record::Record;
+use crate::command::benchmark::child::{self, BEAT};
+use crate::command::benchmark::plan::{Plan, Task};
+use crate::command::benchmark::record::Record;
 use crate::interrupt::Interrupt;
 use crate::progress::ProgressLine;
 use anyhow::Context as _;
@@ -21,6 +21,9 @@ use std::time::Instant;
 /// Default number of tasks that share one graphics card: the folds of a convention. Their kernels are small, and each
 /// needs one or two gigabytes of memory.
 const ON_ONE_CARD: usize = 5;
+
+/// Share of the training in the progress of a task.
+const TRAINING: f64 = 0.8;
 
 /// Share of the goals, the first stage, in the progress of a training.
 const GOALS: f64 = 0.15;
@@ -56,7 +59,7 @@ pub(super) enum Event<'a> {
     Ended(&'a End),
 }
 
-pub(super) type Watch<'a> = &'a (dyn Fn(&Task, Event<'_>) + Sync);
+pub(super) type Watcher<'a> = &'a (dyn Fn(&Task, Event<'_>) + Sync);
 
 /// The number of parallel processes and the threads of each. Default: on the CPU one process for each core; on CUDA all
 /// tasks up to five, since a training mostly waits for its next kernel launch.
@@ -71,11 +74,10 @@ pub(super) fn side_by_side(asked: Option<usize>, device: DeviceChoice, cores: us
 impl Workers {
     /// The end of each task, in the plan's order. After a request to stop no task starts, and running tasks save their
     /// state.
-    pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watch<'_>, interrupt: &Interrupt) -> Vec<End> {
+    pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watcher<'_>, interrupt: &Interrupt) -> Vec<End> {
         let next = AtomicUsize::new(0);
         let ends = Mutex::new(vec![End::Interrupted; plan.tasks.len()]);
         let work = || {
-            // The tasks are sorted, longest first, which fills the cores best.
             while interrupt.wishes() == 0 {
                 let index = next.fetch_add(1, Ordering::SeqCst);
                 let Some(task) = plan.tasks.get(index) else {
@@ -99,7 +101,7 @@ impl Workers {
         plan: &Plan,
         task: &Task,
         out: &Path,
-        watch: Watch<'_>,
+        watch: Watcher<'_>,
         interrupt: &Interrupt,
     ) -> End {
         if Record::of(task, out).is_some() {
@@ -134,35 +136,50 @@ impl Workers {
                 return failure(task, out, &error.to_string());
             }
         }
-        let train = task.train_cost / task.cost();
-        let steps = [
-            (plan.train_arguments(task, out, self.threads), 0.0, train),
-            (plan.goals_arguments(task, out, self.threads), train, train),
-            (plan.evaluate_arguments(task, out, self.threads), train, 1.0),
-        ];
-        for (arguments, from, to) in steps {
-            let tell = |fraction: f64, message: &str| {
-                watch(task, Event::Advanced(from + (to - from) * fraction, message));
-            };
-            match self.run_step(&mut log, &arguments, interrupt, &tell) {
-                Ok(status) if status.success() => {}
-                // A process that was asked to stop has saved its state and ended.
-                _ if interrupt.wishes() > 0 => return End::Interrupted,
-                Ok(status) => {
-                    let step = arguments.first().map_or("", String::as_str);
-                    return failure(task, out, &format!("`ddl {step}` ended with {status}"));
-                }
-                Err(error) => return failure(task, out, &format!("{error:#}")),
-            }
-            if interrupt.wishes() > 0 {
-                return End::Interrupted;
-            }
+        if let Some(end) = self.run_steps(plan, task, out, &mut log, watch, interrupt) {
+            return end;
         }
         let seconds = start.elapsed().as_secs_f64();
         match Record::write(task, out, seconds) {
             Ok(()) => End::Finished { seconds },
             Err(error) => failure(task, out, &format!("{error:#}")),
         }
+    }
+
+    /// Trains and scores; `None` after success.
+    fn run_steps(
+        &self,
+        plan: &Plan,
+        task: &Task,
+        out: &Path,
+        log: &mut File,
+        watch: Watcher<'_>,
+        interrupt: &Interrupt,
+    ) -> Option<End> {
+        let steps = [
+            (plan.train_arguments(task, out, self.threads), 0.0, TRAINING),
+            (plan.goals_arguments(task, out, self.threads), TRAINING, TRAINING),
+            (plan.evaluate_arguments(task, out, self.threads), TRAINING, 1.0),
+        ];
+        for (arguments, from, to) in steps {
+            let tell = |fraction: f64, message: &str| {
+                watch(task, Event::Advanced(from + (to - from) * fraction, message));
+            };
+            match self.run_step(log, &arguments, interrupt, &tell) {
+                Ok(status) if status.success() => {}
+                // A process that was asked to stop has saved its state and ended.
+                _ if interrupt.wishes() > 0 => return Some(End::Interrupted),
+                Ok(status) => {
+                    let step = arguments.first().map_or("", String::as_str);
+                    return Some(failure(task, out, &format!("`ddl {step}` ended with {status}")));
+                }
+                Err(error) => return Some(failure(task, out, &format!("{error:#}"))),
+            }
+            if interrupt.wishes() > 0 {
+                return Some(End::Interrupted);
+            }
+        }
+        None
     }
 
     /// Runs the program once. Its standard error goes to the log of the task. With the open file it holds the lock of

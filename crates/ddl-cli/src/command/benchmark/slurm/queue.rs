@@ -3,67 +3,24 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Number of the job or array, index in it, state, reason, nodes, name, working folder.
-pub(super) const FORMAT: &str = "%F|%K|%T|%r|%N|%j|%Z";
-const FIELDS: usize = 7;
+/// Number of the job or array, name, working folder.
+pub(super) const FORMAT: &str = "%F|%j|%Z";
 
-/// Names of jobs: of an array of tasks (followed by the plan's index of its first task), and of the report.
-pub(super) const TASKS: &str = "ddl-";
+/// Names of jobs begin with this: `ddl-` and the plan's index of the first task of an array, or `ddl-report`.
+pub(super) const NAME: &str = "ddl-";
 pub(super) const REPORT: &str = "ddl-report";
 
-/// Ordinary reasons to wait, which are not shown.
-const USUAL: [&str; 3] = ["None", "Priority", "Resources"];
-
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(in super::super) struct Job {
-    id: String,
-    /// Index in the plan; `None` for the job that makes the report.
-    pub(super) task: Option<usize>,
-    state: String,
-    reason: String,
-    nodes: String,
-}
-
-impl Job {
-    /// The state as text.
-    pub(super) fn state(&self) -> String {
-        let state = self.state.to_lowercase();
-        match (self.nodes.as_str(), self.reason.as_str()) {
-            ("", reason) if USUAL.contains(&reason) => state,
-            ("", reason) => format!("{state} ({reason})"),
-            (nodes, _) => format!("{state} on {nodes}"),
-        }
-    }
-}
-
-/// The numbers of jobs and arrays, each once, as `scancel` takes them.
-pub(in super::super) fn ids(jobs: &[Job]) -> String {
-    let ids: BTreeSet<&str> = jobs.iter().map(|job| job.id.as_str()).collect();
-    ids.into_iter().collect::<Vec<_>>().join(" ")
-}
-
-/// The jobs of `out` among the lines of `squeue`.
-pub(super) fn jobs_in(out: &Path, lines: &str) -> Vec<Job> {
-    let job = |line: &str| {
-        let fields: Vec<&str> = line.splitn(FIELDS, '|').collect();
-        let &[id, index, state, reason, nodes, name, folder] = fields.as_slice() else {
-            return None;
-        };
-        let first = name.strip_prefix(TASKS)?;
-        let task = match first.parse::<usize>() {
-            Ok(first) => Some(first + index.parse::<usize>().ok()?),
-            Err(_) if name == REPORT => None,
-            Err(_) => return None,
-        };
-        (Path::new(folder) == out).then(|| Job {
-            id: id.to_owned(),
-            task,
-            state: state.to_owned(),
-            reason: reason.to_owned(),
-            nodes: nodes.to_owned(),
-        })
+/// The numbers of the jobs and arrays of the folder `out`, each once, among the lines of `squeue`.
+pub(super) fn jobs_in(out: &Path, lines: &str) -> Vec<String> {
+    let number = |line: &str| {
+        let mut fields = line.splitn(3, '|');
+        let (number, name, folder) = (fields.next()?, fields.next()?, fields.next()?);
+        let first_task = name.strip_prefix(NAME)?.parse::<usize>();
+        let is_of_benchmark = name == REPORT || first_task.is_ok();
+        (is_of_benchmark && Path::new(folder) == out).then(|| number.to_owned())
     };
-    lines.lines().filter_map(job).collect()
+    let numbers: BTreeSet<String> = lines.lines().filter_map(number).collect();
+    numbers.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -72,27 +29,18 @@ mod tests {
 
     /// As Slurm 22.05 prints them.
     const LINES: &str = "\
-        9|N/A|PENDING|Dependency||ddl-report|/data/a run\n\
-        8|0|PENDING|BeginTime||ddl-0|/data/a run\n\
-        8|3|RUNNING|None|n1|ddl-0|/data/a run\n\
-        10|2|PENDING|Resources||ddl-1000|/data/a run\n\
-        4|0|RUNNING|None|n2|ddl-0|/data/a run/other\n\
-        5|N/A|RUNNING|None|n2|ddl-evaluation|/data/a run\n\
-        6|N/A|RUNNING|None|n2|bash|/data/a run\n";
+        9|ddl-report|/data/a run\n\
+        8|ddl-0|/data/a run\n\
+        8|ddl-0|/data/a run\n\
+        10|ddl-1000|/data/a run\n\
+        4|ddl-0|/data/a run/other\n\
+        5|ddl-evaluation|/data/a run\n\
+        6|bash|/data/a run\n";
 
     #[test]
     fn jobs_of_other_folders_are_left_out() {
-        let jobs = jobs_in(Path::new("/data/a run"), LINES);
-        let shown: Vec<(Option<usize>, String)> = jobs.iter().map(|job| (job.task, job.state())).collect();
-        let expected = [
-            (None, "pending (Dependency)"),
-            (Some(0), "pending (BeginTime)"),
-            (Some(3), "running on n1"),
-            (Some(1002), "pending"),
-        ];
-        assert_eq!(shown, expected.map(|(task, state)| (task, state.to_owned())));
-        assert_eq!(ids(&jobs), "10 8 9");
-        assert_eq!(jobs_in(Path::new("/data"), LINES), []);
-        assert_eq!(jobs_in(Path::new("/data/a run"), "slurm_load_jobs error\n"), []);
+        assert_eq!(jobs_in(Path::new("/data/a run"), LINES), ["10", "8", "9"]);
+        assert!(jobs_in(Path::new("/data"), LINES).is_empty());
+        assert!(jobs_in(Path::new("/data/a run"), "slurm_load_jobs error\n").is_empty());
     }
 }

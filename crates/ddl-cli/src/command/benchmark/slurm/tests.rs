@@ -6,6 +6,8 @@
 use super::*;
 use rustix::process::{Pid, Signal, kill_process};
 use std::process::{Child, Stdio};
+use std::thread;
+use std::time::Duration;
 
 /// Runs until it gets SIGTERM; with `code`, ends at once.
 const PROGRAM: &str = r#"
