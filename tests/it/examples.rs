@@ -63,9 +63,8 @@ const EXAMPLES: [(&str, &[&str]); 10] = [
 
 /// Examples that are not run here: `cargo xtask ci` runs `report_page`; the others need minutes for recordings, some
 /// of them of other places.
-const ELSEWHERE: [&str; 5] = [
+const ELSEWHERE: [&str; 4] = [
     "ddl-forecast calibrate",
-    "ddl-forecast elsewhere",
     "ddl-forecast regions",
     "ddl-report report_page",
     "ddl-goal goal_validation",

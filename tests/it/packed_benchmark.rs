@@ -3,7 +3,7 @@
 use ddl::data::{Convention, WindowRule};
 use ddl::eval::Conditions;
 use ddl::report::Report;
-use ddl::{Ddl, DeviceChoice, Protocol, Variant};
+use ddl::{BaselineRequest, Ddl, DeviceChoice, Protocol, Variant};
 use ddl_tests::place::{Place, json};
 use ddl_tests::{crowd, drawn_model, folder_contents};
 use serde_json::{Value, json};
@@ -15,8 +15,13 @@ const PACK: &str = "pack --benchmark . --out models";
 /// A finished benchmark of these folds, with a drawn model as each run, and invented results.
 fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
     let place = Place::empty();
-    let (all, fair) = (crowd::dataset(), [Protocol::Fair]);
-    let measured = ddl::measure_baselines(&all, &[crowd::FOLD.into()], &fair, Some(8), "0123abc");
+    let request = BaselineRequest {
+        folds: vec![crowd::FOLD.into()],
+        protocols: vec![Protocol::Fair],
+        test_pedestrians: Some(8),
+        commit: "0123abc".to_owned(),
+    };
+    let measured = ddl::measure_baselines(&crowd::dataset(), &request);
     let measured = measured.unwrap().remove(0);
     let mut tasks = Vec::new();
     for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {

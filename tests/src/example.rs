@@ -7,7 +7,11 @@ use std::path::Path;
 /// Runs an example of a crate in `folder`, with the arguments of a command line, separated by blanks.
 pub fn run(package: &str, example: &str, folder: &Path, command_line: &str) -> Finished {
     let place = Path::new("examples").join(example);
-    let path = program::built(&place, &["-p", package, "--example", example]);
+    let mut target = vec!["-p", package, "--example", example];
+    if package == "ddl-forecast" {
+        target.extend(["--features", "report"]);
+    }
+    let path = program::built(&place, &target);
     let output = program::undisturbed(&path, folder, command_line).output();
     let output = output.expect("the example can be started");
     Finished::new(format!("{example} {command_line}"), &output)

@@ -4,9 +4,7 @@ use crate::folder_contents::{self, Contents};
 use crate::place::Place;
 use crate::{crowd, drawn_model};
 use ddl::network::TrainingConfig;
-use ddl::{
-    DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, Variant,
-};
+use ddl::{DdlError, DeviceChoice, RunDirectory, TrainingProgress, TrainingRequest, TrainingStep, Variant};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, Once, OnceLock};
@@ -91,24 +89,14 @@ pub fn train_until(
 
 fn request(out: &Path) -> TrainingRequest {
     let config = drawn_model::config(Variant::Full);
-    TrainingRequest {
-        fold: config.data.fold,
-        star: config.star,
-        training: TrainingConfig {
-            pedestrians_per_epoch: Some(PEDESTRIANS),
-            batch_pedestrians: BATCH,
-            ..config.training
-        },
-        goals: config.goals,
-        validation: 0.0,
-        validation_recordings: Vec::new(),
-        patience: None,
-        from: None,
-        units: None,
-        last_epoch_only: false,
-        until: TrainingStage::Network,
-        out: RunDirectory::new(out),
-        device: DeviceChoice::Cpu,
-        commit: config.commit,
-    }
+    let mut request = TrainingRequest::recommended(config.data.fold, RunDirectory::new(out));
+    request.star = config.star;
+    request.training = TrainingConfig {
+        pedestrians_per_epoch: Some(PEDESTRIANS),
+        batch_pedestrians: BATCH,
+        ..config.training
+    };
+    request.goals = config.goals;
+    request.commit = config.commit;
+    request
 }

@@ -28,8 +28,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         let now = live.push_certified(frame, people.map(|seen| (seen.pedestrian, seen.position)))?;
         let took = started.elapsed().as_secs_f64() * 1e3;
         let Some(now) = now else {
-            let known = live.tracks().len();
-            writeln!(out, "frame {frame}: {known} pedestrians, none observed at 8 steps yet")?;
+            let tracked = live.tracks().len();
+            writeln!(
+                out,
+                "frame {frame}: {tracked} pedestrians, none observed at 8 steps yet"
+            )?;
             continue;
         };
         writeln!(out, "frame {frame}: forecast in {took:.1} ms")?;

@@ -1,6 +1,5 @@
 //! The regions of the built-in models over the time of recordings, fixed and adaptive:
-//! `regions STAR_FOLDER [FOLDER=FPS ...]`. It prints all tables, puts that of the tested recordings into
-//! `docs/regions.md`, and draws `docs/regions.svg`.
+//! `regions STAR_FOLDER [FOLDER=FPS ...]`. It prints the tables of `docs/regions.md`, and draws `docs/regions.svg`.
 //!
 //! The folder of the convention `star` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The
 //! other folders hold csv files (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on
@@ -8,8 +7,6 @@
 
 #![expect(clippy::print_stdout, reason = "a program that prints tables")]
 
-mod page;
-#[allow(dead_code, reason = "whole recordings alone are needed")]
 mod places;
 
 use ddl::data::{Convention, Dataset, OBSERVED, Position, Recording, TIME_STEP, Window};
@@ -74,14 +71,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             }
         }
     }
-    let of_tested = table(&tested);
-    println!("# Recordings that are tested on\n\n{of_tested}");
+    println!("# Recordings that are tested on\n\n{}", table(&tested));
     println!("# Recordings that the constants were chosen on\n\n{}", table(&others));
-    page::publish("regions.md", &of_tested)?;
-    let picture = drawn(&tested)?;
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/regions.svg");
-    std::fs::write(file, picture)?;
-    Ok(())
+    Ok(std::fs::write(file, drawn(&tested)?)?)
 }
 
 fn is_enough(recording: &Recording) -> bool {
@@ -94,11 +87,8 @@ fn is_enough(recording: &Recording) -> bool {
 /// The model of the fold that tests on the recording.
 fn model_of(dataset: &Dataset, recording: &Recording) -> Result<Option<BuiltinModel>, Box<dyn Error>> {
     for fold in dataset.folds() {
-        if fold
-            .test_recordings()
-            .iter()
-            .any(|test| test.name() == recording.name())
-        {
+        let mut tested = fold.test_recordings().iter();
+        if tested.any(|test| test.name() == recording.name()) {
             return Ok(Some(fold.name().parse()?));
         }
     }
@@ -206,7 +196,7 @@ fn radius(moments: &[Moment], kind: usize, which: usize) -> f64 {
 /// 1 minus the mean difference, and 1 minus the largest difference, between the covered share and the level.
 fn reliability(moments: &[Moment], kind: usize) -> [f64; 2] {
     let off = LEVELS.iter().enumerate();
-    let off = off.map(|(at, level)| (share(moments, kind, at) - level).abs());
+    let off = off.map(|(index, level)| (share(moments, kind, index) - level).abs());
     let (sum, most) = off.fold((0.0, 0.0_f64), |(sum, most), off| (sum + off, most.max(off)));
     [1.0 - sum / LEVELS.len() as f64, 1.0 - most]
 }

@@ -1,3 +1,5 @@
+//! The errors of the crate.
+
 use std::path::PathBuf;
 
 /// Errors of `ddl`. A message states the fault, its place and the remedy.
@@ -45,10 +47,13 @@ pub enum DdlError {
     WithoutLibtorch { what: &'static str },
     #[error(transparent)]
     Forecast(#[from] ddl_core::ForecastError),
+    #[cfg(any(feature = "report", feature = "torch"))]
     #[error(transparent)]
     Evaluation(#[from] ddl_eval::EvaluationError),
+    #[cfg(feature = "report")]
     #[error(transparent)]
     Measure(#[from] ddl_eval::MeasureError),
+    #[cfg(feature = "report")]
     #[error(transparent)]
     Report(#[from] ddl_report::ReportError),
     #[error("validation = {0} is out of range: it is a share of the recordings' time, at least 0 and below 1")]
@@ -77,8 +82,10 @@ pub enum DdlError {
          also runs, retrieves {experts}; train on more or longer recordings (the validation part does not count)"
     )]
     TooFewTracks { tracks: usize, experts: usize },
+    #[cfg(feature = "report")]
     #[error(transparent)]
     Figure(#[from] ddl_report::FigureError),
+    #[cfg(feature = "report")]
     #[error(transparent)]
     Page(#[from] ddl_report::page::PageError),
     #[error("run {}: {problem}", path.display())]

@@ -2,8 +2,8 @@
 
 pub(crate) mod experts;
 pub(crate) mod model;
+pub(crate) mod packed;
 pub(crate) mod reach;
-pub(crate) mod recipe;
 pub(crate) mod remembering;
 pub(crate) mod sets;
 pub(crate) mod views;

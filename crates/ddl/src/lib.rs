@@ -1,60 +1,5 @@
 #![doc = include_str!("../README.md")]
-//!
-//! ## Train and measure
-//!
-//! ```rust,no_run
-//! use ddl::data::Dataset;
-//! use ddl::network::{StarConfig, TrainingConfig};
-//! use ddl::report::Report;
-//! use ddl::{
-//!     Ddl, DeviceChoice, EvaluationRequest, Split, GoalRecipe, Protocol, RunDirectory,
-//!     TrainingRequest, TrainingStage, Variant,
-//! };
-//! use std::ops::ControlFlow;
-//!
-//! ddl::prepare(DeviceChoice::Cpu, None)?;
-//! // Simulated crowds need no files; `Dataset::load` reads the ETH/UCY recordings.
-//! let dataset = Dataset::simulated(1);
-//!
-//! let request = TrainingRequest {
-//!     fold: "plaza".to_owned(),
-//!     star: StarConfig::published(Variant::Full),
-//!     training: TrainingConfig { epochs: 4, ..TrainingConfig::published() },
-//!     validation: 0.0,
-//!     validation_recordings: Vec::new(),
-//!     goals: GoalRecipe::proposed(1),
-//!     patience: None,
-//!     from: None,
-//!     units: None,
-//!     last_epoch_only: false,
-//!     until: TrainingStage::Network,
-//!     out: RunDirectory::new("runs/plaza"),
-//!     device: DeviceChoice::Cpu,
-//!     commit: "unknown".to_owned(),
-//! };
-//! ddl::train(&request, &dataset, |now| {
-//!     println!("{} of {} steps", now.steps.0, now.steps.1);
-//!     ControlFlow::Continue(()) // `Break` saves and stops; the same call resumes later
-//! })?;
-//!
-//! let model = Ddl::load("runs/plaza".as_ref(), DeviceChoice::Cpu)?;
-//! let request = EvaluationRequest {
-//!     protocols: vec![Protocol::Fair, Protocol::Single],
-//!     on: Split::Test,
-//!     validation_recordings: Vec::new(),
-//!     test_pedestrians: Some(500), // a seeded part of the windows; the report says so
-//!     commit: "unknown".to_owned(),
-//! };
-//! let evaluation = ddl::evaluate(&model, &dataset, &request, |_| ControlFlow::Continue(()))?;
-//! println!("{}", Report::new("Plaza", evaluation.rows)?.to_markdown());
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! The rows hold the model and the baselines, each with its conditions of measurement. The protocol `fair` adds rows
-//! for the model without the expert library and for straight lines at constant speed to the same goals. For a network
-//! trained on single steps it also adds a row with plain Euler steps. The protocol `single` adds a row for the path
-//! that the network shapes. Under `fair` and `single` the future is removed from the windows before the model is
-//! called.
+#![cfg_attr(all(feature = "report", feature = "training"), doc = include_str!("train_and_measure.md"))]
 //!
 //! ## Guarantees
 //!
@@ -68,70 +13,95 @@
 //!   Truncated, mismatched or non-finite files are errors that name the file and the problem.
 //! - A model reads only the 8 observed positions. Its hypotheses belong to the goals of the estimator and carry their
 //!   weights, which sum to 1 for each pedestrian; the variant without goals (`star`) has 20 equally likely samples.
-#![cfg_attr(not(feature = "torch"), allow(dead_code, reason = "only training needs it"))]
+#![cfg_attr(
+    not(all(feature = "report", feature = "torch")),
+    allow(dead_code, reason = "only training or evaluation needs it")
+)]
 
 mod device;
 mod error;
+#[cfg(feature = "report")]
 mod evaluation;
 mod forecast;
 mod goals;
+mod live;
 mod model;
 mod run;
+#[cfg(feature = "training")]
 mod training;
 mod trust;
+#[cfg(any(feature = "report", feature = "training"))]
+mod windows;
 
 pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
+#[cfg(feature = "report")]
 pub use ddl_eval as eval;
 pub use ddl_goal as goal;
 pub use ddl_memory as memory;
 pub use ddl_network as network;
+#[cfg(feature = "report")]
 pub use ddl_report as report;
 pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
 
 pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable};
-pub use ddl_eval::Protocol;
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{Device, cuda_status, prepare};
 pub use error::DdlError;
-pub use evaluation::baselines::measure_baselines;
-pub use evaluation::comparison::{BestOf20Errors, Comparison, compare_on_validation};
-pub use evaluation::evaluate::{Evaluation, EvaluationProgress, EvaluationRequest, evaluate};
-pub use evaluation::goal_picture::goal_picture;
-pub use evaluation::goals::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
-pub use evaluation::record::{is_evaluated, save_evaluation};
-pub use evaluation::results::Results;
-pub use evaluation::split::Split;
-pub use evaluation::test_set::test_set_name;
 pub use forecast::certified::{CertificateError, CertifiedForecast};
 pub use forecast::clearance::Clearance;
-pub use forecast::live::{LiveForecast, LiveForecaster};
-pub use forecast::memory_file::MemoryFile;
-pub use forecast::place_memory::{MemoryMismatch, PlaceMemory};
-pub use forecast::recording_player::RecordingPlayer;
-pub use forecast::scenes::{LiveScenes, SceneBatch, SceneForecast};
 pub use goals::model::GoalModel;
-pub use goals::recipe::{GoalRecipe, ProposalRecipe};
 pub use goals::remembering::Remembering;
-pub use model::builtin::BuiltinModel;
+pub use live::forecaster::{LiveForecast, LiveForecaster};
+pub use live::memory_file::MemoryFile;
+pub use live::place_memory::{MemoryMismatch, PlaceMemory};
+pub use live::scenes::{LiveScenes, SceneBatch, SceneForecast};
 pub use model::ddl::Ddl;
-pub use model::source::ModelSource;
+pub use run::builtin_model::BuiltinModel;
 pub use run::config::{FORMAT, RunConfig, TrainingData};
 pub use run::directory::{RunDirectory, write_atomically};
+pub use run::goal_recipe::{GoalRecipe, ProposalRecipe};
 pub use run::lock::RunLock;
+pub use run::model_source::ModelSource;
 pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal_recipe};
 pub use run::track_units::TrackUnits;
 pub use run::training_data::fold_by_name;
 pub use run::validation_part::ValidationPart;
-pub use training::best_epoch::best_epoch;
-pub use training::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, train};
 pub use trust::calibration::Calibration;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
+/// What the feature `report` adds.
+#[cfg(feature = "report")]
+mod with_report {
+    pub use crate::evaluation::baselines::{BaselineRequest, measure_baselines};
+    pub use crate::evaluation::comparison::{BestOf20Errors, Comparison, compare_on_validation};
+    pub use crate::evaluation::evaluate::{Evaluation, EvaluationProgress, EvaluationRequest, evaluate};
+    pub use crate::evaluation::goal_picture::goal_picture;
+    pub use crate::evaluation::goals::{GoalErrors, GoalEvaluation, MeasuredGoals, evaluate_goals};
+    pub use crate::evaluation::record::{is_evaluated, save_evaluation};
+    pub use crate::evaluation::results::Results;
+    pub use crate::live::recording_player::RecordingPlayer;
+    pub use crate::windows::split::Split;
+    pub use crate::windows::test_set::test_set_name;
+    pub use ddl_eval::Protocol;
+}
+#[cfg(feature = "report")]
+pub use with_report::*;
+
+/// What the feature `training` adds.
+#[cfg(feature = "training")]
+mod with_training {
+    pub use crate::training::best_epoch::best_epoch;
+    pub use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
+    pub use crate::training::train;
+}
+#[cfg(feature = "training")]
+pub use with_training::*;
+
 /// The examples of the guide, run as documentation tests.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "report"))]
 mod guide {
     #[doc = include_str!("../../../docs/rust.md")]
     mod rust {}

@@ -1,8 +1,5 @@
-//! A trained model and its sources.
+//! A trained model: loaded, applied and packed.
 
-pub(crate) mod builtin;
 pub(crate) mod ddl;
 mod loading;
-pub(crate) mod packed;
 mod packing;
-pub(crate) mod source;

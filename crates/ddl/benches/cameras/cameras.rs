@@ -43,14 +43,14 @@ impl Camera {
     }
 
     pub(crate) fn frame(&mut self, frame: i64) -> Vec<(PedestrianId, Position)> {
-        let mut at = |(i, [start, step]): (usize, &[Position; 2])| {
+        let mut position = |(i, [start, step]): (usize, &[Position; 2])| {
             let place = std::array::from_fn(|axis| {
                 let way = (start[axis] + step[axis] * frame as f64).rem_euclid(2.0 * side());
                 way.min(2.0 * side() - way) + JITTER * (self.random.random::<f64>() - 0.5)
             });
             (PedestrianId(i as i64), place)
         };
-        self.walks.iter().enumerate().map(&mut at).collect()
+        self.walks.iter().enumerate().map(&mut position).collect()
     }
 }
 

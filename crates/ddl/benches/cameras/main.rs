@@ -64,14 +64,14 @@ fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
         }
     };
     for &cameras in counts {
-        let own = queue::simulated(&model, cameras, frames(cameras), Phases::Own)?;
+        let with_own_phases = queue::simulated(&model, cameras, frames(cameras), Phases::Own)?;
         let at_once = queue::simulated(&model, cameras, frames(cameras), Phases::AtOnce)?;
-        let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * own.latency(share));
+        let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * with_own_phases.latency(share));
         writeln!(
             out,
             "| {cameras} | {:.0} | {p50:.1} | {p99:.1} | {:.1} | {:.0} |",
-            100.0 * own.busy,
-            100.0 * own.dropped_share(),
+            100.0 * with_own_phases.busy,
+            100.0 * with_own_phases.dropped_share(),
             1e3 * at_once.latency(0.99)
         )?;
     }

@@ -211,8 +211,8 @@ pub(crate) fn memory(cameras: usize) -> Result<[f64; 2]> {
         scenes.observe(Some(&camera.name), frame, seen)?;
     }
     let waiting = resident()?;
-    let each = |bytes: f64| bytes / cameras as f64;
-    Ok([each(watched - before), each(waiting - watched)])
+    let per_camera = |bytes: f64| bytes / cameras as f64;
+    Ok([per_camera(watched - before), per_camera(waiting - watched)])
 }
 
 /// Resident memory of the process (KiB).

@@ -47,13 +47,13 @@ fn crowd(pedestrians: usize) -> Result<Window> {
         let start = [0; 2].map(|_| side * random.random::<f64>());
         let (speed, heading) = (random.random_range(0.5..1.8), TAU * random.random::<f64>());
         let velocity = [speed * f64::cos(heading), speed * f64::sin(heading)];
-        let at = |t: usize| -> Position {
+        let position = |t: usize| -> Position {
             std::array::from_fn(|axis| {
                 let jitter = JITTER * (random.random::<f64>() - 0.5);
                 start[axis] + velocity[axis] * TIME_STEP * t as f64 + jitter
             })
         };
-        (0..OBSERVED).map(at).collect()
+        (0..OBSERVED).map(position).collect()
     });
     let ids = (0..pedestrians).map(|i| PedestrianId(i as i64));
     let tracks: Vec<Vec<Position>> = tracks.by_ref().take(pedestrians).collect();

@@ -84,7 +84,7 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
     let windows = std::slice::from_ref(window);
     let sets = model.goal_model().goals(windows)?.remove(0);
     let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();
-    let all = vec![goals];
+    let goals_of_all = vec![goals];
     let star = &model.config().star;
     // The time does not depend on the weights.
     let network = |backbone| {
@@ -96,8 +96,9 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
     };
     let [transformer, perceptron] = [BackboneKind::Star, BackboneKind::Perceptron].map(network);
     let (transformer, perceptron) = (transformer?, perceptron?);
-    let roll_out =
-        |network: &MotionNetwork| network.forecast_windows(windows, &all, Noise::Expected, StepRule::Bounded, None);
+    let roll_out = |network: &MotionNetwork| {
+        network.forecast_windows(windows, &goals_of_all, Noise::Expected, StepRule::Bounded, None)
+    };
     let count = model.goal_model().recalled_per_pedestrian()?;
     let remembering = || memory.recalling(window.clone(), count);
     let parts: [&mut dyn FnMut() -> Result<()>; 5] = [

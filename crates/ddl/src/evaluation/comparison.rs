@@ -1,6 +1,8 @@
+//! A run beside another model on the validation part of the run.
+
 use crate::error::DdlError;
-use crate::evaluation::test_set::TestSet;
 use crate::model::ddl::Ddl;
+use crate::windows::test_set::TestSet;
 use ddl_data::{Dataset, Window};
 use ddl_eval::Protocol;
 use ddl_eval::significance::{BlockErrors, BlockMetric, PairedDifference, block_errors, paired_difference};

@@ -1,15 +1,17 @@
+//! Evaluation of a model and the baselines on the windows of a test set.
+
 use crate::error::DdlError;
-use crate::evaluation::manner::{GivenGoals, Manner, Way, memory_words};
 use crate::evaluation::published::Published;
-use crate::evaluation::rows::{Forecasted, ResultRows};
-use crate::evaluation::split::Split;
-use crate::evaluation::straight_lines::straight_lines;
-use crate::evaluation::test_set::TestSet;
+use crate::evaluation::rows::{NamedForecasts, ResultRows};
+use crate::evaluation::straight_lines::{straight_lines, weighted};
+use crate::evaluation::variant::{EvaluationVariant, GivenGoals, Motion, memory_words};
 use crate::goals::model::GoalModel;
 use crate::goals::remembering::Remembering;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
-use crate::training::words;
+use crate::run::words;
+use crate::windows::split::Split;
+use crate::windows::test_set::TestSet;
 use ddl_core::{Forecast, ForecastError, Forecaster as _};
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
@@ -24,11 +26,14 @@ const PEDESTRIANS_PER_REPORT: usize = 128;
 const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
 /// Protocols that also show the recording before the last observed frame of a window.
 const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
+/// The goals of the straight lines, without the protocol `published`.
+const ESTIMATED_GOALS: &str = "the estimated goals";
 /// Largest number of test pedestrians on which the published protocol chooses its epoch.
 const SELECTION_PEDESTRIANS: usize = 250;
 
 /// What to evaluate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct EvaluationRequest {
     /// The protocols.
     pub protocols: Vec<Protocol>,
@@ -42,6 +47,20 @@ pub struct EvaluationRequest {
     pub test_pedestrians: Option<usize>,
     /// Commit of the program, for the record.
     pub commit: String,
+}
+
+impl EvaluationRequest {
+    /// All windows of the test scene, under these protocols.
+    #[must_use]
+    pub fn new(protocols: Vec<Protocol>) -> Self {
+        Self {
+            protocols,
+            on: Split::Test,
+            validation_recordings: Vec::new(),
+            test_pedestrians: None,
+            commit: "unknown".to_owned(),
+        }
+    }
 }
 
 /// Progress of an evaluation, for its observer.
@@ -112,16 +131,16 @@ pub fn evaluate(
     })
 }
 
-/// The model's own goals for a manner; `None` for the published goals, which another estimator makes.
+/// The model's own goals for a variant; `None` for the published goals, which another estimator makes.
 fn goals_for(
     given: GivenGoals,
     model: &GoalModel,
     windows: &[Window],
-    own: &[Vec<GoalSet>],
+    own_goals: &[Vec<GoalSet>],
 ) -> Result<Vec<Vec<GoalSet>>, ForecastError> {
     match given {
-        GivenGoals::Own | GivenGoals::Published => Ok(own.to_vec()),
-        GivenGoals::Central => Ok(sets::with_central_only(windows, own)),
+        GivenGoals::Own | GivenGoals::Published => Ok(own_goals.to_vec()),
+        GivenGoals::Central => Ok(sets::with_central_only(windows, own_goals)),
         GivenGoals::WithoutLibrary => model.goals_without_library(windows),
         GivenGoals::WithoutMemory => {
             let nothing = |window: &Window| window.clone().with_remembered(|_| Vec::new());
@@ -132,7 +151,7 @@ fn goals_for(
 
 /// Forecasts of the model, and straight lines to its goals; one of each for each window.
 struct Forecasts {
-    /// One list for each manner.
+    /// One list for each variant.
     model: Vec<Vec<Forecast>>,
     lines: Vec<Forecast>,
 }
@@ -148,40 +167,39 @@ struct Measuring<'a, O> {
 
 impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     /// Evaluates protocols that show the same input: they share one set of forecasts.
-    fn without_future(&mut self, of: &[Protocol], windows: &[Window]) -> Result<Evaluation, DdlError> {
-        let protocols: Vec<Protocol> = of.iter().copied().filter(|p| self.asked(*p)).collect();
+    fn without_future(&mut self, shown_alike: &[Protocol], windows: &[Window]) -> Result<Evaluation, DdlError> {
+        let protocols: Vec<Protocol> = shown_alike.iter().copied().filter(|p| self.asked(*p)).collect();
         let Some(&first) = protocols.first() else {
             return Ok(Evaluation::default());
         };
         let model = self.model;
-        let mut manners = Manner::all(model, &self.request.protocols);
-        manners.retain(|manner| protocols.contains(&manner.protocol));
-        let goal = "the estimated goals";
+        let mut variants = EvaluationVariant::all(model, &self.request.protocols);
+        variants.retain(|variant| protocols.contains(&variant.protocol));
         // Straight lines lead to several goals.
         let lines_asked = protocols.iter().any(|p| p.hypotheses() > 1);
         // The estimator copies the expert library, so make it only when it is needed.
-        let given = |manner: &Manner| manner.goals == GivenGoals::Published;
-        let published = if manners.iter().any(given) {
+        let has_published_goals = |variant: &EvaluationVariant| variant.goals == GivenGoals::Published;
+        let published = if variants.iter().any(has_published_goals) {
             Some(model.goal_model().published_estimator(QuerySpan::Observed)?)
         } else {
             None
         };
-        let forecasts = self.forecast((first, windows), manners.len(), |windows| {
+        let forecasts = self.forecast((first, windows), variants.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
-            let towards = |manner: &Manner| {
+            let towards = |variant: &EvaluationVariant| {
                 let goals = match &published {
-                    Some(estimator) if given(manner) => sets::retrieved(estimator, windows)?,
-                    _ => goals_for(manner.goals, model.goal_model(), windows, &goals)?,
+                    Some(estimator) if has_published_goals(variant) => sets::retrieved(estimator, windows)?,
+                    _ => goals_for(variant.goals, model.goal_model(), windows, &goals)?,
                 };
-                match manner.way {
-                    Way::Shaped(gait) => model.forecast_towards(windows, goals, gait),
-                    Way::Neutral(clearance) => model.forecast_neutral(windows, goals, clearance),
+                match variant.motion {
+                    Motion::Shaped(integrator) => model.forecast_towards(windows, goals, integrator),
+                    Motion::Neutral(clearance) => model.forecast_neutral(windows, goals, clearance),
                 }
             };
             Ok(Forecasts {
-                model: manners.iter().map(towards).collect::<Result<_, _>>()?,
+                model: variants.iter().map(towards).collect::<Result<_, _>>()?,
                 lines: if lines_asked {
-                    straight_lines(goal, windows, &sets::weighted(&goals)?)?
+                    straight_lines(ESTIMATED_GOALS, windows, &weighted(&goals)?)?
                 } else {
                     Vec::new()
                 },
@@ -189,27 +207,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         })?;
         let mut rows = Vec::new();
         for &protocol in &protocols {
-            let admit = |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
-            let mut forecasted = Vec::new();
-            for (manner, forecasts) in manners.iter().zip(&forecasts.model) {
-                if manner.protocol == protocol {
-                    let admitted = admit(forecasts, &model.name())?;
-                    forecasted.push(Forecasted::model(
-                        &model.name(),
-                        admitted,
-                        manner.change.as_deref(),
-                        manner.goal_words(model),
-                    ));
-                }
-            }
-            if protocol.hypotheses() > 1 {
-                let lines = admit(&forecasts.lines, "straight line")?;
-                let goals = model.goal_model().words() + &memory_words(protocol, model);
-                let recipe = format!("goals {goals}");
-                forecasted.push(Forecasted::lines_to(goal, recipe, lines));
-            }
-            let selection = words::selection(model.config().patience);
-            rows.extend(self.rows(protocol, selection).of(&forecasted)?);
+            rows.extend(self.rows_of(protocol, &variants, &forecasts)?);
         }
         let moments = if protocols.contains(&Protocol::Fair) {
             self.moments(&forecasts.model[0])?
@@ -217,6 +215,37 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             Vec::new()
         };
         Ok(Evaluation { rows, moments })
+    }
+
+    /// The rows of one protocol.
+    fn rows_of(
+        &self,
+        protocol: Protocol,
+        variants: &[EvaluationVariant],
+        forecasts: &Forecasts,
+    ) -> Result<Vec<ResultRow>, DdlError> {
+        let model = self.model;
+        let admit = |forecasts: &[Forecast], name: &str| protocol.admit(forecasts.to_vec(), name);
+        let mut named_forecasts = Vec::new();
+        for (variant, forecasts) in variants.iter().zip(&forecasts.model) {
+            if variant.protocol == protocol {
+                let admitted = admit(forecasts, &model.name())?;
+                named_forecasts.push(NamedForecasts::model(
+                    &model.name(),
+                    admitted,
+                    variant.change.as_deref(),
+                    variant.goal_words(model),
+                ));
+            }
+        }
+        if protocol.hypotheses() > 1 {
+            let lines = admit(&forecasts.lines, "straight line")?;
+            let goals = model.goal_model().words() + &memory_words(protocol, model);
+            let recipe = format!("goals {goals}");
+            named_forecasts.push(NamedForecasts::lines_to(ESTIMATED_GOALS, recipe, lines));
+        }
+        let selection = words::selection(model.config().patience);
+        self.rows(protocol, selection).of(&named_forecasts)
     }
 
     /// Windows for display, from the model's forecasts for each window of the test set.
@@ -269,20 +298,20 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let words = model.goal_model().words();
         let selection = format!("best kept epoch on up to {SELECTION_PEDESTRIANS} TEST pedestrians");
         self.rows(protocol, &selection).of(&[
-            Forecasted::model(&model.name(), forecasts.model.remove(0), None, words),
-            Forecasted::lines_to(goal, "goals of the published estimator".to_owned(), forecasts.lines),
+            NamedForecasts::model(&model.name(), forecasts.model.remove(0), None, words),
+            NamedForecasts::lines_to(goal, "goals of the published estimator".to_owned(), forecasts.lines),
         ])
     }
 
-    /// Forecasts all windows in several manners, in chunks. The model sees the futures only if the protocol shows them.
+    /// Forecasts all windows in several variants, in chunks. The model sees the futures only if the protocol shows them.
     fn forecast(
         &mut self,
         (protocol, windows): (Protocol, &[Window]),
-        manners: usize,
-        of: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
+        variants: usize,
+        forecast_some: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
     ) -> Result<Forecasts, DdlError> {
-        let mut all = Forecasts {
-            model: vec![Vec::new(); manners],
+        let mut forecasts = Forecasts {
+            model: vec![Vec::new(); variants],
             lines: Vec::new(),
         };
         let mut done = 0;
@@ -296,15 +325,15 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     pedestrians >= PEDESTRIANS_PER_REPORT
                 })
                 .map_or(rest.len(), |last| last + 1);
-            let some = of(&protocol.visible(&rest[..count]))?;
-            for (all, some) in all.model.iter_mut().zip(some.model) {
-                all.extend(some);
+            let some = forecast_some(&protocol.visible(&rest[..count]))?;
+            for (forecasts, some) in forecasts.model.iter_mut().zip(some.model) {
+                forecasts.extend(some);
             }
-            all.lines.extend(some.lines);
+            forecasts.lines.extend(some.lines);
             done += count;
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }
-        Ok(all)
+        Ok(forecasts)
     }
 
     fn rows<'b>(&'b self, protocol: Protocol, selection: &'b str) -> ResultRows<'b> {

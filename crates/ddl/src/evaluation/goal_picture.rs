@@ -1,3 +1,5 @@
+//! A picture of the goals of typical pedestrians.
+
 use crate::error::DdlError;
 use crate::evaluation::goals::MeasuredGoals;
 use crate::goals::model::GoalModel;
@@ -17,16 +19,20 @@ const EXPERTS: usize = 60;
 /// # Errors
 /// When these goals cannot be drawn.
 pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<String, DdlError> {
-    let pedestrians: Vec<Pedestrian<'_>> = measured
+    let pedestrians: Vec<PicturedPedestrian<'_>> = measured
         .windows
         .iter()
         .zip(&measured.sets)
-        .flat_map(|(window, sets)| (0..).zip(sets).filter_map(|(i, set)| Pedestrian::new(window, i, set)))
+        .flat_map(|(window, sets)| {
+            (0..)
+                .zip(sets)
+                .filter_map(|(i, set)| PicturedPedestrian::new(window, i, set))
+        })
         .collect();
-    let mut shown: Vec<&Pedestrian<'_>> = Vec::new();
+    let mut shown: Vec<&PicturedPedestrian<'_>> = Vec::new();
     for kind in MotionKind::ALL {
         // Each pedestrian only once.
-        let candidates: Vec<&Pedestrian<'_>> = pedestrians
+        let candidates: Vec<&PicturedPedestrian<'_>> = pedestrians
             .iter()
             .filter(|pedestrian| pedestrian.kind == kind && !shown.iter().any(|other| other.is(pedestrian)))
             .collect();
@@ -45,7 +51,7 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
     Ok(figure::goals(&title, &cases)?)
 }
 
-struct Pedestrian<'a> {
+struct PicturedPedestrian<'a> {
     window: &'a Window,
     index: usize,
     set: &'a GoalSet,
@@ -53,7 +59,7 @@ struct Pedestrian<'a> {
     error: f64,
 }
 
-impl<'a> Pedestrian<'a> {
+impl<'a> PicturedPedestrian<'a> {
     fn new(window: &'a Window, index: usize, set: &'a GoalSet) -> Option<Self> {
         let end = window.end(index)?;
         let [x, y] = set.goals()[set.nearest(end)];

@@ -1,8 +1,10 @@
+//! Quality of the goals of a model on a set of windows.
+
 use crate::error::DdlError;
-use crate::evaluation::split::Split;
-use crate::evaluation::test_set::TestSet;
 use crate::goals::model::GoalModel;
 use crate::goals::remembering::Remembering;
+use crate::windows::split::Split;
+use crate::windows::test_set::TestSet;
 use ddl_data::{Dataset, Position, Window};
 use ddl_eval::metric::calibration::Calibration;
 use ddl_goal::GoalSet;
@@ -84,13 +86,14 @@ impl GoalErrors {
 pub fn evaluate_goals(
     model: &GoalModel,
     dataset: &Dataset,
-    (on, what): (Split, Option<Remembering>),
+    on: Split,
+    memory: Option<Remembering>,
 ) -> Result<MeasuredGoals, DdlError> {
     let test = TestSet::of_run(model, dataset, (on, &[]), None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);
     let mut windows: Vec<Window> = test.headline().cloned().collect();
-    if let Some(what) = what {
-        windows = model.remembering(&windows, dataset, what)?;
+    if let Some(memory) = memory {
+        windows = model.remembering(&windows, dataset, memory)?;
     }
     let observed: Vec<Window> = windows.iter().map(Window::without_future).collect();
     let started = Instant::now();
@@ -101,14 +104,14 @@ pub fn evaluate_goals(
         .zip(&sets)
         .flat_map(|(window, sets)| {
             let ends = (0..window.len()).map(|i| window.end(i));
-            let known = sets.iter().zip(ends);
-            known.filter_map(move |(set, end)| Some((window, set, end?)))
+            let pairs = sets.iter().zip(ends);
+            pairs.filter_map(move |(set, end)| Some((window, set, end?)))
         })
         .collect();
     let errors = |name: Option<&str>| {
-        let of = |window: &Window| name.is_none_or(|name| window.recording() == name);
-        let of_name = pairs.iter().filter(|(window, ..)| of(window));
-        GoalErrors::of(of_name.map(|(_, set, end)| (*set, *end)))
+        let is_counted = |window: &Window| name.is_none_or(|name| window.recording() == name);
+        let counted = pairs.iter().filter(|(window, ..)| is_counted(window));
+        GoalErrors::of(counted.map(|(_, set, end)| (*set, *end)))
     };
     let mut recordings = BTreeMap::new();
     for window in &windows {

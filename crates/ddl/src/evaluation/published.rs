@@ -4,7 +4,7 @@ use crate::error::DdlError;
 use crate::forecast::certified::Walked;
 use crate::forecast::name;
 use crate::forecast::shaped;
-use crate::forecast::walk::Gait;
+use crate::forecast::walk::PathIntegrator;
 use crate::goals::sets;
 use crate::model::ddl::Ddl;
 use ddl_core::{Forecast, ForecastError};
@@ -89,13 +89,13 @@ impl Published {
             count: SAMPLES,
             seed: self.seed,
         };
-        let gait = match config.frame {
-            NetworkFrame::World => Gait::PlainEuler,
-            NetworkFrame::Goal => Gait::Stable(None),
+        let integrator = match config.frame {
+            NetworkFrame::World => PathIntegrator::PlainEuler,
+            NetworkFrame::Goal => PathIntegrator::Stable(None),
         };
         let rollouts = self
             .network
-            .forecast_windows(windows, &single, noise, gait.rule(), None)
+            .forecast_windows(windows, &single, noise, integrator.rule(), None)
             .map_err(|error| ForecastError::model(name::NAME, error))?;
         let rolled = rollouts.into_iter().zip(windows).zip(goals);
         rolled
@@ -107,7 +107,7 @@ impl Published {
                     shares: vec![1.0; window.len()],
                     familiarity: None,
                     config,
-                    gait,
+                    integrator,
                     window,
                     hypotheses: rollout.hypotheses,
                     rolled_out: rollout.positions,

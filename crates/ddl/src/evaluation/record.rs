@@ -4,8 +4,7 @@ use crate::error::DdlError;
 use crate::evaluation::evaluate::EvaluationRequest;
 use crate::forecast::clearance::Clearance;
 use crate::model::ddl::Ddl;
-use crate::run::directory::RunDirectory;
-use crate::run::directory::{read_json, write_json};
+use crate::run::directory::{RunDirectory, read_json, write_atomically, write_compact_json, write_json};
 use crate::run::lock::RunLock;
 use crate::run::training_data::digest_of_recording;
 use crate::trust::calibration::Calibration;
@@ -16,10 +15,10 @@ use std::path::PathBuf;
 
 /// Everything the results depend on besides the run itself.
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct Record {
+struct EvaluationRecord {
     request: EvaluationRequest,
     #[serde(default)]
-    recordings: Vec<Measured>,
+    recordings: Vec<MeasuredRecording>,
     device: String,
     #[serde(default)]
     clearance: Option<Clearance>,
@@ -32,7 +31,7 @@ struct Record {
 }
 
 #[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct Measured {
+struct MeasuredRecording {
     name: String,
     frame_step: i64,
     sha256: String,
@@ -42,9 +41,9 @@ struct Measured {
 /// single forecast is straight. 4: motion is bounded.
 const ROWS: u32 = 4;
 
-impl Record {
+impl EvaluationRecord {
     fn new(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest) -> Self {
-        let measured = |recording: &Recording| Measured {
+        let measured = |recording: &Recording| MeasuredRecording {
             name: recording.name().to_owned(),
             frame_step: recording.frame_step(),
             sha256: digest_of_recording(recording),
@@ -75,7 +74,7 @@ pub fn is_evaluated(model: &Ddl, dataset: &Dataset, request: &EvaluationRequest)
         return false;
     }
     // A record that cannot be read, such as one of another version, does not count.
-    read_json::<Record>(&record).is_ok_and(|done| done == Record::new(model, dataset, request))
+    read_json::<EvaluationRecord>(&record).is_ok_and(|done| done == EvaluationRecord::new(model, dataset, request))
 }
 
 /// Writes `report.json` and `moments.json` of the model's run, then the record of the request.
@@ -101,9 +100,9 @@ pub fn save_evaluation(
         std::fs::remove_file(&record).map_err(|error| DdlError::io(&record, error))?;
     }
     let json = report.to_json()?;
-    crate::write_atomically(&run.report(), json.as_bytes())?;
-    run.write_moments(moments)?;
-    write_json(&record, &Record::new(model, dataset, request))
+    write_atomically(&run.report(), json.as_bytes())?;
+    write_compact_json(&run.moments(), &moments)?;
+    write_json(&record, &EvaluationRecord::new(model, dataset, request))
 }
 
 fn record_file(run: &RunDirectory) -> PathBuf {

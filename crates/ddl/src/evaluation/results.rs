@@ -1,6 +1,7 @@
+//! The results of several runs as one report with its page and figures.
+
 use crate::error::DdlError;
-use crate::run::directory::RunDirectory;
-use crate::run::directory::write_atomically;
+use crate::run::directory::{RunDirectory, read_json, write_atomically, write_compact_json};
 use ddl_report::page::Page;
 use ddl_report::{EpochPoint, ForecastSnapshot, Report, TrainingCurve};
 use std::path::Path;
@@ -56,7 +57,7 @@ impl Results {
             results.report.extend(report.rows().iter().cloned())?;
             // Results of another program's forecasts have no run.
             if !run.has_config() {
-                elsewhere.extend(run.read_moments()?);
+                elsewhere.extend(read_moments(&run)?);
                 continue;
             }
             let config = run.config()?;
@@ -76,7 +77,7 @@ impl Results {
                 epochs: epochs.collect(),
             });
             if config.star.name() == ddl_network::Variant::Full.name() {
-                headline.push((config.training.seed, run.read_moments()?));
+                headline.push((config.training.seed, read_moments(&run)?));
             }
         }
         let lowest = headline.iter().map(|(seed, _)| *seed).min();
@@ -101,7 +102,7 @@ impl Results {
         for (name, text) in self.report.files()? {
             write_atomically(&folder.join(name), text.as_bytes())?;
         }
-        RunDirectory::new(folder).write_moments(&self.moments)?;
+        write_compact_json(&RunDirectory::new(folder).moments(), &self.moments)?;
         let page = Page {
             report: &self.report,
             moments: &self.moments,
@@ -117,11 +118,21 @@ impl Results {
     }
 }
 
-fn remove_others(folder: &Path, kept: &[(String, String)]) -> Result<(), DdlError> {
+/// The moments of a run; empty when there are none.
+fn read_moments(run: &RunDirectory) -> Result<Vec<ForecastSnapshot>, DdlError> {
+    let path = run.moments();
+    if path.is_file() {
+        read_json(&path)
+    } else {
+        Ok(Vec::new())
+    }
+}
+
+fn remove_others(folder: &Path, drawn: &[(String, String)]) -> Result<(), DdlError> {
     let failed = |error| DdlError::io(folder, error);
     for entry in std::fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        let is_kept = kept.iter().any(|(name, _)| path.ends_with(name));
+        let is_kept = drawn.iter().any(|(name, _)| path.ends_with(name));
         if path.extension().is_some_and(|e| e == "svg") && !is_kept {
             std::fs::remove_file(&path).map_err(|error| DdlError::io(&path, error))?;
         }

@@ -1,17 +1,17 @@
 //! From forecasts of a test set to rows of a report, each with the conditions of its numbers.
 
 use crate::error::DdlError;
-use crate::evaluation::test_set::TestSet;
 use crate::forecast::name;
 use crate::model::ddl::Ddl;
-use crate::training::words::{recipe, subset};
+use crate::run::words::{recipe, subset};
+use crate::windows::test_set::TestSet;
 use ddl_core::Forecast;
 use ddl_data::{Convention, Window, WindowRule};
 use ddl_eval::{Conditions, Protocol, ResultRow, baseline};
 
 /// Forecasts of one forecaster, one for each window of the test set.
 #[derive(Debug)]
-pub(crate) struct Forecasted {
+pub(crate) struct NamedForecasts {
     forecaster: String,
     /// True for the trained model. False for straight lines to goals, which depend only on the run's seed.
     by_model: bool,
@@ -19,7 +19,7 @@ pub(crate) struct Forecasted {
     forecasts: Vec<Forecast>,
 }
 
-impl Forecasted {
+impl NamedForecasts {
     /// Forecasts of the model of that name, unchanged or with a change; `goals` names the origin of its goals.
     pub(crate) fn model(name: &str, forecasts: Vec<Forecast>, change: Option<&str>, goals: String) -> Self {
         Self {
@@ -58,7 +58,7 @@ pub(crate) struct ResultRows<'a> {
 
 impl ResultRows<'_> {
     /// The rows of the forecasts in their order, then those of the baselines, for each window rule.
-    pub(crate) fn of(&self, forecasted: &[Forecasted]) -> Result<Vec<ResultRow>, DdlError> {
+    pub(crate) fn of(&self, named_forecasts: &[NamedForecasts]) -> Result<Vec<ResultRow>, DdlError> {
         let mut rows = Vec::new();
         for (rule, indices) in &self.test.rules {
             // A small part may hold no window of a rule.
@@ -67,7 +67,7 @@ impl ResultRows<'_> {
             }
             let windows: Vec<Window> = indices.iter().map(|&index| self.test.windows[index].clone()).collect();
             let plain = self.conditions(*rule);
-            for one in forecasted {
+            for one in named_forecasts {
                 let of_rule: Vec<Forecast> = indices.iter().map(|&i| one.forecasts[i].clone()).collect();
                 let mut conditions = plain.clone();
                 if one.by_model {

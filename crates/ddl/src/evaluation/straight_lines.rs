@@ -3,6 +3,7 @@
 use ddl_core::{Forecast, ForecastError, Forecaster as _};
 use ddl_data::Window;
 use ddl_eval::baseline::{GoalSource, StraightLine, WeightedGoals};
+use ddl_goal::GoalSet;
 
 pub(crate) fn straight_lines(
     name: &'static str,
@@ -29,4 +30,12 @@ impl GoalSource for KnownGoals<'_> {
     fn goals(&self, _window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
         Ok(self.goals.to_vec())
     }
+}
+
+/// Goal sets in the form that the baselines of the evaluation take.
+pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>, ForecastError> {
+    let one = |set: &GoalSet| WeightedGoals::new(set.goals().to_vec(), set.weights().to_vec());
+    sets.iter()
+        .map(|sets| Ok(sets.iter().map(one).collect::<Result<_, _>>()?))
+        .collect()
 }

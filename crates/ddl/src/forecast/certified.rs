@@ -1,5 +1,8 @@
+//! Forecasts with a certificate for every hypothesis.
+
 use crate::forecast::clearance::{Clearance, Others};
-use crate::forecast::walk::{Course, Gait, Walk};
+use crate::forecast::name::NAME;
+use crate::forecast::walk::{Approach, PathIntegrator, Walk};
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError};
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
@@ -76,7 +79,7 @@ pub enum CertificateError {
 #[derive(Debug)]
 pub(crate) struct Walked<'a> {
     pub(crate) config: &'a StarConfig,
-    pub(crate) gait: Gait,
+    pub(crate) integrator: PathIntegrator,
     pub(crate) window: &'a Window,
     pub(crate) hypotheses: usize,
     /// `[N][K][12]`: the path of the network's own rollout, metres; empty if the network is not used.
@@ -138,26 +141,28 @@ impl Walked<'_> {
     /// plain Euler steps the positions are those of the network's own rollout.
     fn walks<R: Send>(
         &self,
-        of: impl Fn(LyapunovCertificate<f64>) -> R + Sync,
+        keep: impl Fn(LyapunovCertificate<f64>) -> R + Sync,
     ) -> Result<(Vec<Position>, Vec<R>), ForecastError> {
         let Some(factors) = &self.factors else {
             return Err(no_flow(self.config.variant));
         };
-        let judged = |walk: Walk| (walk.positions, of(walk.certificate));
-        let walks = match self.gait {
-            Gait::PlainEuler => {
-                let certificates = self.each(factors, |pair, course, factors| {
+        let judged = |walk: Walk| (walk.positions, keep(walk.certificate));
+        let walks = match self.integrator {
+            PathIntegrator::PlainEuler => {
+                let certificates = self.each(factors, |pair, approach, factors| {
                     let path = &self.rolled_out[pair * HORIZON..][..HORIZON];
-                    course.certify(path, factors).map(&of)
+                    approach.certify(path, factors).map(&keep)
                 })?;
                 return Ok((self.rolled_out.clone(), certificates));
             }
-            Gait::Stable(None) => self.each(factors, |_, course, factors| course.walk(factors).map(judged))?,
-            Gait::Stable(Some(clearance)) => {
+            PathIntegrator::Stable(None) => {
+                self.each(factors, |_, approach, factors| approach.walk(factors).map(judged))?
+            }
+            PathIntegrator::Stable(Some(clearance)) => {
                 let others = self.others(factors, clearance)?;
-                self.each(factors, |pair, course, factors| {
-                    let near = others.near(pair / self.hypotheses, course.start, course.goal)?;
-                    course.walk_among(&near, factors).map(judged)
+                self.each(factors, |pair, approach, factors| {
+                    let near = others.near(pair / self.hypotheses, approach.start, approach.goal)?;
+                    approach.walk_among(&near, factors).map(judged)
                 })?
             }
         };
@@ -175,8 +180,8 @@ impl Walked<'_> {
                 let first = weights.iter().position(|weight| *weight >= heaviest);
                 let pair = i * hypotheses + first.unwrap_or(0);
                 let factors = &factors[pair * HORIZON..][..HORIZON];
-                let walk = self.one(pair, &self.bounds(i), factors, |_, course, factors| {
-                    course.walk(factors)
+                let walk = self.one(pair, &self.bounds(i), factors, |_, approach, factors| {
+                    approach.walk(factors)
                 })?;
                 Ok(walk.positions)
             })
@@ -194,17 +199,17 @@ impl Walked<'_> {
     }
 
     /// Applies `of` to every hypothesis, in order. Its arguments are the index (pedestrian x hypotheses + hypothesis),
-    /// the course and the factors. The error is that of the first hypothesis that fails.
+    /// the approach and the factors. The error is that of the first hypothesis that fails.
     fn each<R: Send>(
         &self,
         factors: &[[f64; 3]],
-        of: impl Fn(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
+        integrate: impl Fn(usize, &Approach, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
         let bounds: Vec<_> = (0..self.window.len()).map(|i| self.bounds(i)).collect();
         let pairs = factors.par_chunks_exact(HORIZON).enumerate();
-        let each = pairs.map(|(pair, factors)| self.one(pair, &bounds[pair / self.hypotheses], factors, &of));
+        let results = pairs.map(|(pair, factors)| self.one(pair, &bounds[pair / self.hypotheses], factors, &integrate));
         // A parallel collect into a `Result` could return the error of any hypothesis.
-        each.collect::<Vec<_>>().into_iter().collect()
+        results.collect::<Vec<_>>().into_iter().collect()
     }
 
     /// Runs `of` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.
@@ -213,17 +218,17 @@ impl Walked<'_> {
         pair: usize,
         bounds: &MotionBounds<f64>,
         factors: &[[f64; 3]],
-        of: impl FnOnce(usize, &Course, &[[f64; 3]]) -> Result<R, DynamicsError>,
+        integrate: impl FnOnce(usize, &Approach, &[[f64; 3]]) -> Result<R, DynamicsError>,
     ) -> Result<R, ForecastError> {
         let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
-        let course = Course {
+        let approach = Approach {
             start: self.window.observed(i)[OBSERVED - 1],
             goal: self.goals[pair],
             sigma: self.config.sigma,
             time_step: self.config.time_step,
             bounds: *bounds,
         };
-        of(pair, &course, factors).map_err(|cause| {
+        integrate(pair, &approach, factors).map_err(|cause| {
             failed(CertificateError::Walk {
                 recording: self.window.recording().to_owned(),
                 start_frame: self.window.start_frame(),
@@ -248,5 +253,5 @@ fn no_flow(variant: Variant) -> ForecastError {
 }
 
 fn failed(error: CertificateError) -> ForecastError {
-    ForecastError::model(crate::forecast::name::NAME, error)
+    ForecastError::model(NAME, error)
 }

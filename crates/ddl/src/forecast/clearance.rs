@@ -1,3 +1,5 @@
+//! The clearance that pedestrians keep from each other.
+
 use crate::error::DdlError;
 use ddl_data::{HORIZON, Position, SpatialIndex};
 use ddl_dynamics::{Ball, DynamicsError, ObstacleSchedule};
@@ -54,10 +56,10 @@ pub(crate) struct Others {
 
 impl Others {
     pub(crate) fn new(clearance: Clearance, likeliest: Vec<[Position; HORIZON]>) -> Self {
-        let at = |t: usize| -> Vec<Position> { likeliest.iter().map(|path| path[t]).collect() };
+        let positions = |t: usize| -> Vec<Position> { likeliest.iter().map(|path| path[t]).collect() };
         Self {
             clearance,
-            places: (0..HORIZON).map(|t| SpatialIndex::new(&at(t))).collect(),
+            places: (0..HORIZON).map(|t| SpatialIndex::new(&positions(t))).collect(),
             likeliest,
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::forecast::certified::Walked;
 use crate::forecast::name::NAME;
-use crate::forecast::walk::Gait;
+use crate::forecast::walk::PathIntegrator;
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError};
 use ddl_data::{Position, Window};
@@ -20,12 +20,12 @@ pub(crate) fn towards(
     seed: u64,
     windows: &[Window],
     (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
-    gait: Gait,
+    integrator: PathIntegrator,
 ) -> Result<Vec<Forecast>, ForecastError> {
     if !network.config().variant.uses_goal() {
         return without_goals(network, seed, windows);
     }
-    walked(network, windows, (sets, familiarity), gait)?
+    walked(network, windows, (sets, familiarity), integrator)?
         .map(Walked::forecast)
         .collect()
 }
@@ -36,7 +36,7 @@ pub(crate) fn walked<'a>(
     network: &'a dyn ForecastWindows,
     windows: &'a [Window],
     (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
-    gait: Gait,
+    integrator: PathIntegrator,
 ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
     let goals: Vec<Vec<Vec<Position>>> = sets
         .iter()
@@ -48,7 +48,7 @@ pub(crate) fn walked<'a>(
         .map(|window| window.iter().map(share).collect())
         .collect();
     let rollouts = network
-        .forecast_windows(windows, &goals, Noise::Expected, gait.rule(), Some(&shares))
+        .forecast_windows(windows, &goals, Noise::Expected, integrator.rule(), Some(&shares))
         .map_err(|error| ForecastError::model(NAME, error))?;
     let shaped = rollouts.into_iter().zip(windows).zip(sets);
     let trusted = shares.into_iter().zip(familiarity);
@@ -58,7 +58,7 @@ pub(crate) fn walked<'a>(
             shares,
             familiarity: Some(familiarity),
             config: network.config(),
-            gait,
+            integrator,
             window,
             hypotheses: rollout.hypotheses,
             rolled_out: rollout.positions,

@@ -13,14 +13,14 @@ use nalgebra::Vector2;
 use std::cell::RefCell;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Gait {
+pub(crate) enum PathIntegrator {
     /// Plain Euler steps as published, which may overshoot the goal.
     PlainEuler,
     /// `StableEuler` within bounds, with or without a clearance from the others.
     Stable(Option<Clearance>),
 }
 
-impl Gait {
+impl PathIntegrator {
     pub(crate) fn rule(self) -> StepRule {
         match self {
             Self::PlainEuler => StepRule::Euler,
@@ -30,7 +30,7 @@ impl Gait {
 }
 
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Course {
+pub(crate) struct Approach {
     /// Last observed position, metres.
     pub(crate) start: Position,
     pub(crate) goal: Position,
@@ -48,27 +48,27 @@ pub(crate) struct Walk {
 }
 
 /// The flow to a goal, shaped by one metric for each step.
-type ShapedFlow = NaturalGradientFlow<f64, 2, Remembered>;
+type ShapedFlow = NaturalGradientFlow<f64, 2, MetricCache>;
 
 /// Computes the metric of each step once, for the integrator and for the certificate.
 ///
 /// This is valid because an [`ArrivingSchedule`] depends only on the step and the position of a state.
 #[derive(Debug)]
-struct Remembered {
+struct MetricCache {
     metrics: ArrivingSchedule<f64>,
     /// Indexed by step: the position at which the metric was computed, and the metric.
-    known: RefCell<Vec<(Vector2<f64>, CholeskyMetric<f64, 2>)>>,
+    computed: RefCell<Vec<(Vector2<f64>, CholeskyMetric<f64, 2>)>>,
 }
 
-impl MetricSource<f64, 2> for Remembered {
+impl MetricSource<f64, 2> for MetricCache {
     fn metric(&self, state: &State<f64, 2>) -> Result<CholeskyMetric<f64, 2>, DynamicsError> {
-        let mut known = self.known.borrow_mut();
-        match known.get(state.step) {
+        let mut computed = self.computed.borrow_mut();
+        match computed.get(state.step) {
             Some((position, metric)) if *position == state.position => Ok(*metric),
             _ => {
                 let metric = self.metrics.metric(state)?;
-                if known.len() == state.step {
-                    known.push((state.position, metric));
+                if computed.len() == state.step {
+                    computed.push((state.position, metric));
                 }
                 Ok(metric)
             }
@@ -76,8 +76,8 @@ impl MetricSource<f64, 2> for Remembered {
     }
 }
 
-impl Course {
-    /// Integrates the course with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
+impl Approach {
+    /// Integrates the approach with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
         self.follow(&self.flow(factors)?, Obstacles::Absent)
     }
@@ -94,9 +94,9 @@ impl Course {
     fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
         let metrics = self.metrics(factors)?;
-        let metrics = Remembered {
+        let metrics = MetricCache {
             metrics: ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?,
-            known: RefCell::new(Vec::with_capacity(HORIZON)),
+            computed: RefCell::new(Vec::with_capacity(HORIZON)),
         };
         Ok(NaturalGradientFlow::new(attractor, metrics))
     }
@@ -150,8 +150,8 @@ mod tests {
     use ddl_dynamics::Ball;
     use proptest::prelude::*;
 
-    fn course() -> Course {
-        Course {
+    fn approach() -> Approach {
+        Approach {
             start: [0.0, 0.0],
             goal: [3.0, 0.0],
             sigma: 1e-8,
@@ -163,8 +163,8 @@ mod tests {
     /// 3 m in 12 steps of 0.5 s at the velocity that arrives, with L = I, which causes no departure: a straight line.
     #[test]
     fn straight_on_at_half_a_metre_a_second() {
-        let course = course();
-        let walk = course.walk(&[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
+        let approach = approach();
+        let walk = approach.walk(&[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
         for (t, position) in (1..).zip(walk.positions) {
             let x = 0.25 * f64::from(t);
             assert!((position[0] - x).abs() < 1e-7 && position[1].abs() < 1e-12);
@@ -173,7 +173,7 @@ mod tests {
         let motion = walk.certificate.motion().unwrap();
         assert!((motion.speed.largest - 0.5).abs() < 1e-6 && (motion.speed.bound - 2.15).abs() < 1e-6);
         assert!(motion.distance_left.unwrap().largest < 1e-9);
-        let certified = course.certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
+        let certified = approach.certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
         assert_eq!(certified.verify(), Ok(()));
         assert_eq!(certified.motion(), None);
     }
@@ -182,7 +182,7 @@ mod tests {
     /// step.
     #[test]
     fn a_pedestrian_in_the_way_is_passed() {
-        let (course, factors) = (course(), [[1.0, 0.0, 1.0]; HORIZON]);
+        let (approach, factors) = (approach(), [[1.0, 0.0, 1.0]; HORIZON]);
         let clearance = Clearance::new(0.5).unwrap();
         let stands = [[1.5, 0.1]; HORIZON];
         let among = |others| Others::new(clearance, others).near(0, [0.0, 0.0], [3.0, 0.0]);
@@ -191,14 +191,14 @@ mod tests {
             let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
             distances.into_iter().fold(f64::INFINITY, f64::min)
         };
-        assert!(apart(&course.walk(&factors).unwrap()) < 0.15);
-        let walk = course.walk_among(&others, &factors).unwrap();
+        assert!(apart(&approach.walk(&factors).unwrap()) < 0.15);
+        let walk = approach.walk_among(&others, &factors).unwrap();
         assert!(apart(&walk) > 0.5);
         assert_eq!(walk.certificate.verify(), Ok(()));
         assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
         let nobody = among(vec![stands]).unwrap();
-        let alone = course.walk_among(&nobody, &factors).unwrap();
-        assert_eq!(alone.positions, course.walk(&factors).unwrap().positions);
+        let alone = approach.walk_among(&nobody, &factors).unwrap();
+        assert_eq!(alone.positions, approach.walk(&factors).unwrap().positions);
     }
 
     proptest! {
@@ -208,15 +208,15 @@ mod tests {
             others in prop::collection::vec(prop::array::uniform2(-25.0..25.0_f64), 1..40),
             goal in prop::array::uniform2(-4.0..4.0_f64),
         ) {
-            let (course, clearance) = (Course { goal, ..course() }, Clearance::new(0.5).unwrap());
+            let (approach, clearance) = (Approach { goal, ..approach() }, Clearance::new(0.5).unwrap());
             let stands = |&position: &Position| [position; HORIZON];
-            let others: Vec<_> = [course.start].iter().chain(&others).map(stands).collect();
+            let others: Vec<_> = [approach.start].iter().chain(&others).map(stands).collect();
             let disc = |path: &[Position; HORIZON]| Ball::new(path[0].into(), 0.5).unwrap();
-            let all = others[1..].iter().map(disc).collect();
-            let all = ObstacleSchedule::new(vec![all; HORIZON]);
-            let near = Others::new(clearance, others).near(0, course.start, goal).unwrap();
-            let walk = |others| course.walk_among(others, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
-            prop_assert_eq!(walk(&near).positions, walk(&all).positions);
+            let discs = others[1..].iter().map(disc).collect();
+            let discs = ObstacleSchedule::new(vec![discs; HORIZON]);
+            let near = Others::new(clearance, others).near(0, approach.start, goal).unwrap();
+            let walk = |others| approach.walk_among(others, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
+            prop_assert_eq!(walk(&near).positions, walk(&discs).positions);
         }
     }
 
@@ -225,8 +225,8 @@ mod tests {
         let mut factors = [[1.0, 0.0, 1.0]; HORIZON];
         factors[7][1] = f64::NAN;
         for error in [
-            course().walk(&factors).unwrap_err(),
-            course().certify(&[[0.0, 0.0]; HORIZON], &factors).unwrap_err(),
+            approach().walk(&factors).unwrap_err(),
+            approach().certify(&[[0.0, 0.0]; HORIZON], &factors).unwrap_err(),
         ] {
             assert!(matches!(error, DynamicsError::Step { step: 7, .. }), "{error}");
             assert!(error.to_string().contains("(1, 0)"), "{error}");

@@ -85,7 +85,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         return Err(DdlError::run(path, problem));
     }
     let (numbers, _) = view.data().as_chunks::<8>();
-    let numbers: Vec<f64> = numbers.iter().map(|&of| f64::from_le_bytes(of)).collect();
+    let numbers: Vec<f64> = numbers.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect();
     let (positions, _) = numbers.as_chunks::<2>();
     let tracks = positions.chunks_exact(WINDOW).map(<[_]>::to_vec).collect();
     ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| unusable(&error, path))

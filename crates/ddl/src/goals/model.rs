@@ -1,16 +1,18 @@
+//! The goals of a model: retrieved, proposed by a network, or both pooled.
+
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::goals::experts;
+use crate::goals::packed::{self, Unpacked};
 use crate::goals::reach;
-use crate::goals::recipe::GoalRecipe;
 use crate::goals::remembering::{Remembering, remembering};
 use crate::goals::sets;
 use crate::goals::views;
-use crate::model::packed::{self, Unpacked};
-use crate::model::source::ModelSource;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
 use crate::run::enough_weights;
+use crate::run::goal_recipe::GoalRecipe;
+use crate::run::model_source::ModelSource;
 use crate::run::training_data::fold_by_name;
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
@@ -39,8 +41,12 @@ pub struct GoalModel {
 enum GoalOrigin {
     Retrieved(GoalEstimator),
     Proposed(Box<dyn ProposeEndpoints>),
-    /// Both; the retrieved goals have this share of the probability.
-    Both(Box<dyn ProposeEndpoints>, GoalEstimator, f64),
+    /// Endpoints of the network and retrieved goals; the retrieved ones have this share of the probability.
+    Pooled {
+        network: Box<dyn ProposeEndpoints>,
+        estimator: GoalEstimator,
+        retrieved_share: f64,
+    },
 }
 
 impl GoalModel {
@@ -100,7 +106,11 @@ impl GoalModel {
             GoalEstimator::new(params.check()?, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
         let motions = TrainingMotions::learn(estimator.library().tracks(), config.star.time_step);
         let origin = match (&config.goals.proposal, network) {
-            (Some(recipe), Some(network)) => GoalOrigin::Both(network, estimator, recipe.retrieved_share),
+            (Some(recipe), Some(network)) => GoalOrigin::Pooled {
+                network,
+                estimator,
+                retrieved_share: recipe.retrieved_share,
+            },
             _ => GoalOrigin::Retrieved(estimator),
         };
         Ok(Self {
@@ -153,7 +163,7 @@ impl GoalModel {
     pub fn words(&self) -> String {
         match &self.origin {
             GoalOrigin::Proposed(_) => self.recipe().description_without_library(),
-            GoalOrigin::Retrieved(_) | GoalOrigin::Both(..) => self.recipe().words(),
+            GoalOrigin::Retrieved(_) | GoalOrigin::Pooled { .. } => self.recipe().words(),
         }
     }
 
@@ -167,20 +177,20 @@ impl GoalModel {
     pub fn estimator(&self) -> Option<&GoalEstimator> {
         match &self.origin {
             GoalOrigin::Proposed(_) => None,
-            GoalOrigin::Retrieved(estimator) | GoalOrigin::Both(_, estimator, _) => Some(estimator),
+            GoalOrigin::Retrieved(estimator) | GoalOrigin::Pooled { estimator, .. } => Some(estimator),
         }
     }
 
     pub(crate) fn proposal_network(&self) -> Option<&dyn ProposeEndpoints> {
         match &self.origin {
             GoalOrigin::Retrieved(_) => None,
-            GoalOrigin::Proposed(network) | GoalOrigin::Both(network, ..) => Some(&**network),
+            GoalOrigin::Proposed(network) | GoalOrigin::Pooled { network, .. } => Some(&**network),
         }
     }
 
     /// Whether the goals of a proposal network are pooled with those of an expert library.
     pub(crate) fn has_library_beside_network(&self) -> bool {
-        matches!(self.origin, GoalOrigin::Both(..))
+        matches!(self.origin, GoalOrigin::Pooled { .. })
     }
 
     /// Number of learned parameters of the proposal network; 0 without one.
@@ -204,10 +214,10 @@ impl GoalModel {
         let count = self.recalled_per_pedestrian()?;
         let fold = self.fold_with_places(dataset)?;
         let of_place = |recording: &str| -> Vec<&Recording> {
-            let known = fold
+            let trained_fold = fold
                 .as_ref()
                 .filter(|fold| what == Remembering::Place || !fold.place_memory_confirmed_by().is_empty());
-            known.map_or_else(Vec::new, |fold| fold.training_recordings_of_place(recording))
+            trained_fold.map_or_else(Vec::new, |fold| fold.training_recordings_of_place(recording))
         };
         let playback = match what {
             Remembering::Place => None,
@@ -263,9 +273,11 @@ impl GoalModel {
         let sets = match &self.origin {
             GoalOrigin::Retrieved(estimator) => sets::retrieved(estimator, windows)?,
             GoalOrigin::Proposed(network) => self.representatives(&**network, None, windows)?,
-            GoalOrigin::Both(network, estimator, share) => {
-                self.representatives(&**network, Some((estimator, *share)), windows)?
-            }
+            GoalOrigin::Pooled {
+                network,
+                estimator,
+                retrieved_share,
+            } => self.representatives(&**network, Some((estimator, *retrieved_share)), windows)?,
         };
         Ok(self.within_reach(windows, sets))
     }

@@ -1,3 +1,5 @@
+//! Goals within the reach of a pedestrian.
+
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
@@ -5,10 +7,10 @@ use ddl_network::motion_bounds;
 /// Moves goals beyond the pedestrian's reach closer: to the distance that it covers at its top speed within the
 /// horizon.
 pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec<GoalSet> {
-    let each = |(i, set): (usize, GoalSet)| {
+    let reachable = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);
         let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
         set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
     };
-    sets.into_iter().enumerate().map(each).collect()
+    sets.into_iter().enumerate().map(reachable).collect()
 }

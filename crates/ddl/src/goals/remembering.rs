@@ -30,7 +30,7 @@ pub(crate) fn remembering<'a>(
         let indices = of_recording.entry(window.recording()).or_default();
         indices.push(index);
     }
-    let mut all = windows.to_vec();
+    let mut remembering = windows.to_vec();
     for recording in recordings {
         let Some(indices) = of_recording.remove(recording.name()) else {
             continue;
@@ -45,8 +45,8 @@ pub(crate) fn remembering<'a>(
             None => some.map(|window| memory.recalling(window, count)).collect(),
         };
         for (index, window) in indices.into_iter().zip(some) {
-            all[index] = window;
+            remembering[index] = window;
         }
     }
-    Ok(all)
+    Ok(remembering)
 }

@@ -2,7 +2,6 @@
 
 use ddl_core::ForecastError;
 use ddl_data::{Position, Window};
-use ddl_eval::baseline::WeightedGoals;
 use ddl_goal::{GoalEstimator, GoalSet};
 
 /// The retrieved goal sets of every pedestrian of every window.
@@ -25,14 +24,6 @@ pub(crate) fn retrieved(estimator: &GoalEstimator, windows: &[Window]) -> Result
         .iter()
         .map(|window| sets.by_ref().take(window.len()).collect())
         .collect())
-}
-
-/// Goal sets in the form that the baselines of the evaluation take.
-pub(crate) fn weighted(sets: &[Vec<GoalSet>]) -> Result<Vec<Vec<WeightedGoals>>, ForecastError> {
-    let one = |set: &GoalSet| WeightedGoals::new(set.goals().to_vec(), set.weights().to_vec());
-    sets.iter()
-        .map(|sets| Ok(sets.iter().map(one).collect::<Result<_, _>>()?))
-        .collect()
 }
 
 /// The central goal of each pedestrian. Padded positions before the first observation extrapolate in a straight line,

@@ -6,7 +6,7 @@ use ddl_network::{PedestrianView, ProposalExample, length_unit};
 
 /// A pedestrian's own frame, its unit of length, and the view from it.
 #[derive(Debug)]
-pub(crate) struct Seen {
+pub(crate) struct FramedView {
     pub(crate) frame: HeadingFrame,
     /// Metres per unit of length of the view.
     pub(crate) unit: f64,
@@ -15,7 +15,7 @@ pub(crate) struct Seen {
 
 /// Views of every pedestrian of a window with its `neighbours` nearest others, from the observed frames (`time_step` in
 /// seconds).
-pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<Seen>, TrackError> {
+pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<FramedView>, TrackError> {
     let last = window.positions_at(OBSERVED - 1);
     let places = SpatialIndex::new(&last);
     (0..window.len())
@@ -38,7 +38,7 @@ pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> R
                     })
                     .collect(),
             };
-            Ok(Seen { frame, unit, view })
+            Ok(FramedView { frame, unit, view })
         })
         .collect()
 }

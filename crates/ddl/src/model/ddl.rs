@@ -1,15 +1,17 @@
+//! The trained model: its forecasts with and without certificates.
+
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast, Walked};
 use crate::forecast::clearance::Clearance;
 use crate::forecast::name::{NAME, WITHOUT_LIBRARY};
 use crate::forecast::shaped;
-use crate::forecast::walk::Gait;
+use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
 use crate::goals::sets;
-use crate::model::source::ModelSource;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
+use crate::run::model_source::ModelSource;
 use ddl_core::{Forecast, ForecastError, Forecaster};
 use ddl_data::{HORIZON, Position, Window};
 use ddl_goal::GoalSet;
@@ -120,7 +122,7 @@ impl Ddl {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
         let led = (goals, self.familiarities(windows));
-        shaped::walked(&*self.network, windows, led, Gait::Stable(self.clearance))?
+        shaped::walked(&*self.network, windows, led, PathIntegrator::Stable(self.clearance))?
             .map(Walked::certified)
             .collect()
     }
@@ -181,7 +183,7 @@ impl Ddl {
             let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
             Walked {
                 config,
-                gait: Gait::Stable(clearance),
+                integrator: PathIntegrator::Stable(clearance),
                 window,
                 hypotheses: 1,
                 rolled_out: Vec::new(),
@@ -200,16 +202,16 @@ impl Ddl {
         &self,
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
-        gait: Gait,
+        integrator: PathIntegrator,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let seed = self.config().training.seed;
         let led = (sets, self.familiarities(windows));
-        shaped::towards(&*self.network, seed, windows, led, gait)
+        shaped::towards(&*self.network, seed, windows, led, integrator)
     }
 
     fn familiarities(&self, windows: &[Window]) -> Vec<Vec<f64>> {
-        let of = |window| self.goals.familiarity(window);
-        windows.iter().map(of).collect()
+        let familiarity = |window| self.goals.familiarity(window);
+        windows.iter().map(familiarity).collect()
     }
 }
 
@@ -228,6 +230,6 @@ impl Forecaster for Ddl {
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = self.goals.goals(windows)?;
-        self.forecast_towards(windows, goals, Gait::Stable(self.clearance))
+        self.forecast_towards(windows, goals, PathIntegrator::Stable(self.clearance))
     }
 }

@@ -3,14 +3,14 @@
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
-use crate::model::builtin::BuiltinModel;
+use crate::goals::packed;
 use crate::model::ddl::Ddl;
-use crate::model::packed;
 use crate::model::packing;
-use crate::model::source::ModelSource;
+use crate::run::builtin_model::BuiltinModel;
 use crate::run::config::RunConfig;
 use crate::run::directory::{RunDirectory, write_atomically};
 use crate::run::enough_weights;
+use crate::run::model_source::ModelSource;
 use crate::trust::familiarity::TrainingMotions;
 use ddl_data::Window;
 use ddl_network::weights::load_weights;
@@ -153,7 +153,44 @@ impl BuiltinModel {
         let source = ModelSource::Builtin(self);
         let (config, motions) = packed::motions(self.bytes(), &source)?;
         let time_step = config.star.time_step;
-        let of = |window: &Window| TrainingMotions::of_window(motions.as_ref(), window, time_step);
-        Ok(windows.iter().map(of).collect())
+        let familiarity = |window: &Window| TrainingMotions::of_window(motions.as_ref(), window, time_step);
+        Ok(windows.iter().map(familiarity).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_data::Convention;
+    use ddl_network::Variant;
+
+    /// Keeps the repository and web pages with a model small.
+    const MOST_BYTES: usize = 2_000_000;
+
+    #[test]
+    fn each_model_is_of_its_fold_small_and_without_tracks() {
+        for model in BuiltinModel::ALL {
+            let config = model.config().unwrap();
+            assert_eq!(config.data.fold, model.name());
+            assert_eq!(config.data.convention, Convention::Star);
+            assert_eq!(config.star.variant, Variant::Full);
+            assert!(model.bytes().len() <= MOST_BYTES, "{model}");
+            let loaded = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
+            assert_eq!(loaded.config(), &config);
+            assert!(loaded.goal_model().estimator().is_none());
+            // Two bytes for each weight, and the names and configuration: a file of this size holds no tracks.
+            let numbers = loaded.parameter_count() + loaded.goal_model().parameter_count();
+            assert!(model.bytes().len() < 2 * numbers + 20_000, "{model}");
+            assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);
+        }
+        let error = "corridor".parse::<BuiltinModel>().unwrap_err().to_string();
+        assert!(error.contains("corridor") && error.contains("zara2"), "{error}");
+    }
+
+    #[test]
+    fn the_default_has_seen_the_most_pedestrians() {
+        let seen = |model: &BuiltinModel| model.config().unwrap().data.pedestrians;
+        let most = BuiltinModel::ALL.into_iter().max_by_key(seen);
+        assert_eq!(most, Some(BuiltinModel::default()));
     }
 }

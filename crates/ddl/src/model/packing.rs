@@ -1,6 +1,8 @@
+//! Writes a model as one small file.
+
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
-use crate::model::packed::{ENTRY, Header, LAYOUT, NETWORK, PROPOSAL, digest};
+use crate::goals::packed::{ENTRY, Header, LAYOUT, NETWORK, PROPOSAL, digest};
 use ddl_network::ForecastWindows;
 use ddl_network::weights::HalfTensor;
 use safetensors::tensor::{Dtype, TensorView};

@@ -1,4 +1,6 @@
-use crate::goals::recipe::GoalRecipe;
+//! The configuration of a run, its `config.json`.
+
+use crate::run::goal_recipe::GoalRecipe;
 use crate::run::starting_model::InitialModel;
 use crate::run::track_units::TrackUnits;
 use ddl_data::{Convention, WindowRule};
@@ -150,7 +152,7 @@ pub struct TrainingData {
 
 #[cfg(test)]
 mod tests {
-    use crate::BuiltinModel;
+    use crate::run::builtin_model::BuiltinModel;
 
     #[test]
     fn the_origin_holds_the_settings_that_determine_the_numbers() {

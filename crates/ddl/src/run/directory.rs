@@ -18,13 +18,12 @@
 //! Every file is written under a temporary name and renamed.
 
 use crate::error::DdlError;
-use crate::goals::recipe::GoalRecipe;
-use crate::model::builtin::BuiltinModel;
+use crate::run::builtin_model::BuiltinModel;
 use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
+use crate::run::goal_recipe::GoalRecipe;
 use crate::run::lock::RunLock;
 use ddl_data::remove_temporary_files;
 use ddl_network::EpochReport;
-use ddl_report::ForecastSnapshot;
 use serde::{Serialize, de::DeserializeOwned};
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -116,22 +115,6 @@ impl RunDirectory {
 
     pub(crate) fn has_config(&self) -> bool {
         self.config_file().is_file()
-    }
-
-    /// Reads `moments.json`; empty when there is none.
-    pub(crate) fn read_moments(&self) -> Result<Vec<ForecastSnapshot>, DdlError> {
-        let path = self.moments();
-        if path.is_file() {
-            read_json(&path)
-        } else {
-            Ok(Vec::new())
-        }
-    }
-
-    /// Writes `moments.json`, compact because it holds thousands of positions.
-    pub(crate) fn write_moments(&self, moments: &[ForecastSnapshot]) -> Result<(), DdlError> {
-        let path = self.moments();
-        write_atomically(&path, serialise(&path, &moments, false)?.as_bytes())
     }
 
     /// Whether training is finished.
@@ -278,7 +261,7 @@ impl RunDirectory {
     pub(crate) fn write_metrics(&self, epochs: &[EpochReport]) -> Result<(), DdlError> {
         let mut text = String::new();
         for epoch in epochs {
-            text += &serialise(&self.metrics_file(), epoch, false)?;
+            text += &on_one_line(&self.metrics_file(), epoch)?;
             text.push('\n');
         }
         write_atomically(&self.metrics_file(), text.as_bytes())
@@ -310,17 +293,17 @@ pub(crate) fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, DdlError>
 
 /// Writes a JSON file under a temporary name and renames it.
 pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), DdlError> {
-    let text = serialise(path, value, true)?;
+    let text = serde_json::to_string_pretty(value).map_err(|error| DdlError::run(path, error.to_string()))?;
     write_atomically(path, text.as_bytes())
 }
 
-fn serialise(path: &Path, value: &impl Serialize, pretty: bool) -> Result<String, DdlError> {
-    let text = if pretty {
-        serde_json::to_string_pretty(value)
-    } else {
-        serde_json::to_string(value)
-    };
-    text.map_err(|error| DdlError::run(path, error.to_string()))
+/// Writes a JSON file on one line, for thousands of numbers.
+pub(crate) fn write_compact_json(path: &Path, value: &impl Serialize) -> Result<(), DdlError> {
+    write_atomically(path, on_one_line(path, value)?.as_bytes())
+}
+
+fn on_one_line(path: &Path, value: &impl Serialize) -> Result<String, DdlError> {
+    serde_json::to_string(value).map_err(|error| DdlError::run(path, error.to_string()))
 }
 
 /// Writes a file under a temporary name in its folder and renames it.

@@ -1,4 +1,6 @@
-use crate::goals::recipe::GoalRecipe;
+//! Training that starts from another model: its record and its settings.
+
+use crate::run::goal_recipe::GoalRecipe;
 use ddl_network::{TrainingConfig, Variant};
 use serde::{Deserialize, Serialize};
 

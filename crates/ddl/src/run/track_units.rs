@@ -1,3 +1,5 @@
+//! The units of own recordings, as a run records them.
+
 use ddl_data::Homography;
 use serde::{Deserialize, Serialize};
 

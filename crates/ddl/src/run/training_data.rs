@@ -1,3 +1,5 @@
+//! The recordings and windows of a training, and their digests.
+
 use crate::run::sha256;
 use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
 use sha2::{Digest as _, Sha256};

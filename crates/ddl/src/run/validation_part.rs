@@ -1,3 +1,5 @@
+//! The part of own recordings that training keeps for validation.
+
 use ddl_data::{Convention, Fold, Recording, Window};
 
 /// Share of the time of own recordings, at their ends, that is kept for validation.

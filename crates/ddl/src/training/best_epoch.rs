@@ -1,3 +1,5 @@
+//! The epoch with the smallest validation error.
+
 use ddl_network::EpochReport;
 
 /// The first epoch with the smallest validation error; `None` if none was measured.

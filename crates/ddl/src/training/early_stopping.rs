@@ -1,15 +1,15 @@
 //! The validation error of each epoch during training.
 
-use super::starting_weights::StartingWeights;
 use crate::device::Device;
 use crate::error::DdlError;
-use crate::evaluation::test_set::TestSet;
 use crate::forecast::shaped;
-use crate::forecast::walk::Gait;
+use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
 use crate::training::best_epoch::is_over;
+use crate::training::starting_weights::StartingWeights;
+use crate::windows::test_set::TestSet;
 use ddl_data::{Fold, Window};
 use ddl_eval::{Scene, metric::displacement::DisplacementErrors};
 use ddl_goal::GoalSet;
@@ -37,8 +37,8 @@ impl EarlyStopping {
         let (data, Some(patience)) = (&config.data, config.patience) else {
             return Ok(None);
         };
-        let kept = (data.window_rule, data.validation);
-        let windows = TestSet::validation(fold, data.convention, kept, Some(PEDESTRIANS)).windows;
+        let part = (data.window_rule, data.validation);
+        let windows = TestSet::validation(fold, data.convention, part, Some(PEDESTRIANS)).windows;
         Ok(Some(Self {
             patience,
             goals: goals.goals(&windows)?,
@@ -52,7 +52,7 @@ impl EarlyStopping {
     /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
         let (windows, led) = (&self.windows, (self.goals.clone(), self.familiarity.clone()));
-        let forecasts = shaped::towards(network, self.seed, windows, led, Gait::Stable(None))?;
+        let forecasts = shaped::towards(network, self.seed, windows, led, PathIntegrator::Stable(None))?;
         let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {
             let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);

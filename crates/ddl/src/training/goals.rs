@@ -2,10 +2,10 @@
 
 use crate::error::DdlError;
 use crate::goals::experts;
-use crate::goals::recipe::ProposalRecipe;
 use crate::goals::remembering::remembering;
 use crate::goals::views;
 use crate::run::directory::{RunDirectory, SAVE_EVERY};
+use crate::run::goal_recipe::ProposalRecipe;
 use ddl_data::{Recording, Window};
 use ddl_goal::GoalError;
 use ddl_memory::Playback;

@@ -1,21 +1,22 @@
 //! The stages of a training in order: the goals, then the forecasting network.
 
-use super::early_stopping::{EarlyStopping, better_goals};
-use super::starting_weights::StartingWeights;
-use super::{TrainingProgress, TrainingRequest, TrainingStage, TrainingStep, goals};
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
-use crate::goals::recipe::GoalRecipe;
 use crate::model::ddl::Ddl;
 use crate::run::config::{FORMAT, RunConfig, TrainingData};
 use crate::run::directory::{RunDirectory, SAVE_EVERY};
+use crate::run::goal_recipe::GoalRecipe;
 use crate::run::starting_model::InitialModel;
 use crate::run::training_data::{digest, digest_of_recording, fold_by_name, learned_from, training_rule};
 use crate::training::best_epoch::best_epoch;
+use crate::training::early_stopping::{EarlyStopping, better_goals};
+use crate::training::goals;
+use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
+use crate::training::starting_weights::StartingWeights;
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
 use ddl_goal::RetrievalFrame;
-use ddl_network::weights::{Origin, load_weights, save_weights};
+use ddl_network::weights::{Weights, load_weights, save_weights};
 use ddl_network::{EpochReport, Objective};
 use ddl_star::{LIBTORCH_VERSION, StarError, TorchNetwork, Trainer};
 use std::collections::BTreeMap;
@@ -31,13 +32,7 @@ pub(super) fn train(
     mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     // Check everything before claiming the directory, so that a mistake leaves no run behind.
-    request.star.check()?;
-    request.training.check()?;
-    request.training.check_for(request.star.variant)?;
-    request.goals.check()?;
-    if !(0.0..1.0).contains(&request.validation) {
-        return Err(DdlError::Validation(request.validation));
-    }
+    check(request)?;
     let device = Device::open(request.device)?;
     let fold = fold_by_name(dataset, &request.fold)?.with_validation_recordings(&request.validation_recordings)?;
     let window_rule = training_rule(dataset.convention());
@@ -85,24 +80,24 @@ pub(super) fn train(
     if request.until == TrainingStage::Goals {
         return Ok(());
     }
-    let origin = config.network_origin();
-    let goals = GoalModel::of_run(run.clone(), config.clone(), device)?;
-    let early_stopping = EarlyStopping::of(&goals, &fold)?;
-    let (star, seed) = (config.star.clone(), config.training.seed);
-    let first = TorchNetwork::new(star, seed, device.torch()?)?;
-    if let Some(start) = network {
-        first.parameters().set(&start)?;
-    }
-    let mut trainer = trainer(&config, windows, &goals, first)?;
-    if run.optimizer().is_file() {
-        trainer.resume(&origin, &run.optimizer())?;
-    }
-    let kept = (config.keep_every, early_stopping.as_ref());
-    let min_ade = |trainer: &Trainer, stopping: &EarlyStopping| -> Result<f64, DdlError> {
-        let weights = trainer.weights()?;
-        stopping.min_ade(&*device.forecasting(&config.star, |_| Ok(weights))?)
+    let stage = NetworkStage {
+        config: &config,
+        run,
+        device,
     };
-    run_epochs(&mut trainer, (run, &origin), (kept, min_ade), observe)
+    stage.train(&fold, windows, network, observe)
+}
+
+fn check(request: &TrainingRequest) -> Result<(), DdlError> {
+    request.star.check()?;
+    request.training.check()?;
+    request.training.check_for(request.star.variant)?;
+    request.goals.check()?;
+    if (0.0..1.0).contains(&request.validation) {
+        Ok(())
+    } else {
+        Err(DdlError::Validation(request.validation))
+    }
 }
 
 /// The `config.json` of a run, from the request, the training data and the device.
@@ -133,11 +128,11 @@ fn config_of(
                 _ => BTreeMap::new(),
             },
         },
-        keep_every: match (request.patience, request.last_epoch_only) {
+        keep_every: match (request.patience, request.kept_epochs) {
             // any of them may be the best
             (Some(_), _) => 1,
-            (None, true) => request.training.epochs,
-            (None, false) => request.training.epochs.div_ceil(KEPT_EPOCHS),
+            (None, KeptEpochs::Last) => request.training.epochs,
+            (None, KeptEpochs::Several) => request.training.epochs.div_ceil(KEPT_EPOCHS),
         },
         patience: request.patience,
         from: began_with,
@@ -223,71 +218,105 @@ fn ensure_every_epoch_is_recorded(
     }
 }
 
-/// Trains to the end, saving the state that a later call needs to continue.
-fn run_epochs(
-    trainer: &mut Trainer,
-    (run, origin): (&RunDirectory, &Origin),
-    ((keep_every, early_stopping), min_ade): (
-        (usize, Option<&EarlyStopping>),
-        impl Fn(&Trainer, &EarlyStopping) -> Result<f64, DdlError>,
-    ),
-    mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
-) -> Result<(), DdlError> {
-    let mut epochs = run.metrics()?;
-    epochs.retain(|report| report.epoch <= trainer.completed_epochs());
-    if let Some(stopping) = early_stopping
-        && stopping.first_epoch() == 0
-        && trainer.steps().0 == 0
-    {
-        // Epoch 0 holds the weights that training starts from.
-        save_weights(&trainer.weights()?, origin, &run.epoch(0))?;
-        epochs = vec![EpochReport {
-            epoch: 0,
-            loss: 0.0,
-            batches: 0,
-            seconds: 0.0,
-            validation: Some(min_ade(trainer, stopping)?),
-        }];
-        run.write_metrics(&epochs)?;
-    }
-    if let Some(stopping) = early_stopping {
-        let measured = stopping.first_epoch()..=trainer.completed_epochs();
-        ensure_every_epoch_is_recorded(&epochs, measured, run)?;
-    }
-    let mut saved = Instant::now();
-    let is_over = |epochs: &[EpochReport]| early_stopping.is_some_and(|stopping| stopping.is_over(epochs));
-    while !trainer.is_finished() && !is_over(&epochs) {
-        let mut step = trainer.step()?;
-        if let Some(epoch) = &mut step.finished_epoch {
-            if let Some(stopping) = early_stopping {
-                epoch.validation = Some(min_ade(trainer, stopping)?);
+/// The second stage: the forecasting network, to the goals of the run.
+struct NetworkStage<'a> {
+    config: &'a RunConfig,
+    run: &'a RunDirectory,
+    device: Device,
+}
+
+impl NetworkStage<'_> {
+    /// Trains to the end, from the weights of `start` if given, saving the state that a later call needs to continue.
+    fn train(
+        &self,
+        fold: &Fold<'_>,
+        windows: Vec<Window>,
+        start: Option<Weights>,
+        mut observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
+    ) -> Result<(), DdlError> {
+        let (config, run, origin) = (self.config, self.run, self.config.network_origin());
+        let goals = GoalModel::of_run(run.clone(), config.clone(), self.device)?;
+        let stopping = EarlyStopping::of(&goals, fold)?;
+        let network = TorchNetwork::new(config.star.clone(), config.training.seed, self.device.torch()?)?;
+        if let Some(start) = start {
+            network.parameters().set(&start)?;
+        }
+        let mut trainer = trainer(config, windows, &goals, network)?;
+        if run.optimizer().is_file() {
+            trainer.resume(&origin, &run.optimizer())?;
+        }
+        let mut epochs = self.recorded_epochs(&trainer, stopping.as_ref())?;
+        let mut saved = Instant::now();
+        let is_over = |epochs: &[EpochReport]| stopping.as_ref().is_some_and(|stopping| stopping.is_over(epochs));
+        while !trainer.is_finished() && !is_over(&epochs) {
+            let mut step = trainer.step()?;
+            if let Some(epoch) = &mut step.finished_epoch {
+                if let Some(stopping) = &stopping {
+                    epoch.validation = Some(self.min_ade(&trainer, stopping)?);
+                }
+                epochs.push(epoch.clone());
+                if epoch.epoch % config.keep_every == 0 || trainer.is_finished() {
+                    save_weights(&trainer.weights()?, &origin, &run.epoch(epoch.epoch))?;
+                }
+                run.write_metrics(&epochs)?;
             }
-            epochs.push(epoch.clone());
-            if epoch.epoch % keep_every == 0 || trainer.is_finished() {
-                save_weights(&trainer.weights()?, origin, &run.epoch(epoch.epoch))?;
+            let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
+            let (steps, step) = (trainer.steps(), TrainingStep::Network(step));
+            let stop = observe(&TrainingProgress { steps, step }).is_break();
+            if due || stop {
+                trainer.save(&origin, &run.optimizer())?;
+                saved = Instant::now();
             }
+            if stop && !trainer.is_finished() && !is_over(&epochs) {
+                return Err(DdlError::Interrupted);
+            }
+        }
+        self.keep_model(trainer.weights()?, &epochs)
+    }
+
+    /// The epochs before this call, with the error of the starting weights as epoch 0 if training begins with a model.
+    fn recorded_epochs(
+        &self,
+        trainer: &Trainer,
+        stopping: Option<&EarlyStopping>,
+    ) -> Result<Vec<EpochReport>, DdlError> {
+        let (run, completed) = (self.run, trainer.completed_epochs());
+        let mut epochs = run.metrics()?;
+        epochs.retain(|report| report.epoch <= completed);
+        let Some(stopping) = stopping else {
+            return Ok(epochs);
+        };
+        if stopping.first_epoch() == 0 && trainer.steps().0 == 0 {
+            save_weights(&trainer.weights()?, &self.config.network_origin(), &run.epoch(0))?;
+            epochs = vec![EpochReport {
+                epoch: 0,
+                loss: 0.0,
+                batches: 0,
+                seconds: 0.0,
+                validation: Some(self.min_ade(trainer, stopping)?),
+            }];
             run.write_metrics(&epochs)?;
         }
-        let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
-        let stop = observe(&TrainingProgress {
-            steps: trainer.steps(),
-            step: TrainingStep::Network(step),
-        })
-        .is_break();
-        if due || stop {
-            trainer.save(origin, &run.optimizer())?;
-            saved = Instant::now();
-        }
-        if stop && !trainer.is_finished() && !is_over(&epochs) {
-            return Err(DdlError::Interrupted);
-        }
+        ensure_every_epoch_is_recorded(&epochs, stopping.first_epoch()..=completed, run)?;
+        Ok(epochs)
     }
-    let mut weights = trainer.weights()?;
-    if let Some(best) = best_epoch(&epochs) {
-        // Read the file before the others are removed, to report one that has been damaged since.
-        weights = load_weights(weights.layout(), origin, &run.best_epoch(best.epoch)?)?;
-        run.remove_epochs_but(best.epoch)?;
+
+    fn min_ade(&self, trainer: &Trainer, stopping: &EarlyStopping) -> Result<f64, DdlError> {
+        let weights = trainer.weights()?;
+        let network = self.device.forecasting(&self.config.star, |_| Ok(weights))?;
+        stopping.min_ade(&*network)
     }
-    // Last, because the model file marks the run as finished.
-    Ok(save_weights(&weights, origin, &run.model())?)
+
+    /// Writes the weights of the best epoch, or of the last without a validation part.
+    fn keep_model(&self, last: Weights, epochs: &[EpochReport]) -> Result<(), DdlError> {
+        let (run, origin) = (self.run, self.config.network_origin());
+        let mut weights = last;
+        if let Some(best) = best_epoch(epochs) {
+            // Read the file before the others are removed, to report one that has been damaged since.
+            weights = load_weights(weights.layout(), &origin, &run.best_epoch(best.epoch)?)?;
+            run.remove_epochs_but(best.epoch)?;
+        }
+        // Last, because the model file marks the run as finished.
+        Ok(save_weights(&weights, &origin, &run.model())?)
+    }
 }

@@ -1,8 +1,10 @@
+//! The weights of another model that a training starts from.
+
 use crate::error::DdlError;
-use crate::goals::recipe::GoalRecipe;
 use crate::model::ddl::Ddl;
-use crate::model::source::ModelSource;
 use crate::run::config::leaves;
+use crate::run::goal_recipe::GoalRecipe;
+use crate::run::model_source::ModelSource;
 use crate::run::sha256;
 use crate::run::starting_model::InitialModel;
 use ddl_network::weights::Weights;

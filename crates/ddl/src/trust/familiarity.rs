@@ -47,12 +47,12 @@ impl TrainingMotions {
     /// tracks.
     pub(crate) fn learn(tracks: &[Vec<Position>], time_step: f64) -> Option<Self> {
         let features = |track: &Vec<Position>| features(track.get(..OBSERVED)?, time_step);
-        let all: Vec<SVector<f64, FEATURES>> = tracks.iter().map(features).collect::<Option<_>>()?;
-        if all.is_empty() {
+        let motions_of_all: Vec<SVector<f64, FEATURES>> = tracks.iter().map(features).collect::<Option<_>>()?;
+        if motions_of_all.is_empty() {
             return None;
         }
         let (mut learned, mut apart) = (Vec::new(), Vec::new());
-        for (block, motions) in all.chunks(BLOCK).enumerate() {
+        for (block, motions) in motions_of_all.chunks(BLOCK).enumerate() {
             let to = if block % HELD_OUT_EVERY == HELD_OUT_EVERY - 1 {
                 &mut apart
             } else {
@@ -68,7 +68,7 @@ impl TrainingMotions {
         // Keeps the covariance invertible if all motions agree in a feature.
         let covariance = covariance + SMatrix::identity() * 1e-6;
         let precision = covariance.try_inverse()?;
-        let mut speeds: Vec<f64> = all.iter().map(mean_speed).collect();
+        let mut speeds: Vec<f64> = motions_of_all.iter().map(mean_speed).collect();
         speeds.sort_by(f64::total_cmp);
         let mut motions = Self {
             mean: mean.into(),
@@ -85,8 +85,8 @@ impl TrainingMotions {
 
     /// The familiarity of each pedestrian of a window; 1 if the training motions are unknown.
     pub(crate) fn of_window(motions: Option<&Self>, window: &Window, time_step: f64) -> Vec<f64> {
-        let of = |i: usize| motions.map_or(1.0, |m| m.familiarity(window.observed(i), time_step));
-        (0..window.len()).map(of).collect()
+        let familiarity = |i: usize| motions.map_or(1.0, |m| m.familiarity(window.observed(i), time_step));
+        (0..window.len()).map(familiarity).collect()
     }
 
     /// Whether its numbers are possible.
@@ -201,11 +201,11 @@ mod tests {
     /// A share p of motions like those of training has a familiarity below p.
     #[test]
     fn familiarity_is_calibrated() {
-        let all = tracks();
-        let motions = TrainingMotions::learn(&all[..3000], 0.4).unwrap();
-        let of = |track: &Vec<Position>| motions.familiarity(&track[..OBSERVED], 0.4);
+        let tracks = tracks();
+        let motions = TrainingMotions::learn(&tracks[..3000], 0.4).unwrap();
+        let familiarity = |track: &Vec<Position>| motions.familiarity(&track[..OBSERVED], 0.4);
         for level in [0.05, 0.2, 0.5, 0.8] {
-            let below = all[3000..].iter().filter(|track| of(track) < level).count();
+            let below = tracks[3000..].iter().filter(|track| familiarity(track) < level).count();
             let share = below as f64 / 1000.0;
             assert!((share - level).abs() < 0.05, "{share} below {level}");
         }
@@ -214,18 +214,18 @@ mod tests {
     #[test]
     fn runners_and_jumps_are_unfamiliar() {
         let motions = TrainingMotions::learn(&tracks(), 0.4).unwrap();
-        let at = |speed: f64| {
+        let walk = |speed: f64| {
             (0..8)
                 .map(|t| [0.4 * speed * f64::from(t), 0.01 * f64::from(t % 2)])
                 .collect::<Vec<_>>()
         };
-        let familiar = motions.familiarity(&at(1.0), 0.4);
-        let runners = [4.0, 6.0, 8.0].map(|speed| motions.familiarity(&at(speed), 0.4));
+        let familiar = motions.familiarity(&walk(1.0), 0.4);
+        let runners = [4.0, 6.0, 8.0].map(|speed| motions.familiarity(&walk(speed), 0.4));
         assert!(
             familiar > 0.1 && runners[0] < UNFAMILIAR_THRESHOLD && runners.is_sorted_by(|a, b| a > b),
             "{familiar} {runners:?}"
         );
-        let mut jump = at(1.0);
+        let mut jump = walk(1.0);
         jump[7][1] += 8.0;
         assert!(motions.familiarity(&jump, 0.4) < UNFAMILIAR_THRESHOLD);
         assert!(motions.familiarity(&[[1e200, 0.0]; 8], 0.4) > 0.0);
@@ -243,8 +243,8 @@ mod tests {
             let share = motions.familiarity(&track, 0.4);
             prop_assert!(share > 0.0 && share <= 1.0);
             let position = |speed: f64, t: i32| [0.4 * speed * f64::from(t), 0.02 * f64::from(t % 2)];
-            let at = |speed: f64| (0..8).map(|t| position(speed, t)).collect::<Vec<_>>();
-            let step = (motions.familiarity(&at(speed), 0.4) - motions.familiarity(&at(speed + 1e-3), 0.4)).abs();
+            let walk = |speed: f64| (0..8).map(|t| position(speed, t)).collect::<Vec<_>>();
+            let step = (motions.familiarity(&walk(speed), 0.4) - motions.familiarity(&walk(speed + 1e-3), 0.4)).abs();
             prop_assert!(step < 0.05, "{step}");
         }
     }

@@ -4,14 +4,14 @@
 
 use crate::device::Device;
 use crate::error::DdlError;
-use crate::model::source::ModelSource;
 use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
+use crate::run::model_source::ModelSource;
 use crate::run::sha256;
 use crate::trust::familiarity::TrainingMotions;
 use ddl_network::weights::{HalfTensor, Weights};
 use ddl_network::{ForecastWindows, NetworkError, ProposeEndpoints};
 use safetensors::SafeTensors;
-use safetensors::tensor::Dtype;
+use safetensors::tensor::{Dtype, TensorView};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::borrow::Cow;
@@ -19,25 +19,25 @@ use std::io::Read as _;
 use std::path::Path;
 
 /// Version of the file's layout.
-pub(super) const LAYOUT: u32 = 3;
-pub(super) const ENTRY: &str = "ddl";
+pub(crate) const LAYOUT: u32 = 3;
+pub(crate) const ENTRY: &str = "ddl";
 /// Prefix of the names of the forecasting network's tensors.
-pub(super) const NETWORK: &str = "network.";
+pub(crate) const NETWORK: &str = "network.";
 /// Prefix of the names of the proposal network's tensors.
-pub(super) const PROPOSAL: &str = "proposal.";
+pub(crate) const PROPOSAL: &str = "proposal.";
 /// More than any realistic network takes.
 const MOST_BYTES: u64 = 1 << 28;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Header {
-    pub(super) layout: u32,
+pub(crate) struct Header {
+    pub(crate) layout: u32,
     /// The run's `config.json` as a string, so that its digest does not depend on JSON formatting.
-    pub(super) config: String,
+    pub(crate) config: String,
     /// The training motions that familiarity is measured against, as JSON.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) motions: Option<String>,
-    pub(super) sha256: String,
+    pub(crate) motions: Option<String>,
+    pub(crate) sha256: String,
 }
 
 pub(crate) struct Unpacked {
@@ -96,18 +96,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
             "has layout {layout}, this program reads {LAYOUT}; pack its run again"
         )));
     }
-    let mut tensors = Vec::new();
-    for (name, view) in file.iter() {
-        if view.dtype() != Dtype::F16 {
-            let problem = format!("{name} holds {:?}, expected 16-bit floats", view.dtype());
-            return Err(damaged(&problem));
-        }
-        tensors.push(HalfTensor {
-            name: name.to_owned(),
-            shape: view.shape().to_vec(),
-            bytes: view.data().to_vec(),
-        });
-    }
+    let tensors = half_tensors(&file).map_err(|problem| damaged(&problem))?;
     // Check the digest before using the configuration.
     let parts = [config.as_str(), motions.as_deref().unwrap_or_default()];
     if digest(parts, &tensors) != sha256 {
@@ -131,6 +120,20 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
         return Err(source.wrong("has training motions with impossible numbers; pack its run again"));
     }
     Ok((config, motions, tensors))
+}
+
+fn half_tensors(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, String> {
+    let half = |(name, view): (&str, TensorView<'_>)| {
+        if view.dtype() != Dtype::F16 {
+            return Err(format!("{name} holds {:?}, expected 16-bit floats", view.dtype()));
+        }
+        Ok(HalfTensor {
+            name: name.to_owned(),
+            shape: view.shape().to_vec(),
+            bytes: view.data().to_vec(),
+        })
+    };
+    file.iter().map(half).collect()
 }
 
 pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, DdlError> {
@@ -198,7 +201,7 @@ pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Resu
 }
 
 /// SHA-256 of the strings of the header and of the name, shape and bytes of every tensor, in the order of the names.
-pub(super) fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
+pub(crate) fn digest(texts: [&str; 2], tensors: &[HalfTensor]) -> String {
     let mut by_name: Vec<&HalfTensor> = tensors.iter().collect();
     by_name.sort_by(|one, other| one.name.cmp(&other.name));
     let mut hasher = Sha256::new();

@@ -1,15 +1,17 @@
+//! The variants of a model that an evaluation compares, each with its goals and its motion.
+
 use crate::forecast::clearance::Clearance;
 use crate::forecast::name::WITHOUT_LIBRARY;
-use crate::forecast::walk::Gait;
+use crate::forecast::walk::PathIntegrator;
 use crate::model::ddl::Ddl;
 use ddl_eval::Protocol;
 use ddl_network::Objective;
 
 /// A way in which the model forecasts. Each has its own row of results.
 #[derive(Debug)]
-pub(crate) struct Manner {
+pub(crate) struct EvaluationVariant {
     pub(crate) goals: GivenGoals,
-    pub(crate) way: Way,
+    pub(crate) motion: Motion,
     /// The difference from the unchanged model; `None` for the unchanged model.
     pub(crate) change: Option<String>,
     pub(crate) protocol: Protocol,
@@ -28,9 +30,11 @@ pub(crate) enum GivenGoals {
     Published,
 }
 
+/// How the pedestrians move to the goals.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Way {
-    Shaped(Gait),
+pub(crate) enum Motion {
+    /// The motion that the network shapes.
+    Shaped(PathIntegrator),
     /// The neutral motion, with a clearance or without regard to others.
     Neutral(Option<Clearance>),
 }
@@ -50,7 +54,7 @@ pub(crate) fn memory_words(protocol: Protocol, model: &Ddl) -> String {
     }
 }
 
-impl Manner {
+impl EvaluationVariant {
     pub(crate) fn goal_words(&self, model: &Ddl) -> String {
         let goals = model.goal_model();
         let words = match self.goals {
@@ -68,27 +72,27 @@ impl Manner {
     /// plain Euler steps, without the expert library, with the published goals, and, under `single`, with the dynamics
     /// of the network.
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
-        let variant = model.config().star.variant;
-        let mut manners = Vec::new();
-        let mut add = |protocol: Protocol, goals: GivenGoals, way: Way, change: Option<String>| {
+        let network = model.config().star.variant;
+        let mut variants = Vec::new();
+        let mut add = |protocol: Protocol, goals: GivenGoals, motion: Motion, change: Option<String>| {
             if asked.contains(&protocol) {
-                manners.push(Self {
+                variants.push(Self {
                     goals,
-                    way,
+                    motion,
                     change,
                     protocol,
                 });
             }
         };
-        let stable = Way::Shaped(Gait::Stable(None));
+        let stable = Motion::Shaped(PathIntegrator::Stable(None));
         let minding = |clearance: Clearance| {
             let change = format!("minding others within {} m", clearance.distance());
             (Some(clearance), Some(change))
         };
         let careful = model.clearance().map(minding);
         for (clearance, change) in [(None, None)].into_iter().chain(careful) {
-            let shaped = Way::Shaped(Gait::Stable(clearance));
-            let neutral = Way::Neutral(clearance);
+            let shaped = Motion::Shaped(PathIntegrator::Stable(clearance));
+            let neutral = Motion::Neutral(clearance);
             for protocol in [Protocol::Fair, Protocol::Online] {
                 add(protocol, GivenGoals::Own, shaped, change.clone());
             }
@@ -99,12 +103,12 @@ impl Manner {
         let said = |change: &str| Some(change.to_owned());
         // Plain steps diverge for a network that was trained on whole paths of the stable integrator.
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
-        if variant.dynamics() && learned_on_plain_steps {
-            let plain = Way::Shaped(Gait::PlainEuler);
+        if network.dynamics() && learned_on_plain_steps {
+            let plain = Motion::Shaped(PathIntegrator::PlainEuler);
             let change = said("with plain Euler steps");
             add(Protocol::Fair, GivenGoals::Own, plain, change);
         }
-        if variant.uses_goal() {
+        if network.uses_goal() {
             let change = said("on the way that its network shapes");
             add(Protocol::Single, GivenGoals::Central, stable, change);
             if model.goal_model().has_library_beside_network() {
@@ -121,6 +125,6 @@ impl Manner {
                 add(Protocol::Fair, GivenGoals::Published, stable, change);
             }
         }
-        manners
+        variants
     }
 }

@@ -1,3 +1,5 @@
+//! The models that come with the program.
+
 use crate::error::DdlError;
 use std::fmt;
 use std::str::FromStr;
@@ -70,42 +72,5 @@ impl FromStr for BuiltinModel {
                 Self::ALL.map(Self::name).join(", ")
             ),
         })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Ddl, DeviceChoice, Variant};
-    use ddl_data::Convention;
-
-    /// Keeps the repository and web pages with a model small.
-    const MOST_BYTES: usize = 2_000_000;
-
-    #[test]
-    fn each_model_is_of_its_fold_small_and_without_tracks() {
-        for model in BuiltinModel::ALL {
-            let config = model.config().unwrap();
-            assert_eq!(config.data.fold, model.name());
-            assert_eq!(config.data.convention, Convention::Star);
-            assert_eq!(config.star.variant, Variant::Full);
-            assert!(model.bytes().len() <= MOST_BYTES, "{model}");
-            let loaded = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
-            assert_eq!(loaded.config(), &config);
-            assert!(loaded.goal_model().estimator().is_none());
-            // Two bytes for each weight, and the names and configuration: a file of this size holds no tracks.
-            let numbers = loaded.parameter_count() + loaded.goal_model().parameter_count();
-            assert!(model.bytes().len() < 2 * numbers + 20_000, "{model}");
-            assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);
-        }
-        let error = "corridor".parse::<BuiltinModel>().unwrap_err().to_string();
-        assert!(error.contains("corridor") && error.contains("zara2"), "{error}");
-    }
-
-    #[test]
-    fn the_default_has_seen_the_most_pedestrians() {
-        let seen = |model: &BuiltinModel| model.config().unwrap().data.pedestrians;
-        let most = BuiltinModel::ALL.into_iter().max_by_key(seen);
-        assert_eq!(most, Some(BuiltinModel::default()));
     }
 }

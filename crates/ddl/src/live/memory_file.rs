@@ -1,7 +1,7 @@
 //! The file that stores the memory of a place between sessions.
 
 use crate::error::DdlError;
-use crate::forecast::place_memory::PlaceMemory;
+use crate::live::place_memory::PlaceMemory;
 use crate::run::lock::RunLock;
 use ddl_memory::SceneMemory;
 use std::fs::File;

@@ -3,10 +3,10 @@
 
 use crate::error::DdlError;
 use crate::error::more_for_validation;
-use crate::evaluation::split::Split;
 use crate::goals::model::GoalModel;
 use crate::run::training_data::{digest, digest_of_recording, fold_by_name};
 use crate::run::validation_part::ValidationPart;
+use crate::windows::split::Split;
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
@@ -38,10 +38,10 @@ impl TestSet {
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
         let wrong = |problem: String| Err(goals.source().wrong(problem));
-        let own = dataset.convention() == Convention::Own;
+        let is_own = dataset.convention() == Convention::Own;
         match on {
-            Split::Test if own => return Self::of_own(goals, dataset, pedestrians),
-            Split::Validation if own && !was_trained_on_some(goals, dataset) => {
+            Split::Test if is_own => return Self::of_own(goals, dataset, pedestrians),
+            Split::Validation if is_own && !was_trained_on_some(goals, dataset) => {
                 return Self::own_validation(goals, dataset, whole, pedestrians);
             }
             _ => {}
@@ -90,8 +90,8 @@ impl TestSet {
                  was trained on",
             ));
         }
-        let kept = (rule, fraction);
-        Ok(Self::validation(&fold, data.convention, kept, pedestrians))
+        let part = (rule, fraction);
+        Ok(Self::validation(&fold, data.convention, part, pedestrians))
     }
 
     /// The validation part of own recordings, for a model that was not trained on them.
@@ -110,8 +110,8 @@ impl TestSet {
             }
         };
         let fold = dataset.whole().with_validation_recordings(&part.recordings)?;
-        let kept = (dataset.convention().headline_rule(), part.share);
-        let set = Self::validation(&fold, dataset.convention(), kept, pedestrians);
+        let rule_and_share = (dataset.convention().headline_rule(), part.share);
+        let set = Self::validation(&fold, dataset.convention(), rule_and_share, pedestrians);
         if set.windows.is_empty() {
             return Err(goals.source().wrong(
                 "cannot be evaluated on the validation part of these recordings: no pedestrian in it was observed at \
@@ -125,23 +125,23 @@ impl TestSet {
     /// Own recordings: the recording that the model was trained without, if present, else all recordings.
     fn of_own(goals: &GoalModel, dataset: &Dataset, pedestrians: Option<usize>) -> Result<Self, DdlError> {
         let data = &goals.config().data;
-        let all = dataset.recordings();
-        let left_out = all
+        let recordings = dataset.recordings();
+        let left_out = recordings
             .iter()
             .filter(|r| data.convention == Convention::Own && r.name() == data.fold);
         let mut tested: Vec<&Recording> = left_out.collect();
         if tested.is_empty() {
-            tested = all.iter().collect();
+            tested = recordings.iter().collect();
         }
         let learned: BTreeSet<&String> = data.recordings.values().collect();
-        let known = tested
+        let learned_recordings = tested
             .iter()
             .filter(|recording| learned.contains(&digest_of_recording(recording)));
-        let known: Vec<&str> = known.map(|recording| recording.name()).collect();
+        let learned_recordings: Vec<&str> = learned_recordings.map(|recording| recording.name()).collect();
         let namesake = tested
             .iter()
             .find(|recording| data.recordings.contains_key(recording.name()));
-        if let (true, Some(namesake)) = (known.is_empty(), namesake) {
+        if let (true, Some(namesake)) = (learned_recordings.is_empty(), namesake) {
             return Err(goals.source().wrong(format!(
                 "was trained on a recording with the same name {0:?}, but with other frames or positions, so {0:?} is \
                  no independent test if it was cut, resampled or rounded; rename the file if it shows another time or \
@@ -149,11 +149,11 @@ impl TestSet {
                 namesake.name()
             )));
         }
-        if !known.is_empty() {
+        if !learned_recordings.is_empty() {
             return Err(goals.source().wrong(format!(
                 "was trained on {}; evaluate it on its validation part, on other recordings, or on a recording that it \
                  is trained without (`ddl train --convention own --fold NAME`)",
-                known.join(", ")
+                learned_recordings.join(", ")
             )));
         }
         let rule = dataset.convention().headline_rule();

@@ -1,7 +1,7 @@
 //! One scene that is observed frame by frame: its tracks, and the memory of the place.
 
 use crate::error::DdlError;
-use crate::forecast::place_memory::PlaceMemory;
+use crate::live::place_memory::PlaceMemory;
 use ddl_data::{LiveTracks, PedestrianId, Position, Window};
 
 /// The state that a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes)

@@ -1,8 +1,8 @@
 //! Many cameras in one process; their windows are forecast in batches.
 
 use crate::error::DdlError;
-use crate::forecast::place_memory::PlaceMemory;
-use crate::forecast::watch::Watch;
+use crate::live::place_memory::PlaceMemory;
+use crate::live::watch::Watch;
 use ddl_core::{Forecast, ForecastError, Forecaster};
 use ddl_data::{Completion, Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
 use std::collections::{BTreeMap, VecDeque};
@@ -28,10 +28,10 @@ use std::time::{Duration, Instant};
 ///
 /// # Examples
 /// ```
-/// use ddl::LiveScenes;
 /// use ddl::data::{PedestrianId, SceneName};
-/// use ddl::eval::baseline::ConstantVelocity;
+/// use ddl::{BuiltinModel, Ddl, DeviceChoice, LiveScenes};
 ///
+/// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
 /// let [hall, yard] = ["hall", "yard"].map(|name| SceneName::new(name).expect("a short name"));
 /// let mut scenes = LiveScenes::new();
 /// for frame in 0..8 {
@@ -39,16 +39,16 @@ use std::time::{Duration, Instant};
 ///     scenes.observe(Some(&hall), frame, [(PedestrianId(1), [x, 0.0])])?;
 ///     scenes.observe(Some(&yard), 100 + frame, [(PedestrianId(1), [0.0, x])])?;
 /// }
-/// let answers = scenes.forecast(&ConstantVelocity::last_step(), 100);
+/// let answers = scenes.forecast(&model, 100);
 /// assert_eq!(answers.len(), 2);
 /// assert_eq!(answers[1].scene.as_ref(), Some(&yard));
-/// assert_eq!(answers[1].forecast.as_ref().expect("a forecast").hypothesis(0, 0)[11], [0.0, 9.5]);
+/// assert!(answers[1].forecast.as_ref().expect("a forecast").hypothesis(0, 0)[11][1] > 3.5);
 /// # Ok::<(), ddl::DdlError>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct LiveScenes {
     unseen: LiveTracks,
-    scenes: BTreeMap<Option<SceneName>, Scene>,
+    scenes: BTreeMap<Option<SceneName>, WatchedScene>,
     waiting: VecDeque<(Option<SceneName>, Window)>,
     is_latest_only: bool,
     dropped: u64,
@@ -56,7 +56,7 @@ pub struct LiveScenes {
 }
 
 #[derive(Debug, Clone)]
-struct Scene {
+struct WatchedScene {
     watch: Watch,
     heard: Instant,
     dropped: u64,
@@ -199,16 +199,16 @@ impl LiveScenes {
         scene.heard = Instant::now();
         let window = made.map(|(window, ())| window.with_names(names));
         let mut waiting = self.waiting.iter();
-        let older = waiting.position(|(of, _)| self.is_latest_only && *of == name);
+        let older = waiting.position(|(scene, _)| self.is_latest_only && *scene == name);
         match (older, window) {
-            (Some(at), window) => {
+            (Some(index), window) => {
                 self.dropped += 1;
                 if let Some(scene) = self.scenes.get_mut(&name) {
                     scene.dropped += 1;
                 }
                 match window {
-                    Some(window) => self.waiting[at].1 = window,
-                    None => drop(self.waiting.remove(at)),
+                    Some(window) => self.waiting[index].1 = window,
+                    None => drop(self.waiting.remove(index)),
                 }
             }
             (None, Some(window)) => self.waiting.push_back((name, window)),
@@ -219,7 +219,7 @@ impl LiveScenes {
 
     /// The scene; it is created if it is not known.
     #[expect(clippy::ref_option, reason = "a key of the map")]
-    fn scene(&mut self, name: &Option<SceneName>) -> Result<&mut Scene, DdlError> {
+    fn scene(&mut self, name: &Option<SceneName>) -> Result<&mut WatchedScene, DdlError> {
         if !self.scenes.contains_key(name) {
             self.forget_idle();
             if self.scenes.len() >= Self::MOST_SCENES {
@@ -229,7 +229,7 @@ impl LiveScenes {
                 });
             }
         }
-        let unseen = || Scene {
+        let unseen = || WatchedScene {
             watch: Watch::new(self.unseen.clone()),
             heard: Instant::now(),
             dropped: 0,
@@ -332,13 +332,14 @@ impl LiveScenes {
             // The error does not name its window, so each window is forecast separately.
             Err(_) => windows.iter().map(|window| model.forecast(window)).collect(),
         };
-        let each = scenes.into_iter().zip(windows).zip(forecasts);
-        each.map(|((scene, window), forecast)| SceneForecast {
-            scene,
-            window,
-            forecast,
-        })
-        .collect()
+        let answers = scenes.into_iter().zip(windows).zip(forecasts);
+        answers
+            .map(|((scene, window), forecast)| SceneForecast {
+                scene,
+                window,
+                forecast,
+            })
+            .collect()
     }
 }
 

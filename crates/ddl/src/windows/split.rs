@@ -1,3 +1,5 @@
+//! The choice between test scene and validation part.
+
 use serde::{Deserialize, Serialize};
 
 /// The windows to evaluate on.

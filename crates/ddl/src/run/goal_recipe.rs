@@ -1,3 +1,5 @@
+//! The settings of the goals of a run.
+
 use crate::error::DdlError;
 use ddl_goal::GoalEstimatorParams;
 use ddl_network::{ProposalConfig, ProposalTraining};

@@ -1,5 +1,7 @@
+//! The places that a model is loaded from.
+
 use crate::error::DdlError;
-use crate::model::builtin::BuiltinModel;
+use crate::run::builtin_model::BuiltinModel;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
 use std::fmt;

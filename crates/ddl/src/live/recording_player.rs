@@ -1,3 +1,5 @@
+//! A page that plays the forecasts of a recording.
+
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
 use crate::trust::familiarity::UNFAMILIAR_THRESHOLD;
@@ -80,10 +82,10 @@ impl<'a> RecordingPlayer<'a> {
 }
 
 fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
-    let all = forecasts
+    let familiarities = forecasts
         .iter()
-        .flat_map(|of| (0..of.pedestrians()).filter_map(move |i| of.familiarity(i)));
-    let unlike = all
+        .flat_map(|forecast| (0..forecast.pedestrians()).filter_map(move |i| forecast.familiarity(i)));
+    let unlike = familiarities
         .clone()
         .filter(|&familiarity| familiarity < UNFAMILIAR_THRESHOLD)
         .count();
@@ -91,7 +93,7 @@ fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
         format!(
         "{unlike} of {} motions are unlike the training motions (familiarity below {}): their forecasts use little of \
          the network, and their weights are flatter.",
-            all.count(),
+            familiarities.count(),
             UNFAMILIAR_THRESHOLD
         )
     })
@@ -100,9 +102,9 @@ fn unfamiliar(forecasts: &[&Forecast]) -> Option<String> {
 fn certificates(forecasts: &[&Forecast]) -> Option<String> {
     let verdicts: Vec<bool> = forecasts
         .iter()
-        .flat_map(|of| {
-            let pedestrians = 0..of.pedestrians();
-            pedestrians.flat_map(move |i| (0..of.hypotheses()).map(move |k| of.certified(i, k)))
+        .flat_map(|forecast| {
+            let pedestrians = 0..forecast.pedestrians();
+            pedestrians.flat_map(move |i| (0..forecast.hypotheses()).map(move |k| forecast.certified(i, k)))
         })
         .flatten()
         .collect();

@@ -75,8 +75,8 @@ impl PlaceMemory {
     pub fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
         let count = model.goal_model().recalled_per_pedestrian()?;
         memory.end_tracks();
-        let known = memory.segments() >= MemoryMismatch::MIN_SEGMENTS;
-        let trial = known.then(|| Trial {
+        let is_tested = memory.segments() >= MemoryMismatch::MIN_SEGMENTS;
+        let trial = is_tested.then(|| Trial {
             given: memory.clone(),
             tried: BTreeSet::new(),
             alike: 0,
@@ -170,7 +170,7 @@ impl Trial {
             let observed: Option<&[Position; OBSERVED]> = window.observed(i).first_chunk();
             let nearest = observed.map(|observed| self.given.recall(observed, None, 1));
             let is_alike = nearest
-                .and_then(|found| found.first().map(|found| found.distance < ALIKE))
+                .and_then(|recalled| recalled.first().map(|recalled| recalled.distance < ALIKE))
                 .unwrap_or(false);
             self.alike += usize::from(is_alike);
         }
