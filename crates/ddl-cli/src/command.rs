@@ -208,7 +208,7 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         let read = recordings::read(&files, units)?;
         recordings::tell_notes(&read);
         recordings::warn_of_implausible(&read);
-        return Ok(Dataset::own(read.into_iter().map(|of| of.recording).collect())?);
+        return Ok(Dataset::own(read.into_iter().map(|read| read.recording).collect())?);
     }
     if units.are_given() {
         bail!(

@@ -36,16 +36,16 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Forecast(command::forecast::Forecast),
+    Forecast(command::forecast::ForecastCommand),
     View(command::view::View),
     Goals(command::goals::Goals),
     Data(command::data::Data),
     Train(command::train::Train),
     Evaluate(command::evaluate::Evaluate),
-    Report(command::report::Report),
+    Report(command::report::ReportCommand),
     Baselines(command::baselines::Baselines),
     Benchmark(Box<command::benchmark::Benchmark>),
-    Windows(command::windows::Windows),
+    Windows(command::windows::WindowsCommand),
     Pack(command::pack::Pack),
     Info(command::info::Info),
     Completions(command::generated::Completions),

@@ -1,7 +1,7 @@
 //! A user's own recordings: one per file, in folders or named individually.
 
 use crate::telling::{self, tell};
-use crate::units::{ResampledRecording, Units};
+use crate::units::{ReadRecording, Units};
 use anyhow::{Context as _, bail};
 use ddl::data::PlausibilityWarning;
 use std::path::{Path, PathBuf};
@@ -33,7 +33,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
             .file_name()
             .is_some_and(|name| name.to_string_lossy().starts_with('.'));
         let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
-        let of_tracks = EXTENSIONS.iter().any(|known| extension == *known);
+        let of_tracks = EXTENSIONS.iter().any(|of_tracks| extension == *of_tracks);
         if path.is_file() && !hidden && of_tracks && !units.are_from(&path) {
             files.push(path);
         }
@@ -48,7 +48,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<ResampledRecording>> {
+pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<ReadRecording>> {
     let (read, errors) = read_each(files, units);
     all_read(errors, files.len())?;
     Ok(read
@@ -58,15 +58,15 @@ pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<Resam
 }
 
 /// Prints messages about recordings; a message about several is printed once.
-fn tell_grouped<'a>(kind: &str, of: impl IntoIterator<Item = (&'a str, String)>) {
-    let mut told: Vec<(String, Vec<&str>)> = Vec::new();
-    for (name, words) in of {
-        match told.iter_mut().find(|(known, _)| *known == words) {
+fn tell_grouped<'a>(kind: &str, messages: impl IntoIterator<Item = (&'a str, String)>) {
+    let mut grouped: Vec<(String, Vec<&str>)> = Vec::new();
+    for (name, words) in messages {
+        match grouped.iter_mut().find(|(message, _)| *message == words) {
             Some((_, names)) => names.push(name),
-            None => told.push((words, vec![name])),
+            None => grouped.push((words, vec![name])),
         }
     }
-    for (words, names) in told {
+    for (words, names) in grouped {
         match names[..] {
             [one] => tell(format_args!("{kind}: {one}: {words}")),
             _ => tell(format_args!("{kind}: {} recordings: {words}", names.len())),
@@ -74,10 +74,10 @@ fn tell_grouped<'a>(kind: &str, of: impl IntoIterator<Item = (&'a str, String)>)
     }
 }
 
-pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ResampledRecording>) {
-    let notes = read.into_iter().flat_map(|of| {
-        let notes = of.notes.iter();
-        notes.map(move |note| (of.recording.name(), note.clone()))
+pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) {
+    let notes = read.into_iter().flat_map(|read| {
+        let notes = read.notes.iter();
+        notes.map(move |note| (read.recording.name(), note.clone()))
     });
     tell_grouped("note", notes);
 }
@@ -85,7 +85,7 @@ pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ResampledRecordi
 pub(crate) fn read_each<'f>(
     files: &'f [PathBuf],
     units: &Units,
-) -> (Vec<(&'f Path, ResampledRecording)>, Vec<anyhow::Error>) {
+) -> (Vec<(&'f Path, ReadRecording)>, Vec<anyhow::Error>) {
     let mut read = Vec::new();
     let mut errors = Vec::new();
     for file in files {
@@ -105,19 +105,19 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
     for error in errors.iter().take(MOST_REPORTED) {
         tell(format_args!("error: {}", telling::words(error)));
     }
-    let told = if errors.len() > MOST_REPORTED {
+    let listed = if errors.len() > MOST_REPORTED {
         format!("; the first {MOST_REPORTED} are listed above")
     } else {
         String::new()
     };
-    bail!("{} of {files} files cannot be read{told}", errors.len());
+    bail!("{} of {files} files cannot be read{listed}", errors.len());
 }
 
 /// Warns of suspicious speeds: with wrong units, training and evaluation are meaningless.
-pub(crate) fn warn_of_implausible(read: &[ResampledRecording]) {
-    let warnings = read.iter().filter_map(|of| {
-        let warning = of.recording.speed_warning()?;
-        Some((of.recording.name(), words(&of.clock.of_warning(warning))))
+pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
+    let warnings = read.iter().filter_map(|read| {
+        let warning = read.recording.speed_warning()?;
+        Some((read.recording.name(), words(&read.clock.of_warning(warning))))
     });
     tell_grouped("warning", warnings);
 }

@@ -1,3 +1,5 @@
+//! Results as lines for a terminal.
+
 use ddl::Protocol;
 use ddl::data::Convention;
 use ddl::eval::{RecordingErrors, ResultRow};
@@ -77,7 +79,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
     if recordings.len() < 2 {
         return Ok(());
     }
-    let widths = recordings.iter().map(|of| of.recording.chars().count());
+    let widths = recordings.iter().map(|recording| recording.recording.chars().count());
     let width = widths.max().unwrap_or(0).max(10);
     let label = first.conditions.label();
     let column = label.chars().count().max(15);
@@ -90,14 +92,14 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
         "\n{:width$} {:>counts$}  {label:column$}  {beside}",
         "recording", PEDESTRIAN_WINDOWS
     )?;
-    for of in &recordings {
-        let same = of_other.iter().find(|other| other.recording == of.recording);
+    for recording in &recordings {
+        let same = of_other.iter().find(|other| other.recording == recording.recording);
         writeln!(
             out,
             "{:width$} {:>counts$}  {:column$}  {}",
-            of.recording,
-            of.pedestrians,
-            errors(of),
+            recording.recording,
+            recording.pedestrians,
+            errors(recording),
             same.map(errors).unwrap_or_default()
         )?;
     }

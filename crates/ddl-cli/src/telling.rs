@@ -18,6 +18,11 @@ pub(crate) fn human(duration: Duration) -> String {
     }
 }
 
+/// A count with its noun.
+pub(crate) fn many(count: usize, one: &str, more: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { more })
+}
+
 /// Whether a write failed because the reader has closed the output, as in `ddl info | head -1`.
 pub(crate) fn reader_has_gone(error: &anyhow::Error) -> bool {
     kinds(error).any(|kind| kind == ErrorKind::BrokenPipe)
@@ -68,7 +73,7 @@ mod tests {
         };
         assert!(reader_has_gone(&error(ErrorKind::BrokenPipe)));
         assert!(!reader_has_gone(&error(ErrorKind::StorageFull)));
-        assert!(advice(&error(ErrorKind::StorageFull)).is_some_and(|told| told.contains("make room")));
+        assert!(advice(&error(ErrorKind::StorageFull)).is_some_and(|advice| advice.contains("make room")));
         assert_eq!(advice(&error(ErrorKind::InvalidData)), None);
     }
 

@@ -1,7 +1,9 @@
+//! The options that choose tracks, and the windows cut from them.
+
 use crate::clock::{Clock, FrameNumber};
 use crate::recordings;
 use crate::telling::tell;
-use crate::units::{ResampledRecording, Units};
+use crate::units::{ReadRecording, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
@@ -11,7 +13,7 @@ use std::path::{Path, PathBuf};
 
 /// The tracks to read, and their units. A command that needs them requires `file`.
 #[derive(Debug, Args)]
-pub(crate) struct Tracks {
+pub(crate) struct TrackOptions {
     /// Tracks: csv with the header frame,pedestrian,x,y in metres; the rows of a pedestrian are 0.4 s apart unless
     /// --fps or --dt is given
     ///
@@ -41,7 +43,7 @@ fn frames(count: FrameNumber) -> String {
 }
 
 #[derive(Debug)]
-pub(crate) struct Observed {
+pub(crate) struct ObservedTracks {
     pub(crate) recording: Recording,
     pub(crate) windows: Vec<Window>,
     pub(crate) clock: Clock,
@@ -50,7 +52,7 @@ pub(crate) struct Observed {
     whole: bool,
 }
 
-impl Tracks {
+impl TrackOptions {
     pub(crate) fn are_live(&self) -> bool {
         self.file().as_os_str() == "-"
     }
@@ -79,8 +81,8 @@ impl Tracks {
     }
 
     /// Windows of 8 observed steps, one for each frame with pedestrians to forecast, for a run.
-    pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<Observed> {
-        let ResampledRecording {
+    pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<ObservedTracks> {
+        let ReadRecording {
             recording,
             clock,
             guessed,
@@ -121,7 +123,7 @@ impl Tracks {
         if self.last {
             windows.drain(..windows.len() - 1);
         }
-        Ok(Observed {
+        Ok(ObservedTracks {
             recording,
             windows,
             clock,
@@ -131,20 +133,20 @@ impl Tracks {
     }
 }
 
-impl Observed {
+impl ObservedTracks {
     /// Reports incomplete observations, because a forecast from two positions looks like any other.
     pub(crate) fn tell_what_is_made_up(&self) {
         let windows = self.windows.iter();
-        let all: Vec<CompletionCounts> = windows
+        let counts_of_all: Vec<CompletionCounts> = windows
             .flat_map(|window| (0..window.len()).map(|i| window.completion_counts(i)))
             .collect();
-        let late = all.iter().filter(|counts| counts.padded > 0).count();
-        let gaps = all.iter().filter(|counts| counts.filled > 0).count();
+        let late = counts_of_all.iter().filter(|counts| counts.padded > 0).count();
+        let gaps = counts_of_all.iter().filter(|counts| counts.filled > 0).count();
         if late + gaps > 0 {
             tell(format_args!(
                 "note: of {} forecasts {late} are of pedestrians observed at fewer than {OBSERVED} time steps, and \
                  {gaps} over filled gaps (columns padded and filled); --whole leaves them out",
-                all.len()
+                counts_of_all.len()
             ));
         }
         if !self.whole {

@@ -32,7 +32,7 @@ pub(crate) struct Units {
 }
 
 #[derive(Debug)]
-pub(crate) struct ResampledRecording {
+pub(crate) struct ReadRecording {
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
     /// Whether the frame rate was neither given nor in the file.
@@ -55,11 +55,11 @@ impl Units {
     }
 
     pub(crate) fn told(&self) -> anyhow::Result<Option<TrackUnits>> {
-        let told = TrackUnits {
+        let units = TrackUnits {
             homography: self.homography()?,
             ..self.rate()
         };
-        Ok((told != TrackUnits::default()).then_some(told))
+        Ok((units != TrackUnits::default()).then_some(units))
     }
 
     fn rate(&self) -> TrackUnits {
@@ -86,21 +86,21 @@ impl Units {
     pub(crate) fn are_from(&self, file: &Path) -> bool {
         let place = |path: &Path| path.canonicalize().ok();
         let homography = self.homography.as_deref().and_then(place);
-        let says = |told: Homography| {
+        let says = |homography: Homography| {
             let text = std::fs::read_to_string(file);
-            text.is_ok_and(|text| text.parse() == Ok(told))
+            text.is_ok_and(|text| text.parse() == Ok(homography))
         };
         (homography.is_some() && homography == place(file)) || self.remembered.homography.is_some_and(says)
     }
 
     /// Reads the recording in the file, in metres and steps of 0.4 s. The format is recognised. The file is read once,
     /// so that it may be a pipe.
-    pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ResampledRecording> {
+    pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ReadRecording> {
         let recording = self.in_metres(file)?;
-        let told = recording.stated_frame_time();
+        let stated_frame_time = recording.stated_frame_time();
         let notes = self.note_of_rate(&recording).into_iter();
-        let mut notes: Vec<String> = notes.chain(self.note_of_run(told.is_none())).collect();
-        let rate = match told {
+        let mut notes: Vec<String> = notes.chain(self.note_of_run(stated_frame_time.is_none())).collect();
+        let rate = match stated_frame_time {
             _ if self.rate().have_rate() => self.rate(),
             Some(frame_time) => TrackUnits {
                 dt: Some(frame_time),
@@ -113,7 +113,7 @@ impl Units {
                 None => recording,
                 Some(step) => recording.with_frame_step(step)?,
             };
-            return Ok(ResampledRecording {
+            return Ok(ReadRecording {
                 recording,
                 clock: Clock::WHOLE,
                 guessed: !rate.have_rate(),
@@ -132,7 +132,7 @@ impl Units {
                 "{reason}: positions are interpolated linearly, every 0.4 s back from the last frame"
             ));
         }
-        Ok(ResampledRecording {
+        Ok(ReadRecording {
             recording: steps.recording,
             clock: Clock::of_parts(steps.parts),
             guessed: false,

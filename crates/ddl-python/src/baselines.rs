@@ -1,7 +1,7 @@
 //! Baselines: forecasts that need no training.
 
 use crate::errors::of_any;
-use crate::forecasts::{EmptyFields, Forecasted, parts};
+use crate::forecasts::{EmptyFields, PlainOrCertified, parts};
 use crate::observed::{Observed, completion};
 use ddl::data::Window;
 use ddl::eval::baseline::{
@@ -41,7 +41,7 @@ pub(crate) fn baseline<'py>(
         .as_ref()
         .map(|window| py.detach(|| forecaster.forecast(window)));
     let forecast = forecast.transpose().map_err(|error| of_any(&error))?;
-    let forecast = forecast.map(Forecasted::Plain);
+    let forecast = forecast.map(PlainOrCertified::Plain);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
     let empty = EmptyFields {
@@ -53,7 +53,7 @@ pub(crate) fn baseline<'py>(
 }
 
 /// The goals `(n, k, 2)` of the pedestrians in the window, equally likely.
-fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<GivenGoals> {
+fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResult<RowGoals> {
     let goals = goals.ok_or_else(|| PyValueError::new_err("goals are missing"))?;
     let shape = goals.shape();
     if shape[0] != scene.rows.len() || shape[2] != 2 || shape[1] == 0 {
@@ -71,14 +71,14 @@ fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResul
             of_window[*row] = Some(goals.map_err(|error| of_any(&error))?);
         }
     }
-    let all: Option<Vec<WeightedGoals>> = of_window.into_iter().collect();
-    let all = all.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))?;
-    Ok(GivenGoals(all))
+    let goals: Option<Vec<WeightedGoals>> = of_window.into_iter().collect();
+    let goals = goals.ok_or_else(|| PyValueError::new_err("neighbours have no goals; leave them out"))?;
+    Ok(RowGoals(goals))
 }
 
-struct GivenGoals(Vec<WeightedGoals>);
+struct RowGoals(Vec<WeightedGoals>);
 
-impl GoalSource for GivenGoals {
+impl GoalSource for RowGoals {
     fn name(&self) -> String {
         "the given goals".to_owned()
     }

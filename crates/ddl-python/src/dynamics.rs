@@ -117,7 +117,7 @@ fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f6
     }
     let sigma = 0.5 * smallest;
     let rest = matrix - Matrix2::from_diagonal_element(sigma);
-    let factor = rest.cholesky().map(|of| of.l());
+    let factor = rest.cholesky().map(|factor| factor.l());
     let factor = factor
         .ok_or_else(|| PyValueError::new_err(format!("P[{step}] is too close to a matrix with an eigenvalue of 0")))?;
     CholeskyMetric::new(factor, sigma).map_err(wrong)

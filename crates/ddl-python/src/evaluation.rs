@@ -9,7 +9,7 @@ use crate::recording::Recording;
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
 use ddl::eval::{Conditions, Protocol, ResultRow};
 use ddl::report::Report;
-use ddl::{DdlError, EvaluationRequest, Split};
+use ddl::{DdlError, EvaluationRequest};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -34,8 +34,12 @@ fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, D
 /// The conventions, with their folds.
 #[pyfunction]
 pub(crate) fn conventions() -> Vec<(&'static str, Vec<&'static str>)> {
-    let planned = Convention::ALL.into_iter().filter(|of| *of != Convention::Own);
-    planned.map(|of| (of.name(), of.fold_names().collect())).collect()
+    let planned = Convention::ALL
+        .into_iter()
+        .filter(|convention| *convention != Convention::Own);
+    planned
+        .map(|convention| (convention.name(), convention.fold_names().collect()))
+        .collect()
 }
 
 /// The windows of a fold, or of a recording, with their futures.
@@ -213,21 +217,16 @@ pub(crate) fn evaluate_model(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Vec<String>> {
     let protocols = protocols.iter().map(|word| parsed(word));
-    let request = EvaluationRequest {
-        protocols: protocols.collect::<PyResult<_>>()?,
-        on: Split::Test,
-        validation_recordings: Vec::new(),
-        test_pedestrians: None,
-        commit: String::new(),
-    };
+    let mut request = EvaluationRequest::new(protocols.collect::<PyResult<_>>()?);
+    request.commit = String::new();
     let model = Arc::clone(&model.0);
     let (sender, receiver) = channel();
     let work = move |stop: &Stop| {
         let dataset = dataset(model.config().data.convention, folder)?;
         ddl::evaluate(&model, &dataset, &request, |now| {
             // Sending fails when the call was interrupted and the receiver was dropped.
-            let told = sender.send(now.pedestrians);
-            if told.is_err() || stop.is_asked() {
+            let sent = sender.send(now.pedestrians);
+            if sent.is_err() || stop.is_asked() {
                 ControlFlow::Break(())
             } else {
                 ControlFlow::Continue(())

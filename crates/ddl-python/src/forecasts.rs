@@ -13,12 +13,12 @@ use std::path::PathBuf;
 
 /// A forecast, with the evidence of its certificates if requested.
 #[derive(Debug)]
-pub(crate) enum Forecasted {
+pub(crate) enum PlainOrCertified {
     Plain(Forecast),
     Certified(CertifiedForecast),
 }
 
-impl Forecasted {
+impl PlainOrCertified {
     pub(crate) fn forecast(&self) -> &Forecast {
         match self {
             Self::Plain(forecast) => forecast,
@@ -44,10 +44,10 @@ pub(crate) struct EmptyFields {
 pub(crate) fn parts<'py>(
     py: Python<'py>,
     observed: &Observed,
-    forecasted: Option<&Forecasted>,
+    forecast_of_window: Option<&PlainOrCertified>,
     empty: EmptyFields,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let forecast = forecasted.map(Forecasted::forecast);
+    let forecast = forecast_of_window.map(PlainOrCertified::forecast);
     let rows = &observed.rows;
     let (n, k) = (rows.len(), forecast.map_or(empty.hypotheses, Forecast::hypotheses));
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
@@ -64,12 +64,6 @@ pub(crate) fn parts<'py>(
     let certified = pairs().map(|(row, k)| {
         let verdict = of_row(row).and_then(|(forecast, i)| forecast.certified(i, k));
         verdict.unwrap_or(false)
-    });
-    let spread = rows.iter().flat_map(|row| {
-        (0..HORIZON).map(move |t| {
-            let spread = of_row(row).and_then(|(forecast, i)| forecast.std_dev(i, t));
-            spread.unwrap_or(f64::NAN)
-        })
     });
     let familiarity = rows.iter().map(|row| {
         let familiarity = of_row(row).and_then(|(forecast, i)| forecast.familiarity(i));
@@ -91,24 +85,42 @@ pub(crate) fn parts<'py>(
         None
     };
     dict.set_item("certified", certified)?;
-    let table = match forecast {
-        Some(forecast) => forecast.regions(),
-        None => empty.regions.then(|| &Calibration::fitted().regions),
-    };
-    let spread = match table {
-        Some(_) => Some(array(py, spread.collect(), [n, HORIZON])?),
-        None => None,
-    };
-    dict.set_item("spread", spread)?;
     dict.set_item("familiarity", array(py, familiarity.collect(), [n])?)?;
-    dict.set_item("region_table", table.map(json).transpose()?)?;
-    let evidence = match forecasted {
-        Some(Forecasted::Certified(certified)) => Some(certificates(py, Some(certified), rows, k)?),
+    spread_and_regions(py, rows, forecast, empty, &dict)?;
+    let evidence = match forecast_of_window {
+        Some(PlainOrCertified::Certified(certified)) => Some(certificates(py, Some(certified), rows, k)?),
         None if empty.certificates => Some(certificates(py, None, rows, k)?),
         _ => None,
     };
     dict.set_item("certificates", evidence)?;
     Ok(dict)
+}
+
+/// The spread around the hypotheses, and the table of the regions.
+fn spread_and_regions(
+    py: Python<'_>,
+    rows: &[Option<usize>],
+    forecast: Option<&Forecast>,
+    empty: EmptyFields,
+    dict: &Bound<'_, PyDict>,
+) -> PyResult<()> {
+    let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
+    let spread = rows.iter().flat_map(|row| {
+        (0..HORIZON).map(move |t| {
+            let spread = of_row(row).and_then(|(forecast, i)| forecast.std_dev(i, t));
+            spread.unwrap_or(f64::NAN)
+        })
+    });
+    let table = match forecast {
+        Some(forecast) => forecast.regions(),
+        None => empty.regions.then(|| &Calibration::fitted().regions),
+    };
+    let spread = match table {
+        Some(_) => Some(array(py, spread.collect(), [rows.len(), HORIZON])?),
+        None => None,
+    };
+    dict.set_item("spread", spread)?;
+    dict.set_item("region_table", table.map(json).transpose()?)
 }
 
 /// The observation, and the numbers of filled-in positions.
@@ -132,11 +144,11 @@ fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) 
 pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,
-    forecasted: &Forecasted,
+    forecast_of_window: &PlainOrCertified,
     frame_parts: i64,
 ) -> PyResult<Bound<'py, PyDict>> {
     let observed = Observed::of_window(window.clone());
-    let dict = parts(py, &observed, Some(forecasted), EmptyFields::default())?;
+    let dict = parts(py, &observed, Some(forecast_of_window), EmptyFields::default())?;
     dict.set_item("ids", names(py, window)?)?;
     let frames = window.frames();
     let ahead = (1..=HORIZON as i64).map(|t| frames[OBSERVED - 1] + t * window.frame_step());
@@ -183,8 +195,8 @@ fn certificates<'py>(
         for k in 0..k {
             let Some((certified, i)) = certified.zip(*row) else {
                 potentials.extend([f64::NAN; HORIZON + 1]);
-                for of in [&mut eigenvalues, &mut margins, &mut angles] {
-                    of.push(f64::NAN);
+                for values in [&mut eigenvalues, &mut margins, &mut angles] {
+                    values.push(f64::NAN);
                 }
                 continue;
             };
@@ -225,16 +237,16 @@ pub(crate) fn region_radii<'py>(
     }
     let [n, k] = [weights.shape()[0], weights.shape()[1]];
     let rows = weights.as_array();
-    let known: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();
+    let forecast_rows: Vec<usize> = (0..n).filter(|&i| !rows[[i, 0]].is_nan()).collect();
     let mut radii = vec![f64::NAN; n * k * HORIZON];
-    if !known.is_empty() {
-        let of_known = known.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
-        let spreads = known.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
-        let positions = vec![[0.0; 2]; known.len() * k * HORIZON];
-        let forecast = Forecast::new(known.len(), k, positions, of_known, None)
+    if !forecast_rows.is_empty() {
+        let of_known = forecast_rows.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
+        let spreads = forecast_rows.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
+        let positions = vec![[0.0; 2]; forecast_rows.len() * k * HORIZON];
+        let forecast = Forecast::new(forecast_rows.len(), k, positions, of_known, None)
             .and_then(|forecast| forecast.with_std_dev(spreads.collect(), table.into()))
             .map_err(|error| of_any(&error))?;
-        for (place, i) in known.into_iter().enumerate() {
+        for (place, i) in forecast_rows.into_iter().enumerate() {
             for k_of in 0..k {
                 for t in 0..HORIZON {
                     let radius = forecast.region_radius(place, k_of, t, level);

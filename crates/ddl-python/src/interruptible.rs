@@ -128,8 +128,8 @@ fn pool(user: User, threads: Option<usize>) -> PyResult<Arc<ThreadPool>> {
 /// Waits without the GIL until `attempt` returns a value; Ctrl-C ends the wait.
 pub(crate) fn wait_for<T>(py: Python<'_>, mut attempt: impl FnMut() -> Option<T>) -> PyResult<T> {
     loop {
-        if let Some(found) = attempt() {
-            return Ok(found);
+        if let Some(value) = attempt() {
+            return Ok(value);
         }
         py.detach(|| std::thread::sleep(Duration::from_millis(1)));
         py.check_signals()?;

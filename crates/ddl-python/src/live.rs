@@ -2,7 +2,7 @@
 
 use crate::arrays::points;
 use crate::errors::raised;
-use crate::forecasts::{Forecasted, named_parts};
+use crate::forecasts::{PlainOrCertified, named_parts};
 use crate::interruptible::{run_live, wait_for};
 use crate::model::Model;
 use crate::observed::completion;
@@ -17,13 +17,13 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
-pub(crate) struct Live(Slot);
+pub(crate) struct Live(SharedPlace);
 
 /// `None` while a call uses the state. No lock is held during a forecast, so a worker thread never waits for its own
 /// lock.
-type Slot = Arc<Mutex<Option<Box<Watching>>>>;
+type SharedPlace = Arc<Mutex<Option<Box<WatchedPlace>>>>;
 
-struct Watching {
+struct WatchedPlace {
     live: LiveForecaster<Arc<Ddl>>,
     file: Option<MemoryFile>,
     certificates: bool,
@@ -31,16 +31,16 @@ struct Watching {
 
 /// The answer to a frame: a forecast if there are pedestrians to forecast, and an error if the memory could not be
 /// written.
-type Answer = (Option<(Window, Forecasted)>, Option<String>);
+type Answer = (Option<(Window, PlainOrCertified)>, Option<String>);
 
-impl Watching {
+impl WatchedPlace {
     fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
         let forecast = if self.certificates {
             let now = self.live.push_certified(frame, seen)?;
-            now.map(|now| (now.window, Forecasted::Certified(now.forecast)))
+            now.map(|now| (now.window, PlainOrCertified::Certified(now.forecast)))
         } else {
             let now = self.live.push(frame, seen)?;
-            now.map(|now| (now.window, Forecasted::Plain(now.forecast)))
+            now.map(|now| (now.window, PlainOrCertified::Plain(now.forecast)))
         };
         let mut unwritten = None;
         if let (Some(file), Some(place)) = (&mut self.file, self.live.place())
@@ -55,24 +55,24 @@ impl Watching {
     /// Writes the memory; on success, closes its file.
     fn close(&mut self) -> Result<Option<String>, DdlError> {
         self.live.finish_test();
-        let told = match (&mut self.file, self.live.place()) {
+        let warning = match (&mut self.file, self.live.place()) {
             (Some(file), Some(place)) => file.end(place)?,
             _ => None,
         };
         self.file = None;
-        Ok(told)
+        Ok(warning)
     }
 }
 
 /// Exclusive use of the state. Dropping it returns the state, even after a panic or an interrupted call.
 struct Turn {
-    slot: Slot,
-    watching: Option<Box<Watching>>,
+    slot: SharedPlace,
+    watching: Option<Box<WatchedPlace>>,
 }
 
 impl Turn {
     /// Waits until other calls have returned the state.
-    fn take(py: Python<'_>, slot: &Slot) -> PyResult<Self> {
+    fn take(py: Python<'_>, slot: &SharedPlace) -> PyResult<Self> {
         let watching = wait_for(py, || held(slot).take())?;
         Ok(Self {
             slot: Arc::clone(slot),
@@ -81,7 +81,7 @@ impl Turn {
     }
 
     /// Never `None`: the state is present until this is dropped.
-    fn watching(&mut self) -> Option<&mut Watching> {
+    fn watching(&mut self) -> Option<&mut WatchedPlace> {
         self.watching.as_deref_mut()
     }
 }
@@ -92,7 +92,7 @@ impl Drop for Turn {
     }
 }
 
-fn held(slot: &Slot) -> MutexGuard<'_, Option<Box<Watching>>> {
+fn held(slot: &SharedPlace) -> MutexGuard<'_, Option<Box<WatchedPlace>>> {
     slot.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -127,7 +127,7 @@ impl Live {
             live = live.remembering(memory).map_err(raised)?;
             file = Some(opened);
         }
-        let watching = Watching {
+        let watching = WatchedPlace {
             live,
             file,
             certificates,
@@ -191,7 +191,7 @@ impl Live {
     /// Writes the memory and closes its file; returns a warning, if any.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
-        let told = run_live(py, move |_| turn.watching().map_or(Ok(None), Watching::close))?;
-        told.map_err(raised)
+        let warning = run_live(py, move |_| turn.watching().map_or(Ok(None), WatchedPlace::close))?;
+        warning.map_err(raised)
     }
 }

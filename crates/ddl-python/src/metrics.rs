@@ -99,9 +99,11 @@ pub(crate) fn mahalanobis(
     of_scene(&truth, &forecast, |scene| {
         let n = scene.pedestrians();
         let all: Vec<DistributionErrors> = several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
-        let distances = all.iter().map(|of| of.mahalanobis).collect();
-        let covariances = all.iter().map(|of| of.covariance);
-        let covariances = covariances.flat_map(|of| [of.xx, of.xy, of.yy]).collect();
+        let distances = all.iter().map(|errors| errors.mahalanobis).collect();
+        let covariances = all.iter().map(|errors| errors.covariance);
+        let covariances = covariances
+            .flat_map(|errors| [errors.xx, errors.xy, errors.yy])
+            .collect();
         Ok((array(py, distances, [n])?, array(py, covariances, [n, 3])?))
     })
 }
@@ -118,8 +120,8 @@ pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<P
     let scene = Scene::new(&window, &forecast).map_err(|error| of_any(&error))?;
     let n = forecast.pedestrians();
     let all: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&scene, i)))?;
-    let paths = all.iter().map(|of| of.path).collect();
-    let ends = all.iter().map(|of| of.ends).collect();
+    let paths = all.iter().map(|errors| errors.path).collect();
+    let ends = all.iter().map(|errors| errors.ends).collect();
     Ok((array(py, paths, [n])?, array(py, ends, [n])?))
 }
 

@@ -2,7 +2,7 @@
 
 use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
-use crate::forecasts::{EmptyFields, Forecasted, named_parts, parts};
+use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, completion};
 use crate::recording::Recording;
@@ -24,18 +24,18 @@ pub(crate) struct Model(pub(crate) Arc<Ddl>);
 
 /// The options of a forecast.
 #[derive(Debug, Clone, Copy)]
-struct Manner {
+struct ForecastOptions {
     one: bool,
     certificates: bool,
 }
 
-impl Manner {
+impl ForecastOptions {
     fn new(model: &Ddl, samples: usize, certificates: bool) -> PyResult<Self> {
-        let all = model.goal_model().clusters();
-        if samples != 1 && samples != all {
+        let hypotheses = model.goal_model().clusters();
+        if samples != 1 && samples != hypotheses {
             return Err(PyValueError::new_err(format!(
-                "samples must be {all} (all hypotheses of the model) or 1 (its central forecast); found {samples}. \
-             Weights and regions belong to all {all}; for fewer, select those with the largest weights"
+                "samples must be {hypotheses} (all hypotheses of the model) or 1 (its central forecast); found {samples}. \
+             Weights and regions belong to all {hypotheses}; for fewer, select those with the largest weights"
             )));
         }
         Ok(Self {
@@ -44,9 +44,10 @@ impl Manner {
         })
     }
 
-    fn forecast(self, model: &Ddl, windows: &[Window]) -> Result<Vec<Forecasted>, ForecastError> {
-        let plain = |all: Vec<ddl::Forecast>| all.into_iter().map(Forecasted::Plain).collect();
-        let certified = |all: Vec<ddl::CertifiedForecast>| all.into_iter().map(Forecasted::Certified).collect();
+    fn forecast(self, model: &Ddl, windows: &[Window]) -> Result<Vec<PlainOrCertified>, ForecastError> {
+        let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(PlainOrCertified::Plain).collect();
+        let certified =
+            |forecasts: Vec<ddl::CertifiedForecast>| forecasts.into_iter().map(PlainOrCertified::Certified).collect();
         Ok(match (self.one, self.certificates) {
             (false, false) => plain(model.forecast_all(windows)?),
             (true, false) => plain(model.forecast_central(windows)?),
@@ -56,19 +57,19 @@ impl Manner {
     }
 
     /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
-    fn forecast_until(self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<Forecasted>, DdlError> {
-        let mut all = Vec::with_capacity(windows.len());
-        while all.len() < windows.len() && !stop.is_asked() {
-            let rest = &windows[all.len()..];
+    fn forecast_until(self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<PlainOrCertified>, DdlError> {
+        let mut forecasts = Vec::with_capacity(windows.len());
+        while forecasts.len() < windows.len() && !stop.is_asked() {
+            let rest = &windows[forecasts.len()..];
             let mut pedestrians = 0;
             let enough = |window: &Window| {
                 pedestrians += window.len();
                 pedestrians >= BATCH
             };
             let count = rest.iter().position(enough).map_or(rest.len(), |last| last + 1);
-            all.extend(self.forecast(model, &rest[..count])?);
+            forecasts.extend(self.forecast(model, &rest[..count])?);
         }
-        Ok(all)
+        Ok(forecasts)
     }
 }
 
@@ -123,13 +124,13 @@ impl Model {
         whole: bool,
         certificates: bool,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let manner = Manner::new(&self.0, samples, certificates)?;
+        let options = ForecastOptions::new(&self.0, samples, certificates)?;
         let scenes = past.iter().zip(asked);
         let scenes: Vec<Observed> = scenes
             .map(|(past, asked)| Observed::new(past, asked, completion(whole)))
             .collect::<PyResult<_>>()?;
-        let windows: Vec<Window> = scenes.iter().filter_map(|of| of.window.clone()).collect();
-        let mut forecasts = self.forecasts(py, manner, windows)?.into_iter();
+        let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
+        let mut forecasts = self.forecasts(py, options, windows)?.into_iter();
         let empty = EmptyFields {
             hypotheses: if samples == 1 { 1 } else { self.hypotheses() },
             goals: self.0.config().star.variant.uses_goal(),
@@ -154,12 +155,12 @@ impl Model {
         whole: bool,
         certificates: bool,
     ) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let manner = Manner::new(&self.0, samples, certificates)?;
+        let options = ForecastOptions::new(&self.0, samples, certificates)?;
         let mut windows = recording.observed(whole);
         if last {
             windows.drain(..windows.len().saturating_sub(1));
         }
-        let forecasts = self.forecasts(py, manner, windows.clone())?;
+        let forecasts = self.forecasts(py, options, windows.clone())?;
         let pairs = windows.iter().zip(&forecasts);
         pairs
             .map(|(window, forecast)| named_parts(py, window, forecast, recording.parts))
@@ -197,9 +198,9 @@ impl Model {
             ));
         }
         let player = RecordingPlayer::new(&self.0, &recording.tracks, &windows, most.max(1));
-        let manner = Manner::new(&self.0, self.hypotheses(), false)?;
-        let forecasts = self.forecasts(py, manner, player.shown())?;
-        let forecasts: Vec<_> = forecasts.iter().map(Forecasted::forecast).collect();
+        let options = ForecastOptions::new(&self.0, self.hypotheses(), false)?;
+        let forecasts = self.forecasts(py, options, player.shown())?;
+        let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
         let about = (recording.tracks.name(), None);
         let page = player.to_html(&forecasts, about, |frame| frame / recording.parts);
         page.map_err(raised)
@@ -207,9 +208,14 @@ impl Model {
 }
 
 impl Model {
-    fn forecasts(&self, py: Python<'_>, manner: Manner, windows: Vec<Window>) -> PyResult<Vec<Forecasted>> {
+    fn forecasts(
+        &self,
+        py: Python<'_>,
+        options: ForecastOptions,
+        windows: Vec<Window>,
+    ) -> PyResult<Vec<PlainOrCertified>> {
         let model = Arc::clone(&self.0);
-        let forecasts = run(py, move |stop| manner.forecast_until(&model, &windows, stop))?;
+        let forecasts = run(py, move |stop| options.forecast_until(&model, &windows, stop))?;
         forecasts.map_err(raised)
     }
 }

@@ -1,8 +1,10 @@
-use super::{RecordingsAt, Reporting, at_least_one};
+//! `ddl baselines`: scores of the baselines alone.
+
+use crate::command::{RecordingsAt, Reporting, at_least_one};
 use clap::Args;
 use ddl::data::{Convention, Dataset};
 use ddl::report::Report;
-use ddl::{Protocol, Results};
+use ddl::{BaselineRequest, Protocol, Results};
 use std::path::PathBuf;
 
 /// Evaluate constant velocity and other baselines on test scenes
@@ -40,8 +42,13 @@ impl Baselines {
         } else {
             self.folds
         };
-        let part = (self.protocols.as_slice(), self.test_pedestrians);
-        let report = measure(&dataset, &folds, part, &self.reporting.commit)?;
+        let request = BaselineRequest {
+            folds,
+            protocols: self.protocols,
+            test_pedestrians: self.test_pedestrians,
+            commit: self.reporting.commit.clone(),
+        };
+        let report = measure(&dataset, &request)?;
         let rest = match &self.out {
             Some(folder) => {
                 Results::new(report.clone(), Vec::new()).save(folder)?;
@@ -53,13 +60,8 @@ impl Baselines {
     }
 }
 
-pub(super) fn measure(
-    dataset: &Dataset,
-    folds: &[String],
-    (protocols, pedestrians): (&[Protocol], Option<usize>),
-    commit: &str,
-) -> anyhow::Result<Report> {
-    let rows = ddl::measure_baselines(dataset, folds, protocols, pedestrians, commit)?;
+pub(super) fn measure(dataset: &Dataset, request: &BaselineRequest) -> anyhow::Result<Report> {
+    let rows = ddl::measure_baselines(dataset, request)?;
     let title = format!("Baselines: {}", dataset.convention());
     Ok(Report::new(title, rows)?)
 }

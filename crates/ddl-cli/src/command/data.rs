@@ -1,14 +1,16 @@
+//! `ddl data`: summaries of recordings and memories.
+
 mod place_memory;
 
-use super::Telling;
 use crate::clock::Clock;
-use crate::telling::tell;
+use crate::command::Telling;
+use crate::telling::{many, tell};
 use crate::units::Units;
 use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
 use ddl::data::{Recording, Summary, WindowRule};
-use place_memory::{MemoryPicture, PlaceMemory};
+use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -21,7 +23,7 @@ use std::path::{Path, PathBuf};
 /// error, and the others are still summarised (exit code 1). For the memory of a place, which `ddl forecast - --memory`
 /// writes, it prints what was observed there.
 #[derive(Debug, Args)]
-#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
+#[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 #[command(
     after_help = "Examples:\n  ddl data tracks.csv\n  ddl data recordings --fps 25 --json\n  \
         ddl data hall.memory --svg hall.svg"
@@ -62,7 +64,7 @@ impl Data {
             total.add(&summary);
         }
         if self.telling.json {
-            let of_memories: Vec<Value> = memories.iter().map(PlaceMemory::facts).collect();
+            let of_memories: Vec<Value> = memories.iter().map(MemoryOfFile::facts).collect();
             output::print_json(&json!({"recordings": of_each, "memories": of_memories, "total": total}))?;
             return recordings::all_read(errors, files.len());
         }
@@ -134,10 +136,6 @@ impl std::fmt::Display for Total {
             self.seconds / 3600.0
         )
     }
-}
-
-fn many(count: usize, one: &str, more: &str) -> String {
-    format!("{count} {}", if count == 1 { one } else { more })
 }
 
 fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Value> {

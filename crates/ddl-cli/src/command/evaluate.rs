@@ -1,6 +1,8 @@
+//! `ddl evaluate`: scores of a model or of another program.
+
 mod forecasts;
 
-use super::{KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
+use crate::command::{KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -88,17 +90,13 @@ impl Evaluate {
         let interrupt = Interrupt::catch()?;
         let model = Ddl::open(source, self.machine.device)?;
         let model = self.clear.of(model)?;
-        let request = EvaluationRequest {
-            protocols: self.protocols.clone(),
-            on: if self.validation {
-                Split::Validation
-            } else {
-                Split::Test
-            },
-            validation_recordings: self.validation_recordings.clone(),
-            test_pedestrians: self.test_pedestrians,
-            commit: self.reporting.commit.clone(),
-        };
+        let mut request = EvaluationRequest::new(self.protocols.clone());
+        if self.validation {
+            request.on = Split::Validation;
+        }
+        request.validation_recordings.clone_from(&self.validation_recordings);
+        request.test_pedestrians = self.test_pedestrians;
+        request.commit.clone_from(&self.reporting.commit);
         let trained_on = model.config().data.convention;
         let windows = &self.other.windows;
         let convention = windows.convention(&self.recordings, trained_on);
@@ -110,16 +108,18 @@ impl Evaluate {
             _ => format!("{} {}", model.config().data.fold, model.config().star.variant),
         };
         // Results on recordings of another convention are not saved in the run.
-        let kept = model.run().filter(|_| convention == trained_on);
+        let own_run = model.run().filter(|_| convention == trained_on);
         let mut dataset = self.recordings.dataset_for(model.config(), convention)?;
         if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
             dataset = Dataset::own(vec![dataset.recording(name)?.clone()])?;
         }
-        if let Some(run) = kept
+        if let Some(run) = own_run
             && ddl::is_evaluated(&model, &dataset, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
-            return self.reporting.print(&Report::load(&run.report())?, &self.written(kept));
+            return self
+                .reporting
+                .print(&Report::load(&run.report())?, &self.written(own_run));
         }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
@@ -129,13 +129,13 @@ impl Evaluate {
         })?;
         drop(progress);
         let report = Report::new(&title, evaluation.rows)?;
-        if let Some(run) = kept {
+        if let Some(run) = own_run {
             ddl::save_evaluation(&model, &dataset, &request, &report, &evaluation.moments)?;
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
         } else {
             self.save_elsewhere(|| Ok(Results::new(report.clone(), evaluation.moments)))?;
         }
-        self.reporting.print(&report, &self.written(kept))
+        self.reporting.print(&report, &self.written(own_run))
     }
 
     fn save_elsewhere(&self, results: impl FnOnce() -> Result<Results, DdlError>) -> anyhow::Result<()> {
@@ -147,8 +147,8 @@ impl Evaluate {
         Ok(())
     }
 
-    fn written(&self, kept: Option<&RunDirectory>) -> String {
-        match (kept, &self.other.out) {
+    fn written(&self, own_run: Option<&RunDirectory>) -> String {
+        match (own_run, &self.other.out) {
             (Some(run), None) => {
                 let (report, run) = (run.report(), run.path());
                 format!(

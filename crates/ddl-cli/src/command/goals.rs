@@ -1,7 +1,9 @@
-use super::{Machine, ModelChoice, Telling, convention_of, dataset};
+//! `ddl goals`: goals of pedestrians, and their quality.
+
 use crate::clock::FrameNumber;
+use crate::command::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::output::{ensure_not_input, table_metres, write_output};
-use crate::tracks::{Observed, Tracks};
+use crate::tracks::{ObservedTracks, TrackOptions};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use ddl::data::{OBSERVED, PedestrianName};
@@ -14,7 +16,7 @@ use std::path::PathBuf;
 ///
 /// Writes csv; with --measure it evaluates a model's goals instead.
 #[derive(Debug, Args)]
-#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
+#[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 #[command(
     after_help = "Examples:\n  ddl goals tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
 )]
@@ -22,14 +24,14 @@ pub(crate) struct Goals {
     #[command(flatten)]
     model: ModelChoice,
     #[command(flatten)]
-    tracks: Tracks,
+    tracks: TrackOptions,
     /// Compare the goals with the true endpoints in the scene that the model was trained without, or in your own
     /// recordings (--data)
     #[arg(long, value_enum, conflicts_with_all = ["file", "last", "whole"])]
     measure: Option<Measure>,
     /// Memory of the place to use for --measure
     #[arg(long, value_enum, requires = "measure")]
-    memory: Option<Memory>,
+    memory: Option<MemoryOption>,
     /// Recordings to evaluate on: the folder of the model's convention, or your own folder or file [default:
     /// `$DDL_DATASETS`, then `datasets/eth_ucy`]
     #[arg(long)]
@@ -55,7 +57,7 @@ enum Measure {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Memory {
+enum MemoryOption {
     /// Training recordings of the same place, whether confirmed to help or not
     Place,
     /// The recording before the last observed frame, as in the protocol `online`
@@ -63,7 +65,7 @@ enum Memory {
 }
 
 #[derive(Serialize)]
-struct Row {
+struct GoalRow {
     observed_until: FrameNumber,
     pedestrian: PedestrianName,
     goal: usize,
@@ -115,10 +117,10 @@ impl Goals {
             Measure::Validation => Split::Validation,
         };
         let memory = self.memory.map(|memory| match memory {
-            Memory::Place => Remembering::Place,
-            Memory::Online => Remembering::Online,
+            MemoryOption::Place => Remembering::Place,
+            MemoryOption::Online => Remembering::Online,
         });
-        let measured = ddl::evaluate_goals(&model, &dataset, (on, memory))?;
+        let measured = ddl::evaluate_goals(&model, &dataset, on, memory)?;
         if let Some(path) = &self.svg {
             write_output(Some(path), &ddl::goal_picture(&model, &measured)?)?;
         }
@@ -131,7 +133,7 @@ impl Goals {
     }
 }
 
-fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
+fn csv(observed: &ObservedTracks, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for (window, sets) in observed.windows.iter().zip(sets) {
         let last = observed.clock.number(window.frames()[OBSERVED - 1]);
@@ -139,7 +141,7 @@ fn csv(observed: &Observed, sets: &[Vec<GoalSet>]) -> anyhow::Result<String> {
             let counts = window.completion_counts(i);
             for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate() {
                 let [x, y] = position.map(table_metres);
-                writer.serialize(Row {
+                writer.serialize(GoalRow {
                     observed_until: last,
                     pedestrian: window.name(i),
                     goal,
@@ -168,9 +170,9 @@ fn words(evaluation: &GoalEvaluation) -> String {
             "recording", "pedestrian-windows", "nearest goal off (m)", "likeliest (m)"
         ),
     ];
-    let all = ("all".to_owned(), evaluation.all);
+    let errors_of_all = ("all".to_owned(), evaluation.all);
     let by_recording = evaluation.recordings.iter().map(|(n, e)| (n.clone(), *e));
-    for (name, errors) in by_recording.chain([all]) {
+    for (name, errors) in by_recording.chain([errors_of_all]) {
         lines.push(format!(
             "{name:14} {:>18}  {:>20.3}  {:>14.3}",
             errors.pedestrians, errors.oracle_fde, errors.likeliest_fde

@@ -1,4 +1,6 @@
-use super::Telling;
+//! `ddl info`: facts about a model or the program.
+
+use crate::command::Telling;
 use crate::output;
 use clap::Args;
 use ddl::data::Fold;
@@ -9,7 +11,7 @@ use std::path::PathBuf;
 
 /// Describe a model, or this program
 #[derive(Debug, Args)]
-#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
+#[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 pub(crate) struct Info {
     /// Directory of a run, a packed file, or the name of a built-in model [default: the program itself]
     #[arg(value_name = "MODEL")]

@@ -1,11 +1,13 @@
-mod finished_benchmark;
+//! `ddl pack`: a model as one small file.
 
-use super::Telling;
+mod finished_benchmark;
+mod one_model;
+
+use crate::command::Telling;
 use crate::output;
 use clap::Args;
-use ddl::{Ddl, DeviceChoice, ModelSource};
 use serde_json::json;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Pack a trained model into one small file, without its tracks
 ///
@@ -13,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// data: the packed model proposes all of its goals with its network. Every command with --model takes the file. The
 /// row "DDL without an expert library" in the results of the run shows the errors without the tracks.
 #[derive(Debug, Args)]
-#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
+#[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl pack --model runs/zara1 --out zara1.safetensors")]
 pub(crate) struct Pack {
     /// Directory of a finished run
@@ -37,7 +39,7 @@ impl Pack {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let packed = match (&self.benchmark, &self.model) {
             (Some(benchmark), _) => finished_benchmark::pack(benchmark, self.seed, &self.out)?,
-            (None, Some(model)) => vec![(self.out.clone(), pack(model, &self.out)?)],
+            (None, Some(model)) => vec![(self.out.clone(), one_model::pack(model, &self.out)?)],
             (None, None) => Vec::new(),
         };
         for (file, numbers) in packed {
@@ -49,10 +51,4 @@ impl Pack {
         }
         Ok(())
     }
-}
-
-fn pack(model: &Path, out: &Path) -> anyhow::Result<usize> {
-    let model = Ddl::open(&ModelSource::named(model), DeviceChoice::Cpu)?;
-    model.pack(out)?;
-    Ok(model.parameter_count() + model.goal_model().parameter_count())
 }

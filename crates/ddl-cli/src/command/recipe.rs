@@ -1,3 +1,5 @@
+//! The recipes of a training.
+
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -1,4 +1,6 @@
-use super::Telling;
+//! `ddl report`: results of several runs in one report.
+
+use crate::command::Telling;
 use crate::output;
 use clap::Args;
 use ddl::Results;
@@ -8,9 +10,9 @@ use std::path::PathBuf;
 ///
 /// Writes report.html, report.md, report.tex, report.json, moments.json and figures.
 #[derive(Debug, Args)]
-#[command(mut_arg("progress", |arg| arg.help(super::NO_PROGRESS)))]
+#[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
 #[command(after_help = "Example:\n  ddl report runs/eth runs/hotel --out runs")]
-pub(crate) struct Report {
+pub(crate) struct ReportCommand {
     /// Directories of evaluated runs
     #[arg(required = true)]
     runs: Vec<PathBuf>,
@@ -24,7 +26,7 @@ pub(crate) struct Report {
     telling: Telling,
 }
 
-impl Report {
+impl ReportCommand {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let results = Results::of(self.title, &self.runs)?;
         results.save(&self.out)?;

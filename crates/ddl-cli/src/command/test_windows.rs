@@ -1,4 +1,6 @@
-use super::RecordingsAt;
+//! The options that choose the test windows of a fold.
+
+use crate::command::RecordingsAt;
 use anyhow::bail;
 use clap::Args;
 use ddl::data::{Convention, Recording, Window, WindowRule};
@@ -22,7 +24,7 @@ pub(crate) struct TestWindows {
 
 impl TestWindows {
     pub(crate) fn convention(&self, recordings: &RecordingsAt, of_model: Convention) -> Convention {
-        let scene = |fold: &&String| Convention::Star.fold_names().any(|known| known == *fold);
+        let scene = |fold: &&String| Convention::Star.fold_names().any(|name| name == *fold);
         let of_fold = self.fold.as_ref().filter(scene);
         let asked = self.convention.or(of_fold.map(|_| Convention::Star));
         recordings.convention(asked, of_model)
@@ -42,8 +44,11 @@ impl TestWindows {
     /// The fold's name; `None` for all own recordings.
     fn fold(&self, convention: Convention) -> anyhow::Result<Option<&str>> {
         if self.fold.is_none() && convention != Convention::Own {
-            let known: Vec<&str> = convention.fold_names().collect();
-            bail!("give the fold to test on, --fold NAME with one of {}", known.join(", "));
+            let fold_names: Vec<&str> = convention.fold_names().collect();
+            bail!(
+                "give the fold to test on, --fold NAME with one of {}",
+                fold_names.join(", ")
+            );
         }
         if let (None, Convention::Star, Some(fold)) = (self.convention, convention, &self.fold) {
             ensure_scene_of_star(fold)?;
@@ -74,21 +79,21 @@ impl TestWindows {
         let dataset = recordings.dataset(convention)?;
         let rule = self.rule(convention);
         let Some(fold) = fold else {
-            let all: Vec<&Recording> = dataset.recordings().iter().collect();
-            let windows = all.iter().flat_map(|recording| recording.windows(rule));
-            return Ok((ddl::test_set_name(&all), windows.collect()));
+            let recordings: Vec<&Recording> = dataset.recordings().iter().collect();
+            let windows = recordings.iter().flat_map(|recording| recording.windows(rule));
+            return Ok((ddl::test_set_name(&recordings), windows.collect()));
         };
         Ok((fold.to_owned(), dataset.fold(fold)?.test_windows(rule)))
     }
 }
 
 pub(crate) fn ensure_scene_of_star(fold: &str) -> anyhow::Result<()> {
-    let known: Vec<&str> = Convention::Star.fold_names().collect();
-    if !known.contains(&fold) {
+    let scenes: Vec<&str> = Convention::Star.fold_names().collect();
+    if !scenes.contains(&fold) {
         bail!(
             "the star convention has no fold {fold:?}, only {}; if {fold:?} is one of your own recordings, add \
              --convention own",
-            known.join(", ")
+            scenes.join(", ")
         );
     }
     Ok(())

@@ -1,9 +1,11 @@
+//! `ddl train`: trains a model.
+
 mod bars;
 mod finished;
 
-use super::recipe::Recipe;
-use super::test_windows::ensure_scene_of_star;
-use super::{Machine, RecordingsAt, Reporting};
+use crate::command::recipe::Recipe;
+use crate::command::test_windows::ensure_scene_of_star;
+use crate::command::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
@@ -12,8 +14,8 @@ use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Dataset, Fold, Window};
 use ddl::network::{BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
-    BuiltinModel, DdlError, GoalRecipe, ModelSource, RunDirectory, TrainingRequest, TrainingStage, ValidationPart,
-    Variant,
+    BuiltinModel, DdlError, GoalRecipe, KeptEpochs, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
+    ValidationPart, Variant,
 };
 use std::path::PathBuf;
 
@@ -133,11 +135,13 @@ impl Train {
         let interrupt = Interrupt::catch()?;
         let (convention, fold) = self.scene()?;
         let dataset = self.recordings.dataset(convention)?;
-        let own = convention == Convention::Own;
+        let is_own = convention == Convention::Own;
         let part = self.validation_part(&dataset, &fold)?;
-        let kept = part.share > 0.0 || !part.recordings.is_empty();
-        let patience = self.patience.unwrap_or(if own && kept { PATIENCE } else { 0 });
-        if self.patience.is_some_and(|patience| patience > 0) && !kept {
+        let is_validated = part.share > 0.0 || !part.recordings.is_empty();
+        let patience = self
+            .patience
+            .unwrap_or(if is_own && is_validated { PATIENCE } else { 0 });
+        if self.patience.is_some_and(|patience| patience > 0) && !is_validated {
             let validation = part.share;
             bail!(DdlError::Patience { patience, validation });
         }
@@ -147,26 +151,23 @@ impl Train {
         let from = self.starting_model(&dataset, &fold, &part)?;
         let goals = self.goal_recipe(from.is_some())?;
         let (star, training) = self.recipe(from.is_some());
-        let request = TrainingRequest {
-            fold,
-            star,
-            training,
-            validation: part.share,
-            validation_recordings: part.recordings,
-            from,
-            patience: (patience > 0).then_some(patience),
-            goals,
-            units: self.recordings.units.told()?,
-            last_epoch_only: self.last_epoch_only,
-            until: if self.only_goals {
-                TrainingStage::Goals
-            } else {
-                TrainingStage::Network
-            },
-            out: RunDirectory::new(self.out),
-            device: self.machine.device,
-            commit: self.reporting.commit.clone(),
-        };
+        let mut request = TrainingRequest::recommended(fold, RunDirectory::new(self.out));
+        request.star = star;
+        request.training = training;
+        request.validation = part.share;
+        request.validation_recordings = part.recordings;
+        request.from = from;
+        request.patience = (patience > 0).then_some(patience);
+        request.goals = goals;
+        request.units = self.recordings.units.told()?;
+        if self.last_epoch_only {
+            request.kept_epochs = KeptEpochs::Last;
+        }
+        if self.only_goals {
+            request.until = TrainingStage::Goals;
+        }
+        request.device = self.machine.device;
+        request.commit.clone_from(&self.reporting.commit);
         let mut progress = TrainingBars::new(self.reporting.telling.progress);
         let trained = ddl::train(&request, &dataset, |now| {
             progress.tell(now);
@@ -260,10 +261,10 @@ impl Train {
             ),
             (None | Some(Convention::Own), None) => Ok((Convention::Own, Fold::NO_HELD_OUT.to_owned())),
             (Some(convention), None) => {
-                let known: Vec<&str> = convention.fold_names().collect();
+                let fold_names: Vec<&str> = convention.fold_names().collect();
                 bail!(
                     "give the fold to leave out, --fold NAME with one of {}",
-                    known.join(", ")
+                    fold_names.join(", ")
                 )
             }
         }

@@ -1,6 +1,8 @@
-use super::{KeepClear, Machine, ModelChoice};
+//! `ddl view`: a page that plays the forecasts of a recording.
+
+use crate::command::{KeepClear, Machine, ModelChoice};
 use crate::output;
-use crate::tracks::Tracks;
+use crate::tracks::TrackOptions;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::{Forecast, Forecaster as _, RecordingPlayer};
@@ -19,9 +21,9 @@ pub(crate) struct View {
     #[command(flatten)]
     model: ModelChoice,
     #[command(flatten)]
-    tracks: Tracks,
+    tracks: TrackOptions,
     /// Moments to show, evenly spread over the recording
-    #[arg(long, default_value_t = 60, value_parser = super::at_least_one)]
+    #[arg(long, default_value_t = 60, value_parser = crate::command::at_least_one)]
     moments: usize,
     /// Page to write [default: the name of the tracks with -forecasts.html, in the current folder]
     #[arg(long, short)]

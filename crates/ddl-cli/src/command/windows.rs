@@ -1,5 +1,7 @@
-use super::RecordingsAt;
-use super::test_windows::TestWindows;
+//! `ddl windows`: the observed test windows for another program.
+
+use crate::command::RecordingsAt;
+use crate::command::test_windows::TestWindows;
 use crate::output::write_output;
 use clap::Args;
 use ddl::eval::external;
@@ -12,9 +14,9 @@ use std::path::PathBuf;
 /// `ddl evaluate --forecasts` scores the other program's forecasts.
 #[derive(Debug, Args)]
 #[command(after_help = "Example:\n  ddl windows --convention star --fold zara1 --output windows.jsonl")]
-pub(crate) struct Windows {
+pub(crate) struct WindowsCommand {
     #[command(flatten)]
-    of: TestWindows,
+    windows: TestWindows,
     #[command(flatten)]
     recordings: RecordingsAt,
     /// File to write [default: standard output]
@@ -22,9 +24,9 @@ pub(crate) struct Windows {
     output: Option<PathBuf>,
 }
 
-impl Windows {
+impl WindowsCommand {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        let (_, windows) = self.of.windows(&self.recordings)?;
+        let (_, windows) = self.windows.windows(&self.recordings)?;
         let mut text = Vec::new();
         external::write_windows(&windows, &mut text)?;
         write_output(self.output.as_deref(), std::str::from_utf8(&text)?)

@@ -1,7 +1,7 @@
 //! Summary and picture of the memory of a place.
 
-use super::many;
 use crate::output::{ensure_not_input, write_output};
+use crate::telling::many;
 use anyhow::bail;
 use clap::Args;
 use ddl::data::Position;
@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 /// Bytes that distinguish a memory from tracks.
 const FIRST: u64 = 16;
 
-pub(super) struct PlaceMemory {
+pub(super) struct MemoryOfFile {
     file: PathBuf,
     memory: SceneMemory,
 }
@@ -36,18 +36,18 @@ pub(super) fn is_in(file: &Path) -> bool {
     file.is_file() && File::open(file).and_then(read).is_ok() && SceneMemory::begins(&first)
 }
 
-pub(super) fn read_each(files: Vec<PathBuf>) -> (Vec<PlaceMemory>, Vec<anyhow::Error>) {
+pub(super) fn read_each(files: Vec<PathBuf>) -> (Vec<MemoryOfFile>, Vec<anyhow::Error>) {
     let (mut memories, mut errors) = (Vec::new(), Vec::new());
     for file in files {
         match SceneMemory::read(&file) {
-            Ok(memory) => memories.push(PlaceMemory { file, memory }),
+            Ok(memory) => memories.push(MemoryOfFile { file, memory }),
             Err(error) => errors.push(error.into()),
         }
     }
     (memories, errors)
 }
 
-impl PlaceMemory {
+impl MemoryOfFile {
     pub(super) fn facts(&self) -> Value {
         let MemorySummary {
             segments,
@@ -99,7 +99,7 @@ fn duration(seconds: f64) -> String {
     }
 }
 
-impl Display for PlaceMemory {
+impl Display for MemoryOfFile {
     fn fmt(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
         writeln!(f, "{}, the memory of a place", self.file.display())?;
         writeln!(f, "  {}", self.numbers())?;
@@ -116,11 +116,11 @@ impl Display for PlaceMemory {
 }
 
 impl MemoryPicture {
-    pub(super) fn draw(&self, memories: &[PlaceMemory]) -> anyhow::Result<()> {
+    pub(super) fn draw(&self, memories: &[MemoryOfFile]) -> anyhow::Result<()> {
         let Some(picture) = &self.svg else {
             return Ok(());
         };
-        let [PlaceMemory { file, memory }] = memories else {
+        let [MemoryOfFile { file, memory }] = memories else {
             bail!(
                 "--svg draws the memory of one place, but {} given; give one file that `ddl forecast - --memory FILE` \
                  wrote",

@@ -1,7 +1,7 @@
 //! `ddl evaluate --forecasts`: scores the forecasts of another program beside the baselines.
 
-use super::super::RecordingsAt;
-use super::super::test_windows::{TestWindows, ensure_scene_of_star};
+use crate::command::RecordingsAt;
+use crate::command::test_windows::{TestWindows, ensure_scene_of_star};
 use anyhow::Context as _;
 use clap::Args;
 use ddl::data::{Convention, WindowRule};

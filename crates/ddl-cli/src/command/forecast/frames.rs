@@ -17,9 +17,9 @@ pub(super) enum Incoming {
     End(DataError),
 }
 
-pub(super) struct Frames(Receiver<Incoming>);
+pub(super) struct IncomingFrames(Receiver<Incoming>);
 
-impl Frames {
+impl IncomingFrames {
     pub(super) fn of_standard_input() -> anyhow::Result<Self> {
         let (send, received) = sync_channel(AHEAD);
         let name = "standard input";

@@ -1,7 +1,7 @@
 //! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads.
 
-use super::Moment;
 use crate::clock::FrameNumber;
+use crate::command::forecast::moment::Moment;
 use ddl::data::{HORIZON, PedestrianName, SceneName};
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;

@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 
 /// The memory that `--memory` names: a file of one place, or a folder with a file for each scene.
 pub(super) struct KeptMemory {
-    at: PathBuf,
+    path: PathBuf,
     is_folder: bool,
     /// `None` for a scene whose file cannot be used.
-    kept: BTreeMap<Option<SceneName>, Option<Kept>>,
+    kept: BTreeMap<Option<SceneName>, Option<OpenMemory>>,
 }
 
-struct Kept {
+struct OpenMemory {
     file: MemoryFile,
     /// The memory in the file, until the frame step is known.
     read: Option<SceneMemory>,
@@ -31,10 +31,10 @@ impl KeptMemory {
         let is_folder = path.is_dir();
         let mut kept = BTreeMap::new();
         if !is_folder {
-            kept.insert(None, Some(Kept::open(path)?));
+            kept.insert(None, Some(OpenMemory::open(path)?));
         }
         Ok(Self {
-            at: path.to_owned(),
+            path: path.to_owned(),
             is_folder,
             kept,
         })
@@ -42,13 +42,13 @@ impl KeptMemory {
 
     /// Refuses a stream of one scene with a folder, and one of several with a file.
     pub(super) fn ensure_fits(&self, scene: Option<&SceneName>) -> anyhow::Result<()> {
-        let at = self.at.display();
+        let path = self.path.display();
         match (scene, self.is_folder) {
             (None, true) => bail!(
-                "--memory {at} is a folder, and the lines name no scenes; name a file, or give the lines a column scene"
+                "--memory {path} is a folder, and the lines name no scenes; name a file, or give the lines a column scene"
             ),
             (Some(_), false) => bail!(
-                "--memory {at} is a file of one place, and the lines name scenes; name a folder that is there, \
+                "--memory {path} is a file of one place, and the lines name scenes; name a folder that is there, \
                  for a file of each scene"
             ),
             _ => Ok(()),
@@ -71,7 +71,7 @@ impl KeptMemory {
             }
             // After a failure, the scene does not try again at every frame.
             self.kept.insert(scene.cloned(), None);
-            let kept = Kept::open(&self.at.join(file_name(name)))?;
+            let kept = OpenMemory::open(&self.path.join(file_name(name)))?;
             self.kept.insert(scene.cloned(), Some(kept));
         }
         let Some(Some(kept)) = self.kept.get_mut(&scene.cloned()) else {
@@ -152,7 +152,7 @@ impl KeptMemory {
     }
 }
 
-impl Kept {
+impl OpenMemory {
     fn open(path: &Path) -> anyhow::Result<Self> {
         let (file, read) = MemoryFile::open(path)?;
         Ok(Self {

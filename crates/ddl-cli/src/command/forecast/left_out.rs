@@ -18,19 +18,19 @@ pub(super) struct LeftOut {
 #[derive(Debug, Default)]
 struct Seldom {
     count: u64,
-    told: u64,
+    reported: u64,
     last: Option<Instant>,
 }
 
 impl Seldom {
     /// Number of events since the last message, if the next message is due.
     fn take_due(&mut self) -> Option<u64> {
-        let new = self.count - self.told;
+        let new = self.count - self.reported;
         if new == 0 || self.last.is_some_and(|last| last.elapsed() < PAUSE) {
             return None;
         }
         self.last = Some(Instant::now());
-        self.told = self.count;
+        self.reported = self.count;
         Some(new)
     }
 }

@@ -1,10 +1,11 @@
 //! `ddl forecast -`: reads tracks from standard input and forecasts every frame.
 
-use super::frames::{Frames, Incoming};
-use super::kept_memory::KeptMemory;
-use super::left_out::LeftOut;
-use super::{Forecast, Onward};
 use crate::clock::Clock;
+use crate::command::forecast::arguments::ForecastCommand;
+use crate::command::forecast::frames::{Incoming, IncomingFrames};
+use crate::command::forecast::kept_memory::KeptMemory;
+use crate::command::forecast::left_out::LeftOut;
+use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::interrupt::Interrupt;
 use crate::recordings;
 use crate::telling::{tell, words};
@@ -26,10 +27,10 @@ const MOST_WAITING: usize = 64;
 const MOST_TAKEN: usize = 4096;
 
 /// Forecasts every frame as soon as it is complete, until standard input ends or the reader closes the output.
-pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
+pub(super) fn run(forecast: &ForecastCommand) -> anyhow::Result<()> {
     let model = forecast.model()?;
     let memory = forecast.memory.as_deref();
-    let watching = Watching {
+    let watching = WatchedStream {
         scenes: None,
         memory: memory.map(|path| KeptMemory::open(path, &model)).transpose()?,
     };
@@ -46,14 +47,14 @@ pub(super) fn run(forecast: &Forecast) -> anyhow::Result<()> {
     }
     let answered = answer(forecast, &model, &watching);
     // The memory is also written if the stream ended with an error.
-    let kept = lock(&watching).end();
-    if let (Err(_), Err(error)) = (&answered, &kept) {
+    let written = lock(&watching).end();
+    if let (Err(_), Err(error)) = (&answered, &written) {
         tell(format_args!("error: {}", words(error)));
     }
-    answered.and(kept)
+    answered.and(written)
 }
 
-fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyhow::Result<()> {
+fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>) -> anyhow::Result<()> {
     let units = forecast.tracks.live_units(model.config())?;
     let homography = units.homography()?;
     if let Some(note) = units.note_of_run(false) {
@@ -68,15 +69,15 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
         watching,
         homography,
         early: Vec::new(),
-        output: Output::open(forecast.output.as_deref())?,
-        onward: Onward::default(),
+        output: ForecastOutput::open(forecast.output.as_deref())?,
+        state: StreamState::default(),
         left_out: LeftOut::default(),
         is_empty: true,
         looked_at: false,
         taken: 0,
         answered: 0,
     };
-    stream.follow(&Frames::of_standard_input()?, &units)?;
+    stream.follow(&IncomingFrames::of_standard_input()?, &units)?;
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
         bail!(
@@ -84,7 +85,7 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
              pedestrian and frame"
         );
     }
-    if !stream.onward.headed {
+    if !stream.state.headed {
         bail!(
             "standard input: no pedestrian was observed long enough to be forecast; give --fps or --frame-step if \
                  frame numbers are not 0.4 s apart"
@@ -94,12 +95,12 @@ fn answer(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>) -> anyho
 }
 
 /// Creates the scenes, as soon as the frame step is known.
-fn begin(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>, step: i64) -> anyhow::Result<()> {
+fn begin(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>, step: i64) -> anyhow::Result<()> {
     let scenes = LiveScenes::with_frame_step(step)?;
     let scenes = scenes.with_completion(forecast.tracks.completion());
     let scenes = if forecast.latest { scenes.latest_only() } else { scenes };
     let mut watching = lock(watching);
-    let Watching { scenes: to, memory } = &mut *watching;
+    let WatchedStream { scenes: to, memory } = &mut *watching;
     let scenes = to.insert(scenes);
     match memory {
         // Without scene names there is one memory file: its errors are reported before the first frame.
@@ -109,18 +110,18 @@ fn begin(forecast: &Forecast, model: &Ddl, watching: &Mutex<Watching>, step: i64
 }
 
 /// The scenes of the stream, and their memories.
-struct Watching {
+struct WatchedStream {
     /// `None` until the frame step is known.
     scenes: Option<LiveScenes>,
     memory: Option<KeptMemory>,
 }
 
 /// Ignores a panic of the other thread: scenes and memories are consistent after every call.
-fn lock(watching: &Mutex<Watching>) -> MutexGuard<'_, Watching> {
+fn lock(watching: &Mutex<WatchedStream>) -> MutexGuard<'_, WatchedStream> {
     watching.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-impl Watching {
+impl WatchedStream {
     /// Ends the scenes that have been idle, when another one begins.
     fn forget_idle(&mut self) -> (Vec<SceneName>, anyhow::Result<()>) {
         let Some(scenes) = &mut self.scenes else {
@@ -166,14 +167,14 @@ impl Watching {
 }
 
 struct Stream<'a> {
-    forecast: &'a Forecast,
+    forecast: &'a ForecastCommand,
     model: &'a Ddl,
-    watching: &'a Mutex<Watching>,
+    watching: &'a Mutex<WatchedStream>,
     homography: Option<Homography>,
     /// The first frame of each scene, until the frame step is known.
     early: Vec<Frame>,
-    output: Output,
-    onward: Onward,
+    output: ForecastOutput,
+    state: StreamState,
     left_out: LeftOut,
     is_empty: bool,
     /// Whether the speeds of the first pedestrians have been checked.
@@ -187,7 +188,7 @@ struct Stream<'a> {
 impl Stream<'_> {
     /// Reads all frames that have arrived, then forecasts a batch. It blocks for input only if no window waits for a
     /// forecast.
-    fn follow(&mut self, frames: &Frames, units: &Units) -> anyhow::Result<()> {
+    fn follow(&mut self, frames: &IncomingFrames, units: &Units) -> anyhow::Result<()> {
         let wrong = loop {
             let waiting = self.waiting();
             let is_full = if self.forecast.latest {
@@ -268,7 +269,7 @@ impl Stream<'_> {
             (Vec::new(), Ok(()))
         };
         for scene in idle {
-            self.onward.forget(&scene);
+            self.state.forget(&scene);
         }
         watching.observe(frame, self.model).and(ended)
     }
@@ -306,8 +307,8 @@ impl Stream<'_> {
     }
 
     fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
-        let onward = &mut self.onward;
-        self.forecast.text(self.model, (windows, scenes), Clock::WHOLE, onward)
+        let windows = SceneWindows { windows, scenes };
+        self.forecast.text(self.model, windows, Clock::WHOLE, &mut self.state)
     }
 
     /// Leaves out a failed forecast of a named scene. Before the first forecast it is an error, because the arguments
@@ -333,7 +334,7 @@ impl Stream<'_> {
     }
 }
 
-struct Output {
+struct ForecastOutput {
     /// `None` for standard output.
     file: Option<File>,
     /// Whether a forecast was written. The first forecast replaces an existing file; an input without forecasts does
@@ -341,7 +342,7 @@ struct Output {
     begun: bool,
 }
 
-impl Output {
+impl ForecastOutput {
     /// Opens the output before the first forecast, so that an error shows at once.
     fn open(path: Option<&Path>) -> anyhow::Result<Self> {
         let mut options = File::options();

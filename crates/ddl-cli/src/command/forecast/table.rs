@@ -1,7 +1,7 @@
 //! Forecasts as csv: one row for each position.
 
-use super::Moment;
 use crate::clock::FrameNumber;
+use crate::command::forecast::moment::Moment;
 use crate::output::{table_metres, table_share};
 use anyhow::Context as _;
 use ddl::data::PedestrianName;

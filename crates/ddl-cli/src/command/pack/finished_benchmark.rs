@@ -1,7 +1,8 @@
 //! Packs the models of a finished benchmark together with their results, as the built-in models.
 
-use super::super::benchmark::{Method, Plan, Profile, Task};
-use super::super::recipe::Recipe;
+use crate::command::benchmark::{Method, Plan, Profile, Task};
+use crate::command::pack::one_model;
+use crate::command::recipe::Recipe;
 use anyhow::{Context as _, ensure};
 use ddl::Protocol;
 use ddl::data::{Convention, WindowRule, write_atomically};
@@ -46,7 +47,7 @@ pub(super) fn pack(benchmark: &Path, seed: Option<u64>, out: &Path) -> anyhow::R
     for task in &tasks {
         let name = format!("{}.safetensors", task.fold);
         let run = task.run_folder(benchmark);
-        let numbers = super::pack(&run, &work.path().join(&name))?;
+        let numbers = one_model::pack(&run, &work.path().join(&name))?;
         let bytes = std::fs::read(work.path().join(&name))?;
         ensure!(
             bytes.len() <= MOST_BYTES,
@@ -110,11 +111,12 @@ fn reported(report: &Report, task: &Task, test_pedestrians: Option<usize>) -> an
     let (convention, protocol) = (Convention::Star, Protocol::Fair);
     let window_rule = convention.headline_rule();
     let row = report.rows().iter().find(|row| {
-        let of = &row.conditions;
-        of.forecaster == FORECASTER
-            && (of.convention, of.window_rule, of.protocol) == (convention, window_rule, protocol)
-            && of.fold == task.fold
-            && of.seed == Some(task.seed)
+        let conditions = &row.conditions;
+        conditions.forecaster == FORECASTER
+            && (conditions.convention, conditions.window_rule, conditions.protocol)
+                == (convention, window_rule, protocol)
+            && conditions.fold == task.fold
+            && conditions.seed == Some(task.seed)
     });
     let row = row.with_context(|| {
         format!(

@@ -1,6 +1,6 @@
 //! The output at the end of `ddl train`, and the comparison with the built-in model on own recordings.
 
-use super::super::{RecordingsAt, Reporting};
+use crate::command::{RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
 use crate::output::{self, shell_word};
 use crate::progress::{Progress, ProgressMode};
@@ -64,8 +64,8 @@ pub(super) fn print(
 
 fn next(request: &TrainingRequest, (only_goals, measured): (bool, bool), data: &str) -> String {
     let run = shell_word(request.out.path());
-    let kept = request.validation > 0.0 || !request.validation_recordings.is_empty();
-    let part = match (request.fold == Fold::NO_HELD_OUT, kept) {
+    let is_validated = request.validation > 0.0 || !request.validation_recordings.is_empty();
+    let part = match (request.fold == Fold::NO_HELD_OUT, is_validated) {
         (false, _) => Some("test"),
         (true, true) => Some("validation"),
         (true, false) => None,
@@ -102,9 +102,9 @@ pub(super) fn compare_with_builtin(
     reporting: &Reporting,
     interrupt: &Interrupt,
 ) -> anyhow::Result<Option<Comparison>> {
-    let kept = request.validation > 0.0 || !request.validation_recordings.is_empty();
-    let own = dataset.convention() == Convention::Own;
-    if !kept || !own || !request.out.is_trained() {
+    let is_validated = request.validation > 0.0 || !request.validation_recordings.is_empty();
+    let is_own = dataset.convention() == Convention::Own;
+    if !is_validated || !is_own || !request.out.is_trained() {
         return Ok(None);
     }
     let run = Ddl::load(request.out.path(), request.device)?;

@@ -1,0 +1,189 @@
+//! The options of `ddl forecast`, and forecasts as text by these options.
+
+use crate::clock::Clock;
+use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, warn_of_violation};
+use crate::command::forecast::{json_lines, table};
+use crate::command::{KeepClear, Machine, ModelChoice};
+use crate::telling::tell;
+use crate::tracks::TrackOptions;
+use clap::{Args, ValueEnum};
+use ddl::{Calibration, CertifiedForecast, Ddl, Forecaster as _};
+use std::path::PathBuf;
+
+/// Forecast the next 4.8 s of your own tracks
+#[derive(Debug, Args)]
+#[command(mut_arg("file", |file| file.required(true)))]
+#[command(after_help = "Examples:\n  \
+        ddl forecast tracks.csv --output forecasts.csv\n  \
+        ddl forecast camera.csv --fps 25 --homography H.txt --last\n  \
+        tracker | ddl forecast - --fps 10 --one --format jsonl\n  \
+        tracker | ddl forecast - --fps 10 --memory hall.memory\n  \
+        trackers | ddl forecast - --fps 10 --latest --format jsonl\n  \
+        ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
+pub(crate) struct ForecastCommand {
+    #[command(flatten)]
+    pub(super) model: ModelChoice,
+    #[command(flatten)]
+    pub(super) tracks: TrackOptions,
+    /// File to write [default: standard output]
+    #[arg(long, short)]
+    pub(super) output: Option<PathBuf>,
+    /// Format: csv (one row per position, to 0.1 mm) or jsonl (one JSON object per pedestrian, with all digits)
+    #[arg(long, value_enum, default_value = "csv")]
+    pub(super) format: OutputFormat,
+    /// One hypothesis per pedestrian instead of 20: to a central goal that represents the 20
+    #[arg(long)]
+    pub(super) one: bool,
+    /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
+    /// missing, written every minute and at the end
+    ///
+    /// Use one file for each camera; for a stream of several scenes an existing folder, which gets a file SCENE.memory
+    /// for each. The first 30 pedestrians show whether the memory is of this place; if it is not, the file is left
+    /// unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
+    #[arg(long, value_name = "FILE")]
+    pub(super) memory: Option<PathBuf>,
+    /// With `-`: if frames arrive faster than they are forecast, forecast only the latest of each scene, and report how
+    /// many were dropped
+    ///
+    /// Without it every frame is forecast, and the writer of the stream has to wait. Tracks and memory use every frame
+    /// in both cases. With a file as input nearly all frames would be dropped.
+    #[arg(long)]
+    pub(super) latest: bool,
+    /// Add to every hypothesis the evidence that it approaches its goal at every step
+    ///
+    /// A certificate holds when the distance to the goal falls at each of the 12 steps, along a flow that descends
+    /// everywhere, and a pedestrian at its goal stays there. It refers to exactly the positions in JSON lines; csv
+    /// rounds them to 0.1 mm. csv adds two columns, the distance to the goal at that frame (metres) and the verdict;
+    /// jsonl adds the verdict and its evidence for each step. It proves that the forecast is stable, not that it is
+    /// accurate. The variants star and no-dynamics have no certificates (with --one, only star).
+    #[arg(long)]
+    pub(super) certificate: bool,
+    /// Regions that contain the pedestrian with these probabilities at each step, such as 0.5,0.9: discs around the
+    /// hypotheses
+    ///
+    /// csv adds a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl adds the discs of each
+    /// step. The initial regions were calibrated on other places. From frame to frame they adapt to the observations,
+    /// so that they keep their share in this place too (docs/regions.md). --last uses the initial regions.
+    #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability)]
+    #[arg(conflicts_with = "one")]
+    pub(super) region: Vec<f64>,
+    #[command(flatten)]
+    pub(super) clear: KeepClear,
+    #[command(flatten)]
+    pub(super) machine: Machine,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum OutputFormat {
+    Csv,
+    Jsonl,
+}
+
+impl ForecastCommand {
+    pub(super) fn model(&self) -> anyhow::Result<Ddl> {
+        let model = self.model.load(self.machine.device)?;
+        Ok(self.clear.of(model)?)
+    }
+
+    /// Forecasts of the windows in order of time, as text. The first text starts with the names of the columns, if the
+    /// format has any.
+    pub(super) fn text(
+        &self,
+        model: &Ddl,
+        windows: SceneWindows<'_>,
+        clock: Clock,
+        state: &mut StreamState,
+    ) -> anyhow::Result<String> {
+        let (certified, forecasts);
+        let moments: Vec<Moment<'_>> = if self.certificate {
+            certified = self.certified(model, windows, state)?;
+            windows.moments(&certified, clock, Moment::certified)
+        } else {
+            forecasts = self.plain(model, windows, state)?;
+            windows.moments(&forecasts, clock, Moment::plain)
+        };
+        warn_of_violation(&moments);
+        state.warned = state.warned || self.warn_of_unfamiliar(&moments);
+        let headed = !std::mem::replace(&mut state.headed, true);
+        match self.format {
+            OutputFormat::Csv => table::csv(&moments, headed, &self.region),
+            OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),
+        }
+    }
+
+    fn plain(
+        &self,
+        model: &Ddl,
+        windows: SceneWindows<'_>,
+        state: &mut StreamState,
+    ) -> anyhow::Result<Vec<ddl::Forecast>> {
+        let forecasts = if self.one {
+            model.forecast_central(windows.windows)?
+        } else {
+            model.forecast_all(windows.windows)?
+        };
+        if self.region.is_empty() {
+            return Ok(forecasts);
+        }
+        let of_window = |(i, forecast)| state.adapted(windows, i, forecast);
+        Ok(forecasts.into_iter().enumerate().map(of_window).collect())
+    }
+
+    fn certified(
+        &self,
+        model: &Ddl,
+        windows: SceneWindows<'_>,
+        state: &mut StreamState,
+    ) -> anyhow::Result<Vec<CertifiedForecast>> {
+        let mut certified = if self.one {
+            model.forecast_central_certified(windows.windows)?
+        } else {
+            model.forecast_certified(windows.windows)?
+        };
+        if !self.region.is_empty() {
+            for (i, certified) in certified.iter_mut().enumerate() {
+                certified.forecast = state.adapted(windows, i, certified.forecast.clone());
+            }
+        }
+        Ok(certified)
+    }
+
+    /// Warns of motions unlike the training motions, whose forecasts are less certain; returns whether there are any.
+    fn warn_of_unfamiliar(&self, moments: &[Moment<'_>]) -> bool {
+        let motions = moments
+            .iter()
+            .flat_map(|moment| (0..moment.window.len()).map(move |i| (moment, i)));
+        let familiarity = |&(moment, i): &(&Moment<'_>, usize)| moment.forecast.familiarity(i);
+        let mut unfamiliar = motions
+            .clone()
+            .filter(|motion| familiarity(motion).is_some_and(|f| f < ddl::UNFAMILIAR_THRESHOLD));
+        let Some((moment, i)) = unfamiliar.next() else {
+            return false;
+        };
+        let count = 1 + unfamiliar.count();
+        let later = if self.tracks.are_live() {
+            "; this warning appears once, but each forecast has its familiarity"
+        } else {
+            ""
+        };
+        tell(format_args!(
+            "warning: {count} of {} motions are unlike the training motions (familiarity below {}), first that of \
+             pedestrian {} observed until frame {}: their forecasts use little of the network, and their weights are \
+             flatter{later}",
+            motions.count(),
+            ddl::UNFAMILIAR_THRESHOLD,
+            moment.who(i),
+            moment.observed_until(),
+        ));
+        true
+    }
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    let [low, high] = Calibration::fitted().regions.range();
+    let level: f64 = text.trim().parse().map_err(|error| format!("{error}"))?;
+    if (low..=high).contains(&level) {
+        return Ok(level);
+    }
+    Err(format!("the probability of a region must be from {low} to {high}"))
+}

@@ -1,0 +1,135 @@
+//! The forecasts of some frames, and the state that one group of frames passes on to the next.
+
+use crate::clock::{Clock, FrameNumber};
+use crate::telling::tell;
+use ddl::data::{HORIZON, OBSERVED, SceneName, Window};
+use ddl::dynamics::LyapunovCertificate;
+use ddl::{AdaptiveRegions, CertifiedForecast};
+use std::collections::BTreeMap;
+
+/// Windows in order of time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SceneWindows<'a> {
+    pub(super) windows: &'a [Window],
+    /// The scene of each window; empty if the tracks name no scenes.
+    pub(super) scenes: &'a [Option<SceneName>],
+}
+
+impl<'a> SceneWindows<'a> {
+    /// The moments of these forecasts, one for each window.
+    pub(super) fn moments<F>(
+        self,
+        forecasts: &'a [F],
+        clock: Clock,
+        moment: impl Fn(&'a Window, &'a F, Option<&'a SceneName>, Clock) -> Moment<'a>,
+    ) -> Vec<Moment<'a>> {
+        let pairs = self.windows.iter().zip(forecasts).enumerate();
+        let scene = |i: usize| self.scenes.get(i).and_then(Option::as_ref);
+        pairs
+            .map(|(i, (window, forecast))| moment(window, forecast, scene(i), clock))
+            .collect()
+    }
+}
+
+/// State that one chunk of forecasts passes on to the next.
+#[derive(Debug, Default)]
+pub(super) struct StreamState {
+    pub(super) headed: bool,
+    /// Whether the warning about unfamiliar motions has been given.
+    pub(super) warned: bool,
+    /// The adaptive regions of each scene.
+    regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
+}
+
+impl StreamState {
+    /// The forecast of window `i` with the adaptive regions of its scene.
+    pub(super) fn adapted(&mut self, windows: SceneWindows<'_>, i: usize, forecast: ddl::Forecast) -> ddl::Forecast {
+        let scene = windows.scenes.get(i).cloned().flatten();
+        self.regions
+            .entry(scene)
+            .or_default()
+            .adapt(&windows.windows[i], forecast)
+    }
+
+    pub(super) fn forget(&mut self, scene: &SceneName) {
+        self.regions.remove(&Some(scene.clone()));
+    }
+}
+
+/// The forecast at one frame.
+pub(super) struct Moment<'a> {
+    pub(super) scene: Option<&'a SceneName>,
+    pub(super) window: &'a Window,
+    pub(super) forecast: &'a ddl::Forecast,
+    pub(super) certified: Option<&'a CertifiedForecast>,
+    pub(super) clock: Clock,
+}
+
+impl<'a> Moment<'a> {
+    pub(super) fn plain(
+        window: &'a Window,
+        forecast: &'a ddl::Forecast,
+        scene: Option<&'a SceneName>,
+        clock: Clock,
+    ) -> Self {
+        Self {
+            scene,
+            window,
+            forecast,
+            certified: None,
+            clock,
+        }
+    }
+
+    pub(super) fn certified(
+        window: &'a Window,
+        certified: &'a CertifiedForecast,
+        scene: Option<&'a SceneName>,
+        clock: Clock,
+    ) -> Self {
+        Self {
+            certified: Some(certified),
+            ..Self::plain(window, &certified.forecast, scene, clock)
+        }
+    }
+
+    pub(super) fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
+        Some(self.certified?.certificate(i, hypothesis))
+    }
+
+    /// The name of a pedestrian in messages.
+    pub(super) fn who(&self, i: usize) -> String {
+        let name = self.window.name(i);
+        match self.scene {
+            None => name.to_string(),
+            Some(scene) => format!("{name} of scene {scene}"),
+        }
+    }
+
+    pub(super) fn observed_until(&self) -> FrameNumber {
+        self.clock.number(self.window.frames()[OBSERVED - 1])
+    }
+
+    pub(super) fn frames(&self) -> Vec<FrameNumber> {
+        let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
+        let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
+        frames.collect()
+    }
+}
+
+/// Stable steps keep the guarantee for any output of the network. If one violates it, a user who relies on the
+/// forecasts must know.
+pub(super) fn warn_of_violation(moments: &[Moment<'_>]) {
+    let first = moments.iter().find_map(|moment| {
+        let (i, hypothesis, violation) = moment.certified?.first_violation()?;
+        Some((moment, i, hypothesis, violation))
+    });
+    if let Some((moment, i, hypothesis, violation)) = first {
+        tell(format_args!(
+            "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
+             observed until frame {}, hypothesis {hypothesis}: {violation}",
+            moment.who(i),
+            moment.observed_until(),
+        ));
+    }
+}
