@@ -10,7 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 10] = [
+const EXAMPLES: [(&str, &[&str]); 9] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -23,13 +23,6 @@ const EXAMPLES: [(&str, &[&str]); 10] = [
     (
         "ddl-forecast forecast_csv mine.csv",
         &["mine.csv, frame 80: 3 pedestrians"],
-    ),
-    (
-        "ddl-forecast live hotel.safetensors mine.csv",
-        &[
-            "frame 60: 3 pedestrians, none observed at 8 steps yet",
-            "closer to its goal at every step",
-        ],
     ),
     ("ddl-forecast draw_forecast sample.csv 15 forecast.svg", &[]),
     ("ddl-data sample_recording", &[SAMPLE]),
@@ -81,8 +74,6 @@ fn parts(line: &str) -> (&str, &str, &str) {
 fn every_example_runs_and_prints_the_expected_texts() {
     let place = Place::empty();
     place.write_tracks("mine.csv", &own_tracks::three_pedestrians(9));
-    let model = include_bytes!("../../crates/ddl/models/hotel.safetensors");
-    place.write("hotel.safetensors", model);
     place.write("sample.csv", SAMPLE);
     for (line, promises) in EXAMPLES {
         let (package, name, arguments) = parts(line);

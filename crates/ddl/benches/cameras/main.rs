@@ -4,14 +4,14 @@
 //! Every camera sees 12 pedestrians and sends 2.5 frames per second, at its own times. One thread does all the work: a
 //! built-in model observes and forecasts every frame, with 20 hypotheses per pedestrian. Time is simulated: it advances
 //! by the processor time of the work, and idle time is skipped. So other load on the machine disturbs little, and hours
-//! pass in seconds. One run uses the real clock.
+//! pass in seconds.
 
 mod cameras;
 mod queue;
 
 use cameras::{FRAME, PEDESTRIANS};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, LiveScenes};
-use queue::{Figures, Phases};
+use queue::Phases;
 use std::error::Error;
 use std::io::Write as _;
 
@@ -83,28 +83,19 @@ fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
     };
     let cameras = cameras.clamp(1, LiveScenes::MOST_SCENES);
     let figures = queue::simulated(&model, cameras, frames(cameras).min(20), Phases::Own)?;
+    let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * figures.latency(share));
     writeln!(
         out,
-        "\ntwice as many as one core forecasts ({capacity:.0}): {}",
-        told(cameras, &figures)
+        "\ntwice as many as one core forecasts ({capacity:.0}): {cameras} cameras, {} of {} frames forecast, {} dropped for \
+         later ones, p50 {p50:.0} ms, p99 {p99:.0} ms",
+        figures.latencies.len(),
+        figures.frames,
+        figures.dropped,
     )?;
-    let (cameras, seconds) = if is_measured { (60, 8.0) } else { (2, 0.5) };
-    let figures = queue::by_the_clock(&model, cameras, seconds)?;
-    writeln!(out, "by the clock, {seconds} s: {}", told(cameras, &figures))?;
     let [tracks, waiting] = queue::memory(if is_measured { 1_000 } else { 2 })?;
     writeln!(
         out,
         "memory of a camera: {tracks:.1} KiB, and {waiting:.1} KiB while a frame waits ({PEDESTRIANS} pedestrians each)"
     )?;
     Ok(())
-}
-
-fn told(cameras: usize, figures: &Figures) -> String {
-    let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * figures.latency(share));
-    format!(
-        "{cameras} cameras, {} of {} frames forecast, {} dropped for later ones, p50 {p50:.0} ms, p99 {p99:.0} ms",
-        figures.latencies.len(),
-        figures.frames,
-        figures.dropped,
-    )
 }

@@ -6,8 +6,6 @@ use ddl::data::{Completion, OBSERVED, SceneName};
 use ddl::{Ddl, LiveScenes};
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::BTreeMap;
-use std::sync::mpsc;
-use std::time::{Duration, Instant};
 
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Phases {
@@ -144,59 +142,6 @@ pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phas
     }
     let dropped = scenes.dropped() - dropped_before;
     Figures::new(latencies, cameras.len() * frames, dropped, busy / now)
-}
-
-/// Measures in real time: one thread sends the frames when they are due, this thread observes and forecasts them.
-pub(crate) fn by_the_clock(model: &Ddl, cameras: usize, seconds: f64) -> Result<Figures> {
-    let (mut cameras, mut scenes) = watched(cameras)?;
-    let dropped_before = scenes.dropped();
-    let frames = (seconds / FRAME) as usize;
-    let count = cameras.len();
-    let (send, received) = mpsc::sync_channel(64);
-    let begun = Instant::now();
-    let sender = std::thread::spawn(move || {
-        cameras.sort_by(|a, b| a.phase.total_cmp(&b.phase));
-        for frame in 0..frames {
-            for camera in &mut cameras {
-                let due = Duration::from_secs_f64(FRAME * (frame as f64 + camera.phase));
-                std::thread::sleep(due.saturating_sub(begun.elapsed()));
-                let number = (frame + OBSERVED) as i64 - 1;
-                let seen = camera.frame(number);
-                if send.send((due, camera.name.clone(), number, seen)).is_err() {
-                    return;
-                }
-            }
-        }
-    });
-    let mut came: BTreeMap<SceneName, Duration> = BTreeMap::new();
-    let (mut latencies, mut busy) = (Vec::new(), 0.0);
-    loop {
-        let next = if scenes.waiting() == 0 {
-            match received.recv() {
-                Ok(next) => Some(next),
-                Err(_) => break,
-            }
-        } else {
-            received.try_recv().ok()
-        };
-        let work = Instant::now();
-        if let Some((due, name, frame, seen)) = next {
-            scenes.observe(Some(&name), frame, seen)?;
-            came.insert(name, due);
-            busy += work.elapsed().as_secs_f64();
-            continue;
-        }
-        for made in scenes.forecast(model, LiveScenes::BATCH) {
-            made.forecast?;
-            let scene = made.scene.ok_or("a camera has a name")?;
-            latencies.push(begun.elapsed().saturating_sub(came[&scene]).as_secs_f64());
-        }
-        busy += work.elapsed().as_secs_f64();
-    }
-    let busy = busy / begun.elapsed().as_secs_f64();
-    sender.join().map_err(|_| "the sender failed")?;
-    let dropped = scenes.dropped() - dropped_before;
-    Figures::new(latencies, count * frames, dropped, busy)
 }
 
 /// Memory per camera (KiB): after 7 frames, including the simulation of the camera; and in addition while a frame
