@@ -201,8 +201,8 @@ impl Model {
         let options = ForecastOptions::new(&self.0, self.hypotheses(), false)?;
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
-        let about = (recording.tracks.name(), None);
-        let page = player.to_html(&forecasts, about, |frame| frame / recording.parts);
+        let name = recording.tracks.name();
+        let page = player.to_html(&forecasts, name, None, |frame| frame / recording.parts);
         page.map_err(raised)
     }
 }

@@ -52,8 +52,8 @@ impl View {
         let forecasts: Vec<&Forecast> = forecasts.iter().collect();
         let name = self.tracks.file().file_name().unwrap_or_default();
         let warning = observed.warning.as_ref().map(ToString::to_string);
-        let about = (&*name.to_string_lossy(), warning.as_deref());
-        let page = player.to_html(&forecasts, about, |frame| observed.clock.nearest(frame))?;
+        let frame = |frame| observed.clock.nearest(frame);
+        let page = player.to_html(&forecasts, &name.to_string_lossy(), warning.as_deref(), frame)?;
         let path = self.output.unwrap_or_else(|| {
             let stem = self.tracks.file().file_stem().unwrap_or_default();
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))

@@ -93,8 +93,13 @@ pub fn evaluate(
     request: &EvaluationRequest,
     observe: impl FnMut(&EvaluationProgress) -> ControlFlow<()>,
 ) -> Result<Evaluation, DdlError> {
-    let part = (request.on, request.validation_recordings.as_slice());
-    let test = TestSet::of_run(model.goal_model(), dataset, part, request.test_pedestrians)?;
+    let test = TestSet::of_run(
+        model.goal_model(),
+        dataset,
+        request.on,
+        &request.validation_recordings,
+        request.test_pedestrians,
+    )?;
     let asked = |some: &[Protocol]| some.iter().any(|p| request.protocols.contains(p));
     let passes = [&[Protocol::Published][..], &ALONE, &WATCHING].map(asked);
     let total = test.pedestrians() * passes.iter().filter(|asked| **asked).count();
@@ -184,7 +189,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         } else {
             None
         };
-        let forecasts = self.forecast((first, windows), variants.len(), |windows| {
+        let forecasts = self.forecast(first, windows, variants.len(), |windows| {
             let goals = model.goal_model().goals(windows)?;
             let towards = |variant: &EvaluationVariant| {
                 let goals = match &published {
@@ -283,7 +288,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         let best = Published::best_on_test(model, &estimator, &windows, tick)?;
         let goal = "the estimated goal nearest the TRUE end";
         let test = self.test;
-        let mut forecasts = self.forecast((protocol, &test.windows), 1, |windows| {
+        let mut forecasts = self.forecast(protocol, &test.windows, 1, |windows| {
             let goals = sets::nearest_true_end(&estimator, windows)?;
             let certain: Vec<Vec<WeightedGoals>> = goals
                 .iter()
@@ -306,7 +311,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     /// Forecasts all windows in several variants, in chunks. The model sees the futures only if the protocol shows them.
     fn forecast(
         &mut self,
-        (protocol, windows): (Protocol, &[Window]),
+        protocol: Protocol,
+        windows: &[Window],
         variants: usize,
         forecast_some: impl Fn(&[Window]) -> Result<Forecasts, ForecastError>,
     ) -> Result<Forecasts, DdlError> {

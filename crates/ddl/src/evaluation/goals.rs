@@ -89,7 +89,7 @@ pub fn evaluate_goals(
     on: Split,
     memory: Option<Remembering>,
 ) -> Result<MeasuredGoals, DdlError> {
-    let test = TestSet::of_run(model, dataset, (on, &[]), None)?;
+    let test = TestSet::of_run(model, dataset, on, &[], None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);
     let mut windows: Vec<Window> = test.headline().cloned().collect();
     if let Some(memory) = memory {

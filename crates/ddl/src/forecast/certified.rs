@@ -122,7 +122,9 @@ impl Walked<'_> {
         let goals = self.goals.chunks_exact(hypotheses);
         let pairs = goals.zip(self.weights.chunks_exact(hypotheses)).enumerate();
         let spread = pairs
-            .flat_map(|(i, goals)| calibration.spread(self.window.observed(i), goals, self.config.time_step))
+            .flat_map(|(i, (goals, weights))| {
+                calibration.spread(self.window.observed(i), goals, weights, self.config.time_step)
+            })
             .collect();
         Ok(forecast.with_std_dev(spread, Calibration::shared_regions())?)
     }

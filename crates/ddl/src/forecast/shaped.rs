@@ -12,6 +12,13 @@ use ddl_network::{ForecastWindows, Noise, StepRule, WindowRollout};
 /// Hypotheses of the variant without goals: one for each noise vector.
 const NOISE_HYPOTHESES: usize = 20;
 
+/// The goals `[window][pedestrian]`, and the familiarity of the observed motion of each pedestrian.
+#[derive(Debug, Clone)]
+pub(crate) struct GuidedGoals {
+    pub(crate) sets: Vec<Vec<GoalSet>>,
+    pub(crate) familiarity: Vec<Vec<f64>>,
+}
+
 /// For every pedestrian, one hypothesis for each goal, with the weight of the goal. The more familiar the observed
 /// motion, the more the network shapes the path. The variant without goals makes one for each noise vector of this
 /// seed, all equally likely.
@@ -19,13 +26,13 @@ pub(crate) fn towards(
     network: &dyn ForecastWindows,
     seed: u64,
     windows: &[Window],
-    (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
+    goals: GuidedGoals,
     integrator: PathIntegrator,
 ) -> Result<Vec<Forecast>, ForecastError> {
     if !network.config().variant.uses_goal() {
         return without_goals(network, seed, windows);
     }
-    walked(network, windows, (sets, familiarity), integrator)?
+    walked(network, windows, goals, integrator)?
         .map(Walked::forecast)
         .collect()
 }
@@ -35,9 +42,10 @@ pub(crate) fn towards(
 pub(crate) fn walked<'a>(
     network: &'a dyn ForecastWindows,
     windows: &'a [Window],
-    (sets, familiarity): (Vec<Vec<GoalSet>>, Vec<Vec<f64>>),
+    goals: GuidedGoals,
     integrator: PathIntegrator,
 ) -> Result<impl Iterator<Item = Walked<'a>>, ForecastError> {
+    let GuidedGoals { sets, familiarity } = goals;
     let goals: Vec<Vec<Vec<Position>>> = sets
         .iter()
         .map(|sets| sets.iter().map(|set| set.goals().to_vec()).collect())

@@ -23,17 +23,17 @@ pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> R
             let frame = HeadingFrame::new(window.observed(i))?;
             let unit = length_unit(window.observed(i), time_step);
             let view = PedestrianView {
-                own: in_frame((&frame, unit), window.observed(i)),
+                own: in_frame(&frame, unit, window.observed(i)),
                 neighbours: places
                     .nearest_others(i, last[i], neighbours)
                     .into_iter()
-                    .map(|j| in_frame((&frame, unit), window.observed(j)))
+                    .map(|j| in_frame(&frame, unit, window.observed(j)))
                     .collect(),
                 remembered: window
                     .remembered(i)
                     .iter()
                     .map(|other| RememberedTrack {
-                        track: in_frame((&frame, unit), &other.track),
+                        track: in_frame(&frame, unit, &other.track),
                         ..*other
                     })
                     .collect(),
@@ -52,7 +52,7 @@ pub(crate) fn examples(
     let mut examples = Vec::new();
     for window in windows.iter().filter(|window| window.has_future()) {
         for (i, seen) in of_window(window, neighbours, time_step)?.into_iter().enumerate() {
-            let future = in_frame((&seen.frame, seen.unit), &window.track(i)[OBSERVED..]);
+            let future = in_frame(&seen.frame, seen.unit, &window.track(i)[OBSERVED..]);
             let view = seen.view;
             examples.push(ProposalExample { view, future });
         }
@@ -60,6 +60,6 @@ pub(crate) fn examples(
     Ok(examples)
 }
 
-fn in_frame<const T: usize>((frame, unit): (&HeadingFrame, f64), track: &[Position]) -> [Position; T] {
+fn in_frame<const T: usize>(frame: &HeadingFrame, unit: f64, track: &[Position]) -> [Position; T] {
     std::array::from_fn(|t| frame.to_frame(track[t]).map(|coordinate| coordinate / unit))
 }

@@ -44,7 +44,8 @@ impl<'a> RecordingPlayer<'a> {
     pub fn to_html(
         &self,
         forecasts: &[&Forecast],
-        (name, warning): (&str, Option<&str>),
+        name: &str,
+        warning: Option<&str>,
         frame: impl Fn(i64) -> i64,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());

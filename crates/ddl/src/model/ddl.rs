@@ -5,7 +5,7 @@ use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast, Walked};
 use crate::forecast::clearance::Clearance;
 use crate::forecast::name::{NAME, WITHOUT_LIBRARY};
-use crate::forecast::shaped;
+use crate::forecast::shaped::{self, GuidedGoals};
 use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
 use crate::goals::sets;
@@ -121,8 +121,8 @@ impl Ddl {
     pub fn forecast_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
-        let led = (goals, self.familiarities(windows));
-        shaped::walked(&*self.network, windows, led, PathIntegrator::Stable(self.clearance))?
+        let goals = self.guided(windows, goals);
+        shaped::walked(&*self.network, windows, goals, PathIntegrator::Stable(self.clearance))?
             .map(Walked::certified)
             .collect()
     }
@@ -205,13 +205,15 @@ impl Ddl {
         integrator: PathIntegrator,
     ) -> Result<Vec<Forecast>, ForecastError> {
         let seed = self.config().training.seed;
-        let led = (sets, self.familiarities(windows));
-        shaped::towards(&*self.network, seed, windows, led, integrator)
+        shaped::towards(&*self.network, seed, windows, self.guided(windows, sets), integrator)
     }
 
-    fn familiarities(&self, windows: &[Window]) -> Vec<Vec<f64>> {
-        let familiarity = |window| self.goals.familiarity(window);
-        windows.iter().map(familiarity).collect()
+    fn guided(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> GuidedGoals {
+        let familiarity = windows.iter().map(|window| self.goals.familiarity(window));
+        GuidedGoals {
+            sets,
+            familiarity: familiarity.collect(),
+        }
     }
 }
 

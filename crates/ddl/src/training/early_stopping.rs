@@ -2,7 +2,7 @@
 
 use crate::device::Device;
 use crate::error::DdlError;
-use crate::forecast::shaped;
+use crate::forecast::shaped::{self, GuidedGoals};
 use crate::forecast::walk::PathIntegrator;
 use crate::goals::model::GoalModel;
 use crate::run::config::RunConfig;
@@ -12,7 +12,6 @@ use crate::training::starting_weights::StartingWeights;
 use crate::windows::test_set::TestSet;
 use ddl_data::{Fold, Window};
 use ddl_eval::{Scene, metric::displacement::DisplacementErrors};
-use ddl_goal::GoalSet;
 use ddl_network::weights::Weights;
 use ddl_network::{EpochReport, ForecastWindows};
 
@@ -24,8 +23,7 @@ const PEDESTRIANS: usize = 1000;
 pub(crate) struct EarlyStopping {
     patience: usize,
     windows: Vec<Window>,
-    goals: Vec<Vec<GoalSet>>,
-    familiarity: Vec<Vec<f64>>,
+    goals: GuidedGoals,
     seed: u64,
     starts_trained: bool,
 }
@@ -37,12 +35,14 @@ impl EarlyStopping {
         let (data, Some(patience)) = (&config.data, config.patience) else {
             return Ok(None);
         };
-        let part = (data.window_rule, data.validation);
-        let windows = TestSet::validation(fold, data.convention, part, Some(PEDESTRIANS)).windows;
+        let (rule, share) = (data.window_rule, data.validation);
+        let windows = TestSet::validation(fold, data.convention, rule, share, Some(PEDESTRIANS)).windows;
         Ok(Some(Self {
             patience,
-            goals: goals.goals(&windows)?,
-            familiarity: windows.iter().map(|window| goals.familiarity(window)).collect(),
+            goals: GuidedGoals {
+                sets: goals.goals(&windows)?,
+                familiarity: windows.iter().map(|window| goals.familiarity(window)).collect(),
+            },
             windows,
             seed: config.training.seed,
             starts_trained: config.from.is_some(),
@@ -51,8 +51,8 @@ impl EarlyStopping {
 
     /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
-        let (windows, led) = (&self.windows, (self.goals.clone(), self.familiarity.clone()));
-        let forecasts = shaped::towards(network, self.seed, windows, led, PathIntegrator::Stable(None))?;
+        let (windows, goals) = (&self.windows, self.goals.clone());
+        let forecasts = shaped::towards(network, self.seed, windows, goals, PathIntegrator::Stable(None))?;
         let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {
             let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
@@ -78,7 +78,9 @@ impl EarlyStopping {
 pub(crate) fn better_goals(
     start: StartingWeights,
     trained: Weights,
-    (run, config, device): (&RunDirectory, &RunConfig, Device),
+    run: &RunDirectory,
+    config: &RunConfig,
+    device: Device,
     fold: &Fold<'_>,
 ) -> Result<Weights, DdlError> {
     let Some(untrained) = start.proposal else {

@@ -15,20 +15,30 @@ use ddl_star::{ComputeDevice, ProposalTrainer, TorchProposals};
 use std::ops::ControlFlow;
 use std::time::Instant;
 
+/// The first stage of a run.
+#[derive(Debug)]
+pub(crate) struct GoalStage<'a> {
+    pub(crate) recipe: Option<&'a ProposalRecipe>,
+    pub(crate) run: &'a RunDirectory,
+    pub(crate) origin: Origin,
+    pub(crate) device: ComputeDevice,
+}
+
 /// Writes the expert library and trains the proposal network. Files that already exist are kept. Training starts from
 /// the weights of `start` if given; `choose` then selects the network to keep.
 pub(crate) fn train(
-    recipe: Option<&ProposalRecipe>,
-    (start, choose): (Option<Weights>, impl FnOnce(Weights) -> Result<Weights, DdlError>),
-    (windows, recordings): (&[Window], &[&Recording]),
-    (run, origin): (&RunDirectory, &Origin),
-    device: ComputeDevice,
+    stage: &GoalStage<'_>,
+    windows: &[Window],
+    recordings: &[&Recording],
+    start: Option<Weights>,
+    choose: impl FnOnce(Weights) -> Result<Weights, DdlError>,
     mut observe: impl FnMut((u64, u64), &ProposalStep) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
+    let (run, origin, device) = (stage.run, &stage.origin, stage.device);
     if !run.experts().is_file() {
         experts::save(&experts::library(windows)?, origin, &run.experts())?;
     }
-    let Some(recipe) = recipe.filter(|_| !run.proposal().is_file()) else {
+    let Some(recipe) = stage.recipe.filter(|_| !run.proposal().is_file()) else {
         return Ok(());
     };
     let network = &recipe.network;

@@ -11,7 +11,7 @@ use crate::run::starting_model::InitialModel;
 use crate::run::training_data::{digest, digest_of_recording, fold_by_name, learned_from, training_rule};
 use crate::training::best_epoch::best_epoch;
 use crate::training::early_stopping::{EarlyStopping, better_goals};
-use crate::training::goals;
+use crate::training::goals::{self, GoalStage};
 use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
 use crate::training::starting_weights::StartingWeights;
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
@@ -60,19 +60,19 @@ pub(super) fn train(
     let (network, proposal) = start.map_or((None, None), |start| (Some(start.network), start.proposal));
     let better = |trained| match starting_weights()? {
         None => Ok(trained),
-        Some(start) => better_goals(start, trained, (run, &config, device), &fold),
+        Some(start) => better_goals(start, trained, run, &config, device, &fold),
     };
-    goals::train(
-        config.goals.proposal.as_ref(),
-        (proposal, better),
-        (&windows, fold.training_recordings()),
-        (run, &config.goals_origin()),
-        device.torch()?,
-        |steps, step| {
-            let step = TrainingStep::Goals(step.clone());
-            observe(&TrainingProgress { steps, step })
-        },
-    )?;
+    let stage = GoalStage {
+        recipe: config.goals.proposal.as_ref(),
+        run,
+        origin: config.goals_origin(),
+        device: device.torch()?,
+    };
+    let recordings = fold.training_recordings();
+    goals::train(&stage, &windows, recordings, proposal, better, |steps, step| {
+        let step = TrainingStep::Goals(step.clone());
+        observe(&TrainingProgress { steps, step })
+    })?;
     if run.is_trained() {
         // A finished run must load: this reports a file that has been damaged since.
         return Ddl::load(run.path(), request.device).map(drop);

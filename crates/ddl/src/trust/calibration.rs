@@ -78,10 +78,16 @@ impl Calibration {
 
     /// Standard deviations around the positions of the hypotheses, one for each step (m). The pedestrian was observed
     /// at these positions (m), `time_step` seconds apart, and has these goals.
-    pub(crate) fn spread(&self, observed: &[Position], goals: (&[Position], &[f64]), time_step: f64) -> [f64; HORIZON] {
+    pub(crate) fn spread(
+        &self,
+        observed: &[Position],
+        goals: &[Position],
+        weights: &[f64],
+        time_step: f64,
+    ) -> [f64; HORIZON] {
         let steps = observed.array_windows().map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
         let speed = steps.clone().sum::<f64>() / (steps.len().max(1) as f64 * time_step);
-        let at_end = self.spread_of_speed * speed + self.spread_of_goals * deviation(goals);
+        let at_end = self.spread_of_speed * speed + self.spread_of_goals * deviation(goals, weights);
         std::array::from_fn(|t| {
             let share = (t + 1) as f64 / HORIZON as f64;
             self.least_spread.hypot(at_end * share.powf(self.spread_growth))
@@ -90,7 +96,7 @@ impl Calibration {
 }
 
 /// Standard deviation of weighted positions along an axis, averaged over all directions (root mean square), metres.
-fn deviation((positions, weights): (&[Position], &[f64])) -> f64 {
+fn deviation(positions: &[Position], weights: &[f64]) -> f64 {
     let weighted = || positions.iter().zip(weights);
     let mean = weighted().fold([0.0; 2], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);
     let off = |p: &Position| (p[0] - mean[0]).hypot(p[1] - mean[1]);
@@ -124,7 +130,7 @@ mod tests {
         };
         let observed: Vec<Position> = (0..8).map(|t| [0.8 * f64::from(t), 0.0]).collect();
         let goals = [[5.0, 3.0], [5.0, -3.0]];
-        let spread = calibration.spread(&observed, (&goals, &[0.5, 0.5]), 0.4);
+        let spread = calibration.spread(&observed, &goals, &[0.5, 0.5], 0.4);
         let at_end = 0.1 * 2.0 + 0.2 * 4.5_f64.sqrt();
         assert!((spread[11] - at_end).abs() < 1e-12 && (spread[5] - at_end / 2.0).abs() < 1e-12);
     }

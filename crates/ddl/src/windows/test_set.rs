@@ -33,7 +33,8 @@ impl TestSet {
     pub(crate) fn of_run(
         goals: &GoalModel,
         dataset: &Dataset,
-        (on, whole): (Split, &[String]),
+        on: Split,
+        whole: &[String],
         pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
         let data = &goals.config().data;
@@ -90,8 +91,7 @@ impl TestSet {
                  was trained on",
             ));
         }
-        let part = (rule, fraction);
-        Ok(Self::validation(&fold, data.convention, part, pedestrians))
+        Ok(Self::validation(&fold, data.convention, rule, fraction, pedestrians))
     }
 
     /// The validation part of own recordings, for a model that was not trained on them.
@@ -110,8 +110,8 @@ impl TestSet {
             }
         };
         let fold = dataset.whole().with_validation_recordings(&part.recordings)?;
-        let rule_and_share = (dataset.convention().headline_rule(), part.share);
-        let set = Self::validation(&fold, dataset.convention(), rule_and_share, pedestrians);
+        let (convention, rule) = (dataset.convention(), dataset.convention().headline_rule());
+        let set = Self::validation(&fold, convention, rule, part.share, pedestrians);
         if set.windows.is_empty() {
             return Err(goals.source().wrong(
                 "cannot be evaluated on the validation part of these recordings: no pedestrian in it was observed at \
@@ -215,7 +215,8 @@ impl TestSet {
     pub(crate) fn validation(
         fold: &Fold<'_>,
         convention: Convention,
-        (rule, fraction): (WindowRule, f64),
+        rule: WindowRule,
+        fraction: f64,
         pedestrians: Option<usize>,
     ) -> Self {
         let windows = fold.training_split(rule, fraction).validation;

@@ -58,11 +58,11 @@ pub(super) fn print(
     };
     let measured = compared.is_some();
     let compared = compared.map_or_else(String::new, |compared| format!("{}\n", compared_words(compared)));
-    let next = next(request, (only_goals, measured), &recordings.as_options());
+    let next = next(request, only_goals, measured, &recordings.as_options());
     output::print(&format!("{run}: {done}\n{compared}next: {next}\n"))
 }
 
-fn next(request: &TrainingRequest, (only_goals, measured): (bool, bool), data: &str) -> String {
+fn next(request: &TrainingRequest, only_goals: bool, measured: bool, data: &str) -> String {
     let run = shell_word(request.out.path());
     let is_validated = request.validation > 0.0 || !request.validation_recordings.is_empty();
     let part = match (request.fold == Fold::NO_HELD_OUT, is_validated) {
