@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// A device that has been opened and is available.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Device(Opened);
+pub(crate) struct Device(Opened);
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Opened {
@@ -22,13 +22,13 @@ enum Opened {
 
 impl Device {
     /// The CPU.
-    pub const CPU: Self = Self(Opened::Cpu);
+    pub(crate) const CPU: Self = Self(Opened::Cpu);
 
     /// Opens the device.
     ///
     /// # Errors
     /// When CUDA is requested and unavailable, or the program is built without libtorch.
-    pub fn open(choice: DeviceChoice) -> Result<Self, DdlError> {
+    pub(crate) fn open(choice: DeviceChoice) -> Result<Self, DdlError> {
         #[cfg(feature = "torch")]
         if choice != DeviceChoice::Cpu {
             let device = ddl_star::ComputeDevice::open(choice)?;
@@ -55,7 +55,7 @@ impl Device {
 
     /// "cpu" or "cuda", as reports print it.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self.0 {
             Opened::Cpu => "cpu",
             #[cfg(feature = "torch")]

@@ -48,7 +48,7 @@ pub use ddl_star as star;
 
 pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable};
 pub use ddl_network::{DeviceChoice, Variant};
-pub use device::{Device, cuda_status, prepare};
+pub use device::{cuda_status, prepare};
 pub use error::DdlError;
 pub use forecast::certified::{CertificateError, CertifiedForecast};
 pub use forecast::clearance::Clearance;

@@ -155,7 +155,7 @@ impl GoalModel {
     }
 
     /// The settings of the goals in training. [`words`](Self::words) names the parts that are available.
-    pub fn recipe(&self) -> &GoalRecipe {
+    pub(crate) fn recipe(&self) -> &GoalRecipe {
         &self.config.goals
     }
 

@@ -85,12 +85,12 @@ impl Ddl {
     }
 
     /// The device that it computes on.
-    pub fn device(&self) -> Device {
+    pub(crate) fn device(&self) -> Device {
         self.device
     }
 
     /// The clearance that its pedestrians keep from each other; `None` if they ignore each other.
-    pub fn clearance(&self) -> Option<Clearance> {
+    pub(crate) fn clearance(&self) -> Option<Clearance> {
         self.clearance
     }
 

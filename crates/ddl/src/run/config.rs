@@ -73,7 +73,7 @@ impl RunConfig {
     /// The settings that identify the run: all except commit, libtorch and device, which may change during training,
     /// and units, which show in the windows.
     #[must_use]
-    pub fn origin(&self) -> Origin {
+    pub(crate) fn origin(&self) -> Origin {
         self.origin_of(&[
             "format",
             "star",

@@ -90,7 +90,7 @@ impl GoalRecipe {
 
     /// Text that names the origin of the goals without the expert library.
     #[must_use]
-    pub fn description_without_library(&self) -> String {
+    pub(crate) fn description_without_library(&self) -> String {
         match &self.proposal {
             None => "none: goals are retrieved from the expert library, which is missing".to_owned(),
             Some(proposal) => format!("{}, no expert library", proposal.words()),

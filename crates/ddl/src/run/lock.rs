@@ -27,7 +27,7 @@ impl RunLock {
     ///
     /// # Errors
     /// [`DdlError::Run`] when another process holds the lock.
-    pub fn take_file(path: &Path) -> Result<Self, DdlError> {
+    pub(crate) fn take_file(path: &Path) -> Result<Self, DdlError> {
         let mut beside = path.as_os_str().to_owned();
         beside.push(FILE);
         let taken = "another process, or a watch of this process that was not closed, writes this file; wait until it \
