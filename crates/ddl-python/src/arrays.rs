@@ -1,5 +1,6 @@
 //! Conversion between numpy arrays and positions.
 
+use crate::errors::of_any;
 use ddl::data::{COORDINATE_LIMIT, HORIZON, Position};
 use numpy::ndarray::IntoDimension;
 use numpy::{
@@ -121,7 +122,7 @@ pub(crate) fn forecast(
         Some(goals) => Some(flat("goals", goals)?.as_chunks::<2>().0.to_vec()),
         None => None,
     };
-    ddl::Forecast::new(n, k, positions, weights, goals).map_err(|error| PyValueError::new_err(error.to_string()))
+    ddl::Forecast::new(n, k, positions, weights, goals).map_err(of_any)
 }
 
 /// Paths from Python code, which has converted them to float64.

@@ -40,7 +40,7 @@ pub(crate) fn baseline<'py>(
         .window
         .as_ref()
         .map(|window| py.detach(|| forecaster.forecast(window)));
-    let forecast = forecast.transpose().map_err(|error| of_any(&error))?;
+    let forecast = forecast.transpose().map_err(of_any)?;
     let forecast = forecast.map(PlainOrCertified::Plain);
     let goals = goals.map(|goals| goals.shape()[1]);
     let many = if name == "angular_noise" { 20 } else { 1 };
@@ -68,7 +68,7 @@ fn given(goals: Option<&PyReadonlyArray3<'_, f64>>, scene: &Observed) -> PyResul
     for (i, row) in scene.rows.iter().enumerate() {
         if let Some(row) = row {
             let goals = WeightedGoals::new(flat[i * k..][..k].to_vec(), vec![1.0 / k as f64; k]);
-            of_window[*row] = Some(goals.map_err(|error| of_any(&error))?);
+            of_window[*row] = Some(goals.map_err(of_any)?);
         }
     }
     let goals: Option<Vec<WeightedGoals>> = of_window.into_iter().collect();

@@ -3,8 +3,8 @@
 use crate::arrays::{array, flat, points};
 use crate::errors::of_any;
 use ddl::dynamics::{
-    Attractor, AvoidingFlow, Ball, CholeskyMetric, DynamicsError, Flow as _, LyapunovCertificate, MetricSchedule,
-    NaturalGradientFlow, StableEuler, State, rollout,
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, Flow as _, LyapunovCertificate, MetricSchedule, NaturalGradientFlow,
+    StableEuler, State, rollout,
 };
 use nalgebra::{Matrix2, Vector2};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
@@ -33,23 +33,23 @@ impl Flow {
         obstacles: PyReadonlyArray2<'_, f64>,
         margin: f64,
     ) -> PyResult<Self> {
-        let attractor = Attractor::new(goal.into()).map_err(wrong)?;
+        let attractor = Attractor::new(goal.into()).map_err(of_any)?;
         let matrices = flat("P", &metrics)?.as_chunks::<4>().0.iter().enumerate();
         let metrics = matrices.map(|(step, &[xx, xy, yx, yy])| metric(step, [xx, xy, yx, yy]));
         let metrics: Vec<_> = metrics.collect::<PyResult<_>>()?;
-        let schedule = MetricSchedule::new(metrics).map_err(wrong)?;
+        let schedule = MetricSchedule::new(metrics).map_err(of_any)?;
         let balls = flat("obstacles", &obstacles)?.as_chunks::<3>().0.iter();
         let balls = balls.map(|&[x, y, radius]| Ball::new(Vector2::new(x, y), radius));
-        let balls: Vec<_> = balls.collect::<Result<_, _>>().map_err(wrong)?;
+        let balls: Vec<_> = balls.collect::<Result<_, _>>().map_err(of_any)?;
         let free = NaturalGradientFlow::new(attractor, schedule);
-        Ok(Self(AvoidingFlow::new(free, balls, margin).map_err(wrong)?))
+        Ok(Self(AvoidingFlow::new(free, balls, margin).map_err(of_any)?))
     }
 
     fn velocity(&self, py: Python<'_>, position: PyReadonlyArray2<'_, f64>, step: usize) -> PyResult<Py<PyAny>> {
         let points = points("position", &position)?;
         let velocities = points.iter().map(|&point| {
             let state = State::new(point.into(), step, 0.0);
-            let velocity = self.0.velocity(&state).map_err(wrong)?;
+            let velocity = self.0.velocity(&state).map_err(of_any)?;
             Ok([velocity.x, velocity.y])
         });
         let velocities: Vec<[f64; 2]> = velocities.collect::<PyResult<_>>()?;
@@ -68,7 +68,7 @@ impl Flow {
         }
         let walk = |&start: &[f64; 2]| rollout(&self.0, &StableEuler, start.into(), dt, steps);
         let paths = py.detach(|| starts.iter().map(walk).collect::<Result<Vec<_>, _>>());
-        let paths: Vec<Vec<Vector2<f64>>> = paths.map_err(wrong)?;
+        let paths: Vec<Vec<Vector2<f64>>> = paths.map_err(of_any)?;
         let numbers = paths.iter().flatten().flat_map(|p| [p.x, p.y]).collect();
         array(py, numbers, [starts.len(), steps + 1, 2])
     }
@@ -81,7 +81,7 @@ impl Flow {
         dt: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
         let path: Vec<Vector2<f64>> = points("path", &path)?.into_iter().map(Into::into).collect();
-        let certificate = LyapunovCertificate::of_rollout(&self.0, &path, dt).map_err(wrong)?;
+        let certificate = LyapunovCertificate::of_rollout(&self.0, &path, dt).map_err(of_any)?;
         let violation = certificate.verify().err();
         let potentials: Vec<f64> = certificate.potentials().collect();
         let length = [potentials.len()];
@@ -120,9 +120,5 @@ fn metric(step: usize, [xx, xy, yx, yy]: [f64; 4]) -> PyResult<CholeskyMetric<f6
     let factor = rest.cholesky().map(|factor| factor.l());
     let factor = factor
         .ok_or_else(|| PyValueError::new_err(format!("P[{step}] is too close to a matrix with an eigenvalue of 0")))?;
-    CholeskyMetric::new(factor, sigma).map_err(wrong)
-}
-
-fn wrong(error: DynamicsError) -> PyErr {
-    of_any(&error)
+    CholeskyMetric::new(factor, sigma).map_err(of_any)
 }

@@ -17,12 +17,12 @@ pub(crate) fn raised(error: impl Into<ddl::DdlError>) -> PyErr {
     if let ddl::DdlError::Data(ddl::data::DataError::NotFound { .. }) = error {
         return PyFileNotFoundError::new_err(error.to_string());
     }
-    of_any(&error)
+    of_any(error)
 }
 
 /// As [`raised`], for errors of the other crates.
-pub(crate) fn of_any(error: &(dyn Error + 'static)) -> PyErr {
-    let mut cause = Some(error);
+pub(crate) fn of_any(error: impl Error + 'static) -> PyErr {
+    let mut cause: Option<&(dyn Error + 'static)> = Some(&error);
     while let Some(one) = cause {
         if let Some(io) = one.downcast_ref::<std::io::Error>() {
             return of_io(io.kind(), error.to_string());

@@ -20,7 +20,7 @@ use std::sync::Arc;
 use std::sync::mpsc::channel;
 
 fn parsed<T: std::str::FromStr<Err: std::error::Error + 'static>>(word: &str) -> PyResult<T> {
-    word.parse().map_err(|error| of_any(&error))
+    word.parse().map_err(of_any)
 }
 
 fn dataset(convention: Convention, folder: Option<PathBuf>) -> Result<Dataset, DdlError> {
@@ -75,8 +75,7 @@ pub(crate) fn windows<'py>(
         }
     };
     let parts = recording.map_or(1, |recording| recording.parts);
-    let all = windows.iter();
-    all.map(|window| window_parts(py, window, parts)).collect()
+    windows.iter().map(|window| window_parts(py, window, parts)).collect()
 }
 
 fn window_parts<'py>(py: Python<'py>, window: &Window, parts: i64) -> PyResult<Bound<'py, PyDict>> {
@@ -172,7 +171,7 @@ impl TestSet {
             )));
         }
         let admitted = protocol.admit(vec![made], name);
-        admitted.map(drop).map_err(|error| of_any(&error))
+        admitted.map(drop).map_err(of_any)
     }
 
     /// Scores the forecasts (one for each window) under a protocol; returns a JSON object.
@@ -198,12 +197,12 @@ impl TestSet {
             })
         });
         let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
-        let admitted = protocol.admit(made, name).map_err(|error| of_any(&error))?;
+        let admitted = protocol.admit(made, name).map_err(of_any)?;
         let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
         let windows = Arc::clone(&self.windows);
         let row = run(py, move |_| ResultRow::score(conditions, &windows, &admitted))?;
-        let row = row.map_err(|error| of_any(&error))?;
-        serde_json::to_string(&row).map_err(|error| of_any(&error))
+        let row = row.map_err(of_any)?;
+        serde_json::to_string(&row).map_err(of_any)
     }
 }
 
@@ -242,14 +241,14 @@ pub(crate) fn evaluate_model(
     let evaluated = run_telling(py, work, tell)?;
     let rows = evaluated.map_err(raised)?.rows;
     let rows = rows.iter().map(serde_json::to_string);
-    rows.collect::<Result<_, _>>().map_err(|error| of_any(&error))
+    rows.collect::<Result<_, _>>().map_err(of_any)
 }
 
 /// A report of the rows, in Markdown.
 #[pyfunction]
 pub(crate) fn report(py: Python<'_>, title: &str, rows: Vec<String>) -> PyResult<String> {
     let rows = rows.iter().map(|row| serde_json::from_str(row));
-    let rows: Vec<ResultRow> = rows.collect::<Result<_, _>>().map_err(|error| of_any(&error))?;
-    let report = Report::new(title, rows).map_err(|error| of_any(&error))?;
+    let rows: Vec<ResultRow> = rows.collect::<Result<_, _>>().map_err(of_any)?;
+    let report = Report::new(title, rows).map_err(of_any)?;
     run(py, move |_| report.to_markdown())
 }

@@ -216,7 +216,7 @@ fn certificates<'py>(
 }
 
 fn json(table: &RegionTable) -> PyResult<String> {
-    serde_json::to_string(table).map_err(|error| of_any(&error))
+    serde_json::to_string(table).map_err(of_any)
 }
 
 /// Radii `(n, k, 12)` of the discs around the hypotheses in the region of a level; NaN where there is no disc.
@@ -228,7 +228,7 @@ pub(crate) fn region_radii<'py>(
     region_table: &str,
     level: f64,
 ) -> PyResult<Py<PyAny>> {
-    let table: RegionTable = serde_json::from_str(region_table).map_err(|error| of_any(&error))?;
+    let table: RegionTable = serde_json::from_str(region_table).map_err(of_any)?;
     let [low, high] = table.range();
     if !(low..=high).contains(&level) {
         return Err(PyValueError::new_err(format!(
@@ -245,7 +245,7 @@ pub(crate) fn region_radii<'py>(
         let positions = vec![[0.0; 2]; forecast_rows.len() * k * HORIZON];
         let forecast = Forecast::new(forecast_rows.len(), k, positions, of_known, None)
             .and_then(|forecast| forecast.with_std_dev(spreads.collect(), table.into()))
-            .map_err(|error| of_any(&error))?;
+            .map_err(of_any)?;
         for (place, i) in forecast_rows.into_iter().enumerate() {
             for k_of in 0..k {
                 for t in 0..HORIZON {
@@ -278,11 +278,11 @@ pub(crate) fn write_forecasts(
         let tracks = crate::arrays::tracks("past", &past, OBSERVED, false)?;
         let ids = ids.into_iter().map(PedestrianId).collect();
         let start = frame - (OBSERVED as i64 - 1);
-        let window = Window::new(recording, start, 1, ids, tracks).map_err(|error| of_any(&error))?;
+        let window = Window::new(recording, start, 1, ids, tracks).map_err(of_any)?;
         written.push(forecast(&paths, Some(&weights), goals.as_ref())?);
         windows.push(window);
     }
     let mut text = Vec::new();
-    ddl::eval::external::write_forecasts(&windows, &written, &mut text).map_err(|error| of_any(&error))?;
+    ddl::eval::external::write_forecasts(&windows, &written, &mut text).map_err(of_any)?;
     ddl::write_atomically(&path, &text).map_err(crate::errors::raised)
 }

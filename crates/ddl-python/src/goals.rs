@@ -18,14 +18,14 @@ impl GoalEstimator {
     #[pyo3(signature = (experts, *, similar = 800, goals = 20, seed = 0))]
     fn new(experts: PyReadonlyArray3<'_, f64>, similar: usize, goals: usize, seed: u64) -> PyResult<Self> {
         let tracks = tracks("experts", &experts, TRACK_LENGTH, false)?;
-        let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(|error| of_any(&error))?;
+        let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(of_any)?;
         let params = GoalEstimatorParams::default()
             .experts(similar.min(library.len()))
             .clusters(goals)
             .seed(seed)
             .check()
-            .map_err(|error| of_any(&error))?;
-        let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(|error| of_any(&error))?;
+            .map_err(of_any)?;
+        let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(of_any)?;
         Ok(Self(Arc::new(estimator)))
     }
 
@@ -42,7 +42,7 @@ impl GoalEstimator {
             let tracks: Vec<&[[f64; 2]]> = tracks.iter().map(Vec::as_slice).collect();
             estimator.estimate_batch(&tracks)
         })?;
-        let sets = sets.map_err(|error| of_any(&error))?;
+        let sets = sets.map_err(of_any)?;
         let goals = sets.iter().flat_map(|set| set.goals().to_vec()).collect();
         let weights = sets.iter().flat_map(|set| set.weights().to_vec()).collect();
         Ok((array(py, numbers(goals), [n, k, 2])?, array(py, weights, [n, k])?))

@@ -40,17 +40,17 @@ fn window(
         .map(|(past, future)| [past, future].concat())
         .collect();
     let ids = (0..whole.len() as i64).map(PedestrianId).collect();
-    Window::new("scene", start_frame, 1, ids, whole).map_err(|error| of_any(&error))
+    Window::new("scene", start_frame, 1, ids, whole).map_err(of_any)
 }
 
 fn of_scene<T>(
     truth: &PyReadonlyArray3<'_, f64>,
     forecast: &Forecast,
-    of: impl FnOnce(&Scene<'_>) -> PyResult<T>,
+    measure: impl FnOnce(&Scene<'_>) -> PyResult<T>,
 ) -> PyResult<T> {
     let window = window(0, truth, None)?;
-    let scene = Scene::new(&window, forecast).map_err(|error| of_any(&error))?;
-    of(&scene)
+    let scene = Scene::new(&window, forecast).map_err(of_any)?;
+    measure(&scene)
 }
 
 /// ADE `(n, k)` and FDE `(n, k)` of every hypothesis, metres.
@@ -64,11 +64,11 @@ pub(crate) fn displacement_errors(
     of_scene(&truth, &forecast, |scene| {
         let errors = DisplacementErrors::of(scene);
         let shape = [errors.pedestrians(), errors.hypotheses()];
-        let all = |of: fn(&DisplacementErrors, usize) -> &[f64]| {
-            let rows = (0..errors.pedestrians()).flat_map(|i| of(&errors, i).to_vec());
+        let matrix = |row: fn(&DisplacementErrors, usize) -> &[f64]| {
+            let rows = (0..errors.pedestrians()).flat_map(|i| row(&errors, i).to_vec());
             array(py, rows.collect(), shape)
         };
-        Ok((all(DisplacementErrors::ade)?, all(DisplacementErrors::fde)?))
+        Ok((matrix(DisplacementErrors::ade)?, matrix(DisplacementErrors::fde)?))
     })
 }
 
@@ -82,8 +82,8 @@ pub(crate) fn kde_nll(
 ) -> PyResult<Py<PyAny>> {
     let forecast = forecast(&paths, weights.as_ref(), None)?;
     of_scene(&truth, &forecast, |scene| {
-        let all = (0..scene.pedestrians()).map(|i| kde_of(scene, i));
-        array(py, several(all)?, [scene.pedestrians()])
+        let likelihoods = (0..scene.pedestrians()).map(|i| kde_of(scene, i));
+        array(py, several(likelihoods)?, [scene.pedestrians()])
     })
 }
 
@@ -98,11 +98,11 @@ pub(crate) fn mahalanobis(
     let forecast = forecast(&paths, weights.as_ref(), None)?;
     of_scene(&truth, &forecast, |scene| {
         let n = scene.pedestrians();
-        let all: Vec<DistributionErrors> = several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
-        let distances = all.iter().map(|errors| errors.mahalanobis).collect();
-        let covariances = all.iter().map(|errors| errors.covariance);
+        let errors: Vec<DistributionErrors> = several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
+        let distances = errors.iter().map(|errors| errors.mahalanobis).collect();
+        let covariances = errors.iter().map(|errors| errors.covariance);
         let covariances = covariances
-            .flat_map(|errors| [errors.xx, errors.xy, errors.yy])
+            .flat_map(|covariance| [covariance.xx, covariance.xy, covariance.yy])
             .collect();
         Ok((array(py, distances, [n])?, array(py, covariances, [n, 3])?))
     })
@@ -116,12 +116,12 @@ pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<P
         .map(|i| vec![[0.0; 2]; OBSERVED + forecast.hypothesis(i, 0).len()])
         .collect();
     let ids = (0..truth.len() as i64).map(PedestrianId).collect();
-    let window = Window::new("scene", 0, 1, ids, truth).map_err(|error| of_any(&error))?;
-    let scene = Scene::new(&window, &forecast).map_err(|error| of_any(&error))?;
+    let window = Window::new("scene", 0, 1, ids, truth).map_err(of_any)?;
+    let scene = Scene::new(&window, &forecast).map_err(of_any)?;
     let n = forecast.pedestrians();
-    let all: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&scene, i)))?;
-    let paths = all.iter().map(|errors| errors.path).collect();
-    let ends = all.iter().map(|errors| errors.ends).collect();
+    let diversity: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&scene, i)))?;
+    let paths = diversity.iter().map(|diversity| diversity.path).collect();
+    let ends = diversity.iter().map(|diversity| diversity.ends).collect();
     Ok((array(py, paths, [n])?, array(py, ends, [n])?))
 }
 
@@ -138,15 +138,17 @@ pub(crate) fn collisions(
         return Err(PyValueError::new_err("paths have no steps"));
     }
     let tracks = tracks("paths", &paths, steps, false)?;
-    let all: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
-    let n = all.len();
+    let slices: Vec<&[Position]> = tracks.iter().map(Vec::as_slice).collect();
+    let n = slices.len();
     let nearest = |i: usize| {
         let others = (0..n).filter(|j| *j != i);
-        others.fold(f64::INFINITY, |least, j| least.min(closest_approach(all[i], all[j])))
+        others.fold(f64::INFINITY, |least, j| {
+            least.min(closest_approach(slices[i], slices[j]))
+        })
     };
     let (collides, nearest) = py.detach(|| {
         let nearest: Vec<f64> = (0..n).map(nearest).collect();
-        (collides(&all, radius), nearest)
+        (collides(&slices, radius), nearest)
     });
     Ok((array(py, collides, [n])?, array(py, nearest, [n])?))
 }
@@ -174,11 +176,12 @@ pub(crate) fn scores(
         forecasts.push(forecast(paths, weights, goals)?);
     }
     let scores = run(py, move |_| Scores::evaluate(&windows, &forecasts))?;
-    let scores = scores.map_err(|error| of_any(&error))?;
-    serde_json::to_string(&scores).map_err(|error| of_any(&error))
+    let scores = scores.map_err(of_any)?;
+    serde_json::to_string(&scores).map_err(of_any)
 }
 
-fn several<T>(all: impl Iterator<Item = Option<T>>) -> PyResult<Vec<T>> {
-    all.collect::<Option<_>>()
+fn several<T>(values: impl Iterator<Item = Option<T>>) -> PyResult<Vec<T>> {
+    values
+        .collect::<Option<_>>()
         .ok_or_else(|| PyValueError::new_err("paths have one hypothesis, but this metric needs several"))
 }

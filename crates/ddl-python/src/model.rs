@@ -176,7 +176,7 @@ impl Model {
         if let Some(window) = scene.window {
             let model = Arc::clone(&self.0);
             let sets = run(py, move |_| model.goal_model().goals(&[window]))?;
-            let mut sets = sets.map_err(|error| of_any(&error))?;
+            let mut sets = sets.map_err(of_any)?;
             let sets = sets.pop().unwrap_or_default();
             for (i, row) in scene.rows.iter().enumerate() {
                 if let Some(set) = row.and_then(|row| sets.get(row)) {

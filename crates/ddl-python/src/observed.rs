@@ -1,9 +1,9 @@
 //! The observation of a scene, as a window to forecast from.
 
 use crate::arrays::tracks;
+use crate::errors::of_any;
 use ddl::data::{Completion, LiveTracks, OBSERVED, PedestrianId, Window};
 use numpy::PyReadonlyArray3;
-use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// The pedestrians of a scene that can be forecast, and their positions in the user's array.
@@ -27,8 +27,7 @@ impl Observed {
                 let is_seen = !position[0].is_nan();
                 is_seen.then_some((PedestrianId(i as i64), position))
             });
-            live.push(frame as i64, seen)
-                .map_err(|error| PyValueError::new_err(error.to_string()))?;
+            live.push(frame as i64, seen).map_err(of_any)?;
         }
         let window = live.window();
         let mut rows = vec![None; asked];

@@ -38,7 +38,7 @@ impl Rate {
             ));
         }
         if let Some(step) = self.frame_step {
-            let tracks = tracks.with_frame_step(step).map_err(|error| of_any(&error))?;
+            let tracks = tracks.with_frame_step(step).map_err(of_any)?;
             return Ok(Recording::whole(tracks));
         }
         if let Some(fps) = self.fps
@@ -51,7 +51,7 @@ impl Rate {
         let Some(frame_time) = self.fps.map(f64::recip).or(tracks.stated_frame_time()) else {
             return Ok(Recording::whole(tracks));
         };
-        let steps = tracks.resampled_to_steps(frame_time).map_err(|error| of_any(&error))?;
+        let steps = tracks.resampled_to_steps(frame_time).map_err(of_any)?;
         Ok(Recording {
             tracks: Arc::new(steps.recording),
             parts: steps.parts,
@@ -112,7 +112,7 @@ impl Recording {
                 let word = words.get(pedestrian.0 as usize).map_or("", String::as_str);
                 PyValueError::new_err(format!("pedestrian {word:?} is in frame {frame} twice"))
             }
-            _ => of_any(&error),
+            _ => of_any(error),
         })?;
         if let Some(words) = words {
             let numbered = (0..).map(PedestrianId).zip(words.into_iter().map(Arc::from));
@@ -142,8 +142,8 @@ impl Recording {
         };
         let mut tracks = py.detach(|| read_recording(&path, format)).map_err(raised)?;
         if let Some(rows) = homography {
-            let homography = Homography::new(rows).map_err(|error| of_any(&error))?;
-            tracks = homography.to_ground(&tracks).map_err(|error| of_any(&error))?;
+            let homography = Homography::new(rows).map_err(of_any)?;
+            tracks = homography.to_ground(&tracks).map_err(of_any)?;
         }
         Rate { fps, frame_step }.of(tracks)
     }
@@ -187,25 +187,25 @@ impl Recording {
     /// Frame, id, x and y of every position, in order of frames; frames as in the file, ids as a list if some are
     /// words.
     fn columns(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
-        let all = self.tracks.observations();
-        let n = all.len();
+        let observations = self.tracks.observations();
+        let n = observations.len();
         let frame = if self.parts == 1 {
-            array(py, all.iter().map(|seen| seen.frame).collect(), [n])?
+            array(py, observations.iter().map(|seen| seen.frame).collect(), [n])?
         } else {
             let parts = self.parts as f64;
-            let frames = all.iter().map(|seen| seen.frame as f64 / parts);
+            let frames = observations.iter().map(|seen| seen.frame as f64 / parts);
             array(py, frames.collect(), [n])?
         };
-        let axis = |axis: usize| array(py, all.iter().map(|seen| seen.position[axis]).collect(), [n]);
+        let axis = |axis: usize| array(py, observations.iter().map(|seen| seen.position[axis]).collect(), [n]);
         let names = self.tracks.names();
-        let numbered = all.iter().map(|seen| match names.of(seen.pedestrian) {
+        let numbered = observations.iter().map(|seen| match names.of(seen.pedestrian) {
             PedestrianName::Number(number) => Some(number),
             PedestrianName::Word(_) => None,
         });
         let id = if let Some(numbers) = numbered.collect::<Option<Vec<i64>>>() {
             array(py, numbers, [n])?
         } else {
-            let words = all.iter().map(|seen| names.of(seen.pedestrian).to_string());
+            let words = observations.iter().map(|seen| names.of(seen.pedestrian).to_string());
             PyList::new(py, words)?.into_any().unbind()
         };
         Ok((frame, id, axis(0)?, axis(1)?))
@@ -218,8 +218,8 @@ impl Recording {
 }
 
 pub(crate) fn format_named(name: &str) -> PyResult<Format> {
-    let known = Format::ALL.into_iter().find(|format| format.name() == name);
-    known.ok_or_else(|| {
+    let format = Format::ALL.into_iter().find(|format| format.name() == name);
+    format.ok_or_else(|| {
         PyValueError::new_err(format!(
             "format must be one of {}; found {name:?}",
             Format::ALL.map(Format::name).join(", ")

@@ -93,7 +93,7 @@ fn distance(gamma: f64, cost: &str, band: Option<usize>) -> PyResult<SoftDtw> {
             )));
         }
     };
-    let dtw = SoftDtw::new(gamma, cost).map_err(|error| of_any(&error))?;
+    let dtw = SoftDtw::new(gamma, cost).map_err(of_any)?;
     Ok(match band {
         None => dtw,
         Some(radius) => dtw.with_band(Band::new(radius)),
@@ -150,7 +150,7 @@ pub(crate) fn value(
         let computed = unlocked(py, x.len() * y.len(), || {
             if normalised { dtw.normalised(x, y) } else { dtw.value(x, y) }
         });
-        computed.map_err(|error| of_any(&error))
+        computed.map_err(of_any)
     })
 }
 
@@ -188,7 +188,7 @@ pub(crate) fn value_and_gradient(
                 dtw.value_and_gradient(x, y)
             }
         });
-        let (value, gradient) = computed.map_err(|error| of_any(&error))?;
+        let (value, gradient) = computed.map_err(of_any)?;
         let length = gradient.len();
         let flat = if components == D {
             gradient.into_flattened()
@@ -268,7 +268,7 @@ impl SearchIndex {
         let index: Box<dyn Search> = in_dimension!(components, D => {
             let candidates = all_steps::<D>(&arrays, components, "candidates")?;
             let built = run(py, move |_| Index::build(&dtw, &candidates))?;
-            let built: Box<dyn Search> = Box::new(Arc::new(built.map_err(|error| of_any(&error))?));
+            let built: Box<dyn Search> = Box::new(Arc::new(built.map_err(of_any)?));
             Ok(built)
         })?;
         Ok(Self { index, components })
@@ -282,7 +282,7 @@ impl SearchIndex {
     fn nearest(&self, py: Python<'_>, queries: Vec<Bound<'_, PyAny>>, n: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
         let queries = sequences(&queries, "queries")?;
         let search = self.index.prepared(&queries, self.components, n)?;
-        let neighbours = run(py, move |_| search())?.map_err(|error| of_any(&error))?;
+        let neighbours = run(py, move |_| search())?.map_err(of_any)?;
         let shape = [neighbours.len(), n.min(self.index.len())];
         let flat = || neighbours.iter().flatten();
         let indices = flat().map(|neighbour| neighbour.index as i64).collect();
