@@ -30,7 +30,7 @@ mod run;
 #[cfg(feature = "training")]
 mod training;
 mod trust;
-#[cfg(any(feature = "report", feature = "training"))]
+#[cfg(any(feature = "report", feature = "torch"))]
 mod windows;
 
 pub use ddl_data as data;
@@ -72,6 +72,9 @@ pub use run::validation_part::ValidationPart;
 pub use trust::calibration::Calibration;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
+#[cfg(any(feature = "report", feature = "torch"))]
+pub use windows::{split::Split, test_set::test_set_name};
+
 /// What the feature `report` adds.
 #[cfg(feature = "report")]
 mod with_report {
@@ -83,8 +86,6 @@ mod with_report {
     pub use crate::evaluation::record::{is_evaluated, save_evaluation};
     pub use crate::evaluation::results::Results;
     pub use crate::live::recording_player::RecordingPlayer;
-    pub use crate::windows::split::Split;
-    pub use crate::windows::test_set::test_set_name;
     pub use ddl_eval::Protocol;
 }
 #[cfg(feature = "report")]
