@@ -85,7 +85,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
     let column = label.chars().count().max(15);
     let of_other = other.map(ResultRow::by_recording).unwrap_or_default();
     let counts = PEDESTRIAN_WINDOWS.len();
-    let errors = |of: &RecordingErrors| format!("{:.3}/{:.3}", of.min_ade, of.min_fde);
+    let errors = |recording: &RecordingErrors| format!("{:.3}/{:.3}", recording.min_ade, recording.min_fde);
     let beside = other.map_or("", |_| VELOCITY);
     writeln!(
         out,

@@ -1,3 +1,5 @@
+//! Tests of the options of a plan.
+
 use super::*;
 use clap::Parser;
 
@@ -34,7 +36,7 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
             train[..end].join(" ")
         )
     };
-    let all = "--protocol published,fair,single --profile";
+    let published = "--protocol published,fair,single --profile";
     for (words, expected) in [
         (
             "--protocol single,fair --protocol fair",
@@ -57,17 +59,17 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
             "star-quick 5 80: --epochs 3 --train-pedestrians 70 --recipe recommended",
         ),
         (
-            &format!("{all} smoke"),
+            &format!("{published} smoke"),
             "star-smoke-published 2 150: --epochs 1 --train-pedestrians 600 --proposal-steps 40 --recipe published \
              --batch-pedestrians 256 --learning-rate 0.0015 --learning-rate-schedule constant",
         ),
         (
-            &format!("{all} quick"),
+            &format!("{published} quick"),
             "star-quick-published 5 2500: --epochs 10 --train-pedestrians 4000 --recipe published --batch-pedestrians \
              16 --learning-rate 0.001 --learning-rate-schedule cosine",
         ),
         (
-            &format!("{all} evening"),
+            &format!("{published} evening"),
             "star-evening-published 5 all: --epochs 60 --recipe published --batch-pedestrians 256 --learning-rate \
              0.0015 --learning-rate-schedule cosine",
         ),
@@ -93,8 +95,8 @@ fn unknown_names_are_refused_with_the_known_ones() {
         "unknown fold \"plaza\": choose from eth, hotel, univ, zara1, zara2"
     );
     assert_eq!(error("--epochs 0"), "training needs at least one epoch");
-    let own = parsed("--convention own").recordings().unwrap_err();
-    assert!(own.to_string().contains("`ddl train`"), "{own}");
+    let error_of_own = parsed("--convention own").recordings().unwrap_err();
+    assert!(error_of_own.to_string().contains("`ddl train`"), "{error_of_own}");
     // A named folder without recordings is an error, not a reason to simulate.
     let empty = parsed("--data /nowhere").recordings().unwrap_err();
     assert!(format!("{empty:#}").contains("/nowhere"), "{empty:#}");

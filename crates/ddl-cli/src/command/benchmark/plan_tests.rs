@@ -1,3 +1,5 @@
+//! Tests of the plan and its file.
+
 use super::super::fixture::{self, plan, settings};
 use super::*;
 

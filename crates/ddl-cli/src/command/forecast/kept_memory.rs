@@ -14,7 +14,7 @@ pub(super) struct KeptMemory {
     path: PathBuf,
     is_folder: bool,
     /// `None` for a scene whose file cannot be used.
-    kept: BTreeMap<Option<SceneName>, Option<OpenMemory>>,
+    memories: BTreeMap<Option<SceneName>, Option<OpenMemory>>,
 }
 
 struct OpenMemory {
@@ -29,14 +29,14 @@ impl KeptMemory {
     pub(super) fn open(path: &Path, model: &Ddl) -> anyhow::Result<Self> {
         model.goal_model().recalled_per_pedestrian()?;
         let is_folder = path.is_dir();
-        let mut kept = BTreeMap::new();
+        let mut memories = BTreeMap::new();
         if !is_folder {
-            kept.insert(None, Some(OpenMemory::open(path)?));
+            memories.insert(None, Some(OpenMemory::open(path)?));
         }
         Ok(Self {
             path: path.to_owned(),
             is_folder,
-            kept,
+            memories,
         })
     }
 
@@ -66,48 +66,48 @@ impl KeptMemory {
             return Ok(());
         }
         if let Some(name) = scene {
-            if self.kept.contains_key(&scene.cloned()) {
+            if self.memories.contains_key(&scene.cloned()) {
                 return Ok(());
             }
             // After a failure, the scene does not try again at every frame.
-            self.kept.insert(scene.cloned(), None);
-            let kept = OpenMemory::open(&self.path.join(file_name(name)))?;
-            self.kept.insert(scene.cloned(), Some(kept));
+            self.memories.insert(scene.cloned(), None);
+            let memory = OpenMemory::open(&self.path.join(file_name(name)))?;
+            self.memories.insert(scene.cloned(), Some(memory));
         }
-        let Some(Some(kept)) = self.kept.get_mut(&scene.cloned()) else {
+        let Some(Some(memory)) = self.memories.get_mut(&scene.cloned()) else {
             return Ok(());
         };
-        let begun = kept.begin(scene, scenes, model);
+        let begun = memory.begin(scene, scenes, model);
         if begun.is_err() {
-            self.kept.insert(scene.cloned(), None);
+            self.memories.insert(scene.cloned(), None);
         }
         begun
     }
 
     /// Reports that the memory of a scene is of another place, if so.
     pub(super) fn tell_refusal(&mut self, scene: Option<&SceneName>, scenes: &LiveScenes) {
-        if let Some(Some(kept)) = self.kept.get_mut(&scene.cloned())
+        if let Some(Some(memory)) = self.memories.get_mut(&scene.cloned())
             && let Some(other) = scenes.place(scene).and_then(PlaceMemory::refused)
-            && !std::mem::replace(&mut kept.is_refusal_told, true)
+            && !std::mem::replace(&mut memory.is_refusal_told, true)
         {
             tell(format_args!(
                 "warning: {}: {other}; the file stays as it is, and what is seen now is not kept in it: give another \
                  --memory FILE for this place",
-                kept.file.path().display()
+                memory.file.path().display()
             ));
         }
     }
 
     /// Writes the files for which a minute has passed. After an error, forecasts continue.
     pub(super) fn write_when_due(&mut self, scenes: &LiveScenes) {
-        for (scene, kept) in &mut self.kept {
-            let Some(kept) = kept.as_mut().filter(|kept| kept.file.is_due()) else {
+        for (scene, memory) in &mut self.memories {
+            let Some(memory) = memory.as_mut().filter(|memory| memory.file.is_due()) else {
                 continue;
             };
             let Some(place) = scenes.place(scene.as_ref()) else {
                 continue;
             };
-            if let Err(error) = kept.file.write(place) {
+            if let Err(error) = memory.file.write(place) {
                 tell(format_args!("warning: {}; it is tried again", words(&error.into())));
             }
         }
@@ -115,20 +115,20 @@ impl KeptMemory {
 
     /// Writes the file of a scene that has ended, and closes it.
     pub(super) fn end(&mut self, scene: Option<&SceneName>, scenes: &mut LiveScenes) -> anyhow::Result<()> {
-        let Some(Some(mut kept)) = self.kept.remove(&scene.cloned()) else {
+        let Some(Some(mut memory)) = self.memories.remove(&scene.cloned()) else {
             return Ok(());
         };
         scenes.finish_test(scene);
         let Some(place) = scenes.place(scene) else {
             return Ok(());
         };
-        let why = kept.file.end(place)?;
-        match why.filter(|_| !kept.is_refusal_told) {
+        let why = memory.file.end(place)?;
+        match why.filter(|_| !memory.is_refusal_told) {
             Some(why) => tell(format_args!("warning: {why}")),
             None if place.refused().is_none() && place.memory().last_frame().is_some() => {
                 tell(format_args!(
                     "note: {} remembers {} segments, 8 s of one pedestrian each",
-                    kept.file.path().display(),
+                    memory.file.path().display(),
                     place.memory().segments()
                 ));
             }
@@ -139,7 +139,7 @@ impl KeptMemory {
 
     /// Writes all files at the end of the stream; returns the first error.
     pub(super) fn end_all(&mut self, scenes: &mut LiveScenes) -> anyhow::Result<()> {
-        let names: Vec<_> = self.kept.keys().cloned().collect();
+        let names: Vec<_> = self.memories.keys().cloned().collect();
         let ends: Vec<_> = names.iter().map(|scene| self.end(scene.as_ref(), scenes)).collect();
         let mut failed = ends.into_iter().filter_map(Result::err);
         let Some(first) = failed.next() else {

@@ -54,7 +54,7 @@ mod tests {
     fn arrays_are_no_longer_than_allowed_and_hold_every_task_once() {
         let shown = |tasks: &[usize], longest| {
             let arrays = arrays(tasks, longest);
-            let shown = arrays.iter().map(|of| format!("{}+{}", of.first, of.indices));
+            let shown = arrays.iter().map(|array| format!("{}+{}", array.first, array.indices));
             shown.collect::<Vec<_>>().join(" ")
         };
         assert_eq!(shown(&[0, 1, 2, 3, 4], 1001), "0+0-4");
@@ -68,13 +68,13 @@ mod tests {
     fn the_limit_is_read_and_errors_name_it() {
         let config = "Configuration data as of 2026\nMaxArraySize            = 1001\nMaxBatchRequeue = 5\n";
         assert_eq!(longest(config).unwrap(), 1001);
-        for (config, told) in [
+        for (config, words) in [
             (config.replace("1001", "0"), "no arrays of jobs (MaxArraySize = 0)"),
             (config.replace("1001", "many"), "MaxArraySize = many"),
             (String::new(), "does not print MaxArraySize"),
         ] {
             let error = longest(&config).unwrap_err().to_string();
-            assert!(error.contains(told), "{error}");
+            assert!(error.contains(words), "{error}");
         }
     }
 }

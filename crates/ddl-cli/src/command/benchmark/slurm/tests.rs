@@ -59,8 +59,8 @@ impl Task {
     fn end(self) -> (Option<i32>, Option<String>, String) {
         let output = self.script.wait_with_output().unwrap();
         let asked = fs::read_to_string(self.folder.path().join("asked")).ok();
-        let told = String::from_utf8(output.stderr).unwrap();
-        (output.status.code(), asked, told)
+        let message = String::from_utf8(output.stderr).unwrap();
+        (output.status.code(), asked, message)
     }
 }
 
@@ -83,15 +83,15 @@ fn a_warned_task_saves_and_is_queued_again_and_a_cancelled_one_is_not() {
     let warned = Task::begin(&[]);
     warned.begun();
     signal(warned.script.id().cast_signed(), Signal::INT);
-    let (code, asked, told) = warned.end();
-    assert_eq!((code, asked.as_deref()), (Some(0), Some("requeue 42\n")), "{told}");
+    let (code, asked, message) = warned.end();
+    assert_eq!((code, asked.as_deref()), (Some(0), Some("requeue 42\n")), "{message}");
     // Slurm sends SIGTERM to every process of a job.
     let cancelled = Task::begin(&[]);
     let (program, _) = cancelled.begun();
     signal(cancelled.script.id().cast_signed(), Signal::TERM);
     signal(program, Signal::TERM);
-    let (code, asked, told) = cancelled.end();
-    assert_eq!((code, asked), (Some(130), None), "{told}");
+    let (code, asked, message) = cancelled.end();
+    assert_eq!((code, asked), (Some(130), None), "{message}");
 }
 
 #[test]
@@ -100,11 +100,11 @@ fn a_time_limit_that_is_too_short_is_named() {
         let task = Task::begin(&[("SLURM_RESTART_COUNT", times)]);
         task.begun();
         signal(task.script.id().cast_signed(), Signal::INT);
-        let (code, asked, told) = task.end();
+        let (code, asked, message) = task.end();
         assert_eq!((code, asked), (Some(1), None));
         assert!(
-            told.contains("too short") && told.contains("SBATCH_TIMELIMIT"),
-            "{told}"
+            message.contains("too short") && message.contains("SBATCH_TIMELIMIT"),
+            "{message}"
         );
     }
 }
@@ -113,10 +113,10 @@ fn a_time_limit_that_is_too_short_is_named() {
 fn an_error_names_the_program_and_repeats_its_message() {
     let mut command = Command::new("sh");
     let error = answer(command.args(["-c", "echo no such partition >&2; exit 3"])).unwrap_err();
-    let told = error.to_string();
+    let message = error.to_string();
     assert!(
-        told.contains("`sh -c") && told.contains("no such partition") && told.contains('3'),
-        "{told}"
+        message.contains("`sh -c") && message.contains("no such partition") && message.contains('3'),
+        "{message}"
     );
     let error = answer(&mut Command::new("no-such-squeue")).unwrap_err();
     assert!(error.to_string().contains("needs Slurm's programs"), "{error:#}");
