@@ -224,7 +224,7 @@ pub(crate) fn evaluate_model(
         let dataset = dataset(model.config().data.convention, folder)?;
         ddl::evaluate(&model, &dataset, &request, |now| {
             // Sending fails when the call was interrupted and the receiver was dropped.
-            let sent = sender.send(now.pedestrians);
+            let sent = sender.send((now.pedestrians.done, now.pedestrians.total));
             if sent.is_err() || stop.is_asked() {
                 ControlFlow::Break(())
             } else {

@@ -32,6 +32,8 @@ mod training;
 mod trust;
 #[cfg(any(feature = "report", feature = "torch"))]
 mod windows;
+#[cfg(any(feature = "report", feature = "training"))]
+mod work_done;
 
 pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
@@ -74,6 +76,8 @@ pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
 #[cfg(any(feature = "report", feature = "torch"))]
 pub use windows::{split::Split, test_set::test_set_name};
+#[cfg(any(feature = "report", feature = "training"))]
+pub use work_done::WorkDone;
 
 /// What the feature `report` adds.
 #[cfg(feature = "report")]

@@ -9,7 +9,9 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset};
 use ddl::report::Report;
-use ddl::{BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory, Split};
+use ddl::{
+    BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory, Split, WorkDone,
+};
 use forecasts::OtherProgram;
 use std::path::PathBuf;
 
@@ -123,8 +125,8 @@ impl Evaluate {
         }
         let progress = Progress::new("evaluate", self.reporting.telling.progress);
         let evaluation = ddl::evaluate(&model, &dataset, &request, |now| {
-            let (done, total) = now.pedestrians;
-            progress.tell(done as u64, total as u64, now.protocol.name());
+            let WorkDone { done, total } = now.pedestrians;
+            progress.tell(done, total, now.protocol.name());
             interrupt.flow()
         })?;
         drop(progress);

@@ -12,6 +12,7 @@ use crate::model::ddl::Ddl;
 use crate::run::words;
 use crate::windows::split::Split;
 use crate::windows::test_set::TestSet;
+use crate::work_done::WorkDone;
 use ddl_core::{Forecast, ForecastError, Forecaster as _};
 use ddl_data::{Dataset, Window};
 use ddl_eval::baseline::WeightedGoals;
@@ -67,7 +68,7 @@ impl EvaluationRequest {
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluationProgress {
     /// Pedestrians forecast so far, and in total.
-    pub pedestrians: (usize, usize),
+    pub pedestrians: WorkDone,
     /// The current protocol.
     pub protocol: Protocol,
 }
@@ -359,7 +360,10 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
     fn report(&mut self, pedestrians: usize, protocol: Protocol) -> Result<(), DdlError> {
         self.done += pedestrians;
         let progress = EvaluationProgress {
-            pedestrians: (self.done, self.total),
+            pedestrians: WorkDone {
+                done: self.done as u64,
+                total: self.total as u64,
+            },
             protocol,
         };
         match (self.observe)(&progress) {

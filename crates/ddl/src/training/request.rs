@@ -4,6 +4,7 @@ use crate::run::directory::RunDirectory;
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
 use crate::run::track_units::TrackUnits;
+use crate::work_done::WorkDone;
 use ddl_network::{DeviceChoice, ProposalStep, StarConfig, StepReport, TrainingConfig, Variant};
 
 /// What to train, and the directory for it.
@@ -88,9 +89,18 @@ pub enum TrainingStage {
 #[derive(Debug, Clone, PartialEq)]
 pub struct TrainingProgress {
     /// Steps of the stage done, and in total.
-    pub steps: (u64, u64),
+    pub steps: WorkDone,
     /// The step just done.
     pub step: TrainingStep,
+}
+
+impl TrainingProgress {
+    /// The progress after `step`, at these steps of the stage: done, and in total.
+    #[cfg(feature = "torch")]
+    pub(crate) fn at((done, total): (u64, u64), step: TrainingStep) -> Self {
+        let steps = WorkDone { done, total };
+        Self { steps, step }
+    }
 }
 
 /// A step of one of the stages.

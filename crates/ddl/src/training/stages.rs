@@ -70,8 +70,7 @@ pub(super) fn train(
     };
     let recordings = fold.training_recordings();
     goals::train(&stage, &windows, recordings, proposal, better, |steps, step| {
-        let step = TrainingStep::Goals(step.clone());
-        observe(&TrainingProgress { steps, step })
+        observe(&TrainingProgress::at(steps, TrainingStep::Goals(step.clone())))
     })?;
     if run.is_trained() {
         // A finished run must load: this reports a file that has been damaged since.
@@ -261,8 +260,8 @@ impl NetworkStage<'_> {
                 run.write_metrics(&epochs)?;
             }
             let due = step.finished_epoch.is_some() || saved.elapsed() > SAVE_EVERY;
-            let (steps, step) = (trainer.steps(), TrainingStep::Network(step));
-            let stop = observe(&TrainingProgress { steps, step }).is_break();
+            let progress = TrainingProgress::at(trainer.steps(), TrainingStep::Network(step));
+            let stop = observe(&progress).is_break();
             if due || stop {
                 trainer.save(&origin, &run.optimizer())?;
                 saved = Instant::now();

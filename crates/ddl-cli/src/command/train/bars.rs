@@ -1,7 +1,7 @@
 //! Progress of a training: a bar for each stage, and the position when it was interrupted.
 
 use crate::progress::{Progress, ProgressMode};
-use ddl::{TrainingProgress, TrainingStep};
+use ddl::{TrainingProgress, TrainingStep, WorkDone};
 
 pub(super) struct TrainingBars {
     mode: ProgressMode,
@@ -24,7 +24,7 @@ impl TrainingBars {
     }
 
     pub(super) fn tell(&mut self, now: &TrainingProgress) {
-        let (done, total) = now.steps;
+        let WorkDone { done, total } = now.steps;
         let mode = self.mode;
         match &now.step {
             TrainingStep::Goals(step) => {
