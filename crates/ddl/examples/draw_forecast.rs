@@ -1,7 +1,8 @@
 //! Draws the forecast at one frame of a recording, with the true future. This command draws the picture of the README:
 //!
 //! ```text
-//! cargo run --release -p ddl-forecast --features report --example draw_forecast -- datasets/sample.csv 15 docs/forecast.svg
+//! cargo run --release -p ddl-forecast --features report --example draw_forecast -- \
+//!     datasets/sample.csv 15 docs/forecast.svg
 //! ```
 //! The arguments are a table of tracks, the last observed frame and the picture; then, if not the built-in model
 //! `hotel`, a run or a packed file.

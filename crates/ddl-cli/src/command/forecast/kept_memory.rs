@@ -45,7 +45,8 @@ impl KeptMemory {
         let path = self.path.display();
         match (scene, self.is_folder) {
             (None, true) => bail!(
-                "--memory {path} is a folder, and the lines name no scenes; name a file, or give the lines a column scene"
+                "--memory {path} is a folder, and the lines name no scenes; name a file, or give the lines a \
+                 column scene"
             ),
             (Some(_), false) => bail!(
                 "--memory {path} is a file of one place, and the lines name scenes; name a folder that is there, \
