@@ -1,6 +1,6 @@
 """Runs `ddl benchmark --executor slurm` on a real Slurm of two nodes on this machine.
 
-    check_cluster.py PROGRAM RECORDINGS CONVENTION
+    check_cluster.py PROGRAM
 
 Each check ends with the same files as the benchmark on this machine alone. Jobs and files decide, not messages.
 Needs root, slurmctld, slurmd and munge; `cargo xtask nightly cluster` brings them in.
@@ -21,7 +21,10 @@ LONGEST_ARRAY = 4
 # Slurm notices a lost node after half a minute and restarts its tasks two minutes later.
 LIMIT = 600
 OUT = pathlib.Path("target/cluster").absolute()
-FOLDS = {"star": "eth,hotel,univ,zara1,zara2", "social-gan": "eth,hotel,univ,zara1,zara2"}
+ALL = ["eth", "hotel", "univ", "zara1", "zara2"]
+PROGRAM = [os.path.abspath(sys.argv[1]), "benchmark", "--profile", "smoke"]
+SLURM = ["--executor", "slurm"]
+RESULTS = ["model.safetensors", "proposal.safetensors", "report.json", "moments.json"]
 CONFIGURATION = """\
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -170,9 +173,6 @@ class Benchmark:
         until("a trained first stage", lambda: all(stage.exists() for stage in stages))
 
 
-RESULTS = ["model.safetensors", "proposal.safetensors", "report.json", "moments.json"]
-
-
 def restarts(task):
     return ask(f"scontrol show job {task}").split(" Restarts=")[1].split()[0]
 
@@ -242,11 +242,6 @@ def cancelled(_):
     benchmark.finish()
 
 
-program, recordings, convention = sys.argv[1:]
-PROGRAM = [os.path.abspath(program), "benchmark", "--profile", "smoke", "--convention", convention]
-PROGRAM += ["--data", os.path.abspath(recordings)]
-SLURM = ["--executor", "slurm"]
-ALL = FOLDS[convention].split(",")
 shutil.rmtree(OUT, ignore_errors=True)
 OUT.mkdir(parents=True)
 slurm = Slurm()

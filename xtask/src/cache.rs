@@ -22,32 +22,6 @@ pub(crate) fn folder() -> Result<PathBuf> {
     Ok(base.join("ddl"))
 }
 
-/// Puts a folder into the cache, complete or not at all. `make` receives a temporary folder beside it, and returns the
-/// finished folder inside. A damaged folder in its place is removed.
-pub(crate) fn fill(
-    folder: &Path,
-    is_whole: impl Fn(&Path) -> bool,
-    make: impl FnOnce(&Path) -> Result<PathBuf>,
-) -> Result<()> {
-    let cache = folder
-        .parent()
-        .context("a cache folder cannot be the root of the disk")?;
-    fs::create_dir_all(cache).with_context(|| format!("{} cannot be created", cache.display()))?;
-    let work = tempfile::Builder::new()
-        .prefix(".incoming-")
-        .tempdir_in(cache)
-        .with_context(|| format!("{} cannot be written to", cache.display()))?;
-    let finished = make(work.path())?;
-    if folder.exists() && !is_whole(folder) {
-        fs::rename(folder, work.path().join("replaced"))
-            .with_context(|| format!("the damaged {} cannot be replaced", folder.display()))?;
-    }
-    match fs::rename(finished, folder) {
-        Err(_) if is_whole(folder) => Ok(()), // another process was faster
-        outcome => outcome.with_context(|| format!("{} cannot be created", folder.display())),
-    }
-}
-
 /// Writes a file whole or not at all; its folder is created if necessary.
 pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
     let write = || -> Result<()> {
@@ -84,31 +58,4 @@ pub(crate) fn sha256(path: &Path) -> Result<String> {
         text
     });
     Ok(digits)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use anyhow::bail;
-
-    #[test]
-    fn a_damaged_folder_is_replaced_by_a_finished_one_and_a_failure_leaves_nothing() {
-        let cache = tempfile::tempdir().unwrap();
-        let folder = cache.path().join("tool");
-        let is_whole = |folder: &Path| folder.join("whole").is_file();
-        let make = |file: &'static str| {
-            move |work: &Path| {
-                write_file(&work.join("finished").join(file), b"")?;
-                Ok(work.join("finished"))
-            }
-        };
-        assert!(fill(&folder, is_whole, |_| bail!("no network")).is_err());
-        assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 0);
-        fill(&folder, is_whole, make("half")).unwrap();
-        fill(&folder, is_whole, make("whole")).unwrap();
-        assert!(is_whole(&folder) && !folder.join("half").exists());
-        fill(&folder, is_whole, make("other")).unwrap();
-        assert!(is_whole(&folder) && !folder.join("other").exists());
-        assert_eq!(fs::read_dir(cache.path()).unwrap().count(), 1);
-    }
 }

@@ -10,6 +10,7 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 
 use crate::cache;
 use crate::process::find_on_path;
@@ -21,11 +22,14 @@ pub(crate) const VERSION: &str = "2.11.0";
 /// The origin of newly fetched libraries.
 pub(crate) const FETCHED: &str = "from the pinned wheels";
 
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, Args)]
 pub(crate) struct Request {
-    pub(crate) cache: Option<PathBuf>,
-    /// Folder with the pinned wheels, for machines without a package index.
-    pub(crate) wheel_dir: Option<PathBuf>,
+    /// Folder with the pinned wheels, for a machine without a package index
+    #[arg(long, value_name = "DIR")]
+    wheel_dir: Option<PathBuf>,
+    /// Folder for the unpacked libraries [default: the user's cache, `~/.cache/ddl`]
+    #[arg(long, value_name = "DIR")]
+    cache: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone)]
@@ -87,12 +91,9 @@ fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, &'static str)
 
 /// The binding of libtorch is a C++ file: without a compiler the build would fail after minutes.
 fn require_compiler() -> Result<()> {
-    let compiler = env::var_os("CXX").filter(|value| !value.is_empty());
     // CXX may contain a launcher and flags, as in `ccache g++`.
-    let program = compiler
-        .as_deref()
-        .and_then(OsStr::to_str)
-        .map_or("c++", |text| text.split_whitespace().next().unwrap_or("c++"));
+    let compiler = env::var("CXX").unwrap_or_default();
+    let program = compiler.split_whitespace().next().unwrap_or("c++");
     if find_on_path(OsStr::new(program)).is_none() {
         bail!(
             "a C++ compiler is missing ({program} is not on the search path): install one, on \

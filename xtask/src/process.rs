@@ -39,6 +39,7 @@ pub(crate) fn shown(command: &Command) -> String {
     let words = [program].into_iter().chain(command.get_args());
     let words: Vec<String> = words.map(|word| word.display().to_string()).collect();
     let line = words.join(" ");
+    let line = line.lines().next().unwrap_or_default().to_owned();
     line.char_indices()
         .nth(200)
         .map_or(line.clone(), |(end, _)| format!("{} ...", &line[..end]))

@@ -3,10 +3,9 @@
 
 use std::env;
 use std::ffi::{OsStr, OsString};
-use std::path::Path;
 use std::process::Command;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 
 use crate::process::{find_on_path, read};
 
@@ -41,22 +40,5 @@ impl Python {
         let mut command = Command::new(&self.program);
         command.args(arguments);
         command
-    }
-
-    /// `pip ACTION` with wheels only. It prints to standard error, because standard output may be evaluated by a shell.
-    pub(crate) fn pip(&self, action: &str) -> Command {
-        let mut pip = self.call(["-m", "pip", action, "--quiet", "--disable-pip-version-check"]);
-        pip.args(["--only-binary=:all:", "--no-cache-dir", "--timeout", "60"])
-            .env("PIP_ROOT_USER_ACTION", "ignore")
-            .stdout(std::io::stderr());
-        pip
-    }
-
-    /// Free space on the disk that holds `folder`, in bytes.
-    pub(crate) fn free_space(&self, folder: &Path) -> Result<u64> {
-        let script = "import shutil, sys; print(shutil.disk_usage(sys.argv[1]).free)";
-        let mut command = self.call(["-c", script]);
-        let text = read(command.arg(folder))?;
-        text.trim().parse().context("Python did not print the free disk space")
     }
 }

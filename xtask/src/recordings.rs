@@ -1,4 +1,4 @@
-//! Recordings: the pinned files of `datasets/manifest.toml`, found or fetched. The choice of a data convention.
+//! Recordings: the pinned files of `datasets/manifest.toml`, found or fetched.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -53,14 +53,6 @@ pub(crate) struct PinnedFile {
     path: String,
     bytes: u64,
     pub(crate) sha256: String,
-}
-
-#[derive(Debug)]
-pub(crate) struct Chosen {
-    pub(crate) convention: String,
-    pub(crate) folder: Option<PathBuf>,
-    /// The reason for this choice: a clause.
-    pub(crate) reason: String,
 }
 
 impl Manifest {
@@ -139,85 +131,39 @@ impl Entry {
     }
 
     /// Puts every missing or wrong file into `folder`, from the first source of the manifest that has it. Returns the
-    /// source's name.
-    fn fetch(&self, convention: &str, folder: &Path) -> Result<&str> {
-        let python = Python::find()?;
-        let made = fs::create_dir_all(folder).and_then(|()| tempfile::tempdir_in(folder));
-        let work = made.with_context(|| format!("{} cannot be written to", folder.display()))?;
-        let mut reasons = Vec::new();
-        let mut name = "an earlier run";
-        for source in &self.source {
-            let missing = self.wrong_in(folder);
-            if missing.is_empty() {
-                break;
-            }
-            name = source["name"].as_str().unwrap_or_default();
-            eprintln!("{convention}: fetching from {name}");
-            let request = serde_json::json!({ "source": source, "files": missing, "folder": work.path() });
-            if let Err(error) = read(&mut python.call(["-c", FETCH, &request.to_string()])) {
-                reasons.push(format!("{name}: {error:#}"));
-            }
-            // Files that arrived before a failure are right and stay.
-            for file in missing {
-                fs::rename(work.path().join(&file.name), folder.join(&file.name)).ok();
-            }
+    /// source's name. Files that arrived before a failure are right and stay.
+    fn fetch(&self, convention: &str, folder: &Path) -> Result<String> {
+        fs::create_dir_all(folder).with_context(|| format!("{} cannot be made", folder.display()))?;
+        let request = serde_json::json!({ "sources": self.source, "files": self.files, "folder": folder });
+        let source = read(&mut Python::find()?.call(["-c", FETCH, &request.to_string()]));
+        if source.is_err() {
+            // Only an empty folder can be removed.
+            fs::remove_dir(folder).ok();
         }
-        if self.wrong_in(folder).is_empty() {
-            return Ok(name);
-        }
-        drop(work);
-        // Only an empty folder can be removed.
-        fs::remove_dir(folder).ok();
-        bail!(
-            "the {convention} recordings cannot be fetched ({}); check the network, or copy them by hand \
-             (docs/recordings.md)",
-            reasons.join("; ")
-        )
+        let source = source.with_context(|| {
+            format!(
+                "the {convention} recordings cannot be fetched; check the network, or copy them by hand \
+                 (docs/recordings.md)"
+            )
+        })?;
+        self.check(folder)?;
+        Ok(source.trim().to_owned())
     }
 }
 
-/// The requested convention, or the first available one of star, social-gan and simulated. Missing files are fetched,
-/// to `data` if given.
-pub(crate) fn choose(workspace: &Workspace, asked: Option<&str>, data: Option<&Path>) -> Result<Chosen> {
+/// Finds or fetches the recordings of every convention before a command that may use them. What cannot be fetched is
+/// told: the program takes the first convention that is there, and tests say what they lack.
+pub(crate) fn bring_in(workspace: &Workspace) -> Result<()> {
     let manifest = Manifest::load(workspace)?;
-    let is_there = |name: &str| Ok::<_, anyhow::Error>(manifest.entry(name)?.locate(workspace, name, data).is_ok());
-    if let (None, Some(folder)) = (asked, data) {
-        // Nothing is fetched to a folder that was named explicitly, because its name may be mistyped.
-        ensure!(
-            is_there(RECORDED[0])? || is_there(RECORDED[1])?,
-            "{} holds no recordings: correct --data, or name the convention to fetch with --convention",
-            folder.display()
-        );
-    }
-    // The report shows baselines of the other convention if its recordings are present, so these must not be wrong.
-    for convention in RECORDED.into_iter().filter(|_| asked != Some(SIMULATED)) {
+    for convention in RECORDED {
         let entry = manifest.entry(convention)?;
-        if let Ok(folder) = entry.locate(workspace, convention, data) {
-            entry.check(&folder)?;
+        match entry.obtain(workspace, convention, None) {
+            Ok((_, reason)) => eprintln!("{convention}: {reason}"),
+            Err(error) if entry.locate(workspace, convention, None).is_ok() => return Err(error),
+            Err(error) => eprintln!("{error:#}"),
         }
     }
-    let mut reasons = Vec::new();
-    let conventions = asked.map_or_else(|| RECORDED.to_vec(), |name| vec![name]);
-    for convention in conventions.into_iter().filter(|name| *name != SIMULATED) {
-        match manifest.entry(convention)?.obtain(workspace, convention, data) {
-            Ok((folder, reason)) => {
-                reasons.push(reason);
-                return Ok(Chosen {
-                    convention: convention.to_owned(),
-                    folder: Some(folder),
-                    reason: reasons.join("; "),
-                });
-            }
-            Err(error) if asked.is_some() => return Err(error),
-            Err(error) => reasons.push(format!("{error:#}")),
-        }
-    }
-    reasons.push("the simulated crowd needs no files".to_owned());
-    Ok(Chosen {
-        convention: SIMULATED.to_owned(),
-        folder: None,
-        reason: reasons.join("; "),
-    })
+    Ok(())
 }
 
 #[cfg(test)]

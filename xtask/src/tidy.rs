@@ -103,10 +103,6 @@ fn text_faults(file: &Path, text: &str) -> Vec<String> {
     if is_crate_page && text.contains("](../") {
         faults.push("this page is read elsewhere, too: name files of other folders without a link".to_owned());
     }
-    let inherits = text.contains("[lints]\nworkspace = true");
-    if file.ends_with("Cargo.toml") && text.contains(".workspace = true") && !inherits {
-        faults.push("add `[lints] workspace = true`".to_owned());
-    }
     let mut is_code = false;
     for (number, line) in (1..).zip(text.lines()) {
         is_code ^= line.trim_start().starts_with("```");
@@ -168,19 +164,10 @@ mod tests {
             ("docs/a.svg", "x\n".repeat(PAGE), ""),
             ("crates/a/README.md", "x\n".repeat(CRATE_README), "8000 bytes"),
             ("crates/a/README.md", "[a](../b.md)".to_owned(), "without a link"),
-            (
-                "crates/a/Cargo.toml",
-                "version.workspace = true\n".to_owned(),
-                "[lints]",
-            ),
             ("a.rs", format!("x\n{long}\n"), "line 2 has more than 120 columns"),
             ("a.rs", format!("    /// | {long} |\n"), ""),
             ("a.md", format!("{long}\n"), "line 1"),
-            (
-                "a.md",
-                format!("| {long} |\n```console\n{long}\n```\nsee [this]({target})\n"),
-                "",
-            ),
+            ("a.md", format!("| {long} |\n```text\n{long}\n```\n[a]({target})\n"), ""),
             ("a.toml", format!("{long}\n"), ""),
             ("a.md", format!("see {home}someone/x"), "home folder"),
             ("a.md", format!("https://host{home}page, a{home}b"), ""),

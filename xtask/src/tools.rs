@@ -1,5 +1,6 @@
 //! Programs of others that the checks run: pinned wheels, fetched once per machine into the user's cache.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -31,13 +32,21 @@ impl Tools {
         let folder = cache::folder()?.join(name);
         if !folder.is_dir() {
             eprintln!("fetching the tools of {LIST} with pip, once");
-            cache::fill(&folder, Path::is_dir, |work| {
-                let target = work.join("tools");
-                let mut pip = python.pip("install");
-                pip.args("--no-deps --require-hashes --no-warn-script-location --target".split(' '));
-                run(pip.arg(&target).arg("--requirement").arg(&list)).context("connect to a package index")?;
-                Ok(target)
-            })?;
+            fs::create_dir_all(cache::folder()?)?;
+            let work = tempfile::tempdir_in(cache::folder()?)?.keep();
+            let pip = "-m pip install --quiet --disable-pip-version-check --only-binary=:all: --no-cache-dir --no-deps \
+                       --require-hashes --no-warn-script-location --target";
+            let mut pip = python.call(pip.split_whitespace());
+            pip.arg(&work)
+                .arg("--requirement")
+                .arg(&list)
+                .env("PIP_ROOT_USER_ACTION", "ignore");
+            let outcome = run(pip.stdout(std::io::stderr())).context("connect to a package index");
+            // Another process may have been faster.
+            if outcome.is_err() || fs::rename(&work, &folder).is_err() {
+                fs::remove_dir_all(&work)?;
+            }
+            outcome?;
         }
         Ok(Self { folder, python })
     }

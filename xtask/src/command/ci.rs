@@ -9,7 +9,7 @@ use anyhow::{Context, Result};
 use super::{benchmark, docs, python, set_up, test};
 use crate::browser;
 use crate::process::run as run_command;
-use crate::recordings::Manifest;
+use crate::recordings;
 use crate::tidy;
 use crate::tools::Tools;
 use crate::workspace::Workspace;
@@ -19,12 +19,15 @@ type Check = (&'static str, fn(&Workspace) -> Result<()>);
 /// The features of everything that is built here.
 const FEATURES: &str = "ddl-cli/torch,ddl-tests/torch";
 
-const CHECKS: [Check; 9] = [
+const CHECKS: [Check; 10] = [
     ("text", text),
-    ("libtorch, recordings, browser, Python packages", bring_in),
+    ("libtorch, recordings, browser, Python packages", bring_all_in),
     ("dependencies and packages", dependencies),
     ("lints", |workspace| lints(workspace, FEATURES)),
     ("documentation site", |workspace| docs::build(workspace, FEATURES)),
+    ("build", |workspace| {
+        test::build(workspace).and_then(|()| test::build_with_torch(workspace))
+    }),
     ("report page in a browser", report_page),
     ("benchmark", benchmark::smoke),
     ("Python package", python::check),
@@ -54,14 +57,15 @@ fn text(workspace: &Workspace) -> Result<()> {
     run_command(&mut workspace.cargo(["fmt", "--all", "--check"])).context("run `cargo fmt --all`")?;
     tidy::run(workspace)?;
     let tools = Tools::ensure(workspace)?;
-    run_command(tools.program(workspace, "ruff").args(["format", "--check", "--quiet"]))
-        .context("run `ruff format`")?;
-    run_command(tools.program(workspace, "ruff").args(["check", "--quiet"]))?;
-    run_command(tools.program(workspace, "typos").args(["--format", "brief"])).context("see _typos.toml")?;
+    for [program, arguments] in [
+        ["ruff", "format --check --quiet"],
+        ["ruff", "check --quiet"],
+        ["typos", "--format brief"],
+    ] {
+        run_command(tools.program(workspace, program).args(arguments.split(' ')))?;
+    }
     let files = workspace.files()?;
-    let pages = files
-        .iter()
-        .filter(|file| file.extension().is_some_and(|extension| extension == "md"));
+    let pages = files.iter().filter(|file| file.extension() == Some("md".as_ref()));
     run_command(tools.program(workspace, "lychee").args(pages)).context("links lead nowhere (above)")
 }
 
@@ -72,22 +76,14 @@ fn lints(workspace: &Workspace, features: &str) -> Result<()> {
 }
 
 /// Everything that comes from elsewhere, at the same time.
-fn bring_in(workspace: &Workspace) -> Result<()> {
-    // On a machine with no other network access, the package index is the only source of real recordings.
-    let recordings = |workspace: &Workspace| {
-        let manifest = Manifest::load(workspace)?;
-        let (_, reason) = manifest.entry("social-gan")?.obtain(workspace, "social-gan", None)?;
-        println!("social-gan: {reason}");
-        Ok(())
-    };
+fn bring_all_in(workspace: &Workspace) -> Result<()> {
     let fetch = |workspace: &Workspace| run_command(&mut workspace.cargo(["fetch", "--locked", "--quiet"]));
     // One after the other, because both may call apt-get.
     let programs = |workspace: &Workspace| {
-        browser::find_or_install()
-            .map(drop)
-            .and_then(|()| python::prepare(workspace))
+        browser::find_or_install()?;
+        python::prepare(workspace)
     };
-    let jobs: [fn(&Workspace) -> Result<()>; 4] = [set_up, recordings, fetch, programs];
+    let jobs: [fn(&Workspace) -> Result<()>; 4] = [set_up, recordings::bring_in, fetch, programs];
     thread::scope(|scope| {
         let jobs = jobs.map(|job| scope.spawn(move || job(workspace)));
         jobs.into_iter()
@@ -108,7 +104,7 @@ fn dependencies(workspace: &Workspace) -> Result<()> {
 /// The report page of the simulated crowds.
 fn report_page(workspace: &Workspace) -> Result<()> {
     let folder = workspace.path("target/report-page");
-    let build = "run --quiet -p ddl-report --example report_page --";
-    run_command(workspace.cargo(build.split(' ')).arg(&folder))?;
+    let example = workspace.path("target/debug/examples/report_page");
+    run_command(workspace.program(example).arg(&folder))?;
     browser::check(workspace, "tests/page/check_page.py", &folder, None::<&Path>)
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
 use crate::recordings::{Manifest, RECORDED, SIMULATED};
@@ -44,46 +44,43 @@ impl Arguments {
         let mut reasons = Vec::new();
         for convention in &conventions {
             let entry = manifest.entry(convention)?;
-            if self.action == Action::Fetch {
-                match entry.obtain(workspace, convention, self.data.as_deref()) {
-                    Ok((_, reason)) => {
-                        println!("{convention}: {reason}");
-                        // Without a convention: the preferred one that is available.
-                        return Ok(());
-                    }
-                    Err(error) => reasons.push(format!("{error:#}")),
-                }
-                continue;
-            }
-            match entry.locate(workspace, convention, self.data.as_deref()) {
-                Ok(folder) if self.action == Action::Verify => {
-                    entry.check(&folder)?;
+            let folder = match self.action {
+                Action::Fetch => entry
+                    .obtain(workspace, convention, self.data.as_deref())
+                    .map(|(folder, _)| folder),
+                _ => entry.locate(workspace, convention, self.data.as_deref()),
+            };
+            match &folder {
+                Ok(folder) if self.action == Action::Where => println!("{convention}: {}", folder.display()),
+                Err(error) if self.action == Action::Where => println!("{convention}: {error}"),
+                Ok(folder) => {
+                    entry.check(folder)?;
                     println!(
                         "{convention}: {} files verified in {}",
                         entry.files.len(),
                         folder.display()
                     );
                 }
-                Ok(folder) => println!("{convention}: {}", folder.display()),
-                Err(error) => reasons.push(error.to_string()),
+                Err(error) => reasons.push(format!("{error:#}")),
             }
-            if self.action == Action::Where {
-                println!("  {}\n  terms: {}", entry.description, entry.terms);
-                entry
-                    .cite
-                    .iter()
-                    .for_each(|key| println!("  cite: {}", manifest.citation[key]));
+            match self.action {
+                // Without a convention: the preferred one that is available.
+                Action::Fetch if folder.is_ok() => return Ok(()),
+                Action::Where => {
+                    println!("  {}\n  terms: {}", entry.description, entry.terms);
+                    entry
+                        .cite
+                        .iter()
+                        .for_each(|key| println!("  cite: {}", manifest.citation[key]));
+                }
+                _ => {}
             }
         }
-        let reasons_text = reasons.join("; ");
-        match self.action {
-            Action::Fetch => bail!("{reasons_text}; or work with `--convention {SIMULATED}`"),
-            Action::Verify => ensure!(
-                reasons.len() < conventions.len(),
-                "no recordings to verify: fetch them with `cargo xtask data fetch` ({reasons_text})"
-            ),
-            Action::Where => reasons.iter().for_each(|reason| println!("{reason}")),
-        }
+        ensure!(
+            reasons.len() < conventions.len(),
+            "no recordings: fetch them with `cargo xtask data fetch`, or work with `--convention {SIMULATED}` ({})",
+            reasons.join("; ")
+        );
         Ok(())
     }
 }

@@ -16,11 +16,11 @@ use crate::workspace::{Workspace, absolute};
 const BOOK: &str = "docs";
 pub(super) const SITE: &str = "target/site";
 
+/// Features of the complete interface on a machine without libtorch.
+pub(super) const ALONE: &str = "ddl-cli/torch,ddl-cli/doc-only";
+
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Open the first page in a browser
-    #[arg(long)]
-    open: bool,
     /// Check every page of the guide in a browser, and write screenshots of some to this folder, wide and narrow, light
     /// and dark
     #[arg(long, value_name = "DIR")]
@@ -29,18 +29,12 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        // The complete interface, also on a machine without libtorch.
-        build(workspace, "ddl-cli/torch,ddl-cli/doc-only")?;
+        build(workspace, ALONE)?;
         let site = workspace.path(SITE);
         let first = site.join("index.html");
         println!("{}", first.display());
         if let Some(folder) = self.screenshots {
             browser::check(workspace, "tests/page/check_site.py", &site, Some(&absolute(&folder)?))?;
-        }
-        if self.open {
-            let page = first.display();
-            open::that_detached(&first)
-                .with_context(|| format!("no browser could be started; open {page} yourself"))?;
         }
         Ok(())
     }

@@ -3,87 +3,100 @@
 use std::fs;
 use std::time::Instant;
 
-use anyhow::{Context, Result, bail, ensure};
-use clap::Args;
+use anyhow::{Context, Result, ensure};
+use clap::{Args, ValueEnum};
 
-use super::{docs, set_up};
+use super::{docs, python, set_up};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
 use crate::process::run;
-use crate::recordings::{RECORDED, choose};
+use crate::recordings::bring_in;
 use crate::tools::cargo_tool;
 use crate::workspace::Workspace;
 
-/// A name, what is checked, and the check; its words are those after `--`.
-type Check = (&'static str, &'static str, fn(&Workspace, &[String]) -> Result<()>);
-
-const CHECKS: [Check; 8] = [
-    (
-        "faults",
-        "killed processes, full disks, damaged files, large crowds (-- NAME of a test)",
-        faults,
-    ),
-    (
-        "fuzz",
-        "every reader of untrusted input (-- TARGET...; RUNS=10000000, SANITIZER=none)",
-        fuzz,
-    ),
-    (
-        "mutants",
-        "the tests find changes of the numeric code (-- options of cargo-mutants)",
-        mutants,
-    ),
-    (
-        "cluster",
-        "the benchmark on a real Slurm of two nodes on this machine",
-        cluster,
-    ),
-    ("sanitizer", "vector arithmetic with AddressSanitizer", sanitizer),
-    (
-        "packages",
-        "every crate is built from its package, as for a registry",
-        packages,
-    ),
-    ("wheel", "the wheel for users, and its tests", wheel),
-    ("site", "every page of the documentation in a browser", site),
-];
-
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The check, or `all` [default: list them]
-    #[arg(value_parser = names())]
-    name: Option<String>,
+    /// The check [default: list them]
+    name: Option<Check>,
     /// Words for the check
     #[arg(last = true, requires = "name")]
     rest: Vec<String>,
 }
 
-fn names() -> Vec<&'static str> {
-    CHECKS.iter().map(|(name, ..)| *name).chain(["all"]).collect()
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Check {
+    /// Killed processes, full disks, damaged files, large crowds (-- NAME of a test)
+    Faults,
+    /// Every reader of untrusted input (-- TARGET...; RUNS=10000000, SANITIZER=none)
+    Fuzz,
+    /// The tests find changes of the numeric code (-- options of cargo-mutants)
+    Mutants,
+    /// The benchmark on a real Slurm of two nodes on this machine
+    Cluster,
+    /// Vector arithmetic with `AddressSanitizer`
+    Sanitizer,
+    /// Every crate is built from its package, as for a registry
+    Packages,
+    /// The wheel for users, and its tests
+    Wheel,
+    /// Every page of the documentation in a browser
+    Site,
+    /// All of these
+    All,
 }
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
+        let checks = Check::value_variants();
         let Some(asked) = self.name else {
-            for (name, what, _) in CHECKS {
-                println!("{name:<10} {what}");
+            for value in checks.iter().filter_map(Check::to_possible_value) {
+                println!(
+                    "{:<10} {}",
+                    value.get_name(),
+                    value.get_help().cloned().unwrap_or_default()
+                );
             }
             return Ok(());
         };
         let mut failed = Vec::new();
-        for (name, what, check) in CHECKS {
-            if asked != name && asked != "all" {
-                continue;
-            }
+        for check in checks
+            .iter()
+            .filter(|check| asked == **check || asked == Check::All && **check != asked)
+        {
             let start = Instant::now();
-            let outcome = check(workspace, &self.rest);
+            let outcome = check.run(workspace, &self.rest);
             let result = if outcome.is_ok() { "passed" } else { "failed" };
-            println!("| {name}: {what} | {result} | {} s |", start.elapsed().as_secs());
-            failed.extend(outcome.err().map(|error| format!("{name}: {error:#}")));
+            println!("| {check:?} | {result} | {} s |", start.elapsed().as_secs());
+            failed.extend(outcome.err().map(|error| format!("{check:?}: {error:#}")));
         }
         ensure!(failed.is_empty(), "{}", failed.join("\n"));
         Ok(())
+    }
+}
+
+impl Check {
+    fn run(self, workspace: &Workspace, words: &[String]) -> Result<()> {
+        match self {
+            Self::Faults => faults(workspace, words),
+            Self::Fuzz => fuzz(workspace, words),
+            Self::Mutants => mutants(workspace, words),
+            Self::Cluster => cluster(workspace, words),
+            Self::Sanitizer => sanitizer(workspace, words),
+            Self::Packages => packages(workspace),
+            Self::Wheel => python::Arguments::default().run(workspace),
+            Self::Site => {
+                docs::build(workspace, docs::ALONE)?;
+                let pictures = workspace.path("target/screenshots");
+                browser::check(
+                    workspace,
+                    "tests/page/check_site.py",
+                    &workspace.path(docs::SITE),
+                    Some(&pictures),
+                )
+            }
+            Self::All => Ok(()),
+        }
     }
 }
 
@@ -133,17 +146,12 @@ fn mutants(workspace: &Workspace, words: &[String]) -> Result<()> {
 fn cluster(workspace: &Workspace, words: &[String]) -> Result<()> {
     debian::ensure_program("slurmctld", &["slurmctld", "slurmd", "munge"])?;
     set_up(workspace)?;
-    let Some(folder) = choose(workspace, None, None)?.folder else {
-        bail!("the check needs recordings: `cargo xtask data fetch`");
-    };
-    run(&mut workspace.cargo(["build", "--package", "ddl-cli", "--features", "torch"]))?;
-    let mut script = workspace.program("python3");
-    script
-        .arg("tests/cluster/check_cluster.py")
-        .arg("target/debug/ddl")
-        .arg(&folder);
-    let convention = RECORDED.iter().find(|name| folder.ends_with(name)).copied();
-    run(script.arg(convention.unwrap_or("star")).args(words))
+    bring_in(workspace)?;
+    run(&mut workspace.cargo("build --package ddl-cli --features torch".split(' ')))?;
+    run(workspace
+        .program("python3")
+        .args(["tests/cluster/check_cluster.py", "target/debug/ddl"])
+        .args(words))
 }
 
 fn sanitizer(workspace: &Workspace, words: &[String]) -> Result<()> {
@@ -158,25 +166,10 @@ fn sanitizer(workspace: &Workspace, words: &[String]) -> Result<()> {
     run(&mut rustup)
 }
 
-fn packages(workspace: &Workspace, _: &[String]) -> Result<()> {
+/// Packages are built without the workspace's profiles; a separate folder keeps the two builds from invalidating each
+/// other.
+fn packages(workspace: &Workspace) -> Result<()> {
     set_up(workspace)?;
-    // Packages are built without the workspace's profiles; a separate folder keeps the two builds from invalidating
-    // each other.
     let publish = "publish --workspace --dry-run --allow-dirty --target-dir target/publish";
     run(&mut workspace.cargo(publish.split(' ')))
-}
-
-fn wheel(workspace: &Workspace, words: &[String]) -> Result<()> {
-    super::python::make_and_test(workspace, words)
-}
-
-fn site(workspace: &Workspace, _: &[String]) -> Result<()> {
-    docs::build(workspace, "ddl-cli/torch,ddl-cli/doc-only")?;
-    let site = workspace.path(docs::SITE);
-    browser::check(
-        workspace,
-        "tests/page/check_site.py",
-        &site,
-        Some(&workspace.path("target/screenshots")),
-    )
 }

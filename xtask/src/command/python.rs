@@ -9,26 +9,20 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 
 use crate::debian;
-use crate::process::run;
+use crate::process::{read, run};
 use crate::python::Python;
-use crate::workspace::{Workspace, absolute};
+use crate::workspace::Workspace;
 
 /// Pinned packages of the test environment, besides the wheel.
 const REQUIREMENTS: &str = "crates/ddl-python/tests/requirements.txt";
-/// Default folder of the wheel and its test environment.
-const FOLDER: &str = "target/python";
-/// The virtual environment, beside the wheel.
-const ENVIRONMENT: &str = "environment";
+/// The folder of the wheel, and the virtual environment beside it.
+const WHEELS: &str = "target/python/wheels";
+const ENVIRONMENT: &str = "target/python/environment";
 /// Largest size of a wheel in bytes: `pip install` should not fetch more.
 const LARGEST: u64 = 12_000_000;
-/// The cargo profile of a wheel for users.
-const RELEASED: &str = "wheel";
 
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct Arguments {
-    /// Folder for the wheel
-    #[arg(long, value_name = "DIR", default_value = FOLDER)]
-    out: PathBuf,
     /// Only build the wheel
     #[arg(long)]
     no_tests: bool,
@@ -39,25 +33,17 @@ pub(crate) struct Arguments {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        let out = absolute(&workspace.root().join(&self.out))?;
-        make_environment(workspace, &out)?;
-        let wheel = build(workspace, &out, RELEASED)?;
+        make_environment(workspace)?;
+        let wheel = build(workspace)?;
         println!("{}", wheel.display());
         if !self.no_tests {
-            test(workspace, &out, &wheel, &self.rest)?;
+            run(pip_install(workspace)
+                .args(["--no-deps", "--force-reinstall"])
+                .arg(wheel))?;
+            test(workspace, &self.rest)?;
         }
         Ok(())
     }
-}
-
-/// The wheel for users, and its tests.
-pub(super) fn make_and_test(workspace: &Workspace, rest: &[String]) -> Result<()> {
-    let arguments = Arguments {
-        out: FOLDER.into(),
-        no_tests: false,
-        rest: rest.to_vec(),
-    };
-    arguments.run(workspace)
 }
 
 /// The first part of the check in `ci`.
@@ -66,64 +52,73 @@ pub(super) fn prepare(workspace: &Workspace) -> Result<()> {
     if let Err(error) = debian::ensure_program("mosquitto_sub", &["mosquitto", "mosquitto-clients"]) {
         eprintln!("{error:#}");
     }
-    make_environment(workspace, &workspace.path(FOLDER))
+    make_environment(workspace)
 }
 
-/// The second part: the wheel in the profile of the tests, so that dependencies are built only once.
+/// The second part: the tests on the library that `ci` has built with everything else. maturin would compile all crates
+/// again with other features of their dependencies; `cargo xtask nightly wheel` tests what it makes.
 pub(super) fn check(workspace: &Workspace) -> Result<()> {
-    let out = workspace.path(FOLDER);
-    let wheel = build(workspace, &out, "dev")?;
-    test(workspace, &out, &wheel, &[])
+    let folder = "import sysconfig; print(sysconfig.get_path('platlib'))";
+    let site = read(in_environment(workspace, "python").args(["-c", folder]))?;
+    let package = Path::new(site.trim()).join("ddl_forecast");
+    fs::create_dir_all(&package)?;
+    let sources = fs::read_dir(workspace.path("crates/ddl-python/python/ddl_forecast"))?.flatten();
+    for file in sources.filter(|file| file.path().is_file()) {
+        fs::copy(file.path(), package.join(file.file_name()))?;
+    }
+    let library = workspace.path("target/debug/lib_core.so");
+    fs::copy(&library, package.join("_core.abi3.so")).with_context(|| library.display().to_string())?;
+    let bin = workspace.path(ENVIRONMENT).join("bin");
+    let program = "import sys; from ddl_forecast.__main__ import main; sys.exit(main())";
+    fs::write(
+        bin.join("ddl"),
+        format!("#!/bin/sh\nexec {}/python -c '{program}' \"$@\"\n", bin.display()),
+    )?;
+    run(Command::new("chmod").arg("755").arg(bin.join("ddl")))?;
+    test(workspace, &[])
 }
 
 /// A new virtual environment with the packages needed for building and testing.
-fn make_environment(workspace: &Workspace, out: &Path) -> Result<()> {
+fn make_environment(workspace: &Workspace) -> Result<()> {
     let python = Python::find()?;
-    run(python.call(["-m", "venv", "--clear"]).arg(out.join(ENVIRONMENT))).context(
+    run(python.call(["-m", "venv", "--clear"]).arg(workspace.path(ENVIRONMENT))).context(
         "no virtual environment could be created: install Python's venv, on Debian or Ubuntu with \
          `apt install python3-venv`",
     )?;
     let options = ["--only-binary=:all:", "--requirement", REQUIREMENTS];
-    run(pip_install(workspace, out).args(options))
+    run(pip_install(workspace).args(options))
 }
 
-fn build(workspace: &Workspace, out: &Path, profile: &str) -> Result<PathBuf> {
-    let wheels = out.join("wheels");
+fn build(workspace: &Workspace) -> Result<PathBuf> {
+    let wheels = workspace.path(WHEELS);
     if wheels.exists() {
         fs::remove_dir_all(&wheels).with_context(|| format!("{} cannot be removed", wheels.display()))?;
     }
-    let mut maturin = in_environment(workspace, out, "maturin");
-    maturin
-        .args(["build", "--quiet", "--profile", profile])
-        .args(["--manifest-path", "crates/ddl-python/Cargo.toml", "--out"])
-        .arg(&wheels)
-        .arg("--interpreter")
-        .arg(out.join(ENVIRONMENT).join("bin/python"));
-    run(&mut maturin)?;
+    let mut maturin = in_environment(workspace, "maturin");
+    maturin.args("build --quiet --profile wheel --manifest-path crates/ddl-python/Cargo.toml --out".split(' '));
+    let interpreter = workspace.path(ENVIRONMENT).join("bin/python");
+    run(maturin.arg(&wheels).arg("--interpreter").arg(interpreter))?;
     let mut built = fs::read_dir(&wheels).context("no wheel was built")?.flatten();
     let is_wheel = |path: &PathBuf| path.extension() == Some(OsStr::new("whl"));
     let wheel = built.find_map(|entry| Some(entry.path()).filter(is_wheel));
     let wheel = wheel.context("no wheel was built")?;
     let size = fs::metadata(&wheel)?.len();
     ensure!(
-        profile != RELEASED || size <= LARGEST,
+        size <= LARGEST,
         "{} has {size} bytes, more than {LARGEST}: find out which files grew",
         wheel.display()
     );
     Ok(wheel)
 }
 
-fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Result<()> {
-    run(pip_install(workspace, out)
-        .args(["--no-deps", "--force-reinstall"])
-        .arg(wheel))?;
+fn test(workspace: &Workspace, rest: &[String]) -> Result<()> {
     for check in [
-        ["mypy", "--strict", "-p", "ddl_forecast"].as_slice(),
-        &["mypy.stubtest", "ddl_forecast._core"],
+        "-m mypy --strict -p ddl_forecast",
+        "-m mypy.stubtest ddl_forecast._core",
     ] {
-        run(in_environment(workspace, out, "python").arg("-m").args(check))?;
+        run(in_environment(workspace, "python").args(check.split(' ')))?;
     }
-    let mut pytest = in_environment(workspace, out, "python");
+    let mut pytest = in_environment(workspace, "python");
     pytest
         .args(["-m", "pytest", "--quiet", "--durations", "5", "-c"])
         .arg(workspace.path("crates/ddl-python/pyproject.toml"))
@@ -141,15 +136,15 @@ fn test(workspace: &Workspace, out: &Path, wheel: &Path, rest: &[String]) -> Res
     run(&mut pytest)
 }
 
-fn pip_install(workspace: &Workspace, out: &Path) -> Command {
-    let mut pip = in_environment(workspace, out, "pip");
+fn pip_install(workspace: &Workspace) -> Command {
+    let mut pip = in_environment(workspace, "pip");
     pip.args(["install", "--quiet", "--disable-pip-version-check"]);
     pip
 }
 
 /// A program of the environment, with the environment variables of a plain cargo.
-fn in_environment(workspace: &Workspace, out: &Path, program: &str) -> Command {
-    let environment = out.join(ENVIRONMENT);
+fn in_environment(workspace: &Workspace, program: &str) -> Command {
+    let environment = workspace.path(ENVIRONMENT);
     let mut command = workspace.program(environment.join("bin").join(program));
     command.env("VIRTUAL_ENV", environment).env_remove("PYTHONPATH");
     command

@@ -1,9 +1,8 @@
 //! `cargo xtask setup`: libtorch, and cargo's configuration for it.
 
-use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::Args;
 
 use crate::libtorch::{self, Request};
@@ -11,12 +10,8 @@ use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Folder with the pinned wheels, for a machine without a package index
-    #[arg(long, value_name = "DIR")]
-    wheel_dir: Option<PathBuf>,
-    /// Folder for the unpacked libraries [default: the user's cache, `~/.cache/ddl`]
-    #[arg(long, value_name = "DIR")]
-    cache: Option<PathBuf>,
+    #[command(flatten)]
+    request: Request,
     /// Print shell lines that set libtorch's variables, for tools that do not use cargo's configuration:
     /// `eval "$(cargo xtask setup --env)"`
     #[arg(long)]
@@ -26,13 +21,12 @@ pub(crate) struct Arguments {
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
         let start = Instant::now();
-        let request = Request {
-            cache: self.cache,
-            wheel_dir: self.wheel_dir,
-        };
-        let ready = libtorch::ensure(workspace, &request)?;
+        let ready = libtorch::ensure(workspace, &self.request)?;
         if self.env {
-            return print_environment(&ready.folder);
+            let quoted = format!("'{}'", ready.folder.display().to_string().replace('\'', "'\\''"));
+            println!("export LIBTORCH={quoted}");
+            println!("export LD_LIBRARY_PATH={quoted}/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}");
+            return Ok(());
         }
         println!(
             "libtorch {}: {} ({}), {:.1} s",
@@ -45,12 +39,4 @@ impl Arguments {
         println!("cargo configuration: .cargo/config.generated.toml {written}");
         Ok(())
     }
-}
-
-fn print_environment(libtorch: &Path) -> Result<()> {
-    let folder = libtorch.to_str().context("libtorch's path is not valid Unicode")?;
-    let quoted = format!("'{}'", folder.replace('\'', "'\\''"));
-    println!("export LIBTORCH={quoted}");
-    println!("export LD_LIBRARY_PATH={quoted}/lib${{LD_LIBRARY_PATH:+:$LD_LIBRARY_PATH}}");
-    Ok(())
 }

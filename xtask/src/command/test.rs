@@ -1,22 +1,21 @@
 //! `cargo xtask test`: all tests of the workspace.
+//!
+//! Every build here selects the whole workspace with its tests, so that cargo chooses one set of features for the
+//! dependencies and compiles each crate once. Only what depends on the feature `torch` is compiled twice.
 
 use anyhow::Result;
 use clap::Args;
 
 use super::set_up;
 use crate::process::run;
-use crate::recordings::{Manifest, RECORDED};
+use crate::recordings::bring_in;
 use crate::workspace::Workspace;
 
-/// One build of everything without libtorch: another selection of packages would select other features of their
-/// dependencies. It includes the examples, which the tests of `ddl-tests` run.
-const PLAIN: &str = "--workspace --exclude ddl-star";
-/// The tests that need libtorch.
-const TORCH: [&str; 3] = [
-    "-p ddl-star -p ddl-forecast -p ddl-cli --features ddl-cli/torch --tests",
-    "-p ddl-star -p ddl-forecast -p ddl-cli --features ddl-cli/torch --doc",
-    "-p ddl-tests --features torch --test it_torch --test faults_torch",
-];
+/// Everything that can be built without the feature `torch`.
+const PLAIN: &str = "--workspace --lib --bins --examples --tests";
+/// The program, its tests and the examples of the documentation with the feature `torch`.
+const TORCH: &str = "--workspace --features ddl-cli/torch,ddl-tests/torch";
+const TORCH_TESTS: &str = "--test it_torch --test faults_torch";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -33,25 +32,19 @@ impl Arguments {
         if !self.no_torch {
             set_up(workspace)?;
         }
-        // Best effort: a test that needs recordings prints what is missing, and fails in CI.
-        let manifest = Manifest::load(workspace)?;
-        for convention in RECORDED {
-            match manifest.entry(convention)?.obtain(workspace, convention, None) {
-                Ok((_, reason)) => eprintln!("{convention}: {reason}"),
-                Err(error) => eprintln!("{error:#}"),
-            }
-        }
-        cargo_test(workspace, PLAIN, &self.rest)?;
+        bring_in(workspace)?;
         if self.no_torch {
-            return Ok(());
+            return cargo(workspace, "test", "--workspace --exclude ddl-star", &self.rest);
         }
-        TORCH
-            .iter()
-            .try_for_each(|selection| cargo_test(workspace, selection, &self.rest))
+        build_with_torch(workspace)?;
+        cargo(workspace, "test", &format!("{TORCH} {TORCH_TESTS}"), &self.rest)?;
+        cargo(workspace, "test", &format!("{TORCH} --doc"), &self.rest)?;
+        build(workspace)?;
+        cargo(workspace, "test", "--workspace --tests", &self.rest)
     }
 }
 
-/// All tests, after set-up and fetching: the last step of `ci`.
+/// All tests: the last step of `ci`.
 pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
     let arguments = Arguments {
         no_torch: false,
@@ -60,16 +53,26 @@ pub(super) fn run_all(workspace: &Workspace) -> Result<()> {
     arguments.run(workspace)
 }
 
-fn cargo_test(workspace: &Workspace, selection: &str, rest: &[String]) -> Result<()> {
-    let mut tests = workspace.cargo(["test"]);
-    tests
+/// Everything without libtorch: the tests, `target/debug/ddl`, the examples, the library of the Python package.
+pub(super) fn build(workspace: &Workspace) -> Result<()> {
+    cargo(workspace, "build", PLAIN, &[])
+}
+
+/// The program with libtorch, as `target/debug/ddl`, and its tests.
+pub(super) fn build_with_torch(workspace: &Workspace) -> Result<()> {
+    cargo(workspace, "build", &format!("{TORCH} --bin ddl {TORCH_TESTS}"), &[])
+}
+
+fn cargo(workspace: &Workspace, action: &str, selection: &str, rest: &[String]) -> Result<()> {
+    let mut cargo = workspace.cargo([action]);
+    cargo
         .args(selection.split(' '))
         .args(rest)
         // Tests run in parallel already. One thread each avoids contention for cores and fixes the order of libtorch's
         // sums.
         .env("OMP_NUM_THREADS", "1");
     if let Some(folder) = workspace.recordings()? {
-        tests.env("DDL_DATASETS", folder);
+        cargo.env("DDL_DATASETS", folder);
     }
-    run(&mut tests)
+    run(&mut cargo)
 }

@@ -1,6 +1,7 @@
-"""Brings pinned files into a folder: JSON with `source`, `files` and `folder`, as in datasets/manifest.toml.
+"""Brings pinned files into a folder: JSON with `sources`, `files` and `folder`, as in datasets/manifest.toml.
 
-Every file must have its size and its SHA-256. Nothing in an archive is executed. A failure prints one line.
+Every file must have its size and its SHA-256. Nothing in an archive is executed. Prints the name of the source that had
+the last file; a failure prints one line.
 """
 
 import base64
@@ -30,10 +31,17 @@ def opened(address, authorities=None):
 
 def right(name, data, pin):
     if len(data) != pin["bytes"]:
-        sys.exit(f"{name}: {len(data)} bytes instead of {pin['bytes']}")
+        raise ValueError(f"{name}: {len(data)} bytes instead of {pin['bytes']}")
     if hashlib.sha256(data).hexdigest() != pin["sha256"]:
-        sys.exit(f"{name}: wrong contents: the SHA-256 is not the pinned one")
+        raise ValueError(f"{name}: wrong contents: the SHA-256 is not the pinned one")
     return data
+
+
+def is_right(path, pin):
+    try:
+        return bool(right(path.name, path.read_bytes(), pin))
+    except (OSError, ValueError):
+        return False
 
 
 class Links(html.parser.HTMLParser):
@@ -54,7 +62,7 @@ def archive(source):
 
     options, _ = create_command("download").parse_args([])
     if options.no_index:
-        sys.exit("pip is configured with no-index")
+        raise ValueError("pip is configured with no-index")
     complaint = "not listed"
     for index in [options.index_url, *options.extra_index_urls]:
         try:
@@ -68,10 +76,10 @@ def archive(source):
             if urllib.parse.unquote(address.rpartition("/")[2]) == source["archive"]:
                 with opened(address, options.cert) as response:
                     return right(source["archive"], response.read(source["bytes"] + 1), source)
-    sys.exit(f"{source['archive']} on pip's package index: {complaint}")
+    raise ValueError(f"{source['archive']} on pip's package index: {complaint}")
 
 
-def main(source, files, folder):
+def fetch(source, files, folder):
     tar = tarfile.open(fileobj=io.BytesIO(archive(source))) if source["kind"] == "package" else None
     for file in files:
         if tar:
@@ -79,10 +87,28 @@ def main(source, files, folder):
         else:
             with opened(source["address"].replace("{path}", file["path"])) as response:
                 data = response.read(file["bytes"] + 1)
-        pathlib.Path(folder, file["name"]).write_bytes(right(file["name"], data, file))
+        right(file["name"], data, file)
+        # Renamed into place when it is whole.
+        work = folder / f".incoming-{file['name']}"
+        work.write_bytes(data)
+        work.replace(folder / file["name"])
 
 
-try:
-    main(**json.loads(sys.argv[1]))
-except (OSError, KeyError, ValueError, tarfile.TarError) as error:
-    sys.exit(f"{getattr(error, 'reason', None) or error}".replace("\n", " "))
+def main(sources, files, folder):
+    folder, name, reasons = pathlib.Path(folder), "an earlier run", []
+    for source in sources:
+        missing = [file for file in files if not is_right(folder / file["name"], file)]
+        if not missing:
+            break
+        name = source["name"]
+        try:
+            fetch(source, missing, folder)
+        except (OSError, KeyError, ValueError, tarfile.TarError) as error:
+            reasons.append(f"{name}: {getattr(error, 'reason', None) or error}".replace("\n", " "))
+    if all(is_right(folder / file["name"], file) for file in files):
+        print(name)
+    else:
+        sys.exit("; ".join(reasons))
+
+
+main(**json.loads(sys.argv[1]))

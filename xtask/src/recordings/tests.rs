@@ -1,4 +1,4 @@
-//! Tests of fetching and of the choice of a convention, without a network.
+//! Tests of fetching, without a network.
 
 use super::*;
 use crate::cache::write_file;
@@ -86,34 +86,30 @@ fn offline() -> (tempfile::TempDir, Workspace) {
 }
 
 #[test]
-fn what_cannot_be_had_is_an_error_and_the_simulated_crowd_needs_nothing() {
+fn what_cannot_be_had_is_an_error_and_wrong_files_are_neither_used_nor_replaced() {
     let (folder, workspace) = offline();
-    let data = folder.path().join("empty");
-    for (asked, complaint) in [
-        (Some("star"), "cannot be fetched"),
-        (Some("own"), "name one of star, social-gan"),
-        (None, "correct --data"),
-    ] {
-        let message = format!("{:#}", choose(&workspace, asked, Some(&data)).unwrap_err());
-        assert!(message.contains(complaint), "{message}");
-    }
-    let chosen = choose(&workspace, Some(SIMULATED), None).unwrap();
-    assert_eq!((chosen.convention.as_str(), chosen.folder), (SIMULATED, None));
-}
-
-#[test]
-fn wrong_files_are_neither_used_nor_replaced_silently() {
-    let (folder, workspace) = offline();
-    let data = folder.path().join("star");
-    for file in &Manifest::load(&workspace).unwrap().star.files {
+    let manifest = Manifest::load(&workspace).unwrap();
+    assert!(
+        manifest
+            .entry("own")
+            .unwrap_err()
+            .to_string()
+            .contains("name one of star, social-gan")
+    );
+    let message = |place: &Path| {
+        let outcome = manifest.star.obtain(&workspace, "star", Some(place));
+        format!("{:#}", outcome.unwrap_err())
+    };
+    let complaint = message(&folder.path().join("empty"));
+    assert!(complaint.contains("cannot be fetched"), "{complaint}");
+    // Also if they are in the folder beside the named one.
+    let [data, beside] = ["star", "social-gan"].map(|name| folder.path().join(name));
+    fs::create_dir(&beside).unwrap();
+    for file in &manifest.star.files {
         write_file(&data.join(&file.name), b"1,2\n1,1\n0,0\n0,0\n").unwrap();
     }
-    // Also if they are in the folder beside the named one.
-    let beside = folder.path().join("social-gan");
-    fs::create_dir(&beside).unwrap();
-    for (asked, place) in [(Some("star"), &data), (None, &data), (Some("star"), &beside)] {
-        let message = format!("{:#}", choose(&workspace, asked, Some(place)).unwrap_err());
-        assert!(message.contains("8 of 8 files"), "{message}");
+    for place in [&data, &beside] {
+        assert!(message(place).contains("8 of 8 files"), "{}", message(place));
     }
 }
 
