@@ -48,14 +48,21 @@ pub(super) fn train(
     ensure_enough_tracks(&request.goals, &windows)?;
     let starting_weights = || {
         let from = request.from.as_ref();
-        let sizes = (&request.star, &request.goals);
-        from.map(|source| StartingWeights::of(source, sizes, request.device))
+        from.map(|source| StartingWeights::of(source, &request.star, &request.goals, request.device))
             .transpose()
     };
     let start = starting_weights()?;
     let run = &request.out;
     let began_with = start.as_ref().map(|start| start.record.clone());
-    let config = config_of(request, dataset, (&fold, window_rule, &windows), (began_with, device));
+    let config = config_of(
+        request,
+        dataset.convention(),
+        &fold,
+        window_rule,
+        &windows,
+        began_with,
+        device,
+    );
     let _claimed = run.claim(&config)?;
     let (network, proposal) = start.map_or((None, None), |start| (Some(start.network), start.proposal));
     let better = |trained| match starting_weights()? {
@@ -102,9 +109,12 @@ fn check(request: &TrainingRequest) -> Result<(), DdlError> {
 /// The `config.json` of a run, from the request, the training data and the device.
 fn config_of(
     request: &TrainingRequest,
-    dataset: &Dataset,
-    (fold, window_rule, windows): (&Fold<'_>, WindowRule, &[Window]),
-    (began_with, device): (Option<InitialModel>, Device),
+    convention: Convention,
+    fold: &Fold<'_>,
+    window_rule: WindowRule,
+    windows: &[Window],
+    began_with: Option<InitialModel>,
+    device: Device,
 ) -> RunConfig {
     RunConfig {
         format: FORMAT,
@@ -112,7 +122,7 @@ fn config_of(
         training: request.training.clone(),
         goals: request.goals.clone(),
         data: TrainingData {
-            convention: dataset.convention(),
+            convention,
             fold: fold.name().to_owned(),
             window_rule,
             validation: request.validation,
@@ -120,7 +130,7 @@ fn config_of(
             windows: windows.len(),
             pedestrians: windows.iter().map(Window::len).sum(),
             sha256: digest(windows),
-            recordings: match dataset.convention() {
+            recordings: match convention {
                 Convention::Own => learned_from(fold)
                     .map(|recording| (recording.name().to_owned(), digest_of_recording(recording)))
                     .collect(),

@@ -22,7 +22,8 @@ pub(crate) struct StartingWeights {
 impl StartingWeights {
     pub(crate) fn of(
         source: &ModelSource,
-        (star, goals): (&StarConfig, &GoalRecipe),
+        star: &StarConfig,
+        goals: &GoalRecipe,
         device: DeviceChoice,
     ) -> Result<Self, DdlError> {
         let model = Ddl::open(source, device)?;
