@@ -20,7 +20,7 @@ for target in "${targets[@]}"; do
   if [ "$sanitizer" != none ] && grep -A6 "name = \"$target\"" tests/fuzz/Cargo.toml | grep -q required-features; then
     continue
   fi
-  mkdir -p "target/fuzz-corpus/$target"
+  mkdir -p "target/fuzz-corpus/$target" "tests/fuzz/corpus/$target"
   # shellcheck disable=SC2086
   fuzz fuzz run "$target" --fuzz-dir tests/fuzz --target-dir target/fuzz --sanitizer "$sanitizer" "${features[@]}" \
     ${FUZZ_OPTIONS:-} "target/fuzz-corpus/$target" "tests/fuzz/corpus/$target" -- -max_len=1024 -timeout=5 \

@@ -201,12 +201,8 @@ fn each_scene_remembers_its_place() {
         scenes.remember(Some(&name), place).unwrap();
         let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
         let mut live = live.remembering(memory()).unwrap();
-        let mut seen = BTreeMap::<i64, Vec<_>>::new();
-        for (frame, id, x, y) in own_tracks::of_scene(crowd, 0..400) {
-            seen.entry(frame).or_default().push((PedestrianId(id), [x, y]));
-        }
         let mut windows = Vec::new();
-        for (frame, people) in seen {
+        for (frame, people) in own_tracks::frames(&own_tracks::of_scene(crowd, 0..400)) {
             scenes.observe(Some(&name), frame, people.clone()).unwrap();
             windows.extend(live.push(frame, people).unwrap().map(|now| now.window));
         }
@@ -377,13 +373,9 @@ fn each_scene_has_a_memory_file_of_its_own() {
     for (scene, file) in [(0, "hall.memory"), (1, "T%C3%BCr%2C%202.memory")] {
         let memory = SceneMemory::read(&place.at(&format!("memories/{file}"))).unwrap();
         let mut alone = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
-        let mut frames = BTreeMap::<i64, Vec<_>>::new();
-        for &(frame, id, x, y) in &recordings()[scene].1 {
-            frames.entry(frame).or_default().push((PedestrianId(id), [x, y]));
-        }
         // The second scene was observed twice.
         if scene == 0 {
-            for (frame, people) in frames {
+            for (frame, people) in own_tracks::frames(&recordings()[scene].1) {
                 alone.observe(frame, people).unwrap();
             }
             assert_eq!(memory, alone);

@@ -1,13 +1,11 @@
 //! The memory of a place that `ddl forecast - --memory` keeps in a file, and its summary by `ddl data`.
 
-use ddl::data::{PedestrianId, Position};
 use ddl::memory::SceneMemory;
 use ddl::{Ddl, DeviceChoice, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{crowd, drawn_model, program};
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::ops::Range;
 use std::process::{Child, Stdio};
@@ -25,19 +23,10 @@ fn moved(rows: Vec<Row>) -> Vec<Row> {
     rows.into_iter().map(by).collect()
 }
 
-fn frames(rows: &[Row]) -> BTreeMap<i64, Vec<(PedestrianId, Position)>> {
-    let mut frames = BTreeMap::<_, Vec<_>>::new();
-    for &(frame, id, x, y) in rows {
-        let frame = frames.entry(frame).or_default();
-        frame.push((PedestrianId(id), [x, y]));
-    }
-    frames
-}
-
 /// Writes a memory of these pedestrians to a file.
 fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
     let mut memory = SceneMemory::new(frame_step, SceneMemory::DEFAULT_CAPACITY).unwrap();
-    for (frame, positions) in frames(rows) {
+    for (frame, positions) in own_tracks::frames(rows) {
         memory.observe(frame, positions).unwrap();
     }
     memory.write(&place.at(name)).unwrap();
@@ -45,7 +34,7 @@ fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
 
 fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
     let mut all = Vec::new();
-    for (frame, positions) in frames(rows) {
+    for (frame, positions) in own_tracks::frames(rows) {
         let Some(now) = live.push(frame, positions).unwrap() else {
             continue;
         };

@@ -1,7 +1,7 @@
 //! Forecasts frame by frame, and those of `ddl forecast -`, which reads from a tracker, agree with forecasts of the
 //! windows of the whole recording.
 
-use ddl::data::{Observation, PedestrianId, Position, Recording};
+use ddl::data::{Observation, PedestrianId, Recording};
 use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json, json_lines};
@@ -47,10 +47,8 @@ fn live_forecasts_agree_with_forecasts_of_windows() {
 #[test]
 fn an_error_changes_nothing() {
     let rows = own_tracks::three_pedestrians(9);
-    let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
-        let here = rows.iter().filter(|row| row.0 == frame);
-        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y])).collect()
-    };
+    let frames = own_tracks::frames(&rows);
+    let pedestrians = |frame: i64| frames[&frame].clone();
     let model = drawn_model::of(Variant::Full);
     let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
     live.push(0, pedestrians(0)).unwrap();

@@ -21,7 +21,7 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
         test_pedestrians: Some(8),
         commit: "0123abc".to_owned(),
     };
-    let measured = ddl::measure_baselines(&crowd::dataset(), &request);
+    let measured = ddl::measure_baselines(crowd::dataset(), &request);
     let measured = measured.unwrap().remove(0);
     let mut tasks = Vec::new();
     for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {

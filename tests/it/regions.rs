@@ -1,6 +1,6 @@
 //! Adaptive regions: of the program on a real recording, and frame by frame.
 
-use ddl::data::{Convention, Dataset, PedestrianId, Position, Recording};
+use ddl::data::{Convention, Dataset, PedestrianId, Recording};
 use ddl::{AdaptiveRegions, DdlError, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json_lines};
@@ -91,10 +91,8 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let model = drawn_model::of(Variant::Full);
     let rows = own_tracks::three_pedestrians(30);
     let step = own_tracks::FRAME_STEP;
-    let pedestrians = |frame: i64| -> Vec<(PedestrianId, Position)> {
-        let here = rows.iter().filter(|row| row.0 == frame);
-        here.map(|&(_, id, x, y)| (PedestrianId(id), [x, y])).collect()
-    };
+    let frames = own_tracks::frames(&rows);
+    let pedestrians = |frame: i64| frames[&frame].clone();
     let live = LiveForecaster::with_frame_step(&model, step).unwrap();
     let mut plain = live.clone();
     let mut adapting = live.with_adaptive_regions(AdaptiveRegions::default());

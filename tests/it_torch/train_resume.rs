@@ -1,5 +1,5 @@
 //! Stopped training resumes with the same bytes as uninterrupted training. Killed training is tested in
-//! `tests/faults_torch`.
+//! `tests/it_torch/faults`.
 
 #![cfg(unix)]
 
@@ -7,7 +7,7 @@ use ddl_tests::folder_contents::assert_same;
 use ddl_tests::place::Place;
 use ddl_tests::processes;
 use ddl_tests::program::Finished;
-use ddl_tests::trained_model::{TRAIN, finish};
+use ddl_tests::trained_model::{TRAIN, finish, undisturbed};
 use std::io::{BufRead as _, BufReader};
 
 /// Steps before those of the forecasting network: 12 of the proposal network, and 24 of its memory branch.
@@ -46,5 +46,5 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
         assert!(!place.at("run/model.safetensors").exists(), "it had ended before");
     }
     // No unfinished file remains.
-    assert_same(&finish(&Place::empty()), &finish(&place));
+    assert_same(&undisturbed().0, &finish(&place));
 }

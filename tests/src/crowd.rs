@@ -2,6 +2,7 @@
 
 use ddl_data::{Dataset, TIME_STEP, Window, WindowRule};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams};
+use std::sync::OnceLock;
 
 /// Seed of the crowds, equal to that of the program, so that both use the same pedestrians.
 const SEED: u64 = 1;
@@ -11,14 +12,14 @@ pub const FOLD: &str = "corridor";
 const EXPERTS: usize = 600;
 
 /// The five simulated scenes.
-pub fn dataset() -> Dataset {
-    Dataset::simulated(SEED)
+pub fn dataset() -> &'static Dataset {
+    static DATASET: OnceLock<Dataset> = OnceLock::new();
+    DATASET.get_or_init(|| Dataset::simulated(SEED))
 }
 
 /// Test windows with their futures, of 2 to `most` pedestrians, spread over the whole recording.
 pub fn windows(count: usize, most: usize) -> Vec<Window> {
-    let dataset = dataset();
-    let fold = dataset.fold(FOLD).expect("the simulated scene exists");
+    let fold = dataset().fold(FOLD).expect("the simulated scene exists");
     let mut fitting = fold.test_windows(WindowRule::Complete);
     fitting.retain(|window| (2..=most).contains(&window.len()));
     assert!(
@@ -32,8 +33,7 @@ pub fn windows(count: usize, most: usize) -> Vec<Window> {
 
 /// The windows of the training scenes.
 pub fn training_windows() -> Vec<Window> {
-    let dataset = dataset();
-    let fold = dataset.fold(FOLD).expect("the simulated scene exists");
+    let fold = dataset().fold(FOLD).expect("the simulated scene exists");
     fold.training_windows(WindowRule::Complete)
 }
 

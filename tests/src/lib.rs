@@ -1,28 +1,25 @@
-//! Shared code of the cross-crate and command-line tests. The test targets `it` and `faults` need no libtorch;
-//! `it_torch` and `faults_torch` train (feature `torch`).
+//! Shared code of the cross-crate and command-line tests. The test target `it` needs no libtorch; `it_torch` trains
+//! (feature `torch`).
 
 #![allow(clippy::missing_panics_doc, reason = "a test may panic")]
 
-pub mod answer;
 pub mod bits;
 pub mod chance;
 pub mod console;
 pub mod crowd;
 pub mod drawn_model;
 pub mod example;
-pub mod figures;
 pub mod folder_contents;
 pub mod golden;
 pub mod guide;
 #[cfg(unix)]
 pub mod mount;
+pub mod nightly;
 #[cfg(unix)]
 pub mod offline;
 pub mod one_forecast;
 pub mod outside_bytes;
 pub mod own_tracks;
-pub mod page_inputs;
-pub mod page_run;
 pub mod place;
 pub mod processes;
 pub mod program;

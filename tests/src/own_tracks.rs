@@ -2,6 +2,8 @@
 
 use crate::crowd;
 use crate::place::Place;
+use ddl_data::{PedestrianId, Position};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// One row: frame, pedestrian, x and y in metres.
@@ -47,8 +49,7 @@ pub fn csv(rows: &[Row]) -> String {
 
 /// A part of a simulated crowd, as a recording of a user.
 pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
-    let crowds = crowd::dataset();
-    let recording = crowds.recording(scene).expect("the simulated scene exists");
+    let recording = crowd::dataset().recording(scene).expect("the simulated scene exists");
     let seen = recording.observations().iter();
     seen.filter(|seen| frames.contains(&seen.frame))
         .map(|seen| {
@@ -56,6 +57,15 @@ pub fn of_scene(scene: &str, frames: std::ops::Range<i64>) -> Vec<Row> {
             (seen.frame, seen.pedestrian.0, x, y)
         })
         .collect()
+}
+
+/// The pedestrians of each frame.
+pub fn frames(rows: &[Row]) -> BTreeMap<i64, Vec<(PedestrianId, Position)>> {
+    let mut frames = BTreeMap::<_, Vec<_>>::new();
+    for &(frame, id, x, y) in rows {
+        frames.entry(frame).or_default().push((PedestrianId(id), [x, y]));
+    }
+    frames
 }
 
 /// The folder `film`: three recordings in pixels at 23.98 frames per second, and their homography.

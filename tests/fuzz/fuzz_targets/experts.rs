@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `model_files::experts::read`.
+//! Fuzz target of the reader `experts`.
 #![no_main]
-ddl_fuzz::target!(model_files::experts::read);
+ddl_fuzz::target!("experts");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `external::read_json_lines`.
+//! Fuzz target of the reader `foreign_json_lines`.
 #![no_main]
-ddl_fuzz::target!(external::read_json_lines);
+ddl_fuzz::target!("foreign_json_lines");

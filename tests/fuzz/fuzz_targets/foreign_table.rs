@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `external::read_table`.
+//! Fuzz target of the reader `foreign_table`.
 #![no_main]
-ddl_fuzz::target!(external::read_table);
+ddl_fuzz::target!("foreign_table");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `external::read_trajnet`.
+//! Fuzz target of the reader `foreign_trajnet`.
 #![no_main]
-ddl_fuzz::target!(external::read_trajnet);
+ddl_fuzz::target!("foreign_trajnet");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `goal_library::read`.
+//! Fuzz target of the reader `goal_library`.
 #![no_main]
-ddl_fuzz::target!(goal_library::read);
+ddl_fuzz::target!("goal_library");

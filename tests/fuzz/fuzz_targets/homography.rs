@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `homography::read`.
+//! Fuzz target of the reader `homography`.
 #![no_main]
-ddl_fuzz::target!(homography::read);
+ddl_fuzz::target!("homography");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `live_tracks::read`.
+//! Fuzz target of the reader `live_tracks`.
 #![no_main]
-ddl_fuzz::target!(live_tracks::read);
+ddl_fuzz::target!("live_tracks");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `model_files::json::read_metrics`.
+//! Fuzz target of the reader `metrics`.
 #![no_main]
-ddl_fuzz::target!(model_files::json::read_metrics);
+ddl_fuzz::target!("metrics");

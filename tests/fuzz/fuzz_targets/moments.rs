@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `report::read_moments`.
+//! Fuzz target of the reader `moments`.
 #![no_main]
-ddl_fuzz::target!(report::read_moments);
+ddl_fuzz::target!("moments");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `tracks::obsmat`.
+//! Fuzz target of the reader `obsmat`.
 #![no_main]
-ddl_fuzz::target!(tracks::obsmat);
+ddl_fuzz::target!("obsmat");

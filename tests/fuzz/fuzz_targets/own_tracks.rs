@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `own_tracks::read`.
+//! Fuzz target of the reader `own_tracks`.
 #![no_main]
-ddl_fuzz::target!(own_tracks::read);
+ddl_fuzz::target!("own_tracks");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `model_files::packed_model::read`.
+//! Fuzz target of the reader `packed_model`.
 #![no_main]
-ddl_fuzz::target!(model_files::packed_model::read);
+ddl_fuzz::target!("packed_model");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `report::read`.
+//! Fuzz target of the reader `report`.
 #![no_main]
-ddl_fuzz::target!(report::read);
+ddl_fuzz::target!("report");

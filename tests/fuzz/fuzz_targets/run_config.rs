@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `model_files::json::read_run_config`.
+//! Fuzz target of the reader `run_config`.
 #![no_main]
-ddl_fuzz::target!(model_files::json::read_run_config);
+ddl_fuzz::target!("run_config");

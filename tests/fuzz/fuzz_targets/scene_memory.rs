@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `scene_memory::read`.
+//! Fuzz target of the reader `scene_memory`.
 #![no_main]
-ddl_fuzz::target!(scene_memory::read);
+ddl_fuzz::target!("scene_memory");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `tracks::social_gan`.
+//! Fuzz target of the reader `social_gan`.
 #![no_main]
-ddl_fuzz::target!(tracks::social_gan);
+ddl_fuzz::target!("social_gan");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `tracks::star_csv`.
+//! Fuzz target of the reader `star_csv`.
 #![no_main]
-ddl_fuzz::target!(tracks::star_csv);
+ddl_fuzz::target!("star_csv");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `stream::read`.
+//! Fuzz target of the reader `stream`.
 #![no_main]
-ddl_fuzz::target!(stream::read);
+ddl_fuzz::target!("stream");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `tracks::table`.
+//! Fuzz target of the reader `table`.
 #![no_main]
-ddl_fuzz::target!(tracks::table);
+ddl_fuzz::target!("table");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `model_files::training_state::read`.
+//! Fuzz target of the reader `training_state`.
 #![no_main]
-ddl_fuzz::target!(model_files::training_state::read);
+ddl_fuzz::target!("training_state");

@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `tracks::trajnet`.
+//! Fuzz target of the reader `trajnet`.
 #![no_main]
-ddl_fuzz::target!(tracks::trajnet);
+ddl_fuzz::target!("trajnet");

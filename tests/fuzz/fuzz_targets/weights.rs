@@ -1,3 +1,3 @@
-//! Fuzz target of the reader `model_files::weights::read`.
+//! Fuzz target of the reader `weights`.
 #![no_main]
-ddl_fuzz::target!(model_files::weights::read);
+ddl_fuzz::target!("weights");

@@ -5,11 +5,11 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 
-/// A fuzz target of the reader at this path below `ddl_tests::outside_bytes`.
+/// The fuzz target of the reader of this name in `ddl_tests::outside_bytes`.
 #[macro_export]
 macro_rules! target {
-    ($($reader:tt)*) => {
-        libfuzzer_sys::fuzz_target!(|bytes: &[u8]| ddl_tests::outside_bytes::$($reader)*(bytes));
+    ($reader:literal) => {
+        libfuzzer_sys::fuzz_target!(|bytes: &[u8]| ddl_tests::outside_bytes::read($reader, bytes));
     };
 }
 

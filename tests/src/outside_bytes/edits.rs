@@ -1,4 +1,6 @@
-//! Input bytes as choices and as edits of a valid file. Edits reach the code behind a reader's first checks.
+//! Edits of a valid file, chosen by bytes. They reach the code behind a reader's first checks.
+
+use arbitrary::Unstructured;
 
 const ODD_NUMBERS: [&str; 16] = [
     "0",
@@ -19,100 +21,39 @@ const ODD_NUMBERS: [&str; 16] = [
     "null",
 ];
 
-/// Choices, one after the other; zeros once the bytes are used up.
-#[derive(Debug)]
-pub(super) struct Choices<'a>(&'a [u8]);
+/// A number below `limit`; 0 if `limit` is 0, or the choices are used up.
+pub(super) fn below(choices: &mut Unstructured<'_>, limit: usize) -> usize {
+    choices.int_in_range(0..=limit.saturating_sub(1)).unwrap_or(0)
+}
 
-impl<'a> Choices<'a> {
-    pub(super) fn new(bytes: &'a [u8]) -> Self {
-        Self(bytes)
-    }
+/// The next byte; 0 if the choices are used up.
+pub(super) fn byte(choices: &mut Unstructured<'_>) -> u8 {
+    choices.arbitrary().unwrap_or(0)
+}
 
-    pub(super) fn edited(bytes: &'a [u8], whole: &[u8]) -> Vec<u8> {
-        let mut edited = whole.to_vec();
-        let mut choices = Self::new(bytes);
-        while !choices.is_empty() {
-            choices.edit(&mut edited);
-        }
-        edited
-    }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
-    pub(super) fn byte(&mut self) -> u8 {
-        let [byte] = self.bytes();
-        byte
-    }
-
-    pub(super) fn bytes<const N: usize>(&mut self) -> [u8; N] {
-        let mut bytes = [0; N];
-        let length = N.min(self.0.len());
-        bytes[..length].copy_from_slice(&self.0[..length]);
-        self.0 = &self.0[length..];
-        bytes
-    }
-
-    pub(super) fn rest(&mut self) -> &'a [u8] {
-        std::mem::take(&mut self.0)
-    }
-
-    /// A number below `limit`; 0 if `limit` is 0.
-    pub(super) fn below(&mut self, limit: usize) -> usize {
-        let number = if limit <= 256 {
-            usize::from(self.byte())
-        } else {
-            usize::from(u16::from_le_bytes(self.bytes()))
-                + usize::from(limit > 65_536) * (usize::from(self.byte()) << 16)
-        };
-        number % limit.max(1)
-    }
-
-    /// A coordinate: usually a plausible one, occasionally any bits.
-    pub(super) fn number(&mut self) -> f64 {
-        match self.byte() {
-            255 => f64::from_le_bytes(self.bytes()),
-            small => f64::from(small) * 0.25 - 30.0,
+/// The file with edits until the choices are used up: truncated, parts removed, doubled, overwritten or inserted, a
+/// number replaced by an unusual one.
+pub(super) fn edited(choices: &mut Unstructured<'_>, whole: &[u8]) -> Vec<u8> {
+    let mut bytes = whole.to_vec();
+    while !choices.is_empty() {
+        let way = byte(choices) % 6;
+        let start = below(choices, bytes.len() + 1);
+        let end = (start + below(choices, 64)).min(bytes.len());
+        match way {
+            0 => bytes.truncate(start),
+            1 => drop(bytes.drain(start..end)),
+            2 => bytes.extend_from_within(start..end),
+            3 | 4 => {
+                let new = choices.arbitrary::<[u8; 4]>().unwrap_or_default();
+                let new = &new[..=end % 4];
+                let overwritten = if way == 3 { new.len() } else { 0 };
+                let end = (start + overwritten).min(bytes.len());
+                drop(bytes.splice(start..end, new.iter().copied()));
+            }
+            _ => replace_number(&mut bytes, start, ODD_NUMBERS[end % ODD_NUMBERS.len()]),
         }
     }
-
-    /// Edits the bytes: truncates, flips, overwrites, doubles, removes, or replaces a number by an unusual one.
-    pub(super) fn edit(&mut self, bytes: &mut Vec<u8>) {
-        let place = self.below(bytes.len());
-        match self.byte() % 7 {
-            0 => bytes.truncate(place),
-            1 => {
-                let bit = self.byte() % 8;
-                if let Some(byte) = bytes.get_mut(place) {
-                    *byte ^= 1 << bit;
-                }
-            }
-            2 => {
-                let new: [u8; 4] = self.bytes();
-                for (byte, new) in bytes[place..].iter_mut().zip(new) {
-                    *byte = new;
-                }
-            }
-            3 => {
-                let new = self.byte();
-                bytes.insert(place, new);
-            }
-            4 => {
-                let end = (place + self.below(64)).min(bytes.len());
-                bytes.drain(place..end);
-            }
-            5 => {
-                let end = (place + self.below(64)).min(bytes.len());
-                let part = bytes[place..end].to_vec();
-                bytes.splice(end..end, part);
-            }
-            _ => {
-                let odd = ODD_NUMBERS[self.below(ODD_NUMBERS.len())];
-                replace_number(bytes, place, odd);
-            }
-        }
-    }
+    bytes
 }
 
 /// Replaces the first number written in digits at or after `place`.
@@ -122,6 +63,6 @@ fn replace_number(bytes: &mut Vec<u8>, place: usize, number: &str) {
         return;
     };
     let start = place + start;
-    let length = bytes[start..].iter().take_while(|b| in_number(b)).count();
+    let length = bytes[start..].iter().take_while(|byte| in_number(byte)).count();
     bytes.splice(start..start + length, number.bytes());
 }

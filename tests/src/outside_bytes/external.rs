@@ -20,17 +20,17 @@ fn windows() -> &'static [Window] {
 }
 
 /// Reads JSON lines of forecasts.
-pub fn read_json_lines(bytes: &[u8]) {
+pub(super) fn json_lines(bytes: &[u8]) {
     check(bytes, ExternalFormat::JsonLines);
 }
 
 /// Reads a table of forecasts.
-pub fn read_table(bytes: &[u8]) {
+pub(super) fn table(bytes: &[u8]) {
     check(bytes, ExternalFormat::Table);
 }
 
 /// Reads TrajNet++ ndjson of forecasts.
-pub fn read_trajnet(bytes: &[u8]) {
+pub(super) fn trajnet(bytes: &[u8]) {
     check(bytes, ExternalFormat::TrajNet);
 }
 

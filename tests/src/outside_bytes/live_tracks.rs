@@ -2,29 +2,30 @@
 
 use ddl_data::{Completion, LiveTracks, PedestrianId, Position};
 
-use super::edits::Choices;
+use super::edits::{below, byte};
+use arbitrary::Unstructured;
 
 /// Every few bytes are a frame: the distance to the previous one, and positions of pedestrians; occasionally a number
 /// of any bits.
-pub fn read(bytes: &[u8]) {
-    let mut choices = Choices::new(bytes);
-    let completion = Completion::new(2 + choices.below(7), choices.below(3));
-    let step = 1 + choices.below(12) as i64;
+pub(super) fn read(bytes: &[u8]) {
+    let mut choices = Unstructured::new(bytes);
+    let completion = Completion::new(2 + below(&mut choices, 7), below(&mut choices, 3));
+    let step = 1 + below(&mut choices, 12) as i64;
     let Ok(tracks) = LiveTracks::with_frame_step(step) else {
         panic!("a step of {step} is allowed");
     };
     let mut tracks = tracks.with_completion(completion.expect("within the bounds"));
-    let mut frame: i64 = choices.byte().into();
+    let mut frame: i64 = byte(&mut choices).into();
     let mut people_of_late: Vec<(i64, usize)> = Vec::new();
     while !choices.is_empty() {
-        frame = match choices.byte() {
-            255 => i64::from_le_bytes(choices.bytes()),
+        frame = match byte(&mut choices) {
+            255 => choices.arbitrary().unwrap_or(0),
             ahead => frame.wrapping_add(i64::from(ahead % 24) - 2),
         };
-        let pedestrians: Vec<(PedestrianId, Position)> = (0..choices.below(5))
+        let pedestrians: Vec<(PedestrianId, Position)> = (0..below(&mut choices, 5))
             .map(|_| {
-                let id = PedestrianId(choices.below(6) as i64);
-                (id, [choices.number(), choices.number()])
+                let id = PedestrianId(below(&mut choices, 6) as i64);
+                (id, [number(&mut choices), number(&mut choices)])
             })
             .collect();
         let before = tracks.clone();
@@ -47,5 +48,13 @@ pub fn read(bytes: &[u8]) {
                 assert!(tracks.len() <= most, "{} of {most}", tracks.len());
             }
         }
+    }
+}
+
+/// A coordinate: usually a plausible one, occasionally any bits.
+fn number(choices: &mut Unstructured<'_>) -> f64 {
+    match byte(choices) {
+        255 => choices.arbitrary().unwrap_or(0.0),
+        small => f64::from(small) * 0.25 - 30.0,
     }
 }

@@ -12,7 +12,7 @@ const FRAME_TIMES: [f64; 6] = [0.4, 0.04, 1.0 / 30.0, 0.1, 1e-9, 7.0];
 const PADDED_LIMIT: f64 = (1.0 + 6.0 * 2.0) * COORDINATE_LIMIT;
 
 /// The first byte chooses the name of a file of tracks, the second the rate; the others are its content.
-pub fn read(bytes: &[u8]) {
+pub(super) fn read(bytes: &[u8]) {
     let [name, rate, text @ ..] = bytes else {
         return;
     };

@@ -6,7 +6,7 @@ use std::io::BufReader;
 use ddl_data::{Completion, Frame, FrameReader, LiveTracks};
 
 /// The first byte chooses the size of the pieces in which the other bytes arrive.
-pub fn read(bytes: &[u8]) {
+pub(super) fn read(bytes: &[u8]) {
     let Some((&piece, text)) = bytes.split_first() else {
         return;
     };

@@ -4,7 +4,7 @@
 use ddl_data::{Format, Observation, PedestrianId, Position, Recording, parse_recording};
 
 /// The table format.
-pub fn table(bytes: &[u8]) {
+pub(super) fn table(bytes: &[u8]) {
     check(bytes, Format::Table, |rows| {
         let header = "y,frame,x,pedestrian\n".to_owned();
         header + &lines(rows, |f, p, [x, y]| format!("{y},{f},{x},{p}"))
@@ -12,7 +12,7 @@ pub fn table(bytes: &[u8]) {
 }
 
 /// The four lines of the convention `star`.
-pub fn star_csv(bytes: &[u8]) {
+pub(super) fn star_csv(bytes: &[u8]) {
     check(bytes, Format::StarCsv, |rows| {
         let column =
             |field: &dyn Fn(&Observation) -> String| rows.iter().map(field).collect::<Vec<_>>().join(",") + "\n";
@@ -27,14 +27,14 @@ pub fn star_csv(bytes: &[u8]) {
 }
 
 /// The lines of the convention `social-gan`.
-pub fn social_gan(bytes: &[u8]) {
+pub(super) fn social_gan(bytes: &[u8]) {
     check(bytes, Format::SocialGan, |rows| {
         lines(rows, |f, p, [x, y]| format!("{f}\t{p}.0\t{x:e}\t{y}"))
     });
 }
 
 /// TrajNet++ ndjson.
-pub fn trajnet(bytes: &[u8]) {
+pub(super) fn trajnet(bytes: &[u8]) {
     check(bytes, Format::TrajNet, |rows| {
         lines(rows, |f, p, [x, y]| {
             format!("{{\"track\": {{\"y\": {y:?}, \"x\": {x:?}, \"p\": {p}, \"f\": {f}}}}}")
@@ -43,7 +43,7 @@ pub fn trajnet(bytes: &[u8]) {
 }
 
 /// The eight columns of `obsmat.txt`.
-pub fn obsmat(bytes: &[u8]) {
+pub(super) fn obsmat(bytes: &[u8]) {
     check(bytes, Format::Obsmat, |rows| {
         lines(rows, |f, p, [x, y]| format!("{f}.0 {p} {x} 0 {y} nan 0 1e300"))
     });

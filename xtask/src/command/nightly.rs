@@ -1,9 +1,8 @@
 //! `cargo xtask nightly`: what takes too long for `ci`. docs/reliability.md says when each was run, and its figures.
 
-use std::fs;
 use std::time::Instant;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
 use super::{docs, python, set_up};
@@ -100,31 +99,15 @@ impl Check {
     }
 }
 
-/// Prints the rows of the table of docs/reliability.md.
 fn faults(workspace: &Workspace, words: &[String]) -> Result<()> {
     set_up(workspace)?;
-    let file = workspace.path("target/faults.md");
-    fs::write(&file, "").with_context(|| format!("{} cannot be written", file.display()))?;
+    let name = words.first().map_or("faults::", String::as_str);
     // The test `program` makes cargo build the program. One after the other, because they measure time and memory.
-    let tests = "test -p ddl-tests -p ddl-cli --features ddl-tests/torch,ddl-cli/torch --test program --test faults \
-                 --test faults_torch -- --test-threads 1 --nocapture";
+    let tests = "test -p ddl-tests -p ddl-cli --features ddl-tests/torch,ddl-cli/torch --test program --test it \
+                 --test it_torch -- --test-threads 1 --nocapture";
     let mut tests = workspace.cargo(tests.split(' '));
-    tests
-        .args(words)
-        .env("OMP_NUM_THREADS", "1")
-        // With this variable the tests use the full number of repetitions.
-        .env("DDL_FAULTS_FIGURES", &file);
-    let outcome = run(&mut tests);
-    let rows = fs::read_to_string(&file).context("the figures cannot be read")?;
-    let mut rows: Vec<&str> = rows.lines().collect();
-    rows.sort_unstable();
-    println!("| fault | tried | found |\n|---|---|---|\n{}", rows.join("\n"));
-    outcome?;
-    ensure!(
-        !rows.is_empty(),
-        "no figures: no test was chosen, or all were skipped (above)"
-    );
-    Ok(())
+    // With the variable, the tests use the full number of repetitions.
+    run(tests.arg(name).env("OMP_NUM_THREADS", "1").env("DDL_NIGHTLY", "1"))
 }
 
 fn fuzz(workspace: &Workspace, words: &[String]) -> Result<()> {

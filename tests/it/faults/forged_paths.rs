@@ -1,0 +1,142 @@
+//! Texts in a model file are never opened as paths.
+
+use super::EVALUATE;
+use ddl_tests::place::{Place, json};
+use ddl_tests::{nightly, safetensors_file};
+use serde_json::Value;
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+/// Whether the program ends within this time. A program that opens a pipe without a writer would wait forever; it is
+/// ended here.
+fn ends(place: &Place, line: &str, within: Duration) -> bool {
+    let mut child = place.start(line);
+    drop((child.stdout.take(), child.stderr.take()));
+    let begun = Instant::now();
+    while begun.elapsed() < within {
+        if child.try_wait().unwrap().is_some() {
+            return true;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    false
+}
+
+fn pipe(place: &Place) -> String {
+    let pipe = place.at("pipe");
+    let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    pipe.display().to_string()
+}
+
+fn texts(value: &Value, pointer: &str, found: &mut Vec<String>) {
+    match value {
+        Value::String(_) => found.push(pointer.to_owned()),
+        Value::Object(fields) => fields
+            .iter()
+            .for_each(|(name, value)| texts(value, &format!("{pointer}/{name}"), found)),
+        Value::Array(items) => items
+            .iter()
+            .enumerate()
+            .for_each(|(i, item)| texts(item, &format!("{pointer}/{i}"), found)),
+        _ => {}
+    }
+}
+
+/// Every text of `config.json` is replaced, one after the other, by the path of a pipe that blocks when it is opened.
+#[test]
+fn no_text_of_a_configuration_is_opened() {
+    let place = Place::with_model();
+    let forged = pipe(&place);
+    // Checks that the test notices such a pipe.
+    let opened = format!("forecast --model run {forged}");
+    assert!(!ends(&place, &opened, Duration::from_secs(2)));
+    let config: Value = json(&place.text("run/config.json"));
+    let mut pointers = Vec::new();
+    texts(&config, "", &mut pointers);
+    assert!(pointers.len() > 8, "{pointers:?}");
+    let commands = ["forecast --model run tracks.csv", "info --model run"];
+    let commands = &commands[..nightly::rounds(1, 2)];
+    for pointer in &pointers {
+        let mut config = config.clone();
+        *config.pointer_mut(pointer).unwrap() = Value::from(forged.clone());
+        place.write("run/config.json", config.to_string());
+        for command in commands {
+            let ended = ends(&place, command, Duration::from_secs(30));
+            assert!(ended, "{pointer} was opened by: {command}");
+        }
+    }
+}
+
+/// Writes a run with this path as the names of fold, recordings, commit and device; it still loads.
+fn forge(place: &Place, original: &Value, path: &str) {
+    let mut config = original.clone();
+    for pointer in ["/data/fold", "/data/sha256", "/commit", "/libtorch", "/device"] {
+        *config.pointer_mut(pointer).unwrap() = path.into();
+    }
+    config["data"]["validation_recordings"] = vec![path].into();
+    place.write("run/config.json", config.to_string());
+    for name in ["model", "proposal", "experts"] {
+        let file = format!("run/{name}.safetensors");
+        let bytes = place.read(&file);
+        let (mut header, numbers) = safetensors_file::parts(&bytes).unwrap();
+        let mut origin: Value = json(header["__metadata__"]["origin"].as_str().unwrap());
+        for fact in ["data.fold", "data.sha256"] {
+            origin[fact] = path.into();
+        }
+        origin["data.validation_recordings"] = config["data"]["validation_recordings"].to_string().into();
+        header["__metadata__"]["origin"] = origin.to_string().into();
+        place.write(&file, safetensors_file::join(&header, numbers));
+    }
+}
+
+#[test]
+fn a_model_with_paths_as_names_forecasts_as_before() {
+    let place = Place::with_model();
+    let forecast = "forecast --model run tracks.csv --threads 1";
+    let pack = "pack --model run --out packed";
+    let expected = place.ok(forecast);
+    let original: Value = json(&place.text("run/config.json"));
+    let paths = [
+        pipe(&place),
+        "../../etc/passwd".to_owned(),
+        "/etc/passwd\u{0}x".to_owned(),
+    ];
+    for path in &paths {
+        forge(&place, &original, path);
+        for line in [forecast, pack] {
+            assert!(ends(&place, line, Duration::from_secs(30)), "{path} was opened");
+        }
+        assert_eq!(place.ok(forecast), expected);
+        let _ = place.ok(pack);
+        let _ = place.ok("forecast --model packed tracks.csv");
+        // Recordings are found only by the names of the convention, which has no such fold.
+        place.fails("evaluate --model run --threads 1", &["corridor"]);
+    }
+}
+
+#[test]
+fn nothing_is_written_through_a_link() {
+    let place = Place::with_model();
+    let link = |to: &str, name: &str| std::os::unix::fs::symlink(to, place.at(name)).unwrap();
+    let forecast = "forecast --model run tracks.csv";
+    std::fs::rename(place.at("run/model.safetensors"), place.at("elsewhere")).unwrap();
+    link("../elsewhere", "run/model.safetensors");
+    let canary = place.at("canary").display().to_string();
+    for (line, name) in [
+        (&format!("{forecast} --output out")[..], "out"),
+        ("pack --model run --out packed", "packed"),
+        (EVALUATE, "run/report.json"),
+    ] {
+        place.write("canary", "untouched");
+        link(&canary, name);
+        let _ = place.ok(line);
+        assert_eq!(place.text("canary"), "untouched", "{line}");
+        assert!(!place.at(name).is_symlink(), "{line}");
+    }
+    // A link to a missing file is not a model, and does not create one.
+    place.remove("elsewhere");
+    place.fails(forecast, &["not finished"]);
+}
