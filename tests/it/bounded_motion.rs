@@ -165,12 +165,14 @@ fn the_certified_forecast_is_the_forecast() {
 
 /// minADE (m) of the model and of straight lines to its goals, for a pedestrian that walks straight at this speed.
 fn straight_on(model: &Ddl, speed: f64) -> [f64; 2] {
-    let at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
-    let forecast = model.forecast(&window(vec![(0..OBSERVED).map(at).collect()])).unwrap();
-    let start = at(OBSERVED - 1);
+    let position_at = |t: usize| [TIME_STEP * speed * t as f64, 0.0];
+    let forecast = model
+        .forecast(&window(vec![(0..OBSERVED).map(position_at).collect()]))
+        .unwrap();
+    let start = position_at(OBSERVED - 1);
     let error = |place: &dyn Fn(usize, usize) -> Position| {
         let ade = |k: usize| {
-            let off = |t: usize| distance(place(k, t), at(OBSERVED + t));
+            let off = |t: usize| distance(place(k, t), position_at(OBSERVED + t));
             (0..HORIZON).map(off).sum::<f64>() / HORIZON as f64
         };
         (0..forecast.hypotheses()).map(ade).fold(f64::INFINITY, f64::min)

@@ -97,8 +97,8 @@ fn check_interleaved(
         let of_latest = answers_of_latest.remove(name).unwrap_or_default();
         dropped += expected.len() - of_latest.len();
         // The forecasts are those without dropped frames, and the last frame is forecast.
-        let all: BTreeMap<_, _> = expected.iter().cloned().collect();
-        prop_assert!(of_latest.iter().all(|(frame, bits)| all.get(frame) == Some(bits)));
+        let by_frame: BTreeMap<_, _> = expected.iter().cloned().collect();
+        prop_assert!(of_latest.iter().all(|(frame, bits)| by_frame.get(frame) == Some(bits)));
         if let (Some(last), Some((frame, _))) = (expected.last(), frames.last())
             && last.0 == *frame
         {
@@ -395,18 +395,18 @@ fn only_the_latest_frames_are_forecast_and_the_others_counted() {
             .collect()
     };
     let line = format!("{LINE} --one --format jsonl");
-    let all = answered(&place.run_on(&text, &line).succeeds());
+    let every_answer = answered(&place.run_on(&text, &line).succeeds());
     let finished = place.run_on(&text, &format!("{line} --latest"));
-    let told = finished.stderr.clone();
+    let stderr = finished.stderr.clone();
     let latest = answered(&finished.succeeds());
-    assert!(latest.is_subset(&all));
+    assert!(latest.is_subset(&every_answer));
     for (scene, rows) in recordings() {
         let last = rows[rows.len() - 1].0;
         assert!(latest.contains(&(format!("{scene:?}"), last)), "{scene}: {latest:?}");
     }
-    let dropped = all.len() - latest.len();
+    let dropped = every_answer.len() - latest.len();
     let words = format!("and {dropped} dropped, because a later one came first");
-    assert_eq!(told.contains(&words), dropped > 0, "{told}");
+    assert_eq!(stderr.contains(&words), dropped > 0, "{stderr}");
 }
 
 #[test]

@@ -6,7 +6,7 @@ use ddl::network::{StarConfig, TrainingConfig};
 use ddl::report::{ForecastSnapshot, Report};
 use ddl::{GoalEvaluation, Protocol, RunConfig, Variant};
 use ddl_tests::place::{Place, json};
-use ddl_tests::progress::{returns_at_once, told};
+use ddl_tests::progress::{reported, returns_at_once};
 use ddl_tests::{crowd, drawn_model, recordings};
 
 const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online \
@@ -50,8 +50,8 @@ fn check_certificates(protocol: Protocol, rows: &[&ResultRow]) {
     let named = |start: &str| rows.iter().find(|row| row.conditions.forecaster.starts_with(start));
     let stability = |row: &&ResultRow| row.scores.stability.unwrap();
     let model = stability(rows.iter().find(|row| row.conditions.forecaster == "DDL").unwrap());
-    let (stable, all) = ((model.certified, model.decreasing), (Some(1.0), 1.0));
-    assert_eq!(stable == all, !protocol.gives_future(), "{protocol}: {model:?}");
+    let (stable, all_stable) = ((model.certified, model.decreasing), (Some(1.0), 1.0));
+    assert_eq!(stable == all_stable, !protocol.gives_future(), "{protocol}: {model:?}");
     let plain = named("DDL with plain Euler steps").map(stability);
     assert_eq!(plain.is_some(), protocol == Protocol::Fair);
     if let Some(plain) = plain {
@@ -109,7 +109,7 @@ fn a_number_goes_from_the_model_to_the_page() {
         place.at("run/epochs/002.safetensors"),
     )
     .unwrap();
-    assert!(told(&place, EVALUATE, &["evaluate"]).len() >= 2);
+    assert!(reported(&place, EVALUATE, &["evaluate"]).len() >= 2);
     let report = Report::load(&place.at("run/report.json")).unwrap();
     report.rows().iter().for_each(check_conditions);
     for protocol in Protocol::ALL {
@@ -135,8 +135,8 @@ fn a_number_goes_from_the_model_to_the_page() {
     let elsewhere = Report::load(&place.at("baselines/report.json")).unwrap();
     assert!(elsewhere.rows().iter().all(|row| row.conditions.fold == "doorway"));
 
-    let told = place.ok("report run baselines --title Corridor --out pages");
-    assert!(told.ends_with("report.html\n") && told.lines().count() == 1);
+    let printed_paths = place.ok("report run baselines --title Corridor --out pages");
+    assert!(printed_paths.ends_with("report.html\n") && printed_paths.lines().count() == 1);
     let collected = Report::load(&place.at("pages/report.json")).unwrap();
     assert_eq!(collected.title(), "Corridor");
     assert_eq!(collected.rows(), [report.rows(), elsewhere.rows()].concat());
@@ -205,8 +205,11 @@ fn goals_are_measured_and_drawn() {
         assert!(svg.contains(words), "{words}");
     }
     let words = place.ok(measure);
-    let all = format!("{:.3}", test.all.oracle_fde);
-    assert!(words.contains("nearest goal off") && words.contains(&all), "{words}");
+    let nearest_goal = format!("{:.3}", test.all.oracle_fde);
+    assert!(
+        words.contains("nearest goal off") && words.contains(&nearest_goal),
+        "{words}"
+    );
 }
 
 #[test]

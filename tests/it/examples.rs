@@ -93,11 +93,11 @@ fn every_example_runs_and_prints_the_expected_texts() {
 
 #[test]
 fn no_example_is_forgotten() {
-    let known = EXAMPLES.map(|(line, _)| line).into_iter().chain(ELSEWHERE).map(parts);
-    let known: BTreeSet<String> = known.map(|(of, name, _)| format!("{of} {name}")).collect();
+    let listed = EXAMPLES.map(|(line, _)| line).into_iter().chain(ELSEWHERE).map(parts);
+    let listed: BTreeSet<String> = listed.map(|(package, name, _)| format!("{package} {name}")).collect();
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     let folders = std::fs::read_dir(crates).unwrap();
-    let found = folders
+    let examples = folders
         .map(|entry| entry.unwrap().path())
         .filter(|folder| !folder.ends_with("ddl-star"))
         .flat_map(|folder| {
@@ -106,8 +106,8 @@ fn no_example_is_forgotten() {
             } else {
                 folder.file_name().unwrap().to_str().unwrap().to_owned()
             };
-            let of = example::all_of(&folder).into_iter();
-            of.map(move |name| format!("{package} {name}"))
+            let names = example::all_of(&folder).into_iter();
+            names.map(move |name| format!("{package} {name}"))
         });
-    assert_eq!(found.collect::<BTreeSet<_>>(), known);
+    assert_eq!(examples.collect::<BTreeSet<_>>(), listed);
 }

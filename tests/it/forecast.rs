@@ -105,7 +105,7 @@ fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
 fn every_format_has_the_same_hypotheses_and_certificates() {
     let place = Place::with_model();
     let tracks = own_tracks::three_pedestrians(10);
-    let at = |moment, id| {
+    let position_at = |moment, id| {
         let row = tracks.iter().find(|row| (row.0, row.1) == (moment, id));
         row.map(|&(.., x, y)| [x, y]).unwrap()
     };
@@ -128,7 +128,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
         assert!(line.familiarity > 0.0 && line.familiarity <= 1.0);
         assert!(line.spread.is_sorted() && line.spread.len() == FRAMES);
         for (k, hypothesis) in line.hypotheses.iter().enumerate() {
-            let left = check_certificate(at(line.observed_until, line.pedestrian), hypothesis);
+            let left = check_certificate(position_at(line.observed_until, line.pedestrian), hypothesis);
             for (t, &position) in hypothesis.positions.iter().enumerate() {
                 let row = rows.next().unwrap();
                 let place = (row.observed_until, row.pedestrian, row.hypothesis, row.frame);
@@ -176,12 +176,12 @@ fn a_forecast_does_not_depend_on_other_windows() {
     for model in BuiltinModel::ALL {
         let forecast = |rest: &str| place.ok(&format!("forecast --model {model} --whole {rest}"));
         let [table, lines] = ["csv", "jsonl"].map(|format| {
-            let all = forecast(&format!("rows.csv --format {format} --threads 1"));
+            let output = forecast(&format!("rows.csv --format {format} --threads 1"));
             for other in ["shuffled.csv --threads 1", "rows.csv --threads 2"] {
                 let other = forecast(&format!("{other} --format {format}"));
-                assert!(all == other, "{model}");
+                assert!(output == other, "{model}");
             }
-            all
+            output
         });
         assert_eq!(table == unnamed, model == BuiltinModel::default(), "{model}");
         let last: Vec<&str> = lines.lines().skip(4 * 3).collect();
@@ -270,8 +270,8 @@ fn goals_of_own_tracks_agree_with_the_forecasts() {
     for line in json_lines::<JsonLine>(&ask("forecast --format jsonl")) {
         for hypothesis in line.hypotheses {
             let goal = goals.next().unwrap();
-            let of = (goal.observed_until, goal.pedestrian);
-            assert_eq!(of, (line.observed_until, line.pedestrian));
+            let moment_and_pedestrian = (goal.observed_until, goal.pedestrian);
+            assert_eq!(moment_and_pedestrian, (line.observed_until, line.pedestrian));
             assert!(own_tracks::alike_in_a_table([goal.x, goal.y], hypothesis.goal));
             assert_eq!(goal.weight.to_bits(), hypothesis.weight.to_bits());
         }

@@ -7,11 +7,11 @@ use ddl_tests::golden::{self, Golden};
 fn built_in_models_agree_with_libtorch() {
     let file = golden::file();
     for model in BuiltinModel::ALL {
-        let found = Golden::of(&Ddl::builtin(model, DeviceChoice::Cpu).unwrap());
-        let known = &file[model.name()];
-        assert_eq!(found.len(), known.len());
-        for (found, known) in found.iter().zip(known) {
-            found.assert_near(known, model.name());
+        let computed = Golden::of(&Ddl::builtin(model, DeviceChoice::Cpu).unwrap());
+        let stored = &file[model.name()];
+        assert_eq!(computed.len(), stored.len());
+        for (computed, stored) in computed.iter().zip(stored) {
+            computed.assert_near(stored, model.name());
         }
     }
 }

@@ -19,12 +19,12 @@ fn never_further_from_its_end(path: &[Position]) -> Vec<Position> {
     let end = path[path.len() - 1];
     let mut nearest = f64::INFINITY;
     let moved = |&p: &Position| {
-        let found = distance(p, end);
-        if found <= nearest {
-            nearest = found;
+        let remaining = distance(p, end);
+        if remaining <= nearest {
+            nearest = remaining;
             return p;
         }
-        let share = nearest / found;
+        let share = nearest / remaining;
         [0, 1].map(|axis| end[axis] + share * (p[axis] - end[axis]))
     };
     path.iter().map(moved).collect()
@@ -52,8 +52,8 @@ struct Pedestrian {
 impl Pedestrian {
     fn of(path: &[Position]) -> Self {
         let (start, end) = (path[0], path[HORIZON]);
-        let kept = never_further_from_its_end(path);
-        let moved = path.iter().zip(&kept).map(|(&a, &b)| distance(a, b));
+        let approaching = never_further_from_its_end(path);
+        let moved = path.iter().zip(&approaching).map(|(&a, &b)| distance(a, b));
         Self {
             displacement: moved.sum::<f64>() / HORIZON as f64,
             walks: distance(start, end) > STANDING,
@@ -105,10 +105,10 @@ fn the_guarantee_moves_real_pedestrians_by_millimetres() {
         let paths = windows
             .iter()
             .flat_map(|window| (0..window.len()).map(|i| &window.track(i)[OBSERVED - 1..]));
-        let all: Vec<_> = paths.map(Pedestrian::of).collect();
-        let walking: Vec<_> = all.iter().filter(|pedestrian| pedestrian.walks).collect();
+        let pedestrians: Vec<_> = paths.map(Pedestrian::of).collect();
+        let walking: Vec<_> = pedestrians.iter().filter(|pedestrian| pedestrian.walks).collect();
 
-        let moved = displacement(all.iter());
+        let moved = displacement(pedestrians.iter());
         let certified = percent(&walking, |pedestrian| pedestrian.certified);
         let turning_back = percent(&walking, |pedestrian| pedestrian.largest_turn > 90.0);
         eprintln!(
@@ -120,9 +120,9 @@ fn the_guarantee_moves_real_pedestrians_by_millimetres() {
             turn_of(&walking, 50),
             turn_of(&walking, 95),
         );
-        assert_eq!(all.len(), count, "{name}");
+        assert_eq!(pedestrians.len(), count, "{name}");
         let turning_back = (10.0 * turning_back).round() / 10.0;
-        let found = [moved.round(), certified.round(), turning_back];
-        assert_eq!(found, expected, "{name}");
+        let measured = [moved.round(), certified.round(), turning_back];
+        assert_eq!(measured, expected, "{name}");
     }
 }

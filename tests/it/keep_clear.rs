@@ -47,7 +47,7 @@ fn fewer_pairs_come_close_and_all_arrive() {
             careful.forecast_central(&windows).unwrap(),
         ),
     ] {
-        let [before, after] = [&free, &clear].map(|all| near_pairs(&windows, all, 0.5));
+        let [before, after] = [&free, &clear].map(|forecasts| near_pairs(&windows, forecasts, 0.5));
         assert!(after < before, "{before} pairs came near, now {after}");
         // Goals and weights are the same as without avoidance.
         for (free, clear) in free.iter().zip(&clear) {

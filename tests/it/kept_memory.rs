@@ -33,26 +33,26 @@ fn remember(place: &Place, name: &str, rows: &[Row], frame_step: i64) {
 }
 
 fn hypotheses_of(live: &mut LiveForecaster<&Ddl>, rows: &[Row]) -> Vec<Value> {
-    let mut all = Vec::new();
+    let mut hypotheses = Vec::new();
     for (frame, positions) in own_tracks::frames(rows) {
         let Some(now) = live.push(frame, positions).unwrap() else {
             continue;
         };
         let forecast = &now.forecast;
         for i in 0..now.window.len() {
-            let of = |k: usize| json!([forecast.weight(i, k), forecast.hypothesis(i, k)]);
-            all.push((0..forecast.hypotheses()).map(of).collect::<Value>());
+            let hypothesis = |k: usize| json!([forecast.weight(i, k), forecast.hypothesis(i, k)]);
+            hypotheses.push((0..forecast.hypotheses()).map(hypothesis).collect::<Value>());
         }
     }
-    all
+    hypotheses
 }
 
 fn hypotheses_in(lines: &str) -> Vec<Value> {
-    let of = |line: Value| -> Value {
+    let hypotheses_of_line = |line: Value| -> Value {
         let hypotheses = line["hypotheses"].as_array().unwrap().iter();
         hypotheses.map(|one| json!([one["weight"], one["positions"]])).collect()
     };
-    json_lines::<Value>(lines).into_iter().map(of).collect()
+    json_lines::<Value>(lines).into_iter().map(hypotheses_of_line).collect()
 }
 
 #[test]
@@ -96,14 +96,14 @@ fn a_memory_of_another_place_stays_as_it_is() {
     let place = Place::with_model();
     remember(&place, "hall.memory", &rows(0..300), FRAME_STEP);
     let before = place.read("hall.memory");
-    for (steps, told) in [
+    for (steps, words) in [
         (200, "the memory is of another place"),
         (40, "too few to tell whether the memory is of this place"),
     ] {
         let elsewhere = own_tracks::csv(&moved(rows(0..steps)));
         let finished = place.run_on(&elsewhere, &format!("{LINE} {KEPT}"));
         assert_eq!(finished.code, Some(0), "{finished:?}");
-        assert_eq!(finished.stderr.matches(told).count(), 1, "{finished:?}");
+        assert_eq!(finished.stderr.matches(words).count(), 1, "{finished:?}");
         assert_eq!(finished.stderr.matches("hall.memory").count(), 1);
         assert!(place.read("hall.memory") == before, "{steps} steps");
     }
@@ -214,8 +214,8 @@ fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
         processes::signal(first.id(), "TERM");
         let finished = first.wait_with_output().unwrap();
         assert_eq!(finished.status.code(), Some(130));
-        let kept = SceneMemory::read(&place.at("hall.memory")).unwrap();
-        assert!(kept.summary().frames >= 8);
+        let memory = SceneMemory::read(&place.at("hall.memory")).unwrap();
+        assert!(memory.summary().frames >= 8);
     }
     #[cfg(not(unix))]
     drop(first);
@@ -238,7 +238,7 @@ fn data_summarises_and_draws_a_memory() {
     );
     assert_eq!(memory["low"], json!(summary.extent.unwrap()[0]));
     assert_eq!(facts["recordings"].as_array().unwrap().len(), 1);
-    let told = place.ok("data hall.memory --svg hall.svg");
+    let summary_text = place.ok("data hall.memory --svg hall.svg");
     let segments = format!("{} of at most 20000 segments", summary.segments);
     for words in [
         "hall.memory, the memory of a place",
@@ -246,7 +246,7 @@ fn data_summarises_and_draws_a_memory() {
         "10 frames a step",
         "x from ",
     ] {
-        assert!(told.contains(words), "{words}: {told}");
+        assert!(summary_text.contains(words), "{words}: {summary_text}");
     }
     let drawn = place.text("hall.svg");
     for part in [

@@ -61,7 +61,10 @@ fn never_sees_the_future(forecaster: &dyn Forecaster) {
     let reference = forecasts(&observed);
     let futures: Vec<_> = windows.iter().map(wild).collect();
     for change in 0..futures[0].len() {
-        let changed: Vec<Window> = futures.iter().map(|of| of[change].1.clone()).collect();
+        let changed: Vec<Window> = futures
+            .iter()
+            .map(|wild_windows| wild_windows[change].1.clone())
+            .collect();
         let future = futures[0][change].0;
         assert_eq!(forecasts(&changed), reference, "{name}, future: {future}");
     }
@@ -198,7 +201,7 @@ fn remembered_tracks_never_contain_the_future() {
 #[test]
 fn a_memory_that_looks_ahead_is_detected() {
     let model = drawn_model::of(Variant::Full);
-    let mut found = 0;
+    let mut detected = 0;
     for window in crowd::windows(4, 9).iter().skip(1) {
         let now = window.frames()[OBSERVED - 1];
         // The same observations with times 0.8 s later: recalled tracks end up to 0.4 s after the present.
@@ -207,7 +210,7 @@ fn a_memory_that_looks_ahead_is_detected() {
         let start = window.start_frame() + 2 * step;
         let ahead = Window::new(window.recording(), start, step, ids, tracks.collect()).unwrap();
         let never = i64::MAX;
-        found += usize::from(online(&model, &ahead, now) != online(&model, &ahead, never));
+        detected += usize::from(online(&model, &ahead, now) != online(&model, &ahead, never));
     }
-    assert!(found > 0);
+    assert!(detected > 0);
 }

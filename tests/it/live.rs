@@ -107,8 +107,8 @@ impl Live {
         let mut rest = String::new();
         self.output.read_to_string(&mut rest).unwrap();
         let output = self.child.wait_with_output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        (rest, told, output.status.code())
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        (rest, stderr, output.status.code())
     }
 }
 
@@ -179,10 +179,10 @@ fn an_invalid_line_is_reported_and_earlier_frames_are_answered() {
         let finished = place.run_on(&format!("{good}{bad}"), line);
         // Frame 80, which the invalid line ends, is also forecast.
         assert_eq!((finished.stdout.lines().count(), finished.code), (6, Some(1)));
-        let told = &finished.stderr;
+        let stderr = &finished.stderr;
         assert!(
-            told.starts_with("error: standard input, ") && told.contains(message),
-            "{told}"
+            stderr.starts_with("error: standard input, ") && stderr.contains(message),
+            "{stderr}"
         );
     }
 }
@@ -210,8 +210,8 @@ fn implausible_input_is_reported_once() {
     }
     let line = "forecast - --threads 1 --frame-step 10";
     let finished = place.run_on(&own_tracks::csv(&pixels), &format!("{line} --one"));
-    let told = "warning: half of the steps";
-    assert_eq!(finished.stderr.matches(told).count(), 1, "{finished:?}");
+    let warning = "warning: half of the steps";
+    assert_eq!(finished.stderr.matches(warning).count(), 1, "{finished:?}");
     let mut rows = own_tracks::three_pedestrians(20);
     // From side to side, 8 m per step.
     rows.extend((8..20).map(|t| (10 * t, 4, t as f64, 8.0 * (t % 2) as f64)));

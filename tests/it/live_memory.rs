@@ -67,16 +67,16 @@ fn a_memory_of_another_place_is_refused() {
         for &frame in watched.frames() {
             live.push(frame, pedestrians(&watched, frame)).unwrap();
         }
-        let kept = live.memory().unwrap();
+        let kept_memory = live.memory().unwrap();
         let refused = live.refused_memory();
         assert_eq!(refused.is_some(), is_refused, "{name}: {refused:?}");
         // The memory holds the observed place, not the other one.
         let least = if is_refused { 1 } else { memory.segments() };
-        assert!(kept.segments() > least, "{name}");
+        assert!(kept_memory.segments() > least, "{name}");
         if let Some(other) = refused {
             assert!(other.to_string().contains("of another place"), "{other}");
-            assert!(kept.segments() < memory.segments());
-            let [low, _] = kept.summary().extent.unwrap();
+            assert!(kept_memory.segments() < memory.segments());
+            let [low, _] = kept_memory.summary().extent.unwrap();
             assert!(low[0] > 400.0);
         }
     }

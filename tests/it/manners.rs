@@ -76,8 +76,8 @@ fn commands_that_report_also_speak_json() {
     }
     for line in ["--help", "info run", "train --help", "nonsense"] {
         let finished = place.run(line);
-        let all = finished.stdout + &finished.stderr;
-        assert!(!all.contains('\u{1b}'), "{line}: {all:?}");
+        let output = finished.stdout + &finished.stderr;
+        assert!(!output.contains('\u{1b}'), "{line}: {output:?}");
     }
 }
 
@@ -173,8 +173,8 @@ fn only_system_libraries_are_loaded() {
         let mut child = command.stdout(Stdio::null()).spawn().unwrap();
         assert!(child.wait().unwrap().success());
         // The system's loader reports every library by its path.
-        let told = place.text(&format!("loaded.{}", child.id()));
-        let paths = told
+        let loader_log = place.text(&format!("loaded.{}", child.id()));
+        let paths = loader_log
             .lines()
             .filter_map(|line| Some(line.split_once("calling init: ")?.1));
         let name = |path: &str| {
@@ -186,7 +186,7 @@ fn only_system_libraries_are_loaded() {
                 .map(str::to_owned)
         };
         let mut loaded: BTreeSet<String> = paths.filter_map(name).collect();
-        assert!(loaded.contains("libc"), "{line}: {told}");
+        assert!(loaded.contains("libc"), "{line}: {loader_log}");
         loaded.retain(|name| !["libc", "libm", "libgcc_s"].contains(&&**name) && !name.starts_with("ld-linux"));
         assert!(loaded.is_empty(), "{line}: {loaded:?}");
     }

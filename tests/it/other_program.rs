@@ -32,8 +32,9 @@ fn python_forecasts(place: &Place) -> bool {
 }
 
 fn row<'a>(report: &'a Report, protocol: &str, forecaster: &str) -> &'a ResultRow {
-    let of = |row: &&ResultRow| row.conditions.protocol.name() == protocol && row.conditions.forecaster == forecaster;
-    report.rows().iter().find(of).unwrap()
+    let is_row =
+        |row: &&ResultRow| row.conditions.protocol.name() == protocol && row.conditions.forecaster == forecaster;
+    report.rows().iter().find(is_row).unwrap()
 }
 
 fn report(place: &Place, folder: &str, name: &str) -> Report {
@@ -63,13 +64,16 @@ fn the_python_example_has_the_scores_of_the_baseline_on_real_recordings() {
     };
     for (fold, printed, pedestrians) in [("zara1", "0.428/0.953", 2324), ("hotel", "0.325/0.615", 1026)] {
         let place = Place::empty();
-        let of = format!("--convention star --fold {fold} --data {}", data.display());
-        assert_eq!(place.ok(&format!("windows {of} --output windows.jsonl")), "");
+        let recordings_of_fold = format!("--convention star --fold {fold} --data {}", data.display());
+        assert_eq!(
+            place.ok(&format!("windows {recordings_of_fold} --output windows.jsonl")),
+            ""
+        );
         if !python_forecasts(&place) {
             return;
         }
         let evaluate = "evaluate --forecasts forecasts.jsonl --name mine --out results";
-        let summary = place.ok(&format!("{evaluate} {of}"));
+        let summary = place.ok(&format!("{evaluate} {recordings_of_fold}"));
         let line = summary.lines().find(|line| line.ends_with("  mine"));
         let line = line.unwrap();
         assert!(
@@ -106,14 +110,14 @@ fn a_part_of_the_pedestrians_is_scored_only_on_request() {
     let some: Vec<&str> = text.lines().skip(7).collect();
     place.write("some.jsonl", some.join("\n"));
     let part = format!("{EVALUATE} some.jsonl --out part");
-    let (count, all) = (some.len(), some.len() + 7);
-    let missing = format!("some.jsonl forecasts {count} of the {all} pedestrians");
+    let (count, whole_count) = (some.len(), some.len() + 7);
+    let missing = format!("some.jsonl forecasts {count} of the {whole_count} pedestrians");
     place.fails(&part, &[&missing, "--intersection", "rule complete"]);
     let summary = place.ok(&format!("{part} --intersection"));
     assert!(summary.contains("  some\n"), "{summary}");
     let report = report(&place, "part", "some");
     // Followed by a digest of the pedestrians, the same in every row.
-    let subset = format!("pedestrians forecast by some.jsonl: {count} of {all}, digest ");
+    let subset = format!("pedestrians forecast by some.jsonl: {count} of {whole_count}, digest ");
     let first = &report.rows()[0].conditions.test_subset;
     assert!(first.as_deref().unwrap().starts_with(&subset), "{first:?}");
     for row in report.rows() {

@@ -13,17 +13,17 @@ fn with_recordings() -> Place {
 #[test]
 fn own_recordings_are_summarised() {
     let place = with_recordings();
-    let told = place.json("data mine --json");
-    let each = told["recordings"].as_array().unwrap();
-    assert_eq!(each.len(), 2);
+    let summary = place.json("data mine --json");
+    let recordings = summary["recordings"].as_array().unwrap();
+    assert_eq!(recordings.len(), 2);
     assert_eq!(
-        (&each[0]["recording"], &each[0]["frame_step"]),
+        (&recordings[0]["recording"], &recordings[0]["frame_step"]),
         (&"lobby".into(), &10.into())
     );
-    let windows = |of: &Value| of["to_learn_from"].as_u64().unwrap();
-    assert!(windows(&each[1]) > 100, "{told}");
-    let total = windows(&told["total"]);
-    assert_eq!(total, windows(&each[0]) + windows(&each[1]));
+    let windows = |recording: &Value| recording["to_learn_from"].as_u64().unwrap();
+    assert!(windows(&recordings[1]) > 100, "{summary}");
+    let total = windows(&summary["total"]);
+    assert_eq!(total, windows(&recordings[0]) + windows(&recordings[1]));
     let words = place.ok("data mine");
     let in_all = format!(" {total} pedestrian-windows in ");
     assert!(words.lines().last().unwrap().contains(&in_all), "{words}");
@@ -40,7 +40,7 @@ fn models_are_measured_on_own_recordings() {
         "--data mine/yard.csv",
         "--model hotel --convention own --data mine/yard.csv",
     ]
-    .map(|of| place.ok(&format!("evaluate {of} {measure}")));
+    .map(|subject| place.ok(&format!("evaluate {subject} {measure}")));
     assert!(of_fold.contains("convention own, protocol single"), "{of_fold}");
     assert!(of_fold.contains("\nyard "), "{of_fold}");
     assert_eq!(of_fold, of_file);
@@ -51,29 +51,29 @@ fn models_are_measured_on_own_recordings() {
 fn unreadable_files_are_reported_together() {
     let place = with_recordings();
     place.write("mine/roof.csv", "frame,pedestrian,x,y\n1,1,a,0\n");
-    let told = place.run("data mine");
-    assert_eq!(told.code, Some(1));
+    let finished = place.run("data mine");
+    assert_eq!(finished.code, Some(1));
     for name in ["mine/lobby.csv", "mine/yard.csv"] {
-        assert!(told.stdout.contains(name), "{told:?}");
+        assert!(finished.stdout.contains(name), "{finished:?}");
     }
-    assert!(told.stderr.starts_with("error: mine/roof.csv"), "{told:?}");
+    assert!(finished.stderr.starts_with("error: mine/roof.csv"), "{finished:?}");
 
     for index in 0..11 {
         place.write(&format!("mine/empty{index}.txt"), "");
     }
     for line in ["data mine", "train --data mine --out run"] {
-        let told = place.run(line);
-        assert_eq!(told.code, Some(1));
-        let lines: Vec<&str> = told.stderr.lines().collect();
-        assert!(lines.iter().all(|line| line.starts_with("error: ")), "{told:?}");
-        assert!(lines[0].contains("mine/empty0.txt"), "{told:?}");
+        let finished = place.run(line);
+        assert_eq!(finished.code, Some(1));
+        let lines: Vec<&str> = finished.stderr.lines().collect();
+        assert!(lines.iter().all(|line| line.starts_with("error: ")), "{finished:?}");
+        assert!(lines[0].contains("mine/empty0.txt"), "{finished:?}");
         let last = "error: 12 of 14 files cannot be read; the first 10 are listed above";
         assert_eq!((lines.len(), lines[10]), (11, last));
     }
     assert!(!place.at("run").exists());
-    let told = place.run("data mine --json");
-    let read = &json::<Value>(&told.stdout)["total"]["recordings"];
-    assert_eq!((told.code, read), (Some(1), &2.into()));
+    let finished = place.run("data mine --json");
+    let read = &json::<Value>(&finished.stdout)["total"]["recordings"];
+    assert_eq!((finished.code, read), (Some(1), &2.into()));
 }
 
 #[test]

@@ -46,24 +46,24 @@ fn a_packed_run_has_the_results_of_the_run_without_its_library() {
     let of_run = Report::load(&place.at("run/report.json")).unwrap();
     let of_packed = Report::load(&place.at("packed/report.json")).unwrap();
     assert!(place.at("packed/report.html").is_file());
-    let (expected, found) = (row(&of_run, PACKED), row(&of_packed, PACKED));
-    assert_eq!(found.scores.pedestrians, expected.scores.pedestrians);
-    assert!((found.scores.min_ade - expected.scores.min_ade).abs() < ROUNDING);
-    assert!((found.scores.min_fde - expected.scores.min_fde).abs() < ROUNDING);
+    let (expected, measured) = (row(&of_run, PACKED), row(&of_packed, PACKED));
+    assert_eq!(measured.scores.pedestrians, expected.scores.pedestrians);
+    assert!((measured.scores.min_ade - expected.scores.min_ade).abs() < ROUNDING);
+    assert!((measured.scores.min_fde - expected.scores.min_fde).abs() < ROUNDING);
     // The rows of the run differ only in the library. They must differ, otherwise the comparison would prove nothing.
     let whole = row(&of_run, "DDL");
     assert!((whole.scores.min_fde - expected.scores.min_fde).abs() > 1e-6);
     let lines = row(&of_packed, "straight line to the estimated goals");
     for (row, words) in [
-        (found, "no expert library"),
-        (found, "16 bits"),
+        (measured, "no expert library"),
+        (measured, "16 bits"),
         (expected, "no expert library"),
         (lines, "no expert library"),
         (whole, "and retrieved"),
     ] {
         assert!(recipe(row).contains(words), "{}", recipe(row));
     }
-    for row in [found, expected] {
+    for row in [measured, expected] {
         assert_eq!(row.scores.stability.unwrap().certified, Some(1.0));
     }
     // Networks of this recipe learn stable rollouts, and plain Euler steps leave the learned region.
@@ -168,7 +168,10 @@ fn the_reported_number_is_reproduced() {
     let row = rows.find(|row| row.conditions.window_rule.to_string() == expected.window_rule);
     let scores = &row.unwrap().scores;
     assert_eq!(scores.pedestrians, expected.pedestrians);
-    for (found, expected) in [(scores.min_ade, expected.min_ade), (scores.min_fde, expected.min_fde)] {
-        assert!((found - expected).abs() < ROUNDING, "{found}, reported {expected}");
+    for (measured, expected) in [(scores.min_ade, expected.min_ade), (scores.min_fde, expected.min_fde)] {
+        assert!(
+            (measured - expected).abs() < ROUNDING,
+            "{measured}, reported {expected}"
+        );
     }
 }

@@ -63,14 +63,14 @@ fn the_regions_reach_their_probability_without_future_data() {
     let dataset = Dataset::load(Convention::Star, &folder).unwrap();
     let recording = dataset.recording("hotel").unwrap();
     let place = Place::empty();
-    let (all, half) = (rows(recording, FRAMES), rows(recording, FRAMES / 2));
-    place.write_tracks("all.csv", &all);
-    place.write_tracks("half.csv", &half);
+    let (rows_of_all, rows_of_half) = (rows(recording, FRAMES), rows(recording, FRAMES / 2));
+    place.write_tracks("all.csv", &rows_of_all);
+    place.write_tracks("half.csv", &rows_of_half);
     let options = "--model hotel --whole --frame-step 10 --region 0.9 --format jsonl --threads 1";
     let whole = place.ok(&format!("forecast all.csv {options}"));
     let until_half = place.ok(&format!("forecast half.csv {options}"));
     assert!(!until_half.is_empty() && whole.starts_with(&until_half));
-    let streamed = place.run_on(&own_tracks::csv(&all), &format!("forecast - {options}"));
+    let streamed = place.run_on(&own_tracks::csv(&rows_of_all), &format!("forecast - {options}"));
     assert!(streamed.succeeds() == whole, "a stream has other forecasts");
     let lines: Vec<Line> = json_lines(&whole);
     let share = held(&lines, recording, recording.frames()[FRAMES / 2]);

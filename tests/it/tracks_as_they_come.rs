@@ -41,32 +41,32 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
     let mut rows = own_tracks::three_pedestrians(10);
     // The second pedestrian arrives at frame 60; the third is not seen at 40 and 50.
     rows.retain(|&(frame, id, ..)| !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame)));
-    let (lines, told) = forecast(&rows, "--certificate --last");
+    let (lines, stderr) = forecast(&rows, "--certificate --last");
     let note = "of 3 forecasts 1 are of pedestrians observed at fewer than 8 time steps, and 1 over filled gaps";
-    assert!(told.contains(note), "{told}");
-    let found: Vec<_> = lines.iter().map(made_up).collect();
-    assert_eq!(found, [[90, 1, 0, 0], [90, 2, 4, 0], [90, 3, 0, 2]]);
+    assert!(stderr.contains(note), "{stderr}");
+    let completions: Vec<_> = lines.iter().map(made_up).collect();
+    assert_eq!(completions, [[90, 1, 0, 0], [90, 2, 4, 0], [90, 3, 0, 2]]);
     for line in &lines {
         let mut hypotheses = line["hypotheses"].as_array().unwrap().iter();
         assert!(hypotheses.all(|hypothesis| hypothesis["certificate"]["holds"] == true));
     }
-    let (lines, told) = forecast(&rows, "--last --whole");
+    let (lines, stderr) = forecast(&rows, "--last --whole");
     assert_eq!(
-        (lines.iter().map(made_up).collect(), told),
+        (lines.iter().map(made_up).collect(), stderr),
         (vec![[90, 1, 0, 0]], String::new())
     );
     // Pedestrians that have just appeared are counted.
     rows.push((90, 4, 3.0, 1.0));
     let missing = "1 of the 4 pedestrians at frame 90 were observed at too few of the last 8 time steps";
-    let told = forecast(&rows, "--last").1;
-    assert!(told.contains(missing), "{told}");
+    let stderr = forecast(&rows, "--last").1;
+    assert!(stderr.contains(missing), "{stderr}");
 }
 
 #[test]
 fn a_rate_without_whole_steps_is_resampled_and_reported() {
     let rows: Vec<Row> = (0..=72).map(|frame| (frame, 1, 0.05 * frame as f64, 1.0)).collect();
-    let (lines, told) = forecast(&rows, "--fps 24 --last");
-    assert!(told.contains("0.4 s is 9.6 frames"), "{told}");
+    let (lines, stderr) = forecast(&rows, "--fps 24 --last");
+    assert!(stderr.contains("0.4 s is 9.6 frames"), "{stderr}");
     assert_eq!(made_up(&lines[0]), [72, 1, 0, 0]);
     let frames: Vec<f64> = serde_json::from_value(lines[0]["frames"].clone()).unwrap();
     assert!((frames[0] - 81.6).abs() < 1e-9 && (frames[11] - 187.2).abs() < 1e-9);
@@ -81,8 +81,8 @@ fn pixels_are_converted_and_formats_make_no_difference() {
     let pixels: Vec<Row> = metres.iter().map(pixel).collect();
     let expected = forecast(&metres, "--whole").0;
     assert_eq!(forecast(&pixels, "--whole --homography H.txt").0, expected);
-    let told = forecast(&pixels, "--whole").1;
-    assert!(told.contains("--homography"), "{told}");
+    let stderr = forecast(&pixels, "--whole").1;
+    assert!(stderr.contains("--homography"), "{stderr}");
     let place = Place::empty();
     place.write("tracks.ndjson", ndjson(&metres));
     let text = place.ok("forecast tracks.ndjson --whole --format jsonl");
@@ -112,8 +112,8 @@ fn words_are_returned_as_written() {
         let mut reader = csv::Reader::from_reader(table.as_bytes());
         let column = reader.headers().unwrap().iter().position(|name| name == "pedestrian");
         let word = |record: csv::Result<csv::StringRecord>| record.unwrap()[column.unwrap()].to_owned();
-        let found: BTreeSet<String> = reader.records().map(word).collect();
-        assert_eq!(found, WORDS.map(str::to_owned).into());
+        let words: BTreeSet<String> = reader.records().map(word).collect();
+        assert_eq!(words, WORDS.map(str::to_owned).into());
     }
     let _ = ask("view words.csv --no-open -o page.html");
     assert!(
@@ -133,7 +133,7 @@ fn the_rate_of_scenes_is_used() {
     place.write("two.ndjson", format!("{SCENE}{plain}"));
     place.write("usual.ndjson", format!("{}{plain}", SCENE.replace("2}}", "2.5}}")));
     let ask = |line: &str| place.run(&format!("forecast --threads 1 --last {line}"));
-    for (line, told, same_as) in [
+    for (line, note, same_as) in [
         (
             "two.ndjson",
             "note: the file's scenes give 2 frames per second, and its frame numbers increase by 10: read as --fps \
@@ -152,7 +152,7 @@ fn the_rate_of_scenes_is_used() {
         let finished = ask(line);
         let notes = finished.stderr.split_inclusive('\n');
         let of_rate: String = notes.filter(|note| note.contains("scenes")).collect();
-        assert_eq!(of_rate, told);
+        assert_eq!(of_rate, note);
         assert_eq!(finished.succeeds(), ask(same_as).succeeds());
     }
 }
@@ -170,12 +170,12 @@ fn files_and_options_override_the_rate_of_a_run() {
                 --homography if this is wrong\n";
     let run = |line: &str| place.run(&format!("{line} --model run --threads 1"));
     for command in ["forecast", "goals", "view --no-open -o page.html"] {
-        let told = run(&format!("{command} plain.csv --last"));
-        assert!(told.stderr.contains(note), "{told:?}");
+        let with_units_of_run = run(&format!("{command} plain.csv --last"));
+        assert!(with_units_of_run.stderr.contains(note), "{with_units_of_run:?}");
         let page = std::fs::read(place.at("page.html")).ok();
         let same = run(&format!("{command} plain.csv --last --fps 50"));
         assert!(!same.stderr.contains("training"), "{same:?}");
-        assert_eq!(told.succeeds(), same.succeeds());
+        assert_eq!(with_units_of_run.succeeds(), same.succeeds());
         assert_eq!(page, std::fs::read(place.at("page.html")).ok());
         let of_file = run(&format!("{command} two.ndjson --last")).stderr;
         assert!(of_file.contains(": read as --fps 20\n"), "{of_file}");
@@ -183,7 +183,7 @@ fn files_and_options_override_the_rate_of_a_run() {
     }
     let two = run("forecast two.ndjson --last").succeeds();
     assert_eq!(two, run("forecast plain.csv --last --fps 20").succeeds());
-    for (file, options, told) in [
+    for (file, options, note) in [
         (
             "plain.csv",
             "",
@@ -195,8 +195,8 @@ fn files_and_options_override_the_rate_of_a_run() {
         let line = format!("forecast - --model run --threads 1 --one {options}");
         let live = place.run_on(&place.text(file), &line);
         assert_eq!(live.code, Some(0), "{live:?}");
-        assert_eq!(live.stderr.contains("apart"), !told.is_empty(), "{live:?}");
-        assert!(live.stderr.contains(told), "{live:?}");
+        assert_eq!(live.stderr.contains("apart"), !note.is_empty(), "{live:?}");
+        assert!(live.stderr.contains(note), "{live:?}");
     }
 }
 
@@ -205,11 +205,11 @@ fn rate_and_homography_of_a_run_are_used() {
     let place = Place::with_model();
     own_tracks::write_film(&place);
     let units = "--fps 23.98 --homography film/H.txt";
-    let told = place.run(&format!("data film {units}"));
+    let finished = place.run(&format!("data film {units}"));
     let note = "note: 3 recordings: 0.4 s is 9.592 frames: positions are interpolated";
-    assert_eq!(told.stderr.matches("9.592").count(), 1, "{told:?}");
-    assert!(told.stderr.contains(note), "{told:?}");
-    let text = told.succeeds();
+    assert_eq!(finished.stderr.matches("9.592").count(), 1, "{finished:?}");
+    assert!(finished.stderr.contains(note), "{finished:?}");
+    let text = finished.succeeds();
     let total = text.lines().last().unwrap();
     assert!(total.starts_with("total: 3 recordings, "), "{text}");
     assert!(total.contains(" pedestrians, ") && total.ends_with(" hours"), "{text}");
@@ -254,11 +254,11 @@ fn implausible_speeds_are_reported() {
     }
     let rows: Vec<Row> = (0..9).map(|t| (t, 1, 30.0 * t as f64, 0.0)).collect();
     place.write_tracks("pixels.csv", &rows);
-    let told = &place.json("data pixels.csv --json")["recordings"][0];
-    assert_eq!(told["file"], "pixels.csv");
-    let doubts = told["doubts"].as_array().unwrap();
+    let summary = &place.json("data pixels.csv --json")["recordings"][0];
+    assert_eq!(summary["file"], "pixels.csv");
+    let doubts = summary["doubts"].as_array().unwrap();
     assert_eq!(doubts.len(), 2);
-    assert!(doubts[0].as_str().unwrap().contains("metres"), "{told}");
+    assert!(doubts[0].as_str().unwrap().contains("metres"), "{summary}");
 }
 
 #[test]
@@ -268,11 +268,11 @@ fn frames_are_numbered_as_in_the_tracks() {
     let far = |t| if t < 96 { 0.0 } else { 90.0 };
     let walk = |id: i64, off: fn(i64) -> f64| (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64));
     place.write_tracks("tracks.csv", &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>());
-    let told = place.ok("data tracks.csv --fps 24");
-    assert!(told.contains("frames 7 to 199 (9.6 per step of 0.4 s)"), "{told}");
+    let summary = place.ok("data tracks.csv --fps 24");
+    assert!(summary.contains("frames 7 to 199 (9.6 per step of 0.4 s)"), "{summary}");
     for (before, after) in [("(pedestrian 2, frame ", ')'), ("that ends at frame ", ',')] {
-        let at = told.split(before).nth(1).unwrap().split(after).next().unwrap();
-        assert!((95..=106).contains(&at.parse::<i64>().unwrap()), "{told}");
+        let frame = summary.split(before).nth(1).unwrap().split(after).next().unwrap();
+        assert!((95..=106).contains(&frame.parse::<i64>().unwrap()), "{summary}");
     }
 }
 
@@ -280,8 +280,8 @@ fn frames_are_numbered_as_in_the_tracks() {
 fn a_page_shows_the_moments_of_own_tracks() {
     let place = Place::empty();
     place.write_tracks("lobby.csv", &own_tracks::three_pedestrians(15));
-    let told = place.ok("view lobby.csv --moments 5");
-    assert_eq!(told, "lobby-forecasts.html\n");
+    let printed = place.ok("view lobby.csv --moments 5");
+    assert_eq!(printed, "lobby-forecasts.html\n");
     let page = place.text("lobby-forecasts.html");
     // From the second frame on some pedestrian can be forecast.
     assert!(page.contains("5 of 14 moments of lobby.csv"));

@@ -4,7 +4,7 @@ use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::{EpochReport, NetworkFrame, Objective, StarConfig, TrainingConfig};
 use ddl::{GoalEvaluation, RunConfig, RunDirectory, Variant};
 use ddl_tests::place::{Place, json, json_lines};
-use ddl_tests::progress::{returns_at_once, told};
+use ddl_tests::progress::{reported, returns_at_once};
 use ddl_tests::{crowd, drawn_model, folder_contents, trained_model};
 
 #[test]
@@ -14,7 +14,7 @@ fn a_training_reports_its_steps_and_writes_a_run() {
     let train = "train --convention simulated --fold plaza --recipe published --seed 5 --epochs 2 \
                  --train-pedestrians 200 --batch-pedestrians 64 --proposal-steps 10 --commit 0123abc \
                  --threads 1 --out run";
-    let mut steps = told(&place, train, &["goals", "train"]);
+    let mut steps = reported(&place, train, &["goals", "train"]);
     steps.retain(|step| step.stage == "train");
     assert_eq!(steps.len(), 8);
     assert!(steps[7].message.contains("epoch 2"));

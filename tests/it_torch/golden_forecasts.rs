@@ -6,10 +6,10 @@ use ddl_tests::golden::{self, Golden};
 
 #[test]
 fn golden_forecasts_agree_with_libtorch() {
-    let of = |model: BuiltinModel| Golden::of(&Ddl::reference(&ModelSource::Builtin(model)).unwrap());
+    let reference = |model: BuiltinModel| Golden::of(&Ddl::reference(&ModelSource::Builtin(model)).unwrap());
     if std::env::var_os("DDL_WRITE_GOLDEN").is_some() {
         let models = BuiltinModel::ALL.map(|model| {
-            let rows = of(model).into_iter();
+            let rows = reference(model).into_iter();
             let rows: Vec<String> = rows.map(|row| serde_json::to_string(&row).unwrap()).collect();
             format!("\"{model}\": [\n{}\n]", rows.join(",\n"))
         });
@@ -19,8 +19,8 @@ fn golden_forecasts_agree_with_libtorch() {
     }
     let file = golden::file();
     for model in BuiltinModel::ALL {
-        for (found, known) in of(model).iter().zip(&file[model.name()]) {
-            found.assert_near(known, model.name());
+        for (computed, stored) in reference(model).iter().zip(&file[model.name()]) {
+            computed.assert_near(stored, model.name());
         }
     }
 }

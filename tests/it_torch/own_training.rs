@@ -102,40 +102,40 @@ fn training_recordings_are_refused_as_test_data(place: &Place) {
 fn a_recording_can_be_left_out_and_the_run_resumes() {
     let place = with_recordings();
     let train = format!("train --data mine --convention own --fold yard --patience 1 {ALONE} {SMALL} --out");
-    let told = place.ok(&format!("{train} run"));
+    let message = place.ok(&format!("{train} run"));
     let next = "next: ddl evaluate --model run --data mine\n";
-    assert!(told.contains(next), "{told}");
+    assert!(message.contains(next), "{message}");
     // Stopped after the goals, then finished by the same command: the same bytes.
     for half in ["--only-goals", ""] {
         let _ = place.ok(&format!("{train} halves {half}"));
     }
     let weights = |run: &str| place.read(&format!("{run}/model.safetensors"));
     assert_eq!(weights("run"), weights("halves"));
-    let told = place.ok("evaluate --model run --data mine --protocol fair --threads 1");
-    assert!(told.contains("yard") && !told.contains("lobby"), "{told}");
+    let printed = place.ok("evaluate --model run --data mine --protocol fair --threads 1");
+    assert!(printed.contains("yard") && !printed.contains("lobby"), "{printed}");
 }
 
 #[test]
 fn training_and_evaluation_report_the_same_errors() {
     let place = with_clips(2000, 2);
-    let kept = "--data clips --validation-recordings clip1";
-    let train = format!("train {kept} --out run --epochs 1 {SMALL} --progress none");
+    let split = "--data clips --validation-recordings clip1";
+    let train = format!("train {split} --out run --epochs 1 {SMALL} --progress none");
     let trained = place.json(&format!("{train} --json"));
-    let told = &trained["validation"];
+    let validation = &trained["validation"];
     for (model, part) in [("run", "run"), ("hotel", "builtin")] {
         let evaluate = "--validation --protocol fair --threads 1 --json --progress none";
-        let report = place.json(&format!("evaluate --model {model} {kept} {evaluate}"));
+        let report = place.json(&format!("evaluate --model {model} {split} {evaluate}"));
         let (min_ade, pedestrians) = first_row(&report);
         assert!(pedestrians > 1000, "{pedestrians}");
-        assert_eq!(told["pedestrians"].as_u64(), Some(pedestrians));
-        let said = told[part]["min_ade"].as_f64().unwrap();
+        assert_eq!(validation["pedestrians"].as_u64(), Some(pedestrians));
+        let said = validation[part]["min_ade"].as_f64().unwrap();
         assert!((said - min_ade).abs() < 1e-9, "{model}: {said} {min_ade}");
     }
-    assert_eq!(trained["validation_min_ade"], told["run"]["min_ade"]);
+    assert_eq!(trained["validation_min_ade"], validation["run"]["min_ade"]);
     // The same command prints them as text when it is run again.
     let words = place.ok(&train);
     for part in ["run", "builtin"] {
-        let errors = ["min_ade", "min_fde"].map(|error| told[part][error].as_f64().unwrap());
+        let errors = ["min_ade", "min_fde"].map(|error| validation[part][error].as_f64().unwrap());
         let errors = format!("{:.3}/{:.3}", errors[0], errors[1]);
         assert!(words.contains(&errors), "{errors}: {words}");
     }
@@ -193,11 +193,11 @@ fn a_training_starts_with_the_weights_of_another_model() {
 fn short_clips_are_validated_whole_and_start_with_the_built_in_model() {
     let place = with_clips(300, 6);
     let finished = place.run(&format!("train --data clips --out run --epochs 1 {SMALL}"));
-    for told in [
+    for words in [
         "(--validation-recordings clip1,clip4)",
         "weights of the built-in model hotel (--from none",
     ] {
-        assert!(finished.stderr.contains(told), "{finished:?}");
+        assert!(finished.stderr.contains(words), "{finished:?}");
     }
     let _ = finished.succeeds();
     let config: RunConfig = RunDirectory::new(place.at("run")).config().unwrap();
@@ -237,9 +237,9 @@ fn a_run_remembers_rate_and_homography() {
     let units = "--fps 23.98 --homography film/H.txt";
     let train = format!("train --data film --validation 0.3 {units} --epochs 1 --out run {SMALL}");
     let _ = place.ok(&train);
-    let kept = RunDirectory::new(place.at("run")).config().unwrap().units.unwrap();
-    assert_eq!((kept.fps, kept.dt, kept.frame_step), (Some(23.98), None, None));
-    assert!(kept.homography.is_some());
+    let units = RunDirectory::new(place.at("run")).config().unwrap().units.unwrap();
+    assert_eq!((units.fps, units.dt, units.frame_step), (Some(23.98), None, None));
+    assert!(units.homography.is_some());
     place.remove("film/H.txt");
     let measure = "evaluate --model run --data film --validation --threads 1";
     let measured = place.run(&format!("{measure} --protocol single"));

@@ -39,8 +39,8 @@ fn an_interrupted_run_resumes_to_the_same_bytes() {
     ] {
         let finished = interrupted(&place, steps, signal);
         assert_eq!(finished.code, Some(130), "{finished:#?}");
-        for told in ["run, ", " batches", "saved", "the same command"] {
-            assert!(finished.stderr.contains(told), "{finished:#?}");
+        for words in ["run, ", " batches", "saved", "the same command"] {
+            assert!(finished.stderr.contains(words), "{finished:#?}");
         }
         assert!(place.at(&format!("run/{state}.safetensors")).is_file());
         assert!(!place.at("run/model.safetensors").exists(), "it had ended before");

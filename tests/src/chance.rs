@@ -29,8 +29,8 @@ impl Chance {
     }
 
     /// A random moment in the `index`-th of `count` equal parts of a time.
-    pub fn moment(&mut self, (index, count): (u32, u32), of: Duration) -> Duration {
-        let part = of / count;
+    pub fn moment(&mut self, (index, count): (u32, u32), whole: Duration) -> Duration {
+        let part = whole / count;
         let within = Duration::from_micros(self.below(part.as_micros() as u64));
         part * index + within
     }

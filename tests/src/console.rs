@@ -15,7 +15,7 @@ pub struct Command {
 
 /// The commands of a page's `console` blocks, in their order.
 pub fn commands(page: &str) -> Vec<Command> {
-    let mut found: Vec<Command> = Vec::new();
+    let mut commands: Vec<Command> = Vec::new();
     let mut inside = false;
     for (line, text) in (1..).zip(page.lines()) {
         let text = text.trim_start();
@@ -27,12 +27,12 @@ pub fn commands(page: &str) -> Vec<Command> {
             continue;
         }
         if let Some(typed) = text.strip_prefix("$ ") {
-            found.push(Command {
+            commands.push(Command {
                 line,
                 typed: typed.trim_end().to_owned(),
                 answered: Vec::new(),
             });
-        } else if let Some(last) = found.last_mut() {
+        } else if let Some(last) = commands.last_mut() {
             match text.strip_prefix("> ") {
                 Some(more) if last.answered.is_empty() => {
                     last.typed.push('\n');
@@ -42,7 +42,7 @@ pub fn commands(page: &str) -> Vec<Command> {
             }
         }
     }
-    found
+    commands
 }
 
 impl Command {
@@ -65,8 +65,8 @@ mod tests {
         let page = "text\n```console\n$ ddl info   # what is there\nversion: 1\n...\n$ for i in 1 2; do\n>   echo $i\n\
                     > done\n```\n\
             ```text\n$ not this\n```\n  ```console\n  $ ls -l\n  ```\n";
-        let found = commands(page);
-        let typed: Vec<(usize, &str)> = found
+        let commands = commands(page);
+        let typed: Vec<(usize, &str)> = commands
             .iter()
             .map(|command| (command.line, command.typed.as_str()))
             .collect();
@@ -78,9 +78,9 @@ mod tests {
                 (14, "ls -l")
             ]
         );
-        assert_eq!(found[0].answered, ["version: 1", "..."]);
-        assert_eq!(found[0].words().unwrap(), ["ddl", "info"]);
-        assert_eq!(found[1].words(), None);
-        assert_eq!(found[2].words().unwrap(), ["ls", "-l"]);
+        assert_eq!(commands[0].answered, ["version: 1", "..."]);
+        assert_eq!(commands[0].words().unwrap(), ["ddl", "info"]);
+        assert_eq!(commands[1].words(), None);
+        assert_eq!(commands[2].words().unwrap(), ["ls", "-l"]);
     }
 }

@@ -26,7 +26,7 @@ pub fn of(variant: Variant) -> Ddl {
 /// The files of a model's run, the same at every call.
 pub fn contents(variant: Variant) -> &'static Contents {
     static DRAWN: [OnceLock<Contents>; 4] = [const { OnceLock::new() }; 4];
-    let index = Variant::ALL.iter().position(|&known| known == variant);
+    let index = Variant::ALL.iter().position(|&listed| listed == variant);
     DRAWN[index.expect("ALL holds every variant")].get_or_init(|| {
         let folder = tempfile::tempdir().expect("a temporary folder can be made");
         let windows = crowd::training_windows().into_iter().step_by(STRIDE);

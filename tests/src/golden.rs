@@ -54,8 +54,8 @@ impl Golden {
         let of_pedestrian = |i: usize| {
             let mut order: Vec<usize> = (0..forecast.hypotheses()).collect();
             order.sort_by(|&a, &b| forecast.weight(i, b).total_cmp(&forecast.weight(i, a)));
-            let each = |of: &dyn Fn(usize) -> Position| -> Vec<Position> {
-                order.iter().map(|&h| of(h).map(|x| rounded(x, 7))).collect()
+            let rounded_of = |position: &dyn Fn(usize) -> Position| -> Vec<Position> {
+                order.iter().map(|&h| position(h).map(|x| rounded(x, 7))).collect()
             };
             let weight = |&h: &usize| rounded(forecast.weight(i, h), 9);
             Self {
@@ -63,35 +63,35 @@ impl Golden {
                 familiarity: rounded(familiarity[i], 9),
                 one: one.hypothesis(i, 0)[11].map(|x| rounded(x, 7)),
                 weights: order.iter().map(weight).collect(),
-                goals: each(&|h| forecast.goal(i, h).expect("a goal")),
-                step_1: each(&|h| forecast.hypothesis(i, h)[0]),
-                step_6: each(&|h| forecast.hypothesis(i, h)[5]),
+                goals: rounded_of(&|h| forecast.goal(i, h).expect("a goal")),
+                step_1: rounded_of(&|h| forecast.hypothesis(i, h)[0]),
+                step_6: rounded_of(&|h| forecast.hypothesis(i, h)[5]),
             }
         };
         (0..window.len()).map(of_pedestrian).collect()
     }
 
     /// Panics, naming the difference, unless both agree up to rounding.
-    pub fn assert_near(&self, known: &Self, model: &str) {
-        let name = format!("{model}, pedestrian {}", known.pedestrian);
-        assert_eq!(self.pedestrian, known.pedestrian, "{name}");
-        assert!((self.familiarity - known.familiarity).abs() < 1e-9, "{name}");
-        assert!(apart(self.one, known.one) <= OFF, "{name}: one");
-        assert_eq!(self.weights.len(), known.weights.len(), "{name}");
-        for k in 0..known.weights.len() {
-            let (found, expected) = (self.weights[k], known.weights[k]);
+    pub fn assert_near(&self, stored: &Self, model: &str) {
+        let name = format!("{model}, pedestrian {}", stored.pedestrian);
+        assert_eq!(self.pedestrian, stored.pedestrian, "{name}");
+        assert!((self.familiarity - stored.familiarity).abs() < 1e-9, "{name}");
+        assert!(apart(self.one, stored.one) <= OFF, "{name}: one");
+        assert_eq!(self.weights.len(), stored.weights.len(), "{name}");
+        for k in 0..stored.weights.len() {
+            let (computed, expected) = (self.weights[k], stored.weights[k]);
             assert!(
-                (found - expected).abs() < LITTLE,
-                "{name}, weight {k}: {found} {expected}"
+                (computed - expected).abs() < LITTLE,
+                "{name}, weight {k}: {computed} {expected}"
             );
-            for (what, found, expected, off) in [
-                ("goal", &self.goals, &known.goals, LITTLE),
-                ("step 1", &self.step_1, &known.step_1, OFF),
-                ("step 6", &self.step_6, &known.step_6, OFF),
+            for (what, computed, expected, off) in [
+                ("goal", &self.goals, &stored.goals, LITTLE),
+                ("step 1", &self.step_1, &stored.step_1, OFF),
+                ("step 6", &self.step_6, &stored.step_6, OFF),
             ] {
-                let (found, expected) = (found[k], expected[k]);
-                let near = apart(found, expected) <= off;
-                assert!(near, "{name}, {what} {k}: {found:?} {expected:?}");
+                let (computed, expected) = (computed[k], expected[k]);
+                let near = apart(computed, expected) <= off;
+                assert!(near, "{name}, {what} {k}: {computed:?} {expected:?}");
             }
         }
     }

@@ -40,8 +40,8 @@ pub const ELSEWHERE: &[(&str, &str)] = &[
 const BEGIN: &str = "timeout --preserve-status --signal INT 3 bash";
 
 /// Whether a command has this page and beginning.
-pub fn begins(page: &str, command: &Command, (of, start): (&str, &str)) -> bool {
-    page == of && command.typed.starts_with(start)
+pub fn begins(page: &str, command: &Command, (entry_page, start): (&str, &str)) -> bool {
+    page == entry_page && command.typed.starts_with(start)
 }
 
 /// The folder of the workspace.

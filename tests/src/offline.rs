@@ -14,12 +14,12 @@ pub fn way() -> Option<Way> {
     let interfaces = |way: &Way| {
         let mut command = Command::new(way[0]);
         let output = command.args(&way[1..]).args(["cat", "/proc/net/dev"]).output().ok()?;
-        let told = String::from_utf8_lossy(&output.stdout).into_owned();
-        output.status.success().then_some(told)
+        let interface_table = String::from_utf8_lossy(&output.stdout).into_owned();
+        output.status.success().then_some(interface_table)
     };
     for way in ways {
-        if let Some(told) = interfaces(&way) {
-            let lines = told.lines().skip(2);
+        if let Some(interface_table) = interfaces(&way) {
+            let lines = interface_table.lines().skip(2);
             let names: Vec<_> = lines.filter_map(|line| line.trim().split(':').next()).collect();
             assert_eq!(names, ["lo"], "more than the loopback interface, which is down");
             return Some(way);

@@ -67,13 +67,13 @@ pub fn with_descendants(id: u32) -> Vec<u32> {
     let entries = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let ids = entries.filter_map(|entry| entry.file_name().to_str()?.parse::<u32>().ok());
     let pairs: Vec<(u32, u32)> = ids.filter_map(|id| Some((parent(id)?, id))).collect();
-    let mut found = vec![id];
+    let mut family = vec![id];
     let mut next = 0;
-    while let Some(&of) = found.get(next) {
+    while let Some(&of) = family.get(next) {
         next += 1;
-        found.extend(pairs.iter().filter(|(parent, _)| *parent == of).map(|(_, id)| id));
+        family.extend(pairs.iter().filter(|(parent, _)| *parent == of).map(|(_, id)| id));
     }
-    found
+    family
 }
 
 fn parent(id: u32) -> Option<u32> {

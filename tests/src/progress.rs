@@ -18,7 +18,7 @@ pub struct Progress {
 }
 
 /// Runs a command with `--progress json`, and checks its stages: none, or these ones, each to its end.
-pub fn told(place: &Place, line: &str, expected: &[&str]) -> Vec<Progress> {
+pub fn reported(place: &Place, line: &str, expected: &[&str]) -> Vec<Progress> {
     let lines: Vec<Progress> = json_lines(&place.ok(&format!("{line} --progress json")));
     let stages: Vec<&[Progress]> = lines.chunk_by(|a, b| a.stage == b.stage).collect();
     let names: Vec<&str> = stages.iter().map(|lines| &*lines[0].stage).collect();
@@ -38,6 +38,6 @@ pub fn told(place: &Place, line: &str, expected: &[&str]) -> Vec<Progress> {
 /// Runs a command a second time, which must do nothing, print nothing, and change nothing.
 pub fn returns_at_once(place: &Place, line: &str) {
     let before = crate::folder_contents::read(place.path());
-    assert!(told(place, line, &[]).is_empty(), "worked a second time");
+    assert!(reported(place, line, &[]).is_empty(), "worked a second time");
     place.assert_unchanged_since(&before);
 }

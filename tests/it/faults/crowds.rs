@@ -18,12 +18,12 @@ fn crowd(count: usize, frames: i64) -> Vec<own_tracks::Row> {
     let mut number = |least: f64, most: f64| least + (most - least) * chance.below(1 << 20) as f64 / f64::from(1 << 20);
     let pedestrian = |_| [(0.0, side), (0.0, side), (-1.0, 1.0), (-1.0, 1.0)].map(|(a, b)| number(a, b));
     let pedestrians: Vec<[f64; 4]> = (0..count).map(pedestrian).collect();
-    let at = |frame: i64| {
+    let rows_at = |frame: i64| {
         let t = 0.4 * frame as f64;
         let ids = (0..).zip(&pedestrians);
         ids.map(move |(id, [x, y, u, v])| (frame, id, x + t * u, y + t * v))
     };
-    (0..frames).flat_map(at).collect()
+    (0..frames).flat_map(rows_at).collect()
 }
 
 /// Processor time and peak memory of a command with a crowd as its input, and the number of lines it printed.

@@ -31,16 +31,16 @@ fn pipe(place: &Place) -> String {
     pipe.display().to_string()
 }
 
-fn texts(value: &Value, pointer: &str, found: &mut Vec<String>) {
+fn texts(value: &Value, pointer: &str, pointers: &mut Vec<String>) {
     match value {
-        Value::String(_) => found.push(pointer.to_owned()),
+        Value::String(_) => pointers.push(pointer.to_owned()),
         Value::Object(fields) => fields
             .iter()
-            .for_each(|(name, value)| texts(value, &format!("{pointer}/{name}"), found)),
+            .for_each(|(name, value)| texts(value, &format!("{pointer}/{name}"), pointers)),
         Value::Array(items) => items
             .iter()
             .enumerate()
-            .for_each(|(i, item)| texts(item, &format!("{pointer}/{i}"), found)),
+            .for_each(|(i, item)| texts(item, &format!("{pointer}/{i}"), pointers)),
         _ => {}
     }
 }

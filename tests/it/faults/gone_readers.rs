@@ -29,10 +29,10 @@ fn a_closed_output_ends_every_command_quietly() {
         let mut child = place.start(line);
         drop(child.stdout.take());
         let output = child.wait_with_output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(0), "{line}: {told}");
-        let of_the_reader = told.contains("panicked") || told.contains("pipe");
-        assert!(!of_the_reader, "{line}: {told}");
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{line}: {stderr}");
+        let of_the_reader = stderr.contains("panicked") || stderr.contains("pipe");
+        assert!(!of_the_reader, "{line}: {stderr}");
         let mut child = place.start(line);
         drop((child.stdout.take(), child.stderr.take()));
         assert_eq!(child.wait().unwrap().code(), Some(0), "{line}");
@@ -58,8 +58,8 @@ fn a_signal_ends_a_command_quietly() {
         std::thread::sleep(chance.moment((round, rounds), Duration::from_millis(400)));
         processes::signal(child.id(), if round % 2 == 0 { "TERM" } else { "INT" });
         let output = child.wait_with_output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(told.is_empty() || told.starts_with("note: of "), "{told}");
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert!(stderr.is_empty() || stderr.starts_with("note: of "), "{stderr}");
         let by_signal = output.status.signal().is_some();
         assert!(by_signal || output.status.success(), "{:?}", output.status);
         assert!(place.read("out.csv") == expected);

@@ -44,8 +44,8 @@ fn training_resumes_from_a_changed_file_with_the_same_weights_or_fails() {
             std::fs::write(folder.path().join(name), chance.turned(whole, byte)).unwrap();
             tried += 1;
             if trained_model::train(&RunDirectory::new(folder.path())).is_ok() {
-                let found = std::fs::read(folder.path().join(model)).unwrap();
-                assert!(&found == expected, "{name}, byte {byte}");
+                let weights = std::fs::read(folder.path().join(model)).unwrap();
+                assert!(&weights == expected, "{name}, byte {byte}");
             } else {
                 refused += 1;
             }

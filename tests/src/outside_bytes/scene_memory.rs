@@ -60,8 +60,8 @@ pub(super) fn read(choices: &[u8]) {
         assert_eq!(SceneMemory::read(&path).expect("just written"), memory);
     }
     let observed: [Position; OBSERVED] = std::array::from_fn(|t| at(t as i64 + 9, 2).1);
-    for own in [None, Some(PedestrianId(2))] {
-        let recalled = memory.recall(&observed, own, 4);
+    for pedestrian in [None, Some(PedestrianId(2))] {
+        let recalled = memory.recall(&observed, pedestrian, 4);
         assert!(recalled.is_sorted_by(|a, b| a.distance <= b.distance));
     }
     assert!(memory.tracks().count() <= memory.segments());
