@@ -15,7 +15,7 @@ use crate::workspace::Workspace;
 const PLAIN: &str = "--workspace --lib --bins --examples --tests";
 /// The program, its tests and the examples of the documentation with the feature `torch`.
 const TORCH: &str = "--workspace --features ddl-cli/torch,ddl-tests/torch";
-const TORCH_TESTS: &str = "--test it_torch --test faults_torch";
+const TORCH_TESTS: &str = "--test it_torch";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
