@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `homography`.
-#![no_main]
-ddl_fuzz::target!("homography");

@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `live_tracks`.
-#![no_main]
-ddl_fuzz::target!("live_tracks");

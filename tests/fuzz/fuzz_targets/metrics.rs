@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `metrics`.
-#![no_main]
-ddl_fuzz::target!("metrics");

@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `obsmat`.
-#![no_main]
-ddl_fuzz::target!("obsmat");

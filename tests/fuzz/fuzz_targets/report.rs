@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `report`.
-#![no_main]
-ddl_fuzz::target!("report");

@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `social_gan`.
-#![no_main]
-ddl_fuzz::target!("social_gan");

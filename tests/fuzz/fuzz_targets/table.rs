@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `table`.
-#![no_main]
-ddl_fuzz::target!("table");

@@ -1,3 +1,0 @@
-//! Fuzz target of the reader `training_state`.
-#![no_main]
-ddl_fuzz::target!("training_state");
