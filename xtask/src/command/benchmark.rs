@@ -13,8 +13,7 @@ use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Options of `ddl benchmark`, such as `--profile smoke`; paths in them are relative to the checkout, and `--publish`
-    /// (without a folder) publishes in it
+    /// Options of `ddl benchmark`, such as `--profile smoke`; paths in them are relative to the checkout
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     options: Vec<String>,
 }
@@ -26,10 +25,7 @@ impl Arguments {
         set_up(workspace)?;
         let mut cargo =
             workspace.cargo("run --release --package ddl-cli --bin ddl --features torch -- benchmark".split(' '));
-        for option in self.options {
-            let is_publish = option == "--publish";
-            cargo.arg(option).args(is_publish.then_some(workspace.root()));
-        }
+        cargo.args(self.options);
         Err(cargo.exec()).context("cargo cannot be started")
     }
 }

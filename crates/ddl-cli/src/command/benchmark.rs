@@ -113,8 +113,8 @@ impl Benchmark {
                 plan.write(&out)?;
                 let command = format!("ddl benchmark --out {}", shell_word(&out));
                 tell(format_args!(
-                    "plan: {} tasks; `{command} --task N` runs one (N from 0 to {}), then `{command} --collect` makes the \
-                     report",
+                    "plan: {} tasks; `{command} --task N` runs one (N from 0 to {}), then `{command} --collect` makes \
+                     the report",
                     plan.tasks.len(),
                     plan.tasks.len() - 1
                 ));

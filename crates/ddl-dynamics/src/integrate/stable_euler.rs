@@ -22,8 +22,8 @@ const ARRIVAL: f64 = 8.0;
 /// p' = p + min(dt, dt*) v        dt* = |e| u^T P u / |P u|^2
 /// ```
 ///
-/// with `e = p - p*`, `u = e / |e|`, `v = -P u`. While `dt <= dt*` this is exactly the plain Euler step; at the goal the
-/// pedestrian stays.
+/// with `e = p - p*`, `u = e / |e|`, `v = -P u`. While `dt <= dt*` this is exactly the plain Euler step; at the goal
+/// the pedestrian stays.
 ///
 /// # What is guaranteed
 /// - *Strict decrease, for every `dt > 0`*: with `h = min(dt, dt*)`, `Phi' <= Phi - h u^T P u / 2 < Phi`.

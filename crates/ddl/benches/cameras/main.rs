@@ -86,8 +86,8 @@ fn measure(counts: &[usize], is_measured: bool) -> Result<()> {
     let [p50, p99] = [0.5, 0.99].map(|share| 1e3 * figures.latency(share));
     writeln!(
         out,
-        "\ntwice as many as one core forecasts ({capacity:.0}): {cameras} cameras, {} of {} frames forecast, {} dropped \
-         for later ones, p50 {p50:.0} ms, p99 {p99:.0} ms",
+        "\ntwice as many as one core forecasts ({capacity:.0}): {cameras} cameras, {} of {} frames forecast, {} \
+         dropped for later ones, p50 {p50:.0} ms, p99 {p99:.0} ms",
         figures.latencies.len(),
         figures.frames,
         figures.dropped,

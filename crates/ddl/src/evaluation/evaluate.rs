@@ -309,7 +309,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         ])
     }
 
-    /// Forecasts all windows in several variants, in chunks. The model sees the futures only if the protocol shows them.
+    /// Forecasts all windows in several variants, in chunks. The model sees the futures only if the protocol shows
+    /// them.
     fn forecast(
         &mut self,
         protocol: Protocol,
