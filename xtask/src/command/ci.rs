@@ -24,7 +24,9 @@ const CHECKS: [Check; 10] = [
     ("libtorch, recordings, browser, Python packages", bring_all_in),
     ("dependencies and packages", dependencies),
     ("lints", |workspace| lints(workspace, FEATURES)),
-    ("documentation site", |workspace| docs::build(workspace, FEATURES)),
+    ("documentation site", |workspace| {
+        docs::build(workspace, &format!("--features {FEATURES}"))
+    }),
     ("build", |workspace| {
         test::build(workspace).and_then(|()| test::build_with_torch(workspace))
     }),

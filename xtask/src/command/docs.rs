@@ -16,8 +16,9 @@ use crate::workspace::{Workspace, absolute};
 const BOOK: &str = "docs";
 pub(super) const SITE: &str = "target/site";
 
-/// Features of the complete interface on a machine without libtorch.
-pub(super) const ALONE: &str = "ddl-cli/torch,ddl-cli/doc-only";
+/// Options of cargo for the complete interface on a machine without libtorch. With one job, no other crate is rendered
+/// while cargo has removed a crate's folder, so that every link to its items is there.
+pub(super) const ALONE: &str = "--jobs=1 --features ddl-cli/torch,ddl-cli/doc-only";
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -40,8 +41,9 @@ impl Arguments {
     }
 }
 
-/// Builds the site and checks its links. The features are those of another build, so that nothing is compiled twice.
-pub(super) fn build(workspace: &Workspace, features: &str) -> Result<()> {
+/// Builds the site and checks its links. The options select the features of another build, so that nothing is compiled
+/// twice.
+pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
     let (site, made) = (workspace.path(SITE), workspace.path("target/doc"));
     for folder in [&site, &made] {
         if folder.exists() {
@@ -52,15 +54,14 @@ pub(super) fn build(workspace: &Workspace, features: &str) -> Result<()> {
     for folder in fs::read_dir(workspace.path("crates"))?.flatten() {
         fs::create_dir_all(made.join(module(&folder.file_name().display().to_string())))?;
     }
-    // Every warning is an error (`[workspace.lints.rustdoc]`). With one job, no other crate is rendered while cargo has
-    // removed a crate's folder.
-    let arguments = format!("doc --jobs=1 --workspace --no-deps --quiet --target-dir target --features {features}");
+    // Every warning is an error (`[workspace.lints.rustdoc]`).
+    let arguments = format!("doc --workspace --no-deps --quiet --target-dir target {options}");
     run(&mut workspace.cargo(arguments.split(' ')))?;
     let tools = Tools::ensure(workspace)?;
     render_book(workspace, &tools, &site.join("guide"))?;
     let api = site.join("api");
     fs::rename(&made, &api).context("the interface cannot be moved to the site")?;
-    fs::copy(workspace.path("docs/theme/landing.html"), site.join("index.html")).context("no first page")?;
+    fs::copy(workspace.path("xtask/landing.html"), site.join("index.html")).context("no first page")?;
     // rustdoc's pages link to a list of crates, which is on the first page of the site.
     redirect(&api.join("index.html"), "../index.html#crates")?;
     lead_out(workspace, &site)?;
