@@ -89,13 +89,13 @@ fn started_with(options: &str) -> RunConfig {
 
 #[test]
 fn the_recommended_recipe_is_the_default() {
+    let full = started_with("");
     for variant in Variant::ALL {
-        let config = started_with(&format!("--variant {variant}"));
+        let config = started_with(&format!("--recipe recommended --variant {variant}"));
         assert_eq!(config.star, StarConfig::recommended(variant));
         assert_eq!(config.training, TrainingConfig::recommended(variant));
+        assert!(variant != Variant::Full || config == full);
     }
-    let full = started_with("--recipe recommended");
-    assert_eq!(full, started_with(""));
     let star = (full.star.frame, full.star.feed_forward_width);
     assert_eq!(star, (NetworkFrame::Goal, 32));
     assert_eq!(full.training.objective, Objective::Walk);
