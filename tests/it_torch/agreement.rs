@@ -6,7 +6,7 @@ use ddl_tests::recordings;
 use std::io::Write as _;
 
 /// One window in this many is forecast by both, unless `DDL_AGREEMENT_STRIDE` is set.
-const STRIDE: usize = 80;
+const STRIDE: usize = 50;
 
 /// Goals farther apart than this (m) count as different: two partitions of the proposed endpoints were equally good,
 /// and rounding decided.
