@@ -20,6 +20,7 @@ mod gelu;
 mod heads;
 mod linear;
 mod over_memory;
+mod product;
 mod scenes;
 #[cfg(test)]
 mod tests;

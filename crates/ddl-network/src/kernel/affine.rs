@@ -1,24 +1,23 @@
 //! Affine maps of rows: projections before and after attention, embeddings, fusion of tokens.
 
-mod product;
 #[cfg(test)]
 mod tests;
 
 use super::columns::{MatrixColumns, MatrixColumnsMut};
+use super::product::{BLOCK, End, Matrix, Start, add_transposed_product, multiply, sum_of_rows};
 use ddl_simd::{LANES, Lanes, Simd};
-use product::{Matrix, Start, add_transposed_product, multiply};
-pub(super) use product::{UNROLLED, add_outer_product, sum_of_rows};
 
 /// y = W x + b. The weights are stored for the forward and for the backward pass.
 #[derive(Clone, Debug)]
 pub(super) struct Affine {
-    inputs: usize,
-    outputs: usize,
+    pub(super) inputs: usize,
+    pub(super) outputs: usize,
     /// W^T, `[inputs, outputs]`.
-    transposed: Matrix,
+    pub(super) transposed: Matrix,
     /// W, `[outputs, inputs]`.
-    weight: Matrix,
-    bias: Vec<Lanes>,
+    pub(super) weight: Matrix,
+    /// Padded with zeros to a whole block.
+    pub(super) bias: Vec<Lanes>,
 }
 
 impl Affine {
@@ -29,7 +28,7 @@ impl Affine {
             outputs,
             transposed: Matrix::zeros(inputs, outputs),
             weight: Matrix::zeros(outputs, inputs),
-            bias: vec![Lanes::ZERO; outputs.div_ceil(2 * LANES) * 2],
+            bias: vec![Lanes::ZERO; outputs.div_ceil(BLOCK) * 2],
         }
     }
 
@@ -58,7 +57,13 @@ impl Affine {
         x: MatrixColumns<'_>,
         y: &mut MatrixColumnsMut<'_>,
     ) {
-        multiply::<S, R, V>(simd, x, &self.transposed, Start::Row(&self.bias), y);
+        multiply::<S, R, V>(
+            simd,
+            x,
+            self.transposed.whole(),
+            (Start::Row(&self.bias), End::Unchanged),
+            y,
+        );
     }
 
     /// W^T gy for every row. It overwrites `gx`, or is added to it if `add`.
@@ -72,7 +77,7 @@ impl Affine {
         add: bool,
     ) {
         let start = if add { Start::There } else { Start::Zero };
-        multiply::<S, R, V>(simd, gy, &self.weight, start, gx);
+        multiply::<S, R, V>(simd, gy, self.weight.whole(), (start, End::Unchanged), gx);
     }
 
     /// Adds the gradients of the weights.

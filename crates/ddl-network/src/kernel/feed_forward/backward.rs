@@ -4,21 +4,18 @@
 
 use std::ops::DerefMut;
 
-use super::block::{BLOCK, Block, BlockRows, Panel, ROWS, tile_mut};
 use super::dropout::UnitDecisions;
-use super::hidden::{activate, deactivate};
-use super::layer::FeedForward;
-use super::product::{add_product, add_transposed_product, sum_of_rows};
-use super::weights::BlockWeights;
+use super::layer::{FeedForward, ROWS_AT_ONCE};
+use crate::kernel::buffer::Buffer;
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use crate::kernel::dropout::Dropout;
-use crate::kernel::threads::each;
-use ddl_simd::{Simd, TiledKernel};
+use crate::kernel::product::{BLOCK, End, Start, add_transposed_product, multiply, sum_of_rows};
+use crate::kernel::threads::run_each;
+use ddl_simd::{LANES, Simd, TiledKernel};
 
 const GROUPS: usize = 8;
 /// Number of rows after which the groups' gx are added: these rows fit the second-level cache.
 const SPAN: usize = 512;
-/// Number of rows whose hidden activations of one block are kept, in the first-level cache, for the weights' gradients.
-const KEPT: usize = 64;
 
 impl FeedForward {
     /// The gradient of x; the gradients of the weights are added to `grads`.
@@ -37,14 +34,7 @@ impl FeedForward {
         gx: &mut [f32],
         grads: &mut Gradients<impl DerefMut<Target = [f32]>>,
     ) {
-        let weights = &self.weights;
-        let BlockWeights {
-            width,
-            hidden,
-            columns,
-            units,
-            ..
-        } = *weights;
+        let (width, hidden) = (self.width(), self.hidden());
         assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
         assert_eq!(x.len(), gy.len(), "entries of x and gy");
         assert_eq!(x.len(), gx.len(), "entries of x and gx");
@@ -56,69 +46,60 @@ impl FeedForward {
                 *sum += term;
             }
         }
-        let group = units.div_ceil(GROUPS);
-        let rows = (x.len() / width).min(SPAN).next_multiple_of(ROWS);
+        let group = self.units().div_ceil(GROUPS);
+        let numbers = x.len().min(SPAN * width);
         let parts = grads.parts(width, group).into_iter();
-        let mut parts: Vec<_> = parts.map(|part| (part, Scratch::new(rows, columns))).collect();
+        let mut parts: Vec<_> = parts.map(|part| (part, Scratch::new(numbers, width))).collect();
         let pieces = x.chunks(SPAN * width).zip(gy.chunks(SPAN * width));
         for (span, ((x, gy), gx)) in pieces.zip(gx.chunks_mut(SPAN * width)).enumerate() {
-            let x = BlockRows::padded(x, width);
-            let gy = BlockRows::padded(gy, width);
-            let groups: Vec<_> = parts.iter_mut().enumerate().collect();
-            let work = 5 * x.rows() * width * hidden;
-            each(groups, work, |(g, (part, scratch)), (): &mut ()| {
-                self.dispatch.run(UnitsBackward {
-                    weights,
-                    decisions: decisions.as_ref(),
-                    first: span * SPAN,
-                    units: g * group,
-                    x: &x,
-                    gy: &gy,
-                    scratch,
-                    part,
-                });
+            let jobs = parts.iter_mut().enumerate().map(|(g, (part, scratch))| UnitsBackward {
+                layer: self,
+                decisions: decisions.as_ref(),
+                first: span * SPAN,
+                blocks: g * group,
+                x,
+                gy,
+                scratch,
+                part,
             });
+            run_each(self.dispatch, jobs, 5 * x.len() * hidden);
             gx.fill(0.0);
-            let work = gx.len() * parts.len();
-            let pieces: Vec<_> = gx.chunks_mut(KEPT * width).enumerate().collect();
-            each(pieces, work, |(piece, gx), (): &mut ()| {
-                for (_, scratch) in &parts {
-                    scratch.gx.add_to(piece * KEPT, gx, width);
+            for (_, scratch) in &parts {
+                for (sum, term) in gx.iter_mut().zip(scratch.gx.iter()) {
+                    *sum += term;
                 }
-            });
+            }
         }
     }
 }
 
+/// Sums of a group over a span of rows.
 struct Scratch {
-    gx: BlockRows,
-    /// Gradients of W1 summed over a span, for one block of hidden units; rows are hidden units.
-    w1: Vec<Panel>,
-    /// Gradients of W2 likewise; rows are entries of y.
-    w2: Vec<Panel>,
-    hidden: Vec<Block>,
-    gradient: Vec<Block>,
+    gx: Buffer,
+    /// Gradients of W1 for one block of hidden units, `[32, width]`.
+    w1: Buffer,
+    /// Gradients of W2 likewise, `[width, 32]`.
+    w2: Buffer,
 }
 
 impl Scratch {
-    fn new(rows: usize, columns: usize) -> Self {
+    fn new(numbers: usize, width: usize) -> Self {
         Self {
-            gx: BlockRows::zeros(rows, columns),
-            w1: vec![[Block::ZERO; BLOCK]; columns],
-            w2: vec![[Block::ZERO; BLOCK]; columns],
-            hidden: vec![Block::ZERO; KEPT],
-            gradient: vec![Block::ZERO; KEPT],
+            gx: Buffer::any(numbers),
+            w1: Buffer::any(BLOCK * width),
+            w2: Buffer::any(width * BLOCK),
         }
     }
 }
 
 struct UnitsBackward<'a, 'b> {
-    weights: &'a BlockWeights,
+    layer: &'a FeedForward,
     decisions: Option<&'a UnitDecisions>,
     first: usize,
-    units: usize,
-    x: &'a BlockRows,
-    gy: &'a BlockRows,
+    /// The first block of hidden units.
+    blocks: usize,
+    x: &'a [f32],
+    gy: &'a [f32],
     scratch: &'a mut Scratch,
     part: &'a mut UnitGradients<'b>,
 }
@@ -126,71 +107,72 @@ struct UnitsBackward<'a, 'b> {
 impl TiledKernel for UnitsBackward<'_, '_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
-        let Self {
-            weights,
-            decisions,
-            first,
-            units,
-            x,
-            gy,
-            scratch,
-            part,
-        } = self;
-        let Scratch {
-            gx,
-            w1,
-            w2,
-            hidden,
-            gradient,
-        } = scratch;
-        let scale = match decisions {
-            Some(decisions) => decisions.scale,
-            None => 1.0,
-        };
-        for column in 0..weights.columns {
-            gx.column_mut(column).fill(Block::ZERO);
-        }
-        for (u, b1) in part.b1.chunks_mut(BLOCK).enumerate() {
-            let unit = units + u;
-            let of_unit = weights.unit(unit);
-            w1.fill([Block::ZERO; BLOCK]);
-            w2.fill([Block::ZERO; BLOCK]);
-            for start in (0..x.rows()).step_by(KEPT) {
-                let count = KEPT.min(x.rows() - start);
-                for r in (0..count).step_by(R) {
-                    let row = start + r;
-                    let hidden = tile_mut::<R>(hidden, r);
-                    let gradient = tile_mut::<R>(gradient, r);
-                    activate::<S, R, V>(simd, of_unit, x, row, hidden);
-                    if let Some(decisions) = decisions {
-                        decisions.apply(simd, hidden, first + row, unit);
-                    }
-                    deactivate::<S, R, V>(simd, of_unit, gy, row, scale, hidden, gradient);
-                    for column in 0..weights.columns {
-                        let gx = tile_mut(gx.column_mut(column), row);
-                        add_product::<S, R, V>(simd, gx, gradient, of_unit.w1(column));
-                    }
-                }
-                let (hidden, gradient) = (&hidden[..count], &gradient[..count]);
-                sum_of_rows::<S, V>(simd, gradient).add_to(b1);
-                for column in 0..weights.columns {
-                    let x = &x.column(column)[start..][..count];
-                    let gy = &gy.column(column)[start..][..count];
-                    add_transposed_product::<S, R, V>(simd, &mut w1[column], gradient, x);
-                    add_transposed_product::<S, R, V>(simd, &mut w2[column], gy, hidden);
-                }
+        let (layer, width) = (self.layer, self.layer.width());
+        let Scratch { gx, w1, w2 } = self.scratch;
+        let gx = &mut gx[..self.x.len()];
+        gx.fill(0.0);
+        let [mut hidden, mut gradient] = [0; 2].map(|_| Buffer::any(ROWS_AT_ONCE * BLOCK));
+        for (b, b1) in self.part.b1.chunks_mut(BLOCK).enumerate() {
+            let (block, count) = (self.blocks + b, b1.len());
+            w1.fill(0.0);
+            w2.fill(0.0);
+            let pieces = self
+                .x
+                .chunks(ROWS_AT_ONCE * width)
+                .zip(self.gy.chunks(ROWS_AT_ONCE * width));
+            let pieces = pieces.zip(gx.chunks_mut(ROWS_AT_ONCE * width));
+            for (piece, ((x, gy), gx)) in pieces.enumerate() {
+                let rows = x.len() / width;
+                let (hidden, gradient) = (&mut hidden[..rows * BLOCK], &mut gradient[..rows * BLOCK]);
+                let decisions = self
+                    .decisions
+                    .map(|decisions| (decisions, self.first + piece * ROWS_AT_ONCE));
+                layer.activate::<S, R, V>(simd, block, x, decisions, hidden);
+                let gy = MatrixColumns::whole(gy, width);
+                let w2_of_block = layer.after.weight.block(block);
+                let mut of_hidden = MatrixColumnsMut::whole(gradient, BLOCK);
+                multiply::<S, R, V>(simd, gy, w2_of_block, (Start::Zero, End::Unchanged), &mut of_hidden);
+                let scale = decisions.map_or(1.0, |(decisions, _)| decisions.scale);
+                deactivate(simd, hidden, scale, gradient);
+                let gradient = MatrixColumns::part(gradient, BLOCK, 0, count);
+                multiply::<S, R, V>(
+                    simd,
+                    gradient,
+                    layer.before.weight.rows(block * BLOCK, count),
+                    (Start::There, End::Unchanged),
+                    &mut MatrixColumnsMut::whole(gx, width),
+                );
+                sum_of_rows(simd, gradient, b1);
+                let (x, hidden) = (MatrixColumns::whole(x, width), MatrixColumns::whole(hidden, BLOCK));
+                add_transposed_product::<S, R, V>(simd, gradient, count, x, width, &mut w1[..count * width]);
+                add_transposed_product::<S, R, V>(simd, gy, width, hidden, BLOCK, w2);
             }
-            for column in 0..weights.columns {
-                let rows = part.w1.chunks_exact_mut(weights.width).skip(u * BLOCK);
-                for (row, sums) in rows.zip(&w1[column]) {
-                    sums.add_to(&mut row[column * BLOCK..]);
-                }
-                let rows = part.w2.iter_mut().skip(column * BLOCK);
-                for (row, sums) in rows.zip(&w2[column]) {
-                    sums.add_to(&mut row[u * BLOCK..]);
-                }
+            let rows = self.part.w1.chunks_exact_mut(width).skip(b * BLOCK);
+            for (row, sums) in rows.zip(w1.chunks_exact(width)) {
+                add_to(row, sums);
+            }
+            for (row, sums) in self.part.w2.iter_mut().zip(w2.chunks_exact(BLOCK)) {
+                add_to(&mut row[b * BLOCK..], sums);
             }
         }
+    }
+}
+
+/// Replaces gradients of activations by those of the inputs of `ReLU`: multiplied by `scale`, or 0 if the activation is
+/// 0.
+#[inline(always)]
+fn deactivate<S: Simd>(simd: S, hidden: &[f32], scale: f32, gradient: &mut [f32]) {
+    let scale = simd.splat(scale);
+    for at in (0..gradient.len()).step_by(LANES) {
+        let scaled = simd.mul(load(simd, gradient, at), scale);
+        let changed = simd.zero_unless_positive(load(simd, hidden, at), scaled);
+        store(simd, changed, gradient, at);
+    }
+}
+
+fn add_to(sums: &mut [f32], terms: &[f32]) {
+    for (sum, term) in sums.iter_mut().zip(terms) {
+        *sum += term;
     }
 }
 

@@ -1,7 +1,7 @@
 //! Dropout of hidden activations: a function of only (seed, row, unit), with 16 random bits.
 
-use super::block::{Block, ROWS};
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
+use crate::kernel::product::BLOCK;
 use ddl_simd::{LANES, Simd};
 
 #[derive(Clone, Debug)]
@@ -10,7 +10,7 @@ pub(super) struct UnitDecisions {
     least: u32,
     /// 1 / (1 - p).
     pub(super) scale: f32,
-    /// Keys of all rows, padded to a whole number of tiles.
+    /// Keys of all rows.
     rows: Vec<RowKey>,
 }
 
@@ -23,25 +23,25 @@ impl UnitDecisions {
         Some(Self {
             least: least << 16,
             scale,
-            rows: (0..rows.next_multiple_of(ROWS) as u64)
-                .map(|row| RowKey::new(seed, row))
-                .collect(),
+            rows: (0..rows as u64).map(|row| RowKey::new(seed, row)).collect(),
         })
     }
 
-    /// Drops and scales the units of block `block` of the rows from `first`.
+    /// Drops and scales the units of block `block` of the rows from `first`; `hidden` `[rows, 32]`.
     ///
     /// A word of 32 bits decides for two units, 16 apart.
     #[inline(always)]
-    pub(super) fn apply<S: Simd>(&self, simd: S, rows: &mut [Block], first: usize, block: usize) {
+    pub(super) fn apply<S: Simd>(&self, simd: S, hidden: &mut [f32], first: usize, block: usize) {
         let scale = simd.splat(self.scale);
+        let rows = hidden.as_chunks_mut::<BLOCK>().0;
         for (row, key) in rows.iter_mut().zip(&self.rows[first..]) {
             let bits = key.bits(simd, block * LANES);
+            let (halves, _) = row.as_chunks_mut();
             let lower = simd.shift_left::<16>(bits);
-            let lower = simd.keep(simd.load(row.part(0)), lower, self.least);
-            simd.store(simd.mul(lower, scale), row.part_mut(0));
-            let upper = simd.keep(simd.load(row.part(1)), bits, self.least);
-            simd.store(simd.mul(upper, scale), row.part_mut(1));
+            let lower = simd.keep(simd.load(&halves[0]), lower, self.least);
+            simd.store(simd.mul(lower, scale), &mut halves[0]);
+            let upper = simd.keep(simd.load(&halves[1]), bits, self.least);
+            simd.store(simd.mul(upper, scale), &mut halves[1]);
         }
     }
 }

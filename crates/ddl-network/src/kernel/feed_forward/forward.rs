@@ -1,15 +1,18 @@
 //! The forward pass, parallel over tiles of rows.
 
-use super::block::{BlockRows, ROWS};
 use super::dropout::UnitDecisions;
-use super::layer::FeedForward;
-use super::tile::Tile;
+use super::layer::{FeedForward, ROWS_AT_ONCE};
+use crate::kernel::buffer::Buffer;
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
-use crate::kernel::threads::each;
-use ddl_simd::{Kernel, Simd};
+use crate::kernel::product::{BLOCK, End, Start, multiply};
+use crate::kernel::threads::run_each;
+use ddl_simd::{Simd, TiledKernel};
 
 /// Largest number of rows in a tile. Its x and y and a block's weights fit the second-level cache.
 const TILE: usize = 256;
+/// The number of rows of a tile is a multiple of this, which is a multiple of the rows of accumulators.
+const ROWS: usize = 8;
 
 impl FeedForward {
     /// y for every row of x.
@@ -19,35 +22,27 @@ impl FeedForward {
     /// values of all its terms and without `ReLU`. An entry depends neither on the number of threads nor on the other
     /// rows.
     pub(crate) fn forward(&self, x: &[f32], dropout: Option<Dropout>, y: &mut [f32]) {
-        let weights = &self.weights;
-        let width = weights.width;
+        let width = self.width();
         assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
         assert_eq!(x.len(), y.len(), "entries of x and y");
         let rows = x.len() / width;
         let decisions = dropout.and_then(|dropout| UnitDecisions::new(dropout, rows));
-        if rows == 0 {
-            return;
-        }
         // Each thread gets the same number of tiles. The result of a row does not depend on its tile.
         let tiles = rows.div_ceil(TILE).next_multiple_of(rayon::current_num_threads());
-        let size = rows.div_ceil(tiles).next_multiple_of(ROWS);
-        let tiles = x.chunks(size * width).zip(y.chunks_mut(size * width));
-        let tiles: Vec<_> = tiles.enumerate().collect();
-        let work = 2 * x.len() * weights.hidden;
-        each(tiles, work, |(tile, (x, y)), (): &mut ()| {
-            self.dispatch.run(Rows {
-                layer: self,
-                decisions: decisions.as_ref(),
-                first: tile * size,
-                x,
-                y,
-            });
+        let size = rows.div_ceil(tiles.max(1)).next_multiple_of(ROWS).max(ROWS);
+        let tiles = x.chunks(size * width).zip(y.chunks_mut(size * width)).enumerate();
+        let jobs = tiles.map(|(tile, (x, y))| RowsForward {
+            layer: self,
+            decisions: decisions.as_ref(),
+            first: tile * size,
+            x,
+            y,
         });
+        run_each(self.dispatch, jobs, 2 * x.len() * self.hidden());
     }
 }
 
-/// The rows of a tile. Their copies to blocks and back take whole registers.
-struct Rows<'a> {
+struct RowsForward<'a> {
     layer: &'a FeedForward,
     decisions: Option<&'a UnitDecisions>,
     first: usize,
@@ -55,19 +50,33 @@ struct Rows<'a> {
     y: &'a mut [f32],
 }
 
-impl Kernel for Rows<'_> {
+impl TiledKernel for RowsForward<'_> {
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let weights = &self.layer.weights;
-        let x = BlockRows::padded(self.x, weights.width);
-        let mut result = BlockRows::any(x.rows(), weights.columns);
-        simd.run_tiled(Tile {
-            weights,
-            decisions: self.decisions,
-            first: self.first,
-            x: &x,
-            y: &mut result,
-        });
-        result.write(self.y, weights.width);
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
+        let (layer, width) = (self.layer, self.layer.width());
+        let mut hidden = Buffer::any(ROWS_AT_ONCE * BLOCK);
+        for block in 0..layer.units() {
+            let start = if block == 0 {
+                Start::Row(&layer.after.bias)
+            } else {
+                Start::There
+            };
+            let pieces = self.x.chunks(ROWS_AT_ONCE * width);
+            for (piece, (x, y)) in pieces.zip(self.y.chunks_mut(ROWS_AT_ONCE * width)).enumerate() {
+                let hidden = &mut hidden[..x.len() / width * BLOCK];
+                let decisions = self
+                    .decisions
+                    .map(|decisions| (decisions, self.first + piece * ROWS_AT_ONCE));
+                layer.activate::<S, R, V>(simd, block, x, decisions, hidden);
+                let count = layer.units_of(block);
+                multiply::<S, R, V>(
+                    simd,
+                    MatrixColumns::part(hidden, BLOCK, 0, count),
+                    layer.after.transposed.rows(block * BLOCK, count),
+                    (start, End::Unchanged),
+                    &mut MatrixColumnsMut::whole(y, width),
+                );
+            }
+        }
     }
 }

@@ -1,20 +1,31 @@
 //! Products of row-major matrices.
 
-use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
+use super::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
-const BLOCK: usize = 32;
+/// Columns of a block.
+pub(super) const BLOCK: usize = 2 * LANES;
 /// Steps of a product in one loop. The compiler unrolls a loop of this length, but not one of 32 steps, which takes a
 /// quarter more time.
-pub(in crate::kernel) const UNROLLED: usize = 8;
+const UNROLLED: usize = 8;
 
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
 #[derive(Clone, Debug)]
 pub(super) struct Matrix {
-    pub(super) rows: usize,
-    pub(super) pairs: Vec<[Lanes; 2]>,
+    rows: usize,
+    pairs: Vec<[Lanes; 2]>,
 }
 
+/// Some rows of some blocks of a [`Matrix`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct MatrixPart<'a> {
+    pairs: &'a [[Lanes; 2]],
+    rows_of_whole: usize,
+    first: usize,
+    count: usize,
+}
+
+/// What a product is added to.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Start<'a> {
     /// The same numbers in every row.
@@ -24,51 +35,87 @@ pub(super) enum Start<'a> {
     There,
 }
 
+/// What becomes of a sum at its end.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum End {
+    Unchanged,
+    /// max(0, sum).
+    Relu,
+}
+
 impl Matrix {
     pub(super) fn zeros(rows: usize, columns: usize) -> Self {
         Self {
             rows,
-            pairs: vec![[Lanes::ZERO; 2]; rows * columns.div_ceil(2 * LANES)],
+            pairs: vec![[Lanes::ZERO; 2]; rows * columns.div_ceil(BLOCK)],
         }
     }
 
     pub(super) fn set(&mut self, row: usize, column: usize, value: f32) {
-        let pair = &mut self.pairs[column / (2 * LANES) * self.rows + row];
+        let pair = &mut self.pairs[column / BLOCK * self.rows + row];
         pair[column / LANES % 2].0[column % LANES] = value;
+    }
+
+    pub(super) fn whole(&self) -> MatrixPart<'_> {
+        MatrixPart {
+            pairs: &self.pairs,
+            rows_of_whole: self.rows,
+            first: 0,
+            count: self.rows,
+        }
+    }
+
+    /// All rows of 32 columns.
+    #[inline(always)]
+    pub(super) fn block(&self, block: usize) -> MatrixPart<'_> {
+        MatrixPart {
+            pairs: &self.pairs[block * self.rows..][..self.rows],
+            ..self.whole()
+        }
+    }
+
+    /// `count` rows from `first` on.
+    #[inline(always)]
+    pub(super) fn rows(&self, first: usize, count: usize) -> MatrixPart<'_> {
+        MatrixPart {
+            first,
+            count,
+            ..self.whole()
+        }
     }
 }
 
-/// y = start + A B.
+/// y = end(start + A B).
 /// A `[rows, t]`, B `[t, columns]`, y `[rows, columns]`.
 #[inline(always)]
 pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     simd: S,
     a: MatrixColumns<'_>,
-    b: &Matrix,
-    start: Start<'_>,
+    b: MatrixPart<'_>,
+    (start, end): (Start<'_>, End),
     y: &mut MatrixColumnsMut<'_>,
 ) {
     let rows = a.rows();
     assert_eq!(rows, y.rows(), "rows of a product");
-    for (column, pairs) in b.pairs.chunks_exact(b.rows).enumerate() {
+    for (column, pairs) in b.pairs.chunks_exact(b.rows_of_whole).enumerate() {
         for part in (0..2).step_by(V) {
             let vector = 2 * column + part;
             // The blocks are padded to two vectors; a narrow y has only one.
             if vector * LANES >= y.count() {
                 break;
             }
-            let b = (pairs, part);
+            let b = (&pairs[b.first..][..b.count], part);
             let mut row = 0;
             while row + R <= rows {
-                tile::<S, R, V>(simd, a, b, start, y, (row, vector));
+                tile::<S, R, V>(simd, a, b, (start, end), y, (row, vector));
                 row += R;
             }
             while R > 4 && row + 4 <= rows {
-                tile::<S, 4, V>(simd, a, b, start, y, (row, vector));
+                tile::<S, 4, V>(simd, a, b, (start, end), y, (row, vector));
                 row += 4;
             }
             while row < rows {
-                tile::<S, 1, V>(simd, a, b, start, y, (row, vector));
+                tile::<S, 1, V>(simd, a, b, (start, end), y, (row, vector));
                 row += 1;
             }
         }
@@ -82,7 +129,7 @@ fn tile<S: Simd, const R: usize, const V: usize>(
     simd: S,
     a: MatrixColumns<'_>,
     (pairs, part): (&[[Lanes; 2]], usize),
-    start: Start<'_>,
+    (start, end): (Start<'_>, End),
     y: &mut MatrixColumnsMut<'_>,
     (row, vector): (usize, usize),
 ) {
@@ -114,6 +161,9 @@ fn tile<S: Simd, const R: usize, const V: usize>(
     }
     for r in 0..R {
         for v in 0..V {
+            if let End::Relu = end {
+                sum[r][v] = simd.max(simd.splat(0.0), sum[r][v]);
+            }
             store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
         }
     }
@@ -210,7 +260,7 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
 
 /// sum + a b for R numbers of a from `row` on, and V vectors of b from number `first` on.
 #[inline(always)]
-pub(in crate::kernel) fn add_outer_product<S: Simd, const R: usize, const V: usize>(
+fn add_outer_product<S: Simd, const R: usize, const V: usize>(
     simd: S,
     mut sum: Tile<S, R, V>,
     a: &[f32],
@@ -232,8 +282,9 @@ pub(in crate::kernel) fn add_outer_product<S: Simd, const R: usize, const V: usi
     sum
 }
 
+/// Adds the sum of the rows to `sums`.
 #[inline(always)]
-pub(in crate::kernel) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut [f32]) {
+pub(super) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut [f32]) {
     for at in (0..sums.len()).step_by(LANES) {
         let mut sum = simd.splat(0.0);
         for row in 0..rows.rows() {
