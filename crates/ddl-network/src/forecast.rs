@@ -2,7 +2,6 @@
 
 mod batch;
 mod bounded_steps;
-mod course;
 mod emission;
 mod forecast_windows;
 mod motion_bounds;
@@ -12,6 +11,7 @@ mod one_step;
 mod own_frame;
 mod pass;
 mod rollout;
+mod rollout_state;
 mod visibility;
 
 pub use batch::{BatchRollout, ForecastBatch};

@@ -10,7 +10,6 @@
 
 mod add_norm;
 mod affine;
-mod among_pedestrians;
 mod buffer;
 mod columns;
 mod dropout;
@@ -19,9 +18,10 @@ mod feed_forward;
 mod gelu;
 mod heads;
 mod linear;
-mod over_memory;
 mod product;
 mod scenes;
+mod spatial_attention;
+mod temporal_attention;
 #[cfg(test)]
 mod tests;
 mod threads;
@@ -30,7 +30,7 @@ pub use buffer::Buffer;
 pub(crate) use buffer::KeepBuffers;
 pub(crate) use dropout::Dropout;
 pub use encoder_layer::Sizes;
-pub(crate) use encoder_layer::{Dropouts, EncoderKernel, Remembered};
+pub(crate) use encoder_layer::{CachedKeyValues, Dropouts, EncoderKernel};
 pub(crate) use gelu::gelu;
 pub(crate) use linear::LinearKernel;
 pub use scenes::Scenes;

@@ -2,7 +2,7 @@
 
 use super::operations::{Backend, Mode};
 use super::rows::{Rows, Tape};
-use crate::kernel::{self, Buffer, Dropout, Dropouts, Remembered, Scenes};
+use crate::kernel::{self, Buffer, CachedKeyValues, Dropout, Dropouts, Scenes};
 use crate::weights::{EncoderLayer, Layout, Linear};
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
@@ -63,8 +63,8 @@ pub struct KernelBackend {
 /// Keys and values, each `[B, P, width]`, and their gradient accumulated so far.
 #[derive(Debug)]
 pub struct RowKeyValues {
-    rows: Remembered,
-    gradient: RefCell<Option<Remembered>>,
+    rows: CachedKeyValues,
+    gradient: RefCell<Option<CachedKeyValues>>,
 }
 
 /// The visibility masks of some time steps of scenes.
@@ -252,36 +252,36 @@ impl Backend for KernelBackend {
     fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Rows>, seen: &VisibleScenes) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
         let frames = seen.scenes.during(seen.steps.clone());
-        let (y, kept) = kernel.among_pedestrians(x, frames, dropouts, self.tape.is_some());
+        let (y, results) = kernel.spatial_attention(x, frames, dropouts, self.tape.is_some());
         let (x, seen) = (Rc::clone(x), seen.clone());
         self.made(x.shape(), y, move |gy, of_weights| {
             let of_weights = &mut of_weights[layer.span()];
             let frames = seen.scenes.during(seen.steps.clone());
-            let gx = kernel.among_pedestrians_backward(&x, frames, dropouts, &kept, gy, of_weights);
+            let gx = kernel.spatial_attention_backward(&x, frames, dropouts, &results, gy, of_weights);
             x.add_gradient(gx);
         })
     }
 
     fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Rows>, cache: &[Rc<RowKeyValues>]) -> Rc<Rows> {
         let (kernel, dropouts) = (self.encoder(layer), self.dropouts(layer));
-        let (y, kept) = kernel.over_memory(newest, &rows(cache), dropouts, self.tape.is_some());
+        let (y, results) = kernel.temporal_attention(newest, &rows(cache), dropouts, self.tape.is_some());
         if self.tape.is_none() {
             return Rc::new(Rows::new(newest.shape(), y));
         }
         let (x, cache) = (Rc::clone(newest), cache.to_vec());
         self.made(x.shape(), y, move |gy, of_weights| {
             let mut shares: Vec<_> = cache.iter().map(|token| token.gradient.take()).collect();
-            let mut of_memory: Vec<&mut Remembered> = shares
+            let mut of_cache: Vec<&mut CachedKeyValues> = shares
                 .iter_mut()
-                .map(|share| share.get_or_insert_with(|| Remembered::zeros(x.len())))
+                .map(|share| share.get_or_insert_with(|| CachedKeyValues::zeros(x.len())))
                 .collect();
-            x.add_gradient(kernel.over_memory_backward(
+            x.add_gradient(kernel.temporal_attention_backward(
                 &x,
                 &rows(&cache),
                 dropouts,
-                &kept,
+                &results,
                 gy,
-                &mut of_memory,
+                &mut of_cache,
                 &mut of_weights[layer.span()],
             ));
             for (token, share) in cache.iter().zip(shares) {
@@ -293,14 +293,14 @@ impl Backend for KernelBackend {
     fn key_values(&self, layer: EncoderLayer, x: &Rc<Rows>) -> Rc<RowKeyValues> {
         let kernel = self.encoder(layer);
         let cached = Rc::new(RowKeyValues {
-            rows: kernel.remember(x),
+            rows: kernel.key_values(x),
             gradient: RefCell::new(None),
         });
         let (token, x) = (Rc::clone(&cached), Rc::clone(x));
         self.record_backward(move |of_weights| {
             if let Some(gradient) = token.gradient.take() {
                 let of_weights = &mut of_weights[layer.span()];
-                x.add_gradient(kernel.remember_backward(&x, &gradient, of_weights));
+                x.add_gradient(kernel.key_values_backward(&x, &gradient, of_weights));
             }
         });
         cached
@@ -312,7 +312,7 @@ impl Backend for KernelBackend {
     }
 }
 
-fn rows(cache: &[Rc<RowKeyValues>]) -> Vec<&Remembered> {
+fn rows(cache: &[Rc<RowKeyValues>]) -> Vec<&CachedKeyValues> {
     cache.iter().map(|token| &token.rows).collect()
 }
 
@@ -341,8 +341,8 @@ mod tests {
             hidden,
             fed,
         } = backend.dropouts(layer);
-        let all = [weights, attended, hidden, fed].into_iter().flatten();
-        all.map(|dropout| dropout.seed).collect()
+        let dropouts = [weights, attended, hidden, fed].into_iter().flatten();
+        dropouts.map(|dropout| dropout.seed).collect()
     }
 
     #[test]

@@ -81,8 +81,8 @@ pub(super) fn batches<'a>(
         let origins: Vec<Position> = originals.iter().map(origin).collect();
         let orders: Vec<Vec<usize>> = originals.iter().map(order).collect();
         let of_goal = |k: usize| {
-            let each = goals[first..last].iter().zip(&origins).zip(&orders);
-            each.flat_map(|((goals, &origin), order)| order.iter().map(move |&i| relative(goals[i][k], origin)))
+            let rows = goals[first..last].iter().zip(&origins).zip(&orders);
+            rows.flat_map(|((goals, &origin), order)| order.iter().map(move |&i| relative(goals[i][k], origin)))
                 .collect()
         };
         // The pedestrians' ids stay in the original order; nothing here reads them.
@@ -90,8 +90,8 @@ pub(super) fn batches<'a>(
             window.map_positions(|i, t, _| relative(window.track(order[i])[t], origin))
         };
         let of_shares = |shares: &[Vec<f64>]| {
-            let each = shares[first..last].iter().zip(&orders);
-            each.flat_map(|(shares, order)| order.iter().map(|&i| shares[i]))
+            let rows = shares[first..last].iter().zip(&orders);
+            rows.flat_map(|(shares, order)| order.iter().map(|&i| shares[i]))
                 .collect()
         };
         batches.push(ForecastBatch {
@@ -122,18 +122,18 @@ impl ForecastBatch<'_> {
     }
 
     pub(super) fn windows_of(&self, rollout: &BatchRollout) -> Vec<WindowRollout> {
-        let all = self.pedestrians();
+        let pedestrians = self.pedestrians();
         let hypotheses = rollout.hypotheses;
         let mut first = 0;
         let windows = self.originals.iter().zip(&self.origins).zip(&self.orders);
         windows
             .map(|((window, [x, y]), order)| {
-                let mut own = vec![0; order.len()];
+                let mut rows = vec![0; order.len()];
                 for (place, &i) in order.iter().enumerate() {
-                    own[i] = first + place;
+                    rows[i] = first + place;
                 }
                 first += order.len();
-                let mut positions = paths(&rollout.positions, &own, (hypotheses, all));
+                let mut positions = paths(&rollout.positions, &rows, (hypotheses, pedestrians));
                 for position in &mut positions {
                     *position = [position[0] + x, position[1] + y];
                 }
@@ -142,19 +142,19 @@ impl ForecastBatch<'_> {
                     pedestrians: window.len(),
                     hypotheses,
                     positions,
-                    factors: factors.map(|factors| paths(factors, &own, (hypotheses, all))),
+                    factors: factors.map(|factors| paths(factors, &rows, (hypotheses, pedestrians))),
                 }
             })
             .collect()
     }
 }
 
-/// From `[12, H, all]` to `[own, H, 12]`.
-fn paths<T: Copy>(steps: &[T], own: &[usize], (hypotheses, all): (usize, usize)) -> Vec<T> {
-    let mut paths = Vec::with_capacity(own.len() * hypotheses * HORIZON);
-    for &i in own {
+/// The paths of some `rows`: from `[12, H, P]` to `[rows, H, 12]`.
+fn paths<T: Copy>(steps: &[T], rows: &[usize], (hypotheses, pedestrians): (usize, usize)) -> Vec<T> {
+    let mut paths = Vec::with_capacity(rows.len() * hypotheses * HORIZON);
+    for &row in rows {
         for h in 0..hypotheses {
-            paths.extend((0..HORIZON).map(|t| steps[(t * hypotheses + h) * all + i]));
+            paths.extend((0..HORIZON).map(|t| steps[(t * hypotheses + h) * pedestrians + row]));
         }
     }
     paths

@@ -256,11 +256,11 @@ mod tests {
             dt in prop_oneof![9 => Just(0.4_f32), 1 => 1e-6..2e3_f32],
         ) {
             let time = StepTime { done, left, dt };
-            let goals: Vec<_> = rows.iter().map(|(at, way, ..)| [at[0] + way[0], at[1] + way[1]]).collect();
-            let each = rows.iter().zip(&goals).zip(bounds(&rows));
+            let goals: Vec<_> = rows.iter().map(|(position, way, ..)| [position[0] + way[0], position[1] + way[1]]).collect();
+            let steps = rows.iter().zip(&goals).zip(bounds(&rows));
             let finite = |goal: &[f32; 2]| goal.iter().all(|x| x.is_finite());
             prop_assume!(goals.iter().all(finite));
-            let expected: Vec<_> = each
+            let expected: Vec<_> = steps
                 .map(|((row, &goal), bounds)| next(row.0, goal, row.2, (1e-8, time), Some(&bounds)).map(f32::to_bits))
                 .collect();
             for set in InstructionSet::available() {

@@ -50,8 +50,8 @@ mod tests {
         assert!((velocity - Vector2::new(1.0, -3.0 / 1.2)).norm() < 1e-9);
         // A share out of range does not change the top speed of a runner.
         let runner: Vec<Position> = (0..8).map(|t| [2.4 * f64::from(t), 0.0]).collect();
-        for (share, kept) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
-            assert_eq!(motion_bounds(&runner, 0.4, share), motion_bounds(&runner, 0.4, kept));
+        for (share, clamped) in [(1.000_000_1, 1.0), (-1.0, 0.0), (f64::NAN, 0.0)] {
+            assert_eq!(motion_bounds(&runner, 0.4, share), motion_bounds(&runner, 0.4, clamped));
         }
         assert_eq!(motion_bounds(&[[1.0, 2.0]], 0.4, 1.0), MotionBounds::default());
     }

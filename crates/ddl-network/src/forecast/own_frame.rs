@@ -65,9 +65,9 @@ impl OwnFrame {
 ///
 /// # Examples
 /// ```
-/// let at = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect::<Vec<_>>();
-/// assert!((ddl_network::length_unit(&at(1.0), 0.4) - 1.0).abs() < 0.02); // walking
-/// assert!((ddl_network::length_unit(&at(6.0), 0.4) - 3.0).abs() < 0.02); // running
+/// let track = |speed: f64| (0..8).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect::<Vec<_>>();
+/// assert!((ddl_network::length_unit(&track(1.0), 0.4) - 1.0).abs() < 0.02); // walking
+/// assert!((ddl_network::length_unit(&track(6.0), 0.4) - 3.0).abs() < 0.02); // running
 /// ```
 pub fn length_unit(observed: &[Position], time_step: f64) -> f64 {
     let steps = observed.len().saturating_sub(1).max(1) as f64;
@@ -101,12 +101,12 @@ mod tests {
             let (sin, cos) = angle.sin_cos();
             let frame = OwnFrame::new([1.0, 2.0], [1.0 + 3.0 * cos, 2.0 + 3.0 * sin], 1.0);
             let turned = frame.factor_to_world(factor.map(|x| x as f32)).map(f64::from);
-            let own = [cos * u[0] + sin * u[1], cos * u[1] - sin * u[0]];
-            let [x, y] = metric_times(factor, own);
+            let turned_back = [cos * u[0] + sin * u[1], cos * u[1] - sin * u[0]];
+            let [x, y] = metric_times(factor, turned_back);
             let expected = [cos * x - sin * y, cos * y + sin * x];
-            let found = metric_times(turned, u);
+            let product = metric_times(turned, u);
             for axis in [0, 1] {
-                prop_assert!((found[axis] - expected[axis]).abs() < 1e-4);
+                prop_assert!((product[axis] - expected[axis]).abs() < 1e-4);
                 let back = frame.to_world(frame.of_world(u.map(|x| x as f32)))[axis];
                 prop_assert!((f64::from(back) - u[axis]).abs() < 1e-5);
             }
@@ -128,8 +128,8 @@ mod tests {
     #[test]
     fn the_first_axis_points_to_the_goal_or_along_x_if_it_is_reached() {
         let frame = OwnFrame::new([1.0, 2.0], [1.0, 6.0], 2.0);
-        let same = |found: [f32; 2], expected: [f32; 2]| {
-            assert_eq!(found.map(f32::to_bits), expected.map(f32::to_bits));
+        let same = |result: [f32; 2], expected: [f32; 2]| {
+            assert_eq!(result.map(f32::to_bits), expected.map(f32::to_bits));
         };
         same(frame.of_world([0.0, 4.0]), [2.0, 0.0]);
         same(frame.to_world([1.0, 1.0]), [-2.0, 2.0]);

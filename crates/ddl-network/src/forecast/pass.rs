@@ -1,8 +1,8 @@
 //! The rollout of one batch of windows, some hypotheses at a time.
 
 use super::batch::{BatchRollout, ForecastBatch};
-use super::course::{Course, Observation};
 use super::emission::NoiseSpread;
+use super::rollout_state::{Observation, RolloutState};
 use crate::StarConfig;
 use crate::backbone::Backbone;
 use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
@@ -91,21 +91,21 @@ impl<'a> Pass<'a> {
 
 /// The hypotheses of all parts, in their order.
 fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
-    fn each<T: Copy>(parts: &[BatchRollout], pedestrians: usize, numbers: impl Fn(&BatchRollout) -> &[T]) -> Vec<T> {
-        let mut all = Vec::with_capacity(parts.iter().map(|part| numbers(part).len()).sum());
+    fn steps<T: Copy>(parts: &[BatchRollout], pedestrians: usize, numbers: impl Fn(&BatchRollout) -> &[T]) -> Vec<T> {
+        let mut numbers_of_steps = Vec::with_capacity(parts.iter().map(|part| numbers(part).len()).sum());
         for t in 0..HORIZON {
             for part in parts {
                 let count = part.hypotheses * pedestrians;
-                all.extend_from_slice(&numbers(part)[t * count..][..count]);
+                numbers_of_steps.extend_from_slice(&numbers(part)[t * count..][..count]);
             }
         }
-        all
+        numbers_of_steps
     }
     let with_factors = parts.iter().all(|part| part.factors.is_some());
     BatchRollout {
         hypotheses: parts.iter().map(|part| part.hypotheses).sum(),
-        positions: each(parts, pedestrians, |part| &part.positions),
-        factors: with_factors.then(|| each(parts, pedestrians, |part| part.factors.as_deref().unwrap_or(&[]))),
+        positions: steps(parts, pedestrians, |part| &part.positions),
+        factors: with_factors.then(|| steps(parts, pedestrians, |part| part.factors.as_deref().unwrap_or(&[]))),
     }
 }
 
@@ -115,23 +115,23 @@ impl Part<'_> {
         // If goals are not an input, the observed time steps are the same for all hypotheses.
         let count = self.hypotheses.len();
         let shared = observation.entries() == 1 && count > 1;
-        let course = Course::new(observation, batch, self.hypotheses.clone());
+        let state = RolloutState::new(observation, batch, self.hypotheses.clone());
         let observed = if shared {
-            let (memory, features) = self.observe(&Course::new(observation, batch, 0..1));
+            let (memory, features) = self.observe(&RolloutState::new(observation, batch, 0..1));
             (
                 memory.repeated(&self.backend, count),
                 self.backend.repeated(&features, count),
             )
         } else {
-            self.observe(&course)
+            self.observe(&state)
         };
-        self.walk(course, observed)
+        self.walk(state, observed)
     }
 
-    fn observe(&self, course: &Course<'_>) -> Observed {
+    fn observe(&self, state: &RolloutState<'_>) -> Observed {
         let mut memory = Memory::default();
         let mut step = |t| {
-            let relative = course.observed_relative(t);
+            let relative = state.observed_relative(t);
             let seen = self.pass.observation.seen(t..t + 1);
             let scene = self.scene(t);
             let backbone = self.pass.layers.backbone;
@@ -145,7 +145,7 @@ impl Part<'_> {
     }
 
     /// Computes the time steps to forecast.
-    fn walk(&self, mut course: Course<'_>, (mut memory, mut features): Observed) -> BatchRollout {
+    fn walk(&self, mut state: RolloutState<'_>, (mut memory, mut features): Observed) -> BatchRollout {
         let Pass {
             layers,
             observation,
@@ -168,16 +168,16 @@ impl Part<'_> {
                     *factor = spread.expected_factor(*factor);
                 }
             }
-            course.advance(&mut emitted, (t, HORIZON - t));
-            positions.extend(course.positions().iter().map(|at| at.map(f64::from)));
+            state.advance(&mut emitted, (t, HORIZON - t));
+            positions.extend(state.positions().iter().map(|position| position.map(f64::from)));
             if let Some(factors) = &mut of_factors {
                 let (emitted, _) = emitted.as_chunks::<3>();
                 factors.extend(emitted.iter().map(|factor| factor.map(f64::from)));
             }
             if t + 1 < HORIZON {
-                let centred = course.centred(OBSERVED + t + 1);
+                let centred = state.centred(OBSERVED + t + 1);
                 let scene = backbone.scene(&self.backend, &centred, &seen);
-                let relative = course.newest_relative();
+                let relative = state.newest_relative();
                 features = backbone.step(&self.backend, &mut memory, &relative, &scene, &seen);
             }
         }

@@ -111,19 +111,23 @@ impl AddNorm {
     ) {
         let (width, vectors) = (self.fixed_width::<FIXED>(), four.vectors());
         // For whole groups these slices have a constant length, and their rows need no check of bounds.
-        let all = first * width..first * width + count * width;
-        let (x, t, y) = (&x[all.clone()], &t[all.clone()], &mut y[all.clone()]);
+        let numbers_of_rows = first * width..first * width + count * width;
+        let (x, t, y) = (
+            &x[numbers_of_rows.clone()],
+            &t[numbers_of_rows.clone()],
+            &mut y[numbers_of_rows.clone()],
+        );
         for r in 0..count {
             let row = r * width..(r + 1) * width;
             let (x, t) = (&x[row.clone()], &t[row]);
             for v in 0..vectors {
-                let at = v * LANES;
-                let term = load(simd, t, at);
+                let column = v * LANES;
+                let term = load(simd, t, column);
                 let term = match decisions {
-                    Some((decisions, start)) => decisions.apply(simd, term, start + first + r, at),
+                    Some((decisions, start)) => decisions.apply(simd, term, start + first + r, column),
                     None => term,
                 };
-                four.set(simd, r, v, simd.add(load(simd, x, at), term));
+                four.set(simd, r, v, simd.add(load(simd, x, column), term));
             }
         }
         let mean = simd.spread_each(means(simd, width, four.sums(simd)));
@@ -157,7 +161,7 @@ impl AddNorm {
         }
         if !normal.scales.is_empty() {
             normal.scales[first..first + count].copy_from_slice(&scales[..count]);
-            let numbers = &mut normal.numbers[all];
+            let numbers = &mut normal.numbers[numbers_of_rows];
             for r in 0..count {
                 for v in 0..vectors {
                     store(
@@ -234,16 +238,16 @@ impl AddNorm {
                 let row = (first + r) * width..(first + r + 1) * width;
                 let (gx, gt) = (&mut gx[row.clone()], &mut gt[row]);
                 for v in 0..vectors {
-                    let at = v * LANES;
+                    let column = v * LANES;
                     let centred = simd.sub(gradient.get(simd, r, v), mean[r]);
                     let along = simd.mul(normal.get(simd, r, v), product[r]);
                     let of_sum = simd.mul(simd.sub(centred, along), scale);
-                    store(simd, of_sum, gx, at);
+                    store(simd, of_sum, gx, column);
                     let of_term = match decisions {
-                        Some((decisions, start)) => decisions.apply(simd, of_sum, start + first + r, at),
+                        Some((decisions, start)) => decisions.apply(simd, of_sum, start + first + r, column),
                         None => of_sum,
                     };
-                    store(simd, of_term, gt, at);
+                    store(simd, of_term, gt, column);
                 }
             }
         }

@@ -167,10 +167,10 @@ mod tests {
     fn what_is_kept_is_bounded() {
         let check = |least: usize| {
             SPARES.with_borrow(|spares| {
-                let kept: usize = spares.buffers.iter().map(Vec::len).sum();
-                assert_eq!(kept, spares.numbers);
+                let numbers: usize = spares.buffers.iter().map(Vec::len).sum();
+                assert_eq!(numbers, spares.numbers);
                 assert!(spares.buffers.len() <= SPARE, "{} buffers", spares.buffers.len());
-                assert!((least..=SPARE_NUMBERS).contains(&kept), "{kept} numbers");
+                assert!((least..=SPARE_NUMBERS).contains(&numbers), "{numbers} numbers");
             });
         };
         for size in [16, 1 << 20] {

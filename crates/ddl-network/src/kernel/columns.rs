@@ -86,37 +86,37 @@ impl<'a> MatrixColumnsMut<'a> {
     }
 }
 
-/// Sixteen numbers of a row from `at`; numbers beyond its end are 0.
+/// Sixteen numbers of a row from `first`; numbers beyond its end are 0.
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, row: &[f32], at: usize) -> S::Floats {
-    match row.get(at..at + LANES) {
+pub(super) fn load<S: Simd>(simd: S, row: &[f32], first: usize) -> S::Floats {
+    match row.get(first..first + LANES) {
         Some(whole) => simd.load(&whole.as_chunks().0[0]),
-        None => simd.load(&end(row, at)),
+        None => simd.load(&end(row, first)),
     }
 }
 
-/// Writes sixteen numbers to a row from `at`; drops those beyond its end.
+/// Writes sixteen numbers to a row from `first`; drops those beyond its end.
 #[inline(always)]
-pub(super) fn store<S: Simd>(simd: S, value: S::Floats, row: &mut [f32], at: usize) {
-    if let Some(whole) = row.get_mut(at..at + LANES) {
+pub(super) fn store<S: Simd>(simd: S, value: S::Floats, row: &mut [f32], first: usize) {
+    if let Some(whole) = row.get_mut(first..first + LANES) {
         simd.store(value, &mut whole.as_chunks_mut().0[0]);
     } else {
         let mut numbers = [0.0; LANES];
         simd.store(value, &mut numbers);
-        store_end(&numbers, row, at);
+        store_end(&numbers, row, first);
     }
 }
 
 #[cold]
-fn end(row: &[f32], at: usize) -> [f32; LANES] {
+fn end(row: &[f32], first: usize) -> [f32; LANES] {
     let mut numbers = [0.0; LANES];
-    let rest = row.get(at..).unwrap_or_default();
+    let rest = row.get(first..).unwrap_or_default();
     numbers[..rest.len()].copy_from_slice(rest);
     numbers
 }
 
 #[cold]
-fn store_end(numbers: &[f32; LANES], row: &mut [f32], at: usize) {
-    let rest = row.get_mut(at..).unwrap_or_default();
+fn store_end(numbers: &[f32; LANES], row: &mut [f32], first: usize) {
+    let rest = row.get_mut(first..).unwrap_or_default();
     rest.copy_from_slice(&numbers[..rest.len()]);
 }

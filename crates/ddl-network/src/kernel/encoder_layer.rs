@@ -2,57 +2,57 @@
 
 mod backward;
 mod forward;
-mod keep;
+mod forward_results;
 mod layer;
 #[cfg(test)]
 mod tests;
 
 use super::buffer::Buffer;
-use super::over_memory::{KeyValue, OverMemoryGradients};
 use super::scenes::Frames;
+use super::temporal_attention::{KeyValue, TemporalGradients};
 use backward::Parts;
 use forward::Targets;
-use keep::KeptAttention;
-pub(crate) use keep::{Kept, Remembered};
+use forward_results::AttentionResults;
+pub(crate) use forward_results::{CachedKeyValues, ForwardResults};
 pub use layer::Sizes;
 pub(crate) use layer::{Dropouts, EncoderKernel};
 
 impl EncoderKernel {
     /// The layer with spatial attention.
-    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`. Without `keep`, what is kept serves no
-    /// backward pass.
-    pub(crate) fn among_pedestrians(
+    /// `x` `[B, P, width]`; 1 or B `frames` -> y `[B, P, width]`. Without `keep`, the results
+    /// serve no backward pass.
+    pub(crate) fn spatial_attention(
         &self,
         x: &[f32],
         frames: Frames<'_>,
         dropouts: Dropouts,
         keep: bool,
-    ) -> (Buffer, Kept) {
+    ) -> (Buffer, ForwardResults) {
         let mut qkv = Buffer::any(3 * x.len());
         self.project(0, x, Targets::Together(&mut qkv));
-        let attended = self.among.forward(&qkv, frames, dropouts.weights, keep);
-        let attention = KeptAttention::Among { qkv, attended };
+        let attended = self.spatial.forward(&qkv, frames, dropouts.weights, keep);
+        let attention = AttentionResults::Spatial { qkv, attended };
         self.after_attention(x, attention, dropouts, keep)
     }
 
-    /// The gradients of [`among_pedestrians`](Self::among_pedestrians).
+    /// The gradients of [`spatial_attention`](Self::spatial_attention).
     /// `gy` like `x` -> the gradient of x. The gradients of the weights are added to `of_weights`, `[Sizes::count]`.
     /// The other arguments must be those of the forward pass.
-    pub(crate) fn among_pedestrians_backward(
+    pub(crate) fn spatial_attention_backward(
         &self,
         x: &[f32],
         frames: Frames<'_>,
         dropouts: Dropouts,
-        kept: &Kept,
+        forward_results: &ForwardResults,
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let KeptAttention::Among { qkv, attended } = &kept.attention else {
-            panic!("what was kept is of attention over memory");
+        let AttentionResults::Spatial { qkv, attended } = &forward_results.attention else {
+            panic!("these results are of temporal attention");
         };
-        let (mut gx, of_mixed) = self.before_attention(kept, dropouts, gy, of_weights);
+        let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
         let mut of_qkv = Buffer::any(qkv.len());
-        self.among
+        self.spatial
             .backward(qkv, frames, dropouts.weights, attended, &of_mixed, &mut of_qkv);
         let parts = Parts::Together(&of_qkv);
         self.project_backward(0, x, &parts, &mut gx, of_weights);
@@ -60,67 +60,67 @@ impl EncoderKernel {
     }
 
     /// The layer with temporal attention: the newest token attends to the cached tokens and to itself.
-    /// `x` `[rows, width]`; tokens in `memory` have as many rows, or a divisor, as in [`OverMemory::forward`]
-    /// -> y `[rows, width]`. Without `keep`, what is kept serves no backward pass.
-    pub(crate) fn over_memory(
+    /// `x` `[rows, width]`; tokens in `cache` have as many rows, or a divisor, as in [`TemporalAttention::forward`]
+    /// -> y `[rows, width]`. Without `keep`, the results serve no backward pass.
+    pub(crate) fn temporal_attention(
         &self,
         x: &[f32],
-        memory: &[&Remembered],
+        cache: &[&CachedKeyValues],
         dropouts: Dropouts,
         keep: bool,
-    ) -> (Buffer, Kept) {
+    ) -> (Buffer, ForwardResults) {
         let [mut query, mut key, mut value] = [0; 3].map(|_| Buffer::any(x.len()));
         self.project(0, x, Targets::Apart(vec![&mut query, &mut key, &mut value]));
-        let own = Remembered { key, value };
+        let newest = CachedKeyValues { key, value };
         let mut mixed = Buffer::any(x.len());
-        self.over.forward(&query, &views(memory), own.view(), &mut mixed);
-        let attention = KeptAttention::Over { query, own, mixed };
+        self.temporal.forward(&query, &views(cache), newest.view(), &mut mixed);
+        let attention = AttentionResults::Temporal { query, newest, mixed };
         self.after_attention(x, attention, dropouts, keep)
     }
 
-    /// The gradients of [`over_memory`](Self::over_memory). `gy` like `x` -> the gradient of x. The gradients of the
-    /// memory are added to `of_memory`, those of the weights to `of_weights`, `[Sizes::count]`. The tokens of `memory`
-    /// and `of_memory` must have as many rows as `x`. The other arguments must be those of the forward pass.
+    /// The gradients of [`temporal_attention`](Self::temporal_attention). `gy` like `x` -> the gradient of x. Those of
+    /// the cache are added to `of_cache`, those of the weights to `of_weights`, `[Sizes::count]`. The tokens of `cache`
+    /// and `of_cache` must have as many rows as `x`. The other arguments must be those of the forward pass.
     #[expect(clippy::too_many_arguments, reason = "all of the forward pass, and its gradients")]
-    pub(crate) fn over_memory_backward(
+    pub(crate) fn temporal_attention_backward(
         &self,
         x: &[f32],
-        memory: &[&Remembered],
+        cache: &[&CachedKeyValues],
         dropouts: Dropouts,
-        kept: &Kept,
+        forward_results: &ForwardResults,
         gy: &[f32],
-        of_memory: &mut [&mut Remembered],
+        of_cache: &mut [&mut CachedKeyValues],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let KeptAttention::Over { query, own, .. } = &kept.attention else {
-            panic!("what was kept is of attention among pedestrians");
+        let AttentionResults::Temporal { query, newest, .. } = &forward_results.attention else {
+            panic!("these results are of spatial attention");
         };
-        let (mut gx, of_mixed) = self.before_attention(kept, dropouts, gy, of_weights);
+        let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
         let mut of_query = Buffer::zeros(x.len());
-        let mut of_own = Remembered::zeros(x.len());
-        let mut of_memory: Vec<_> = of_memory.iter_mut().map(|token| token.view_mut()).collect();
-        let gradients = OverMemoryGradients {
+        let mut of_newest = CachedKeyValues::zeros(x.len());
+        let mut of_cache: Vec<_> = of_cache.iter_mut().map(|token| token.view_mut()).collect();
+        let gradients = TemporalGradients {
             query: &mut of_query,
-            memory: &mut of_memory,
-            own: of_own.view_mut(),
+            cache: &mut of_cache,
+            newest: of_newest.view_mut(),
         };
-        self.over
-            .backward(query, &views(memory), own.view(), &of_mixed, gradients);
-        let parts = Parts::Apart(vec![&of_query, &of_own.key, &of_own.value]);
+        self.temporal
+            .backward(query, &views(cache), newest.view(), &of_mixed, gradients);
+        let parts = Parts::Apart(vec![&of_query, &of_newest.key, &of_newest.value]);
         self.project_backward(0, x, &parts, &mut gx, of_weights);
         gx
     }
 
     /// Keys and values of tokens, for later queries.
     /// `x` `[rows, width]`.
-    pub(crate) fn remember(&self, x: &[f32]) -> Remembered {
+    pub(crate) fn key_values(&self, x: &[f32]) -> CachedKeyValues {
         let [mut key, mut value] = [0; 2].map(|_| Buffer::any(x.len()));
         self.project(1, x, Targets::Apart(vec![&mut key, &mut value]));
-        Remembered { key, value }
+        CachedKeyValues { key, value }
     }
 
-    /// The gradient of x through [`remember`](Self::remember). The gradients of the weights are added to `of_weights`.
-    pub(crate) fn remember_backward(&self, x: &[f32], gradient: &Remembered, of_weights: &mut [f32]) -> Buffer {
+    /// The gradient of x through [`key_values`](Self::key_values). Those of the weights are added to `of_weights`.
+    pub(crate) fn key_values_backward(&self, x: &[f32], gradient: &CachedKeyValues, of_weights: &mut [f32]) -> Buffer {
         let mut gx = Buffer::zeros(x.len());
         let parts = Parts::Apart(vec![&gradient.key, &gradient.value]);
         self.project_backward(1, x, &parts, &mut gx, of_weights);
@@ -128,6 +128,6 @@ impl EncoderKernel {
     }
 }
 
-fn views<'a>(memory: &[&'a Remembered]) -> Vec<KeyValue<'a>> {
-    memory.iter().map(|token| token.view()).collect()
+fn views<'a>(cache: &[&'a CachedKeyValues]) -> Vec<KeyValue<'a>> {
+    cache.iter().map(|token| token.view()).collect()
 }

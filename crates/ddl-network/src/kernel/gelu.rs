@@ -68,11 +68,11 @@ mod tests {
     #[test]
     fn values_are_those_of_the_definition() {
         for count in [1, 9, 16, 33] {
-            let of = |i: usize| KNOWN[i % KNOWN.len()];
-            let mut numbers: Vec<f32> = (0..count).map(|i| of(i).0).collect();
+            let example = |i: usize| KNOWN[i % KNOWN.len()];
+            let mut numbers: Vec<f32> = (0..count).map(|i| example(i).0).collect();
             gelu(&mut numbers);
             for (i, y) in numbers.into_iter().enumerate() {
-                assert!((f64::from(y) - of(i).1).abs() < 1e-6, "{:?}: {y}", of(i));
+                assert!((f64::from(y) - example(i).1).abs() < 1e-6, "{:?}: {y}", example(i));
             }
         }
         let mut nan = [f32::NAN, 1.0];

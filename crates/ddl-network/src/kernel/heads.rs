@@ -98,14 +98,14 @@ impl HeadPart {
         if let Some(whole) = self.whole_mut(row) {
             *whole = *numbers;
         } else {
-            self.each(|place, at| row[at] = numbers.as_flattened()[place]);
+            self.for_each(|place, index| row[index] = numbers.as_flattened()[place]);
         }
     }
 
     #[inline(always)]
     fn gathered(self, row: &[f32]) -> Halves {
         let mut numbers = ZERO_HALVES;
-        self.each(|place, at| numbers.as_flattened_mut()[place] = row[at]);
+        self.for_each(|place, index| numbers.as_flattened_mut()[place] = row[index]);
         numbers
     }
 
@@ -126,7 +126,7 @@ impl HeadPart {
     }
 
     #[inline(always)]
-    fn each(self, mut f: impl FnMut(usize, usize)) {
+    fn for_each(self, mut f: impl FnMut(usize, usize)) {
         let first = self.group * GROUP;
         let numbers = self.quad * DEPTH..self.heads.width.min((self.quad + 1) * DEPTH);
         for head in first..self.heads.count.min(first + GROUP) {

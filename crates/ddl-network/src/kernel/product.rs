@@ -250,9 +250,9 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
             let into = sums.row_mut(row + r);
             for v in 0..V {
                 // Added at the end, because partial sums have smaller rounding errors than one long sum.
-                let at = first + v * LANES;
-                let total = simd.add(load(simd, into, at), sum[r][v]);
-                store(simd, total, into, at);
+                let column = first + v * LANES;
+                let total = simd.add(load(simd, into, column), sum[r][v]);
+                store(simd, total, into, column);
             }
         }
     }
@@ -285,12 +285,12 @@ fn add_outer_product<S: Simd, const R: usize, const V: usize>(
 /// Adds the sum of the rows to `sums`.
 #[inline(always)]
 pub(super) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut [f32]) {
-    for at in (0..sums.len()).step_by(LANES) {
+    for column in (0..sums.len()).step_by(LANES) {
         let mut sum = simd.splat(0.0);
         for row in 0..rows.rows() {
-            sum = simd.add(sum, load(simd, rows.row(row), at));
+            sum = simd.add(sum, load(simd, rows.row(row), column));
         }
-        let total = simd.add(load(simd, sums, at), sum);
-        store(simd, total, sums, at);
+        let total = simd.add(load(simd, sums, column), sum);
+        store(simd, total, sums, column);
     }
 }

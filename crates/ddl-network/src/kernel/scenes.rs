@@ -10,7 +10,7 @@ pub struct Scenes {
     ranges: Vec<Range<usize>>,
     frames: usize,
     /// For each frame, scene and pair of queries: the keys visible to at least one of the two, ascending.
-    seen: Vec<Seen>,
+    seen: Vec<SeenKey>,
     /// For each pair of queries: the end of its keys in `seen`.
     ends: Vec<usize>,
     /// For each scene: the first of its pairs in the `ends` of a frame; last, the number of pairs in a frame.
@@ -19,9 +19,9 @@ pub struct Scenes {
 
 /// A key, and the queries of a pair to which it is visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Seen(u32);
+pub(super) struct SeenKey(u32);
 
-impl Seen {
+impl SeenKey {
     /// Index in the scene.
     pub(super) fn key(self) -> usize {
         (self.0 >> 2) as usize
@@ -47,7 +47,7 @@ pub(super) struct SceneView<'a> {
     /// Index of the first pedestrian among those of all scenes.
     pub(super) first: usize,
     pub(super) pedestrians: usize,
-    seen: &'a [Seen],
+    seen: &'a [SeenKey],
     /// Start of the first pair's keys in `seen`, and the end of each pair's keys.
     start: usize,
     ends: &'a [usize],
@@ -55,7 +55,7 @@ pub(super) struct SceneView<'a> {
 
 impl<'a> SceneView<'a> {
     /// The keys visible to the pedestrians 2 `two` and 2 `two` + 1, ascending.
-    pub(super) fn of(self, two: usize) -> &'a [Seen] {
+    pub(super) fn of(self, two: usize) -> &'a [SeenKey] {
         let start = two.checked_sub(1).map_or(self.start, |i| self.ends[i]);
         &self.seen[start..self.ends[two]]
     }
@@ -126,7 +126,7 @@ impl Scenes {
             even = &even[usize::from(sees[0])..];
             odd = &odd[usize::from(sees[1])..];
             let code = u32::from(sees[0]) + 2 * u32::from(sees[1]);
-            self.seen.push(Seen(key << 2 | code));
+            self.seen.push(SeenKey(key << 2 | code));
         }
         self.ends.push(self.seen.len());
     }
@@ -207,8 +207,7 @@ impl<'a> Frames<'a> {
             let before = frame * per_frame;
             before + start..before + end
         });
-        let each = scenes.ranges.iter().zip(places);
-        each.map(|(range, place)| SceneView {
+        scenes.ranges.iter().zip(places).map(|(range, place)| SceneView {
             first: range.start,
             pedestrians: range.len(),
             seen: &scenes.seen,
@@ -249,19 +248,19 @@ mod tests {
         let scenes = Scenes::new(&[1, 3], lists(&[1, 3], &both));
         assert_eq!((scenes.pedestrians(), scenes.frames()), (4, 2));
         assert_eq!(scenes.ranges(), [0..1, 1..4]);
-        let of = |frames: Frames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
+        let codes_of = |frames: Frames<'_>, entry| -> Vec<Vec<(usize, usize)>> {
             let scenes = frames.of_entry(entry);
             let twos = scenes.flat_map(|scene| (0..scene.ends.len()).map(move |i| scene.of(i)));
             let codes = twos.map(|seen| seen.iter().map(|seen| (seen.key(), seen.code())));
             codes.map(Iterator::collect).collect()
         };
         let first = [vec![(0, 3)], vec![(0, 1), (1, 3), (2, 2)], vec![(0, 3), (2, 3)]];
-        let all = [(0, 3), (1, 3), (2, 3)];
-        let all = [all[..1].to_vec(), all.to_vec(), all.to_vec()];
-        assert_eq!(of(scenes.throughout(), 0), first);
-        assert_eq!(of(scenes.throughout(), 1), all);
-        assert_eq!(of(scenes.during(0..1), 1), first);
-        assert_eq!(of(scenes.during(1..2), 5), all);
+        let visible = [(0, 3), (1, 3), (2, 3)];
+        let visible = [visible[..1].to_vec(), visible.to_vec(), visible.to_vec()];
+        assert_eq!(codes_of(scenes.throughout(), 0), first);
+        assert_eq!(codes_of(scenes.throughout(), 1), visible);
+        assert_eq!(codes_of(scenes.during(0..1), 1), first);
+        assert_eq!(codes_of(scenes.during(1..2), 5), visible);
         let pairs = [(0, 0), (1, 1), (1, 2), (2, 2), (2, 3), (3, 1), (3, 3)];
         assert_eq!(scenes.pairs(0).collect::<Vec<_>>(), pairs);
         assert_eq!(scenes.pairs(1).count(), 10);

@@ -27,15 +27,15 @@ impl JobBuffers for () {
 }
 
 /// Runs all jobs, of `work` multiplications together. The result of a job must not depend on its thread.
-pub(super) fn each<J: Send, B: JobBuffers>(jobs: Vec<J>, work: usize, run: impl Fn(J, &mut B) + Sync + Send) {
-    let (small, kept) = (work < WORTH_WAKING, B::of_thread());
+pub(super) fn run_jobs<J: Send, B: JobBuffers>(jobs: Vec<J>, work: usize, run: impl Fn(J, &mut B) + Sync + Send) {
+    let (small, of_thread) = (work < WORTH_WAKING, B::of_thread());
     if jobs.len() < 2 || small || rayon::current_num_threads() == 1 {
-        let mut buffers = if small { kept.take() } else { B::default() };
+        let mut buffers = if small { of_thread.take() } else { B::default() };
         for job in jobs {
             run(job, &mut buffers);
         }
         if small {
-            kept.set(buffers);
+            of_thread.set(buffers);
         }
     } else {
         jobs.into_par_iter()
@@ -45,7 +45,7 @@ pub(super) fn each<J: Send, B: JobBuffers>(jobs: Vec<J>, work: usize, run: impl 
 
 /// Runs all jobs, each of which is a kernel.
 pub(super) fn run_each<K: Kernel + Send>(dispatch: Dispatch, jobs: impl Iterator<Item = K>, work: usize) {
-    each(jobs.collect(), work, |job: K, (): &mut ()| {
+    run_jobs(jobs.collect(), work, |job: K, (): &mut ()| {
         dispatch.run(job);
     });
 }
@@ -55,7 +55,7 @@ pub(super) fn run_buffered<J: Send, B: JobBuffers>(dispatch: Dispatch, jobs: Vec
 where
     for<'b> Buffered<'b, J, B>: Kernel,
 {
-    each(jobs, work, |job, buffers| {
+    run_jobs(jobs, work, |job, buffers| {
         dispatch.run(Buffered { job, buffers });
     });
 }

@@ -39,24 +39,24 @@ struct ReadoutKernels {
 
 impl MemberKernels {
     pub(super) fn new(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights, member: usize) -> Self {
-        let of = |layer: MemberAffine| kernel(layer, member, weights);
+        let of_member = |layer: MemberAffine| kernel(layer, member, weights);
         let attention = |layers: &AttentionLayers, heads: i64| AttentionKernels {
-            code: layers.code.map(of),
-            query: of(layers.query),
-            key: of(layers.key),
-            value: of(layers.value),
+            code: layers.code.map(of_member),
+            query: of_member(layers.query),
+            key: of_member(layers.key),
+            value: of_member(layers.value),
             heads: heads as usize,
         };
         let readout = |layers: &ReadoutLayers| ReadoutKernels {
-            hidden: layers.hidden.iter().map(|&layer| of(layer)).collect(),
-            ends: of(layers.ends),
-            logits: of(layers.logits),
+            hidden: layers.hidden.iter().map(|&layer| of_member(layer)).collect(),
+            ends: of_member(layers.ends),
+            logits: of_member(layers.logits),
         };
         let memory = |(over, from): &(AttentionLayers, ReadoutLayers), config: &MemoryConfig| {
             (attention(over, config.heads), readout(from))
         };
         Self {
-            own: of(layers.own),
+            own: of_member(layers.own),
             neighbours: attention(&layers.neighbours, config.heads),
             readout: readout(&layers.readout),
             memory: layers
@@ -151,11 +151,11 @@ impl AttentionKernels {
         let depth = near / self.heads;
         let scale = 1.0 / (depth as f32).sqrt();
         let mut first = 0;
-        let rows = query.chunks_exact(near).zip(context.chunks_exact_mut(near));
-        for ((query, context), &count) in rows.zip(&others.counts) {
-            let own = first * near..(first + count) * near;
+        let pedestrians = query.chunks_exact(near).zip(context.chunks_exact_mut(near));
+        for ((query, context), &count) in pedestrians.zip(&others.counts) {
+            let rows = first * near..(first + count) * near;
             first += count;
-            let (keys, values) = (&keys[own.clone()], &values[own]);
+            let (keys, values) = (&keys[rows.clone()], &values[rows]);
             for head in 0..self.heads {
                 let part = head * depth..(head + 1) * depth;
                 let dot = |key: &[f32]| -> f32 {

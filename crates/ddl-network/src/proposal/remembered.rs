@@ -37,17 +37,17 @@ impl RememberedRows {
             rows.of.push(index);
             rows.shares.push(config.share(remembered));
             rows.others.counts.push(remembered.len());
-            let own = &view.own;
-            let here = own[OBSERVED - 1];
-            let late = velocity(own, OBSERVED - 1, time_step);
-            let early = velocity(own, RECENT, time_step);
+            let track = &view.own;
+            let here = track[OBSERVED - 1];
+            let late = velocity(track, OBSERVED - 1, time_step);
+            let early = velocity(track, RECENT, time_step);
             let seconds = HORIZON as f64 * time_step;
             let mut support = 0.0;
             for other in remembered {
-                let track = &other.track;
-                let [now, halfway, end] = [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|t| track[t]);
-                let its_late = velocity(track, OBSERVED - 1, time_step);
-                let its_early = velocity(track, RECENT, time_step);
+                let its_track = &other.track;
+                let [now, halfway, end] = [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|t| its_track[t]);
+                let its_late = velocity(its_track, OBSERVED - 1, time_step);
+                let its_early = velocity(its_track, RECENT, time_step);
                 let features = [0, 1].map(|axis| {
                     [
                         now[axis] - here[axis],
@@ -61,8 +61,8 @@ impl RememberedRows {
                 });
                 let likenesses = SIMILARITY_SCALES.map(|scale| (-other.distance / scale).exp());
                 support += likenesses[0];
-                let all = features.as_flattened().iter().chain(&likenesses);
-                rows.others.features.extend(all.map(|x| *x as f32));
+                let numbers = features.as_flattened().iter().chain(&likenesses);
+                rows.others.features.extend(numbers.map(|x| *x as f32));
             }
             rows.support.push(f64::ln_1p(support) as f32);
         }

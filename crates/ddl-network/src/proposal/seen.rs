@@ -35,16 +35,16 @@ impl SeenRows {
         let recent = |track: &[Position]| velocity(track, OBSERVED - 1, time_step);
         let mut seen = Self::default();
         for view in views {
-            let own = &view.own;
-            let halves = own.as_flattened().iter().map(|x| (x * 0.5) as f32);
+            let track = &view.own;
+            let halves = track.as_flattened().iter().map(|x| (x * 0.5) as f32);
             seen.own.extend(halves);
-            for pair in own.windows(2) {
+            for pair in track.windows(2) {
                 let velocity = [0, 1].map(|axis| ((pair[1][axis] - pair[0][axis]) / time_step) as f32);
                 seen.own.extend(velocity);
             }
-            let own_velocity = recent(own);
+            let own_velocity = recent(track);
             seen.onward.push(own_velocity.map(|v| v * HORIZON as f64 * time_step));
-            let here = own[OBSERVED - 1];
+            let here = track[OBSERVED - 1];
             let neighbours = &mut seen.neighbours;
             let before = neighbours.features.len();
             for neighbour in view.neighbours.iter().take(config.neighbours) {

@@ -46,6 +46,10 @@ pub fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<()
         return Ok(());
     };
     let tensors = file.tensors();
-    let found = tensors_digest(tensors.iter().map(|(name, view)| (name.as_str(), view.clone())));
-    if found == expected { Ok(()) } else { Err(DigestMismatch) }
+    let digest = tensors_digest(tensors.iter().map(|(name, view)| (name.as_str(), view.clone())));
+    if digest == expected {
+        Ok(())
+    } else {
+        Err(DigestMismatch)
+    }
 }

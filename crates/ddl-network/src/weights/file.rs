@@ -113,10 +113,10 @@ pub fn save_weights(weights: &Weights, origin: &Origin, path: &Path) -> Result<(
 /// names, shapes or types than the network needs.
 pub fn load_weights(layout: &Arc<Layout>, origin: &Origin, path: &Path) -> Result<Weights, NetworkError> {
     let stored = read_tensors(path, layout.count() as u64 * 8, origin)?;
-    let (found, wanted) = (stored.len(), layout.tensors().len());
-    if found != wanted {
+    let (count, wanted) = (stored.len(), layout.tensors().len());
+    if count != wanted {
         let problem =
-            format!("holds {found} tensors, but this network has {wanted}; it was written for another configuration");
+            format!("holds {count} tensors, but this network has {wanted}; it was written for another configuration");
         return Err(NetworkError::checkpoint(path, problem));
     }
     let mut numbers = Vec::with_capacity(layout.count());

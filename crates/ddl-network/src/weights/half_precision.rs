@@ -58,8 +58,8 @@ impl Weights {
     /// holds NaN or infinity.
     pub fn from_half(layout: &Arc<Layout>, tensors: &[HalfTensor]) -> Result<Self, NetworkError> {
         let needed = || layout.tensors().iter().filter(|tensor| !tensor.is_training_only());
-        let known = |name: &str| needed().any(|tensor| tensor.name() == name);
-        if let Some(other) = tensors.iter().find(|tensor| !known(&tensor.name)) {
+        let is_needed = |name: &str| needed().any(|tensor| tensor.name() == name);
+        if let Some(other) = tensors.iter().find(|tensor| !is_needed(&tensor.name)) {
             return Err(NetworkError::weights(&other.name, "does not belong to this network"));
         }
         let mut numbers = vec![0.0; layout.count()];

@@ -12,7 +12,7 @@ fn off(config: StarConfig, window: &Window, moved: impl Fn(Position) -> Position
     let forecast = |world: &dyn Fn(Position) -> Position| {
         let observed = [window.without_future().map_positions(|_, _, p| world(p))];
         let goals = goals(window, 3).into_iter();
-        let goals = [goals.map(|of| of.into_iter().map(world).collect()).collect()];
+        let goals = [goals.map(|goals| goals.into_iter().map(world).collect()).collect()];
         let rule = StepRule::Bounded;
         let rollouts = network.forecast_windows(&observed, &goals, Noise::Expected, rule, None);
         rollouts.unwrap().remove(0).positions

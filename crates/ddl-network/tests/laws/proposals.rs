@@ -182,19 +182,19 @@ fn proposals_are_those_of_libtorch() {
             [x + dx * s, y + dy * s + 0.01 * s * s]
         })
     };
-    let own = walk([0.0, 0.0], [0.5, 0.0]);
+    let track = walk([0.0, 0.0], [0.5, 0.0]);
     let neighbours = vec![
         walk([1.0, 0.5], [0.4, 0.1]),
         walk([2.5, -1.0], [-0.5, 0.0]),
         walk([9.0, 0.0], [0.1, 0.1]),
     ];
     let alone = PedestrianView {
-        own,
+        own: track,
         neighbours: Vec::new(),
         remembered: Vec::new(),
     };
     let among = PedestrianView {
-        own,
+        own: track,
         neighbours,
         remembered: Vec::new(),
     };
@@ -224,10 +224,10 @@ fn proposals_are_those_of_libtorch() {
             [0.244_301, 0.129_251, 0.126_448, 0.148_92, 0.179_421, 0.171_659],
         ),
     ];
-    for (found, (ends, weights)) in proposed.iter().zip(expected) {
-        let off = found.endpoints.iter().zip(ends).map(|(&a, b)| distance(a, b));
-        assert!(off.fold(0.0, f64::max) < 3e-6, "{:?}", found.endpoints);
-        let off = found.weights.iter().zip(weights).map(|(a, b)| (a - b).abs());
-        assert!(off.fold(0.0, f64::max) < 2e-6, "{:?}", found.weights);
+    for (result, (ends, weights)) in proposed.iter().zip(expected) {
+        let off = result.endpoints.iter().zip(ends).map(|(&a, b)| distance(a, b));
+        assert!(off.fold(0.0, f64::max) < 3e-6, "{:?}", result.endpoints);
+        let off = result.weights.iter().zip(weights).map(|(a, b)| (a - b).abs());
+        assert!(off.fold(0.0, f64::max) < 2e-6, "{:?}", result.weights);
     }
 }

@@ -48,9 +48,9 @@ fn goals_noise_and_shares_that_do_not_fit_the_windows_are_refused() {
         change(&mut shares);
         refuse(&goals, Noise::Expected, Some(&shares), expected);
     };
-    let of = "a share from 0 to 1 for every pedestrian of 6 windows";
-    bad_shares(&|shares| drop(shares.remove(0)), of);
-    bad_shares(&|shares| shares[3].clear(), of);
+    let rule = "a share from 0 to 1 for every pedestrian of 6 windows";
+    bad_shares(&|shares| drop(shares.remove(0)), rule);
+    bad_shares(&|shares| shares[3].clear(), rule);
     for share in [-0.1, 1.1, f64::NAN] {
         bad_shares(&|shares| shares[5][0] = share, &share.to_string());
     }

@@ -3,8 +3,8 @@
 use ddl_network::{BackboneKind, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, Variant};
 
 fn check(least: u64, count: usize) {
-    let all = least..=20 * least + 1000;
-    assert!(all.contains(&(count as u64)), "{least}, {count}");
+    let range = least..=20 * least + 1000;
+    assert!(range.contains(&(count as u64)), "{least}, {count}");
 }
 
 #[test]

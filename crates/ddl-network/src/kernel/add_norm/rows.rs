@@ -102,8 +102,8 @@ impl Decisions {
     }
 
     #[inline(always)]
-    pub(super) fn apply<S: Simd>(self, simd: S, numbers: S::Floats, row: usize, at: usize) -> S::Floats {
-        let bits = RowKey::new(self.seed, row as u64).bits(simd, at);
+    pub(super) fn apply<S: Simd>(self, simd: S, numbers: S::Floats, row: usize, column: usize) -> S::Floats {
+        let bits = RowKey::new(self.seed, row as u64).bits(simd, column);
         simd.mul(simd.keep(numbers, bits, self.least), simd.splat(self.scale))
     }
 }

@@ -98,20 +98,19 @@ impl NormCase {
         let (mut y, mut gx) = (Vec::new(), Vec::new());
         let (mut of_weight, mut of_bias) = (vec![0.25; self.width], vec![0.25; self.width]);
         for first in (0..self.x.len()).step_by(self.width) {
-            let at = |i: usize| first + i;
-            let sum = |i: usize| f64::from(self.x[at(i)]) + factors[at(i)] * f64::from(self.t[at(i)]);
+            let sum = |i: usize| f64::from(self.x[first + i]) + factors[first + i] * f64::from(self.t[first + i]);
             let sums: Vec<f64> = (0..self.width).map(sum).collect();
             let mean = sums.iter().sum::<f64>() / n;
             let variance = sums.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n;
             let deviation = (variance + 1e-5).sqrt();
             let normal: Vec<f64> = sums.iter().map(|s| (s - mean) / deviation).collect();
             let g: Vec<f64> = (0..self.width)
-                .map(|i| f64::from(self.gy[at(i)]) * f64::from(self.weight[i]))
+                .map(|i| f64::from(self.gy[first + i]) * f64::from(self.weight[i]))
                 .collect();
             let g_mean = g.iter().sum::<f64>() / n;
             let along = g.iter().zip(&normal).map(|(g, x)| g * x).sum::<f64>() / n;
             for i in 0..self.width {
-                let gy = f64::from(self.gy[at(i)]);
+                let gy = f64::from(self.gy[first + i]);
                 y.push(normal[i] * f64::from(self.weight[i]) + f64::from(self.bias[i]));
                 gx.push((g[i] - g_mean - normal[i] * along) / deviation);
                 of_weight[i] += gy * normal[i];

@@ -78,8 +78,8 @@ proptest! {
                 gx: MatrixColumnsMut::part(&mut gx, wide_gx, 1, inputs),
                 gradients: [&mut of_weight, &mut of_bias],
             });
-            let middle = |all: &[f32], stride: usize, first: usize, count: usize| -> Vec<f32> {
-                all.chunks_exact(stride).flat_map(|row| row[first..][..count].to_vec()).collect()
+            let middle = |numbers: &[f32], stride: usize, first: usize, count: usize| -> Vec<f32> {
+                numbers.chunks_exact(stride).flat_map(|row| row[first..][..count].to_vec()).collect()
             };
             prop_assert!(y.chunks_exact(wide_y).all(|row| row[..2] == [7.0; 2] && row[wide_y - 1..] == [7.0]));
             prop_assert!(gx.chunks_exact(wide_gx).all(|row| row[..1] == [0.5] && row[inputs + 1..] == [0.5; 4]));

@@ -2,7 +2,7 @@
 //! weights, which are then added in the order of the rows.
 
 use super::forward::ROWS;
-use super::keep::{Kept, KeptRows};
+use super::forward_results::{ForwardResults, NormalisedRows};
 use super::layer::{Dropouts, EncoderKernel};
 use crate::kernel::add_norm::{AddNorm, Decisions};
 use crate::kernel::affine::Affine;
@@ -24,11 +24,11 @@ impl<'a> Parts<'a> {
     /// `rows` rows from `first` on.
     fn rows(&self, index: usize, width: usize, first: usize, rows: usize) -> MatrixColumns<'a> {
         match self {
-            Self::Together(all) => {
-                let all = &all[first * 3 * width..][..rows * 3 * width];
-                MatrixColumns::part(all, 3 * width, index * width, width)
+            Self::Together(matrix) => {
+                let rows = &matrix[first * 3 * width..][..rows * 3 * width];
+                MatrixColumns::part(rows, 3 * width, index * width, width)
             }
-            Self::Apart(all) => MatrixColumns::whole(&all[index][first * width..][..rows * width], width),
+            Self::Apart(matrices) => MatrixColumns::whole(&matrices[index][first * width..][..rows * width], width),
         }
     }
 }
@@ -37,13 +37,13 @@ impl EncoderKernel {
     /// The backward pass of the part after attention: the gradient of x so far, and that of the mixed values.
     pub(super) fn before_attention(
         &self,
-        kept: &Kept,
+        forward_results: &ForwardResults,
         dropouts: Dropouts,
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> (Buffer, Buffer) {
         assert_eq!(
-            kept.normal2.numbers.len(),
+            forward_results.normal2.numbers.len(),
             gy.len(),
             "numbers kept for the backward pass"
         );
@@ -53,13 +53,13 @@ impl EncoderKernel {
         let second = Sublayer {
             norm: &self.norm2,
             map: None,
-            normal: &kept.normal2,
+            normal: &forward_results.normal2,
             dropout: dropouts.fed,
         };
         self.sublayer_backward(&second, gy, [&mut of_z, &mut of_fed], [n2, c2, &mut [], &mut []]);
         let mut grads = Gradients { w1, b1, w2, b2 };
         self.feed_forward
-            .backward(&kept.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
+            .backward(&forward_results.z, &of_fed, dropouts.hidden, &mut through, &mut grads);
         for (sum, term) in of_z.iter_mut().zip(through.iter()) {
             *sum += term;
         }
@@ -67,8 +67,8 @@ impl EncoderKernel {
         let (mut gx, mut of_mixed) = (through, of_fed);
         let first = Sublayer {
             norm: &self.norm1,
-            map: Some((&self.out, kept.attention.mixed())),
-            normal: &kept.normal1,
+            map: Some((&self.out, forward_results.attention.mixed())),
+            normal: &forward_results.normal1,
             dropout: dropouts.attended,
         };
         self.sublayer_backward(&first, &of_z, [&mut gx, &mut of_mixed], [n1, c1, wo, bo]);
@@ -156,7 +156,7 @@ fn add_up<const N: usize>(sums: &[Buffer], mut into: [&mut [f32]; N]) {
 struct Sublayer<'a> {
     norm: &'a AddNorm,
     map: Option<(&'a Affine, &'a [f32])>,
-    normal: &'a KeptRows,
+    normal: &'a NormalisedRows,
     dropout: Option<Dropout>,
 }
 

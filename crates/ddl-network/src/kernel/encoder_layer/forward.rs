@@ -1,6 +1,6 @@
 //! The forward pass of a layer, a few rows at a time.
 
-use super::keep::{Kept, KeptAttention, KeptRows};
+use super::forward_results::{AttentionResults, ForwardResults, NormalisedRows};
 use super::layer::{Dropouts, EncoderKernel};
 use crate::kernel::add_norm::{AddNorm, Decisions, Normal};
 use crate::kernel::affine::Affine;
@@ -24,12 +24,12 @@ impl<'a> Targets<'a> {
     /// Splits off the first rows, `numbers` numbers of each matrix.
     fn split_off(&mut self, projections: usize, numbers: usize) -> Targets<'a> {
         match self {
-            Self::Together(all) => {
-                let count = all.len().min(projections * numbers);
-                Targets::Together(all.split_off_mut(..count).unwrap_or_default())
+            Self::Together(matrix) => {
+                let count = matrix.len().min(projections * numbers);
+                Targets::Together(matrix.split_off_mut(..count).unwrap_or_default())
             }
-            Self::Apart(all) => {
-                let parts = all.iter_mut().map(|part| {
+            Self::Apart(matrices) => {
+                let parts = matrices.iter_mut().map(|part| {
                     let count = part.len().min(numbers);
                     part.split_off_mut(..count).unwrap_or_default()
                 });
@@ -41,8 +41,8 @@ impl<'a> Targets<'a> {
     #[inline(always)]
     fn columns(&mut self, index: usize, projections: usize, width: usize) -> MatrixColumnsMut<'_> {
         match self {
-            Self::Together(all) => MatrixColumnsMut::part(all, projections * width, index * width, width),
-            Self::Apart(all) => MatrixColumnsMut::whole(all[index], width),
+            Self::Together(matrix) => MatrixColumnsMut::part(matrix, projections * width, index * width, width),
+            Self::Apart(matrices) => MatrixColumnsMut::whole(matrices[index], width),
         }
     }
 }
@@ -67,23 +67,23 @@ impl EncoderKernel {
     pub(super) fn after_attention(
         &self,
         x: &[f32],
-        attention: KeptAttention,
+        attention: AttentionResults,
         dropouts: Dropouts,
         keep: bool,
-    ) -> (Buffer, Kept) {
+    ) -> (Buffer, ForwardResults) {
         let [mut z, mut fed, mut y] = [0; 3].map(|_| Buffer::any(x.len()));
         let mixed = attention.mixed();
         let (norm1, norm2) = (&self.norm1, &self.norm2);
         let normal1 = self.add_norm(norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z, keep);
         self.feed_forward.forward(&z, dropouts.hidden, &mut fed);
         let normal2 = self.add_norm(norm2, None, [&z, &fed], dropouts.fed, &mut y, keep);
-        let kept = Kept {
+        let forward_results = ForwardResults {
             attention,
             normal1,
             z,
             normal2,
         };
-        (y, kept)
+        (y, forward_results)
     }
 
     /// y = norm(x + d(t)), or with an affine map of t if there is one.
@@ -95,9 +95,9 @@ impl EncoderKernel {
         dropout: Option<Dropout>,
         y: &mut [f32],
         keep: bool,
-    ) -> KeptRows {
+    ) -> NormalisedRows {
         let width = self.sizes.width;
-        let mut normal = KeptRows::default();
+        let mut normal = NormalisedRows::default();
         if keep {
             normal.numbers = Buffer::any(x.len());
             normal.scales = Buffer::any(x.len() / width);

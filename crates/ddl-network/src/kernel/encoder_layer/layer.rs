@@ -2,10 +2,10 @@
 
 use crate::kernel::add_norm::AddNorm;
 use crate::kernel::affine::Affine;
-use crate::kernel::among_pedestrians::AmongPedestrians;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::FeedForward;
-use crate::kernel::over_memory::OverMemory;
+use crate::kernel::spatial_attention::SpatialAttention;
+use crate::kernel::temporal_attention::TemporalAttention;
 use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
@@ -23,8 +23,8 @@ pub(crate) struct EncoderKernel {
     pub(super) norm1: AddNorm,
     pub(super) norm2: AddNorm,
     pub(super) feed_forward: FeedForward,
-    pub(super) among: AmongPedestrians,
-    pub(super) over: OverMemory,
+    pub(super) spatial: SpatialAttention,
+    pub(super) temporal: TemporalAttention,
     pub(super) dispatch: Dispatch,
 }
 
@@ -50,8 +50,8 @@ impl EncoderKernel {
             norm1: AddNorm::new(width),
             norm2: AddNorm::new(width),
             feed_forward: FeedForward::zeros(width, hidden),
-            among: AmongPedestrians::new(heads, width / heads),
-            over: OverMemory::new(heads, width / heads),
+            spatial: SpatialAttention::new(heads, width / heads),
+            temporal: TemporalAttention::new(heads, width / heads),
             dispatch: Dispatch::detect(),
         }
     }
@@ -60,8 +60,8 @@ impl EncoderKernel {
     pub(in crate::kernel) fn with_instructions(self, set: InstructionSet) -> Option<Self> {
         Some(Self {
             feed_forward: self.feed_forward.with_instructions(set)?,
-            among: self.among.with_instructions(set)?,
-            over: self.over.with_instructions(set)?,
+            spatial: self.spatial.with_instructions(set)?,
+            temporal: self.temporal.with_instructions(set)?,
             dispatch: Dispatch::new(set)?,
             ..self
         })

@@ -1,6 +1,6 @@
 //! Properties of any layer. `ddl-star` compares it with the layer of libtorch.
 
-use super::{Dropouts, EncoderKernel, Remembered, Sizes};
+use super::{CachedKeyValues, Dropouts, EncoderKernel, Sizes};
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::scenes::Scenes;
@@ -22,11 +22,11 @@ struct LayerCase {
     weights: Vec<f32>,
     x: Vec<f32>,
     gy: Vec<f32>,
-    memory: Vec<[Vec<f32>; 2]>,
+    cache: Vec<[Vec<f32>; 2]>,
     dropouts: Dropouts,
 }
 
-/// Output, and gradients of the input, of the weights and of the memory.
+/// Output, and gradients of the input, of the weights and of the cache.
 type Results = [Vec<f32>; 4];
 
 impl LayerCase {
@@ -42,7 +42,7 @@ impl LayerCase {
             weights: numbers.even(sizes.count(), 0.4),
             x: numbers.even(count, 1.0),
             gy: numbers.even(count, 1.0),
-            memory: (0..3).map(|_| [0; 2].map(|_| numbers.even(count, 1.0))).collect(),
+            cache: (0..3).map(|_| [0; 2].map(|_| numbers.even(count, 1.0))).collect(),
             dropouts: Dropouts {
                 weights: dropout(seed),
                 attended: dropout(seed ^ 1),
@@ -58,43 +58,50 @@ impl LayerCase {
         layer
     }
 
-    fn among(&self, layer: &EncoderKernel) -> Results {
+    fn spatial(&self, layer: &EncoderKernel) -> Results {
         let frames = self.scenes.throughout();
-        let (y, kept) = layer.among_pedestrians(&self.x, frames, self.dropouts, true);
-        let (alone, _) = layer.among_pedestrians(&self.x, frames, self.dropouts, false);
+        let (y, forward_results) = layer.spatial_attention(&self.x, frames, self.dropouts, true);
+        let (alone, _) = layer.spatial_attention(&self.x, frames, self.dropouts, false);
         assert_eq!(*alone, *y);
         let mut of_weights = vec![0.0; self.weights.len()];
-        let gx = layer.among_pedestrians_backward(&self.x, frames, self.dropouts, &kept, &self.gy, &mut of_weights);
+        let gx = layer.spatial_attention_backward(
+            &self.x,
+            frames,
+            self.dropouts,
+            &forward_results,
+            &self.gy,
+            &mut of_weights,
+        );
         [y.to_vec(), gx.to_vec(), of_weights, Vec::new()]
     }
 
-    /// The keys and values of x are also a token of the memory.
-    fn over(&self, layer: &EncoderKernel) -> Results {
-        let mut memory = vec![layer.remember(&self.x)];
-        memory.extend(self.memory.iter().map(|[key, value]| Remembered {
+    /// The keys and values of x are also a token of the cache.
+    fn temporal(&self, layer: &EncoderKernel) -> Results {
+        let mut cache = vec![layer.key_values(&self.x)];
+        cache.extend(self.cache.iter().map(|[key, value]| CachedKeyValues {
             key: Buffer::copy(key),
             value: Buffer::copy(value),
         }));
-        let memory: Vec<&Remembered> = memory.iter().collect();
-        let (y, kept) = layer.over_memory(&self.x, &memory, self.dropouts, true);
-        let (alone, _) = layer.over_memory(&self.x, &memory, self.dropouts, false);
+        let cache: Vec<&CachedKeyValues> = cache.iter().collect();
+        let (y, forward_results) = layer.temporal_attention(&self.x, &cache, self.dropouts, true);
+        let (alone, _) = layer.temporal_attention(&self.x, &cache, self.dropouts, false);
         assert_eq!(*alone, *y);
         let mut of_weights = vec![0.0; self.weights.len()];
-        let mut of_memory: Vec<_> = memory.iter().map(|_| Remembered::zeros(self.x.len())).collect();
-        let gx = layer.over_memory_backward(
+        let mut of_cache: Vec<_> = cache.iter().map(|_| CachedKeyValues::zeros(self.x.len())).collect();
+        let gx = layer.temporal_attention_backward(
             &self.x,
-            &memory,
+            &cache,
             self.dropouts,
-            &kept,
+            &forward_results,
             &self.gy,
-            &mut of_memory.iter_mut().collect::<Vec<_>>(),
+            &mut of_cache.iter_mut().collect::<Vec<_>>(),
             &mut of_weights,
         );
-        let through = layer.remember_backward(&self.x, &of_memory[0], &mut of_weights);
+        let through = layer.key_values_backward(&self.x, &of_cache[0], &mut of_weights);
         let gx = gx.iter().zip(through.iter()).map(|(a, b)| a + b).collect();
-        let given = of_memory[1..].iter();
-        let of_memory = given.flat_map(|token| [&token.key[..], &token.value]).flatten();
-        [y.to_vec(), gx, of_weights, of_memory.copied().collect()]
+        let given = of_cache[1..].iter();
+        let of_cache = given.flat_map(|token| [&token.key[..], &token.value]).flatten();
+        [y.to_vec(), gx, of_weights, of_cache.copied().collect()]
     }
 }
 
@@ -105,7 +112,7 @@ fn the_number_of_threads_changes_no_bit() {
         let layer = case.layer(set);
         let [first, others @ ..] = [1, 2, 3, 7].map(|threads| {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-            let run = || [case.among(&layer), case.over(&layer)];
+            let run = || [case.spatial(&layer), case.temporal(&layer)];
             let both = pool.unwrap().install(run);
             both.map(|results| results.map(|numbers| bits(&numbers)))
         });
@@ -130,7 +137,11 @@ fn gradients_are_slopes() {
         let case = LayerCase::new(11, star(64), &scenes, p);
         let run = |case: &LayerCase| {
             let layer = case.layer(InstructionSet::detect());
-            if over { case.over(&layer) } else { case.among(&layer) }
+            if over {
+                case.temporal(&layer)
+            } else {
+                case.spatial(&layer)
+            }
         };
         let [_, gx, of_weights, _] = run(&case);
         for (of_x, of_weights_too) in [(1.0, 0.0), (0.0, 1.0)] {

@@ -163,10 +163,10 @@ impl TiledKernel for UnitsBackward<'_, '_> {
 #[inline(always)]
 fn deactivate<S: Simd>(simd: S, hidden: &[f32], scale: f32, gradient: &mut [f32]) {
     let scale = simd.splat(scale);
-    for at in (0..gradient.len()).step_by(LANES) {
-        let scaled = simd.mul(load(simd, gradient, at), scale);
-        let changed = simd.zero_unless_positive(load(simd, hidden, at), scaled);
-        store(simd, changed, gradient, at);
+    for first in (0..gradient.len()).step_by(LANES) {
+        let scaled = simd.mul(load(simd, gradient, first), scale);
+        let changed = simd.zero_unless_positive(load(simd, hidden, first), scaled);
+        store(simd, changed, gradient, first);
     }
 }
 
@@ -203,9 +203,9 @@ impl Gradients {
 
 impl<N: DerefMut<Target = [f32]>> Gradients<N> {
     pub(super) fn check(&self, width: usize, hidden: usize) {
-        let found = [&self.w1, &self.b1, &self.w2, &self.b2].map(|part| part.len());
+        let lengths = [&self.w1, &self.b1, &self.w2, &self.b2].map(|part| part.len());
         let expected = [hidden * width, hidden, width * hidden, width];
-        assert_eq!(found, expected, "entries of the gradients of W1, b1, W2, b2");
+        assert_eq!(lengths, expected, "entries of the gradients of W1, b1, W2, b2");
     }
 
     /// Parts of `units` blocks of hidden units each.

@@ -12,13 +12,13 @@ use proptest::prelude::*;
 const UNIT: f64 = 1.0 / 16_777_216.0;
 
 #[track_caller]
-fn assert_near(name: &str, found: &[f32], exact: &[f64], bounds: &[f64]) {
-    assert_eq!(found.len(), exact.len(), "{name}");
-    for (i, found) in found.iter().enumerate() {
-        let error = (f64::from(*found) - exact[i]).abs();
+fn assert_near(name: &str, results: &[f32], exact: &[f64], bounds: &[f64]) {
+    assert_eq!(results.len(), exact.len(), "{name}");
+    for (i, result) in results.iter().enumerate() {
+        let error = (f64::from(*result) - exact[i]).abs();
         assert!(
             error <= bounds[i],
-            "{name}[{i}]: {found} for {}, {error:e} > {:e}",
+            "{name}[{i}]: {result} for {}, {error:e} > {:e}",
             exact[i],
             bounds[i]
         );
@@ -45,12 +45,12 @@ fn check(case: &Case) {
         let none = vec![0.0; y.len()];
         let bounds = scaled(width + hidden + 8, [&exact.y.sizes, &none]);
         assert_near(&name("y"), &y, &exact.y.values, &bounds);
-        let found = [gx, grads.w1, grads.b1, grads.w2, grads.b2];
+        let gradients = [gx, grads.w1, grads.b1, grads.w2, grads.b2];
         for (i, what) in ["gx", "W1", "b1", "W2", "b2"].into_iter().enumerate() {
             let steps = width + 16 + if i == 0 { hidden } else { rows };
             let exact = &exact.gradients[i];
             let bounds = scaled(steps, [&exact.sizes, &exact.doubts]);
-            assert_near(&name(what), &found[i], &exact.values, &bounds);
+            assert_near(&name(what), &gradients[i], &exact.values, &bounds);
         }
     }
 }

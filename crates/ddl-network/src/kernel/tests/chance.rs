@@ -25,8 +25,8 @@ impl Decided {
             let count = values.len() as f64;
             values.sum::<f64>() / count.sqrt()
         };
-        let all = score(&mut values.iter());
-        assert!(all.abs() < 4.5, "{all} standard errors over all");
+        let total = score(&mut values.iter());
+        assert!(total.abs() < 4.5, "{total} standard errors over all");
         let of_rows = values.chunks(columns).map(|row| score(&mut row.iter()));
         let of_columns = (0..columns).map(|first| score(&mut values[first..].iter().step_by(columns)));
         let scores: Vec<f64> = of_rows.chain(of_columns).collect();

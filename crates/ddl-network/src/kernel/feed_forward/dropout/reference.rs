@@ -26,16 +26,16 @@ pub(crate) fn factor(dropout: Dropout, row: usize, unit: usize) -> f64 {
 #[test]
 fn decisions_stay_what_they_are() {
     // Bit l: whether unit 32 `block` + l is kept at p = 1/2.
-    let kept = |seed: u64, row: usize, block: usize| -> u32 {
-        let kept = |l: usize| u32::from(bits(seed, row, 32 * block + l) >= 32_768);
-        (0..32).map(|l| kept(l) << l).sum()
+    let kept_units = |seed: u64, row: usize, block: usize| -> u32 {
+        let bit = |l: usize| u32::from(bits(seed, row, 32 * block + l) >= 32_768);
+        (0..32).map(|l| bit(l) << l).sum()
     };
     // Computed by an independent program in another language.
-    assert_eq!(kept(0, 0, 0), 0xbd60_8ba1);
-    assert_eq!(kept(1, 0, 0), 0xdb4c_c23e);
-    assert_eq!(kept(1, 1, 0), 0x6aa3_de8c);
-    assert_eq!(kept(1, 0, 1), 0x5f1a_0c60);
-    assert_eq!(kept((1 << 63) + 5, 999, 63), 0xf427_0060);
+    assert_eq!(kept_units(0, 0, 0), 0xbd60_8ba1);
+    assert_eq!(kept_units(1, 0, 0), 0xdb4c_c23e);
+    assert_eq!(kept_units(1, 1, 0), 0x6aa3_de8c);
+    assert_eq!(kept_units(1, 0, 1), 0x5f1a_0c60);
+    assert_eq!(kept_units((1 << 63) + 5, 999, 63), 0xf427_0060);
 }
 
 #[test]

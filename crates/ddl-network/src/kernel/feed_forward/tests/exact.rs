@@ -35,10 +35,10 @@ impl Sums {
         }
     }
 
-    fn add(&mut self, at: usize, term: f64, size: f64, doubt: bool) {
-        self.values[at] += term;
-        self.sizes[at] += size;
-        self.doubts[at] += if doubt { size } else { 0.0 };
+    fn add(&mut self, entry: usize, term: f64, size: f64, doubt: bool) {
+        self.values[entry] += term;
+        self.sizes[entry] += size;
+        self.doubts[entry] += if doubt { size } else { 0.0 };
     }
 }
 

@@ -30,12 +30,12 @@ const WORK_OF_A_PAIR: usize = 50;
 /// is the factor of [`Dropout`], or 1 without it. Weights below 2^−96 of the largest count as 0. Results do not depend
 /// on the number of threads; those of different instruction sets agree up to rounding.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct AmongPedestrians {
+pub(crate) struct SpatialAttention {
     heads: Heads,
     dispatch: Dispatch,
 }
 
-/// The output of [`AmongPedestrians::forward`], and what the backward pass needs in addition.
+/// The output of [`SpatialAttention::forward`], and what the backward pass needs in addition.
 #[derive(Clone, Debug)]
 pub(crate) struct Attended {
     mixed: Buffer,
@@ -51,7 +51,7 @@ impl Attended {
     }
 }
 
-impl AmongPedestrians {
+impl SpatialAttention {
     pub(crate) fn new(heads: usize, head_width: usize) -> Self {
         Self {
             heads: Heads::new(heads, head_width),
@@ -97,7 +97,7 @@ impl AmongPedestrians {
         attended
     }
 
-    /// The gradient of the inputs of [`AmongPedestrians::forward`] from that of its output.
+    /// The gradient of the inputs of [`SpatialAttention::forward`] from that of its output.
     /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, overwritten.
     /// The first four arguments must be those of a forward pass with `keep`.
     pub(crate) fn backward(

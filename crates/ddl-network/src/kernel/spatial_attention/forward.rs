@@ -2,7 +2,7 @@
 
 use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
-use crate::kernel::scenes::Seen;
+use crate::kernel::scenes::SeenKey;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd};
 
@@ -42,11 +42,11 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
         let rows = self.job.mixed.chunks_mut(2 * row);
         let (keys, values) = (&buffers.keys[..], &buffers.values[..]);
         let queries = buffers.queries.chunks_exact(quads).zip(task.twos.clone());
-        for (at, (mixed, (query, two))) in rows.zip(queries).enumerate() {
+        for (pair, (mixed, (query, two))) in rows.zip(queries).enumerate() {
             let seen = task.scene.of(two);
             let weights = &mut buffers.weights[..seen.len()];
             let first = task.keys.start;
-            let place = |seen: &Seen| (seen.key() - first) * quads;
+            let place = |seen: &SeenKey| (seen.key() - first) * quads;
             let mut largest = simd.splat(f32::NEG_INFINITY);
             // The first quad of the queries is read once, not for each key.
             let (in_registers, others) = (simd.read(&query[0]), &query[1..]);
@@ -65,7 +65,7 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
                 let taken = match task.decisions {
                     Some(decisions) if DROP => {
                         let key = task.scene.first + seen.key();
-                        let factors = decisions.factors(&buffers.bits[at], key);
+                        let factors = decisions.factors(&buffers.bits[pair], key);
                         simd.mul(power, simd.load(&factors.0))
                     }
                     _ => power,
@@ -84,9 +84,9 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
                 let part = HeadPart::new(task.heads, group, quad);
                 part.store(simd, simd.scaled(sum, share), first, second.as_deref_mut());
             }
-            if let Some(kept) = normalisers.next() {
-                simd.store(largest, &mut kept[group][0].0);
-                simd.store(share, &mut kept[group][1].0);
+            if let Some(normaliser) = normalisers.next() {
+                simd.store(largest, &mut normaliser[group][0].0);
+                simd.store(share, &mut normaliser[group][1].0);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Comparison with the formula in double precision.
 
-use super::AmongPedestrians;
+use super::SpatialAttention;
 use super::dropout::WeightDecisions;
 use super::queries::TWOS_AT_ONCE;
 use crate::kernel::tests::attention::Attention;
@@ -36,7 +36,7 @@ impl SceneCase {
     }
 
     fn run(&self, set: InstructionSet) -> (Vec<f32>, Vec<f32>) {
-        let attention = AmongPedestrians::new(self.heads.0, self.heads.1);
+        let attention = SpatialAttention::new(self.heads.0, self.heads.1);
         let attention = attention.with_instructions(set).unwrap();
         let scenes = Scenes::new(&self.sizes, lists(&self.sizes, &self.visible));
         let frames = scenes.throughout();
@@ -57,7 +57,7 @@ impl SceneCase {
         let (heads, width) = self.heads;
         let pedestrians: usize = self.sizes.iter().sum();
         let (qkv, gradient) = (wide(&self.qkv), wide(&self.gradient));
-        let at = |entry: usize, pedestrian: usize, part: usize, head: usize| {
+        let index = |entry: usize, pedestrian: usize, part: usize, head: usize| {
             (((entry * pedestrians + pedestrian) * 3 + part) * heads + head) * width
         };
         let pairs: usize = self.sizes.iter().map(|size| size * size).sum();
@@ -75,7 +75,7 @@ impl SceneCase {
                     let seen = (0..size).filter(|&j| row[j]).map(|j| first + j);
                     let seen: Vec<usize> = seen.collect();
                     for head in 0..heads {
-                        let vector = |pedestrian, part| &qkv[at(entry, pedestrian, part, head)..][..width];
+                        let vector = |pedestrian, part| &qkv[index(entry, pedestrian, part, head)..][..width];
                         let keys: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 1)).collect();
                         let values: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 2)).collect();
                         let factor = |&j: &usize| match decisions {
@@ -88,11 +88,11 @@ impl SceneCase {
                             values: &values,
                             factors: &seen.iter().map(factor).collect::<Vec<_>>(),
                         };
-                        let own = ((entry * pedestrians + i) * heads + head) * width;
-                        mixed[own..own + width].copy_from_slice(&query.mixed());
-                        let gradients = query.gradients(&gradient[own..own + width]);
+                        let start = ((entry * pedestrians + i) * heads + head) * width;
+                        mixed[start..start + width].copy_from_slice(&query.mixed());
+                        let gradients = query.gradients(&gradient[start..start + width]);
                         let mut add = |pedestrian, part, numbers: &[f64]| {
-                            let place = at(entry, pedestrian, part, head);
+                            let place = index(entry, pedestrian, part, head);
                             for (sum, number) in qkv_gradient[place..].iter_mut().zip(numbers) {
                                 *sum += number;
                             }
@@ -213,7 +213,7 @@ fn bears_big_scores() {
 fn results_do_not_depend_on_what_was_there() {
     let big = SceneCase::new(12, STAR, &[30, 5], (2, 1), 1.0);
     let small = SceneCase::new(13, STAR, &[4, 3], (1, 1), 1.0);
-    let attention = AmongPedestrians::new(8, 4);
+    let attention = SpatialAttention::new(8, 4);
     for case in [&big, &small] {
         let scenes = Scenes::new(&case.sizes, lists(&case.sizes, &case.visible));
         let attended = attention.forward(&case.qkv, scenes.throughout(), None, false);

@@ -114,8 +114,8 @@ fn weigh<S: Simd, const DROP: bool>(
     key: usize,
     quads: usize,
 ) {
-    let at = key * quads;
-    let (keys, values) = (&buffers.keys[at..][..quads], &buffers.values[at..][..quads]);
+    let first = key * quads;
+    let (keys, values) = (&buffers.keys[first..][..quads], &buffers.values[first..][..quads]);
     let codes = buffers.codes.chunks_exact(task.scene.pedestrians);
     let queries = buffers.queries.chunks_exact(quads);
     let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));

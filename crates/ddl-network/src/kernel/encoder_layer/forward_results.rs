@@ -1,52 +1,52 @@
 //! Results of the forward pass that later tokens and the backward pass need.
 
-use crate::kernel::among_pedestrians::Attended;
 use crate::kernel::buffer::Buffer;
-use crate::kernel::over_memory::{KeyValue, KeyValueMut};
+use crate::kernel::spatial_attention::Attended;
+use crate::kernel::temporal_attention::{KeyValue, KeyValueMut};
 
-pub(crate) struct Kept {
-    pub(super) attention: KeptAttention,
-    pub(super) normal1: KeptRows,
+pub(crate) struct ForwardResults {
+    pub(super) attention: AttentionResults,
+    pub(super) normal1: NormalisedRows,
     pub(super) z: Buffer,
-    pub(super) normal2: KeptRows,
+    pub(super) normal2: NormalisedRows,
 }
 
-pub(super) enum KeptAttention {
-    Among {
+pub(super) enum AttentionResults {
+    Spatial {
         qkv: Buffer,
         attended: Attended,
     },
-    Over {
+    Temporal {
         query: Buffer,
-        own: Remembered,
+        newest: CachedKeyValues,
         mixed: Buffer,
     },
 }
 
-impl KeptAttention {
+impl AttentionResults {
     pub(super) fn mixed(&self) -> &[f32] {
         match self {
-            Self::Among { attended, .. } => attended.mixed(),
-            Self::Over { mixed, .. } => mixed,
+            Self::Spatial { attended, .. } => attended.mixed(),
+            Self::Temporal { mixed, .. } => mixed,
         }
     }
 }
 
 /// Empty if there will be no backward pass.
 #[derive(Default)]
-pub(super) struct KeptRows {
+pub(super) struct NormalisedRows {
     pub(super) numbers: Buffer,
     pub(super) scales: Buffer,
 }
 
 /// Keys and values of tokens, or their gradients: `[rows, width]` each.
 #[derive(Debug)]
-pub(crate) struct Remembered {
+pub(crate) struct CachedKeyValues {
     pub(crate) key: Buffer,
     pub(crate) value: Buffer,
 }
 
-impl Remembered {
+impl CachedKeyValues {
     pub(crate) fn zeros(count: usize) -> Self {
         Self {
             key: Buffer::zeros(count),

@@ -2,19 +2,19 @@
 
 mod backward;
 mod forward;
+mod sixteen_heads;
 #[cfg(test)]
 mod tests;
-mod tokens;
 
 use super::heads::Heads;
 use super::threads::run_buffered;
-use backward::MemoryBackward;
+use backward::TemporalBackward;
 use ddl_simd::Dispatch;
 #[cfg(test)]
 use ddl_simd::InstructionSet;
-use forward::MemoryForward;
-use tokens::MemoryBuffers;
-pub(crate) use tokens::{KeyValue, KeyValueMut};
+use forward::TemporalForward;
+use sixteen_heads::TemporalBuffers;
+pub(crate) use sixteen_heads::{KeyValue, KeyValueMut};
 
 /// Rows in a job. They fill whole vectors with any number of heads.
 const ROWS_AT_ONCE: usize = 64;
@@ -22,26 +22,26 @@ const ROWS_AT_ONCE: usize = 64;
 /// Cost of one number of a token, in multiplications.
 const WORK_OF_A_NUMBER: usize = 8;
 
-/// Multi-head attention. The query of each row attends to t cached tokens and to its own token.
+/// Multi-head attention. The query of each row attends to t cached tokens and to its newest token.
 ///
 /// For each row and head, `mixed = Σ_e softmax_e(q · k_e / √head width) v_e` over the t + 1 tokens e. Weights below
 /// 2^−96 of the largest count as 0. Results do not depend on the number of threads; those of different instruction sets
 /// agree up to rounding.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct OverMemory {
+pub(crate) struct TemporalAttention {
     heads: Heads,
     dispatch: Dispatch,
 }
 
-/// The gradients to which [`OverMemory::backward`] adds.
-pub(crate) struct OverMemoryGradients<'a, 'b> {
+/// The gradients to which [`TemporalAttention::backward`] adds.
+pub(crate) struct TemporalGradients<'a, 'b> {
     /// `[rows, heads, head width]`.
     pub(crate) query: &'a mut [f32],
-    pub(crate) memory: &'b mut [KeyValueMut<'a>],
-    pub(crate) own: KeyValueMut<'a>,
+    pub(crate) cache: &'b mut [KeyValueMut<'a>],
+    pub(crate) newest: KeyValueMut<'a>,
 }
 
-impl OverMemory {
+impl TemporalAttention {
     pub(crate) fn new(heads: usize, head_width: usize) -> Self {
         Self {
             heads: Heads::new(heads, head_width),
@@ -55,88 +55,88 @@ impl OverMemory {
         Some(Self { dispatch, ..self })
     }
 
-    /// Mixes the values of the cached tokens and the query's own token.
-    /// `query` and `own` `[rows, heads, head width]`; each token of `memory` the same, or with a divisor of the rows
+    /// Mixes the values of the cached tokens and the query's newest token.
+    /// `query` and `newest` `[rows, heads, head width]`; each token of `cache` the same, or with a divisor of the rows
     /// -> `mixed` `[rows, heads, head width]`, overwritten.
     ///
     /// The rows of a token with fewer rows are repeated: row r of the query reads its row r mod its number of rows. So
-    /// many hypotheses can share one memory.
-    pub(crate) fn forward(&self, query: &[f32], memory: &[KeyValue<'_>], own: KeyValue<'_>, mixed: &mut [f32]) {
-        self.check(query, own, mixed);
-        for token in memory {
+    /// many hypotheses can share one cache.
+    pub(crate) fn forward(&self, query: &[f32], cache: &[KeyValue<'_>], newest: KeyValue<'_>, mixed: &mut [f32]) {
+        self.check(query, newest, mixed);
+        for token in cache {
             let whole = !token.key.is_empty()
                 && token.key.len() == token.value.len()
                 && token.key.len().is_multiple_of(self.heads.row())
                 && query.len().is_multiple_of(token.key.len());
-            assert!(whole || query.is_empty(), "remembered keys and values");
+            assert!(whole || query.is_empty(), "cached keys and values");
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
         let chunks = mixed.chunks_mut(chunk).enumerate();
-        let jobs: Vec<MemoryForward<'_>> = chunks
-            .map(|(i, mixed)| MemoryForward {
+        let jobs: Vec<TemporalForward<'_>> = chunks
+            .map(|(i, mixed)| TemporalForward {
                 heads: self.heads,
                 first: i * chunk,
                 query,
-                memory,
-                own,
+                cache,
+                newest,
                 mixed,
             })
             .collect();
-        run_buffered::<_, MemoryBuffers>(self.dispatch, jobs, work(query, memory));
+        run_buffered::<_, TemporalBuffers>(self.dispatch, jobs, work(query, cache));
     }
 
-    /// Adds the gradients of the inputs of [`OverMemory::forward`], from that of its output.
+    /// Adds the gradients of the inputs of [`TemporalAttention::forward`], from that of its output.
     /// All shapes are `[rows, heads, head width]`, also those of the cached tokens.
     pub(crate) fn backward(
         &self,
         query: &[f32],
-        memory: &[KeyValue<'_>],
-        own: KeyValue<'_>,
+        cache: &[KeyValue<'_>],
+        newest: KeyValue<'_>,
         mixed_gradient: &[f32],
-        gradients: OverMemoryGradients<'_, '_>,
+        gradients: TemporalGradients<'_, '_>,
     ) {
-        self.check(query, own, mixed_gradient);
-        let KeyValueMut { key, value } = &gradients.own;
+        self.check(query, newest, mixed_gradient);
+        let KeyValueMut { key, value } = &gradients.newest;
         self.check(query, KeyValue { key, value }, gradients.query);
-        assert_eq!(memory.len(), gradients.memory.len(), "remembered tokens");
-        for (token, gradient) in memory.iter().zip(gradients.memory.iter()) {
+        assert_eq!(cache.len(), gradients.cache.len(), "cached tokens");
+        for (token, gradient) in cache.iter().zip(gradients.cache.iter()) {
             self.check(query, *token, gradient.key);
             assert_eq!(gradient.value.len(), query.len(), "gradient of values");
         }
         let chunk = ROWS_AT_ONCE * self.heads.row();
-        let OverMemoryGradients {
+        let TemporalGradients {
             query: mut query_gradient,
-            memory: token_gradients,
-            own: own_gradient,
+            cache: token_gradients,
+            newest: newest_gradient,
         } = gradients;
         let mut token_gradients: Vec<KeyValueMut<'_>> = token_gradients.iter_mut().map(KeyValueMut::reborrow).collect();
-        token_gradients.push(own_gradient);
+        token_gradients.push(newest_gradient);
         let mut jobs = Vec::new();
         for first in (0..query.len()).step_by(chunk) {
             let count = chunk.min(query.len() - first);
             let tokens = token_gradients.iter_mut();
-            jobs.push(MemoryBackward {
+            jobs.push(TemporalBackward {
                 heads: self.heads,
                 first,
                 query,
-                memory,
-                own,
+                cache,
+                newest,
                 mixed_gradient,
                 query_gradient: query_gradient.split_off_mut(..count).unwrap_or_default(),
                 token_gradients: tokens.map(|token| token.split_off(count)).collect(),
             });
         }
-        run_buffered::<_, MemoryBuffers>(self.dispatch, jobs, work(query, memory));
+        run_buffered::<_, TemporalBuffers>(self.dispatch, jobs, work(query, cache));
     }
 
-    fn check(&self, query: &[f32], own: KeyValue<'_>, mixed: &[f32]) {
+    fn check(&self, query: &[f32], newest: KeyValue<'_>, mixed: &[f32]) {
         assert_eq!(query.len() % self.heads.row(), 0, "rows of queries");
-        for (what, other) in [("key", own.key), ("value", own.value), ("mixed", mixed)] {
+        for (what, other) in [("key", newest.key), ("value", newest.value), ("mixed", mixed)] {
             assert_eq!(other.len(), query.len(), "{what}");
         }
     }
 }
 
-fn work(query: &[f32], memory: &[KeyValue<'_>]) -> usize {
-    query.len() * (memory.len() + 1) * WORK_OF_A_NUMBER
+fn work(query: &[f32], cache: &[KeyValue<'_>]) -> usize {
+    query.len() * (cache.len() + 1) * WORK_OF_A_NUMBER
 }

@@ -1,6 +1,6 @@
 //! The layout of sixteen heads in lanes, in sequence across rows, four of their numbers (a quad) at a time.
 //!
-//! Rows and heads are one index here, because every row has a separate memory. Scores and weights, one for each head,
+//! Rows and heads are one index here, because every row has a separate cache. Scores and weights, one for each head,
 //! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
 use crate::kernel::threads::JobBuffers;
@@ -46,14 +46,14 @@ const AHEAD: usize = 3;
 /// second-level cache.
 const PREFETCHED_FROM: usize = 1 << 17;
 
-/// Whether these tokens are prefetched. The processor's own prefetcher follows fewer streams than there are tokens.
-pub(super) fn are_prefetched(memory: &[KeyValue<'_>]) -> bool {
-    memory.iter().map(|token| token.key.len()).sum::<usize>() >= PREFETCHED_FROM
+/// Whether these tokens are prefetched. The processor's newest prefetcher follows fewer streams than there are tokens.
+pub(super) fn are_prefetched(cache: &[KeyValue<'_>]) -> bool {
+    cache.iter().map(|token| token.key.len()).sum::<usize>() >= PREFETCHED_FROM
 }
 
 /// Buffers for sixteen heads, reused by the next group.
 #[derive(Clone, Debug, Default)]
-pub(super) struct MemoryBuffers {
+pub(super) struct TemporalBuffers {
     /// The query, one entry for each quad; scaled so that scores are exponents of two.
     pub(super) query: Vec<Quad>,
     /// For each quad.
@@ -66,9 +66,9 @@ pub(super) struct MemoryBuffers {
     pub(super) taken: Vec<Lanes>,
 }
 
-impl JobBuffers for MemoryBuffers {
+impl JobBuffers for TemporalBuffers {
     fn of_thread() -> &'static LocalKey<Cell<Self>> {
-        thread_local!(static BUFFERS: Cell<MemoryBuffers> = Cell::default());
+        thread_local!(static BUFFERS: Cell<TemporalBuffers> = Cell::default());
         &BUFFERS
     }
 }
@@ -82,12 +82,12 @@ pub(super) struct SixteenHeads {
 }
 
 impl SixteenHeads {
-    /// The group at index `at` of a piece of `length` numbers that begins at `first` in the whole slice.
+    /// The group at index `group` of a piece of `length` numbers that begins at `first` in the whole slice.
     #[inline(always)]
-    pub(super) fn new(first: usize, at: usize, length: usize, width: usize) -> Self {
+    pub(super) fn new(first: usize, group: usize, length: usize, width: usize) -> Self {
         Self {
-            first: first + at,
-            numbers: (length - at).min(LANES * width),
+            first: first + group,
+            numbers: (length - group).min(LANES * width),
             width,
         }
     }
@@ -118,8 +118,8 @@ impl SixteenHeads {
                 part.0[..numbers.len()].copy_from_slice(numbers);
             }
         } else {
-            self.each(quad, |at, part, lane| {
-                gathered[part].0[lane] = from[(self.first + at) % from.len()];
+            self.for_each(quad, |index, part, lane| {
+                gathered[part].0[lane] = from[(self.first + index) % from.len()];
             });
         }
         simd.read(&gathered)
@@ -150,7 +150,7 @@ impl SixteenHeads {
         } else {
             let mut numbers = ZERO_QUAD;
             simd.write(sum, &mut numbers);
-            self.each(quad, |at, part, lane| into[at] += numbers[part].0[lane]);
+            self.for_each(quad, |index, part, lane| into[index] += numbers[part].0[lane]);
         }
     }
 
@@ -167,7 +167,7 @@ impl SixteenHeads {
         } else {
             let mut numbers = ZERO_QUAD;
             simd.write(values, &mut numbers);
-            self.each(quad, |at, part, lane| into[at] = numbers[part].0[lane]);
+            self.for_each(quad, |index, part, lane| into[index] = numbers[part].0[lane]);
         }
     }
 
@@ -179,7 +179,7 @@ impl SixteenHeads {
 
     /// Calls `f` with the index of each number after the first, and its position in a quad.
     #[inline(always)]
-    fn each(self, quad: usize, mut f: impl FnMut(usize, usize, usize)) {
+    fn for_each(self, quad: usize, mut f: impl FnMut(usize, usize, usize)) {
         let numbers = quad * DEPTH..self.width.min((quad + 1) * DEPTH);
         for head in 0..self.numbers / self.width {
             for number in numbers.clone() {
@@ -221,20 +221,20 @@ pub(super) fn weighted<S: Simd>(simd: S, weight: S::Floats, numbers: Vectors<S>)
     result
 }
 
-/// Sets `powers` to 2^(score − largest score) for all tokens, the own token last. Returns 1 over their sum.
+/// Sets `powers` to 2^(score − largest score) for all tokens, the newest token last. Returns 1 over their sum.
 #[inline(always)]
 pub(super) fn soften<S: Simd>(
     simd: S,
     place: SixteenHeads,
     query: &[Quad],
-    memory: &[KeyValue<'_>],
-    own: KeyValue<'_>,
+    cache: &[KeyValue<'_>],
+    newest: KeyValue<'_>,
     powers: &mut Vec<Lanes>,
     prefetched: bool,
 ) -> S::Floats {
-    powers.resize(memory.len() + 1, Lanes::ZERO);
+    powers.resize(cache.len() + 1, Lanes::ZERO);
     let mut largest = simd.splat(f32::NEG_INFINITY);
-    for (token, power) in memory.iter().chain([&own]).zip(powers.iter_mut()) {
+    for (token, power) in cache.iter().chain([&newest]).zip(powers.iter_mut()) {
         if prefetched && place.whole() {
             place.prefetch(simd, token.key);
             place.prefetch(simd, token.value);

@@ -34,7 +34,7 @@ pub(super) struct Observation<'a> {
 }
 
 /// The state of a rollout of some hypotheses, in metres.
-pub(super) struct Course<'a> {
+pub(super) struct RolloutState<'a> {
     observation: &'a Observation<'a>,
     /// Origins of the positions that the temporal encoders read, `[E, P]`: the goals (E = G), or the last observed
     /// positions (E = 1).
@@ -55,17 +55,18 @@ impl<'a> Observation<'a> {
     pub(super) fn new(batch: &ForecastBatch<'_>, config: &'a StarConfig) -> Self {
         let pedestrians = batch.pedestrians();
         let tracks = || tracks(batch);
-        let at = |t: usize| tracks().map(move |track| track[t].map(|x| x as f32));
-        let observed: Vec<[f32; 2]> = (0..OBSERVED).flat_map(at).collect();
+        let positions = |t: usize| tracks().map(move |track| track[t].map(|x| x as f32));
+        let observed: Vec<[f32; 2]> = (0..OBSERVED).flat_map(positions).collect();
         let bounds = (batch.rule == StepRule::Bounded).then(|| {
             let share = |i: usize| batch.shares.as_ref().map_or(1.0, |shares| shares[i]);
             let absolute = config.frame == NetworkFrame::World;
-            let each = tracks().enumerate();
-            each.map(|(i, track)| {
-                let bounds = motion_bounds(track, config.time_step, share(i));
-                single(&bounds, absolute)
-            })
-            .collect()
+            tracks()
+                .enumerate()
+                .map(|(i, track)| {
+                    let bounds = motion_bounds(track, config.time_step, share(i));
+                    single(&bounds, absolute)
+                })
+                .collect()
         });
         let mut sums = vec![[0.0; 2]; pedestrians];
         for positions in observed.chunks_exact(pedestrians) {
@@ -135,7 +136,7 @@ impl<'a> Observation<'a> {
     }
 }
 
-impl<'a> Course<'a> {
+impl<'a> RolloutState<'a> {
     /// The state before the first forecast step, for some hypotheses. A single goal is used for all hypotheses.
     pub(super) fn new(observation: &'a Observation<'_>, batch: &ForecastBatch<'_>, hypotheses: Range<usize>) -> Self {
         let config = observation.config;
@@ -144,8 +145,7 @@ impl<'a> Course<'a> {
         let goals = &batch.goals[used];
         let frames = (config.frame == NetworkFrame::Goal).then(|| {
             let frames = goals.iter().flat_map(|goals| {
-                let each = tracks(batch).zip(goals);
-                each.map(|(track, &goal)| {
+                tracks(batch).zip(goals).map(|(track, &goal)| {
                     let unit = length_unit(track, config.time_step);
                     OwnFrame::new(track[OBSERVED - 1], goal, unit)
                 })
@@ -191,8 +191,8 @@ impl<'a> Course<'a> {
 
     /// Inputs of the temporal encoders at an observed time step, `[E, P, inputs]`.
     pub(super) fn observed_relative(&self, t: usize) -> Rc<Rows> {
-        let at = |t: usize| self.observation.at(t);
-        self.relative(at(t), at(t.saturating_sub(1)))
+        let before = self.observation.at(t.saturating_sub(1));
+        self.relative(self.observation.at(t), before)
     }
 
     /// Inputs of the temporal encoders at the newest positions, `[H, P, inputs]`.

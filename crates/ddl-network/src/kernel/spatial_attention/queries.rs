@@ -35,8 +35,8 @@ impl SceneTask<'_> {
             let twos = first..end.min(first + TWOS_AT_ONCE);
             let lists = twos.clone().map(|two| self.scene.of(two));
             let ends = lists.map(|seen| [seen[0].key(), seen[seen.len() - 1].key()]);
-            let all = ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
-            let [first, last] = all.unwrap_or_default();
+            let range = ends.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+            let [first, last] = range.unwrap_or_default();
             Self {
                 twos,
                 keys: first..last + 1,
@@ -69,7 +69,7 @@ pub(super) struct SceneBuffers {
     /// Scores, then weights: for each key in the forward pass, for each pair of queries in the backward pass.
     pub(super) weights: Vec<Lanes>,
     pub(super) score_gradients: Vec<Lanes>,
-    /// For each pair of queries and key: see [`Seen::code`](crate::kernel::scenes::Seen::code).
+    /// For each pair of queries and key: see [`SeenKey::code`](crate::kernel::scenes::SeenKey::code).
     pub(super) codes: Vec<u8>,
 }
 
@@ -116,8 +116,8 @@ impl SceneBuffers {
         let count = keys.len().next_multiple_of(2) * quads;
         self.keys.resize(count, HalfQuad::ZERO);
         self.values.resize(count, HalfQuad::ZERO);
-        let of = |pedestrians: &Range<usize>| &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end];
-        let twos = of(&asking).chunks(6 * row);
+        let rows = |pedestrians: &Range<usize>| &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end];
+        let twos = rows(&asking).chunks(6 * row);
         for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
             let (first, second) = two.split_at(3 * row);
             let second = second.get(..row);
@@ -127,17 +127,17 @@ impl SceneBuffers {
                 simd.write(simd.scaled(loaded, scale), query);
             }
         }
-        let twos = of(&keys).chunks(6 * row);
+        let twos = rows(&keys).chunks(6 * row);
         let into = self.keys.chunks_exact_mut(2 * quads);
         let into = into.zip(self.values.chunks_exact_mut(2 * quads));
         for (two, (keys, values)) in twos.zip(into) {
             let (first, second) = two.split_at(3 * row);
-            for (into, at) in [(keys, row), (values, 2 * row)] {
+            for (into, start) in [(keys, row), (values, 2 * row)] {
                 let (low, high) = into.split_at_mut(quads);
-                let second = second.get(at..at + row);
+                let second = second.get(start..start + row);
                 for quad in 0..quads {
                     let part = HeadPart::new(task.heads, group, quad);
-                    let loaded = part.load(simd, &first[at..at + row], second);
+                    let loaded = part.load(simd, &first[start..start + row], second);
                     simd.write_halves(loaded, &mut low[quad], &mut high[quad]);
                 }
             }
@@ -145,8 +145,8 @@ impl SceneBuffers {
         self.bits.clear();
         if let Some(decisions) = task.decisions {
             for first in asking.step_by(2) {
-                let of = |pedestrian| decisions.query(task.entry, task.scene.first + pedestrian);
-                let two = [of(first), of(first + 1)];
+                let query = |pedestrian| decisions.query(task.entry, task.scene.first + pedestrian);
+                let two = [query(first), query(first + 1)];
                 self.bits.push(LaneBits::new(two, group * GROUP));
             }
         }

@@ -3,26 +3,26 @@
 //! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
 //! `w_e (g · v_e − Σ_f w_f g · v_f)`.
 
-use super::tokens::{KeyValue, KeyValueMut, MemoryBuffers, SixteenHeads, accumulate, dot, soften, weighted};
+use super::sixteen_heads::{KeyValue, KeyValueMut, SixteenHeads, TemporalBuffers, accumulate, dot, soften, weighted};
 use crate::kernel::heads::Heads;
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};
 
-pub(super) struct MemoryBackward<'a> {
+pub(super) struct TemporalBackward<'a> {
     pub(super) heads: Heads,
     /// Index of the first number of these rows in the whole.
     pub(super) first: usize,
     pub(super) query: &'a [f32],
-    pub(super) memory: &'a [KeyValue<'a>],
-    pub(super) own: KeyValue<'a>,
+    pub(super) cache: &'a [KeyValue<'a>],
+    pub(super) newest: KeyValue<'a>,
     pub(super) mixed_gradient: &'a [f32],
     /// The gradients of these rows only.
     pub(super) query_gradient: &'a mut [f32],
-    /// The gradients of these rows only: the cached tokens, then the own token.
+    /// The gradients of these rows only: the cached tokens, then the newest token.
     pub(super) token_gradients: Vec<KeyValueMut<'a>>,
 }
 
-impl Kernel for Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
+impl Kernel for Buffered<'_, TemporalBackward<'_>, TemporalBuffers> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         // The usual width is a constant, so that the compiler unrolls the loops over quads.
@@ -36,23 +36,23 @@ impl Kernel for Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
     }
 }
 
-impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
+impl Buffered<'_, TemporalBackward<'_>, TemporalBuffers> {
     #[inline(always)]
     fn rows<S: Simd>(mut self, simd: S, width: usize, quads: usize) {
         let length = self.job.query_gradient.len();
         self.buffers.query.resize(quads, ZERO_QUAD);
         self.buffers.mixed_gradient.resize(quads, ZERO_QUAD);
         self.buffers.query_gradient.resize(quads, ZERO_QUAD);
-        let tokens = self.job.memory.len() + 1;
+        let tokens = self.job.cache.len() + 1;
         self.buffers.taken.resize(tokens, Lanes::ZERO);
-        for at in (0..length).step_by(LANES * width) {
-            let place = SixteenHeads::new(self.job.first, at, length, width);
-            self.group(simd, place, at, quads);
+        for group in (0..length).step_by(LANES * width) {
+            let place = SixteenHeads::new(self.job.first, group, length, width);
+            self.group(simd, place, group, quads);
         }
     }
 
     #[inline(always)]
-    fn group<S: Simd>(&mut self, simd: S, place: SixteenHeads, at: usize, quads: usize) {
+    fn group<S: Simd>(&mut self, simd: S, place: SixteenHeads, first: usize, quads: usize) {
         let (job, buffers) = (&mut self.job, &mut *self.buffers);
         let scale = job.heads.scale();
         let to_scores = simd.splat(scale * std::f32::consts::LOG2_E);
@@ -67,9 +67,9 @@ impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
             query_gradient[quad] = ZERO_QUAD;
         }
         let powers = &mut buffers.powers;
-        let share = soften(simd, place, query, job.memory, job.own, powers, false);
+        let share = soften(simd, place, query, job.cache, job.newest, powers, false);
         let mut mean = simd.splat(0.0);
-        let tokens = job.memory.iter().chain([&job.own]);
+        let tokens = job.cache.iter().chain([&job.newest]);
         let weights = powers.iter_mut().zip(&mut buffers.taken);
         for ((power, taken), token) in weights.zip(tokens) {
             let mut product = simd.splat(0.0);
@@ -82,7 +82,7 @@ impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
             simd.store(weight, &mut power.0);
             simd.store(product, &mut taken.0);
         }
-        let tokens = job.memory.iter().chain([&job.own]);
+        let tokens = job.cache.iter().chain([&job.newest]);
         let tokens = tokens.zip(&mut job.token_gradients);
         let weights = powers.iter().zip(&buffers.taken);
         for ((weight, taken), (token, gradients)) in weights.zip(tokens) {
@@ -92,9 +92,9 @@ impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
             let key_weight = simd.mul(score_gradient, simd.splat(std::f32::consts::LN_2));
             for quad in 0..quads {
                 let of_key = weighted(simd, key_weight, simd.read(&query[quad]));
-                place.add(simd, of_key, &mut gradients.key[at..], quad);
+                place.add(simd, of_key, &mut gradients.key[first..], quad);
                 let of_value = weighted(simd, weight, simd.read(&mixed_gradient[quad]));
-                place.add(simd, of_value, &mut gradients.value[at..], quad);
+                place.add(simd, of_value, &mut gradients.value[first..], quad);
                 let key = place.load(simd, token.key, quad);
                 let sum = simd.read(&query_gradient[quad]);
                 let sum = accumulate(simd, sum, score_gradient, key);
@@ -103,7 +103,7 @@ impl Buffered<'_, MemoryBackward<'_>, MemoryBuffers> {
         }
         for (quad, gradient) in query_gradient.iter().enumerate() {
             let gradient = simd.scaled(simd.read(gradient), simd.splat(scale));
-            place.add(simd, gradient, &mut job.query_gradient[at..], quad);
+            place.add(simd, gradient, &mut job.query_gradient[first..], quad);
         }
     }
 }

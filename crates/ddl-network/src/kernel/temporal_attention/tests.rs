@@ -1,20 +1,20 @@
 //! Comparison with the formula in double precision.
 
-use super::{KeyValue, KeyValueMut, OverMemory, OverMemoryGradients};
+use super::{KeyValue, KeyValueMut, TemporalAttention, TemporalGradients};
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
 use ddl_simd::InstructionSet;
 use proptest::prelude::*;
 
-/// Tokens are keys and values, the oldest first and the own token last.
-struct MemoryCase {
+/// Tokens are keys and values, the oldest first and the newest token last.
+struct TemporalCase {
     heads: (usize, usize),
     query: Vec<f32>,
     tokens: Vec<[Vec<f32>; 2]>,
     gradient: Vec<f32>,
 }
 
-struct MemoryResults<T> {
+struct TemporalResults<T> {
     mixed: Vec<T>,
     query: Vec<T>,
     tokens: Vec<[Vec<T>; 2]>,
@@ -23,70 +23,70 @@ struct MemoryResults<T> {
 /// Initial contents of the gradients.
 const BEFORE: f32 = 0.25;
 
-impl MemoryCase {
-    fn new(seed: u64, heads: (usize, usize), rows: usize, remembered: usize, bound: f32) -> Self {
+impl TemporalCase {
+    fn new(seed: u64, heads: (usize, usize), rows: usize, cached: usize, bound: f32) -> Self {
         let mut numbers = Numbers(seed);
         let count = rows * heads.0 * heads.1;
         let mut two = || [numbers.even(count, bound), numbers.even(count, bound)];
         Self {
             heads,
-            tokens: (0..=remembered).map(|_| two()).collect(),
+            tokens: (0..=cached).map(|_| two()).collect(),
             query: numbers.even(count, bound),
             gradient: numbers.even(count, 1.0),
         }
     }
 
-    fn run(&self, set: InstructionSet) -> MemoryResults<f32> {
-        let attention = OverMemory::new(self.heads.0, self.heads.1);
+    fn run(&self, set: InstructionSet) -> TemporalResults<f32> {
+        let attention = TemporalAttention::new(self.heads.0, self.heads.1);
         let attention = attention.with_instructions(set).unwrap();
         let tokens = self.tokens.iter().map(|[key, value]| KeyValue { key, value });
-        let mut memory: Vec<KeyValue<'_>> = tokens.collect();
-        let own = memory.pop().unwrap();
+        let mut cache: Vec<KeyValue<'_>> = tokens.collect();
+        let newest = cache.pop().unwrap();
         let mut mixed = vec![f32::NAN; self.query.len()];
-        attention.forward(&self.query, &memory, own, &mut mixed);
+        attention.forward(&self.query, &cache, newest, &mut mixed);
         let before = vec![BEFORE; self.query.len()];
         let mut query = before.clone();
         let mut tokens = vec![[before.clone(), before]; self.tokens.len()];
         let gradients = tokens.iter_mut().map(|[key, value]| KeyValueMut { key, value });
         let mut gradients: Vec<KeyValueMut<'_>> = gradients.collect();
-        let own_gradient = gradients.pop().unwrap();
-        let gradients = OverMemoryGradients {
+        let newest_gradient = gradients.pop().unwrap();
+        let gradients = TemporalGradients {
             query: &mut query,
-            memory: &mut gradients,
-            own: own_gradient,
+            cache: &mut gradients,
+            newest: newest_gradient,
         };
-        attention.backward(&self.query, &memory, own, &self.gradient, gradients);
-        MemoryResults { mixed, query, tokens }
+        attention.backward(&self.query, &cache, newest, &self.gradient, gradients);
+        TemporalResults { mixed, query, tokens }
     }
 
-    fn expected(&self) -> MemoryResults<f64> {
+    fn expected(&self) -> TemporalResults<f64> {
         let width = self.heads.1;
-        let (all, gradient) = (wide(&self.query), wide(&self.gradient));
+        let (query, gradient) = (wide(&self.query), wide(&self.gradient));
         let tokens: Vec<[Vec<f64>; 2]> = self
             .tokens
             .iter()
             .map(|[key, value]| [wide(key), wide(value)])
             .collect();
-        let before = vec![f64::from(BEFORE); all.len()];
-        let mut results = MemoryResults {
+        let before = vec![f64::from(BEFORE); query.len()];
+        let mut results = TemporalResults {
             mixed: Vec::new(),
             query: before.clone(),
             tokens: vec![[before.clone(), before]; tokens.len()],
         };
-        for at in (0..all.len()).step_by(width) {
-            let here = at..at + width;
+        for first in (0..query.len()).step_by(width) {
+            let here = first..first + width;
             let [keys, values] = [0, 1].map(|part| -> Vec<&[f64]> {
                 let tokens = tokens.iter();
                 tokens.map(|token| &token[part][here.clone()]).collect()
             });
-            let query = Attention {
-                query: &all[here.clone()],
+            let attention = Attention {
+                query: &query[here.clone()],
                 keys: &keys,
                 values: &values,
                 factors: &vec![1.0; tokens.len()],
             };
-            results.mixed.extend(query.mixed());
-            let gradients = query.gradients(&gradient[here.clone()]);
+            results.mixed.extend(attention.mixed());
+            let gradients = attention.gradients(&gradient[here.clone()]);
             let add = |into: &mut [f64], numbers: &[f64]| {
                 for (sum, number) in into.iter_mut().zip(numbers) {
                     *sum += number;
@@ -120,18 +120,18 @@ impl MemoryCase {
 
 #[test]
 fn bears_big_scores() {
-    MemoryCase::new(3, (8, 4), 9, 8, 20.0).check(2e-4);
+    TemporalCase::new(3, (8, 4), 9, 8, 20.0).check(2e-4);
 }
 
 #[test]
 fn a_memory_of_fewer_rows_is_repeated() {
     for rows in [1, 5, 25, 64] {
-        let mut case = MemoryCase::new(4, (8, 4), rows * 20, 6, 1.5);
+        let mut case = TemporalCase::new(4, (8, 4), rows * 20, 6, 1.5);
         let short = rows * 32;
         for [key, value] in &mut case.tokens[..3] {
-            for all in [key, value] {
-                let first = all[..short].to_vec();
-                *all = first.repeat(20);
+            for numbers in [key, value] {
+                let first = numbers[..short].to_vec();
+                *numbers = first.repeat(20);
             }
         }
         let whole = case.run(InstructionSet::detect()).mixed;
@@ -142,10 +142,10 @@ fn a_memory_of_fewer_rows_is_repeated() {
                 value: &value[..length],
             }
         });
-        let mut memory: Vec<KeyValue<'_>> = tokens.collect();
-        let own = memory.pop().unwrap();
+        let mut cache: Vec<KeyValue<'_>> = tokens.collect();
+        let newest = cache.pop().unwrap();
         let mut mixed = vec![0.0; whole.len()];
-        OverMemory::new(8, 4).forward(&case.query, &memory, own, &mut mixed);
+        TemporalAttention::new(8, 4).forward(&case.query, &cache, newest, &mut mixed);
         assert!(bits(&mixed) == bits(&whole), "{rows} rows");
     }
 }
@@ -158,9 +158,9 @@ proptest! {
         heads in prop::sample::select(vec![(8, 4), (8, 4), (1, 1), (3, 4), (8, 5), (16, 4), (2, 16), (9, 3)]),
         seed: u64,
         rows in prop_oneof![1_usize..40, 60_usize..70, Just(266)],
-        remembered in 0_usize..21,
+        cached in 0_usize..21,
         bound in 0.1_f32..3.0,
     ) {
-        MemoryCase::new(seed, heads, rows, remembered, bound).check(5e-6);
+        TemporalCase::new(seed, heads, rows, cached, bound).check(5e-6);
     }
 }
