@@ -3,6 +3,7 @@
 mod error;
 mod forecast;
 mod forecaster;
+pub mod motion;
 mod pedestrian;
 mod position;
 mod region;

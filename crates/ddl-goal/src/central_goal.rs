@@ -1,15 +1,13 @@
 //! The central goal, for forecasts with a single goal.
 
 use crate::goal_set::GoalSet;
+use ddl_core::HORIZON;
+use ddl_core::motion::JITTER;
 
-/// Steps from the last observed frame to the end of the forecast.
-const STEPS_AHEAD: f64 = 12.0;
 /// Weight of the endpoint extrapolated from the last step, for steps that change little.
 const TRUST: f64 = 0.7;
 /// Weight of the endpoint extrapolated from the mean velocity, for positions with independent errors.
 const STEADINESS: f64 = 0.3;
-/// Mean change of the step (m) at which the weight of the last step has fallen by a factor e.
-const JITTER: f64 = 0.06;
 /// Mean change of the step (m) below which the motion is simply extrapolated.
 const EXACT: f64 = 0.005;
 /// Share of the mean change of the step. A pedestrian whose mean step is shorter than this stands.
@@ -58,8 +56,8 @@ impl GoalSet {
         let trust = TRUST * (1.0 - noise) * (-(change / JITTER).powi(2)).exp() * walking;
         let exact = (-(change / EXACT).powi(2)).exp();
         std::array::from_fn(|axis| {
-            let ahead = last[axis] + STEPS_AHEAD * (last[axis] - before[axis]);
-            let steady = last[axis] + STEPS_AHEAD * mean[axis];
+            let ahead = last[axis] + HORIZON as f64 * (last[axis] - before[axis]);
+            let steady = last[axis] + HORIZON as f64 * mean[axis];
             let goal = median[axis] + trust * (ahead - median[axis]) + STEADINESS * noise * (steady - median[axis]);
             goal + exact * (ahead - goal)
         })

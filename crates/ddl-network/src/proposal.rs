@@ -13,4 +13,4 @@ pub use endpoints::{ENDPOINT_UNIT, PedestrianView, ProposalExample, ProposeEndpo
 pub use layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers, WAYPOINTS};
 pub use network::ProposalNetwork;
 pub use remembered::{REMEMBERED_FEATURES, SIMILARITY_SCALES};
-pub use seen::{NEIGHBOUR_FEATURES, RECENT};
+pub use seen::NEIGHBOUR_FEATURES;

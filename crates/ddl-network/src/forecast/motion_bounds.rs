@@ -1,13 +1,9 @@
 //! The bounds of a pedestrian's motion from its observed positions: its top speed and its present velocity.
 
+use ddl_core::motion::{JITTER, RECENT_STEPS};
 use ddl_data::Position;
 use ddl_dynamics::MotionBounds;
 use nalgebra::Vector2;
-
-/// Mean length of the second differences of positions (m) at which the last step has the weight 1/e.
-const JITTER: f64 = 0.06;
-/// Number of last steps whose mean velocity has the rest of the weight.
-const RECENT: usize = 3;
 
 /// The bounds of the motion of a pedestrian observed at these positions (m), `time_step` seconds apart. `share` is the
 /// share of the network's metric: it is clamped to 0..1, and NaN counts as 0.
@@ -23,7 +19,7 @@ pub fn motion_bounds(observed: &[Position], time_step: f64, share: f64) -> Motio
     let fastest = steps.iter().map(Vector2::norm).fold(0.0, f64::max) / time_step;
     let changes = steps.array_windows().map(|[a, b]| (b - a).norm());
     let tremble = changes.clone().sum::<f64>() / changes.len().max(1) as f64;
-    let recent = &steps[steps.len().saturating_sub(RECENT)..];
+    let recent = &steps[steps.len().saturating_sub(RECENT_STEPS)..];
     let mean = recent.iter().sum::<Vector2<f64>>() / recent.len() as f64;
     let even = (-(tremble / JITTER).powi(2)).exp();
     let velocity = (mean + (last - mean) * even) / time_step;

@@ -5,12 +5,11 @@
 //! The unit is `(1 + (v / 2 m/s)^4)^(1/4)` metres for the mean observed speed `v`: about 1 m up to walking speed, and
 //! about v / (2 m/s) metres far above it.
 
+use ddl_core::motion::FAST_WALK;
 use ddl_data::Position;
 
 /// Closer to its goal than this (metres), a pedestrian's frame has the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
-/// Speed (m/s) around which the unit begins to grow. Training recordings hold few examples of higher speeds.
-const FAST_WALK: f64 = 2.0;
 /// Lower bound of the square of the first pivot, in m/s.
 const SMALLEST_PIVOT: f32 = 1e-12;
 

@@ -1,8 +1,9 @@
 //! Inputs of the memory branch from earlier pedestrians of the place.
 
 use super::endpoints::{ENDPOINT_UNIT, PedestrianView};
-use super::seen::{OthersRows, RECENT, velocity};
+use super::seen::{OthersRows, velocity};
 use crate::MemoryConfig;
+use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
 
 /// Number of inputs for an earlier pedestrian: 7 vectors and the [similarities](SIMILARITY_SCALES). Six vectors are
@@ -40,14 +41,14 @@ impl RememberedRows {
             let track = &view.own;
             let here = track[OBSERVED - 1];
             let late = velocity(track, OBSERVED - 1, time_step);
-            let early = velocity(track, RECENT, time_step);
+            let early = velocity(track, RECENT_STEPS, time_step);
             let seconds = HORIZON as f64 * time_step;
             let mut support = 0.0;
             for other in remembered {
                 let its_track = &other.track;
                 let [now, halfway, end] = [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|t| its_track[t]);
                 let its_late = velocity(its_track, OBSERVED - 1, time_step);
-                let its_early = velocity(its_track, RECENT, time_step);
+                let its_early = velocity(its_track, RECENT_STEPS, time_step);
                 let features = [0, 1].map(|axis| {
                     [
                         now[axis] - here[axis],

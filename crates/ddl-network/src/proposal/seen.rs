@@ -2,10 +2,9 @@
 
 use super::endpoints::PedestrianView;
 use crate::ProposalConfig;
+use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, Position};
 
-/// Number of time steps over which the present velocity is averaged.
-pub const RECENT: usize = 3;
 /// Number of inputs for a neighbour: direction (2), two measures of nearness, relative velocity (2), velocity (2),
 /// closing speed.
 pub const NEIGHBOUR_FEATURES: usize = 9;
@@ -78,8 +77,8 @@ impl SeenRows {
     }
 }
 
-/// Mean velocity over the [`RECENT`] steps that end at index `until` (m/s).
+/// Mean velocity over the [`RECENT_STEPS`] steps that end at index `until` (m/s).
 pub(super) fn velocity(track: &[Position], until: usize, time_step: f64) -> Position {
-    let (now, then) = (track[until], track[until - RECENT]);
-    [0, 1].map(|axis| (now[axis] - then[axis]) / (RECENT as f64 * time_step))
+    let (now, then) = (track[until], track[until - RECENT_STEPS]);
+    [0, 1].map(|axis| (now[axis] - then[axis]) / (RECENT_STEPS as f64 * time_step))
 }

@@ -1,15 +1,9 @@
 //! The observed motion of every pedestrian: [`length_unit`](ddl_network::length_unit) and
 //! [`motion_bounds`](ddl_network::motion_bounds) on tensors.
 
+use ddl_core::motion::{FAST_WALK, JITTER, RECENT_STEPS};
 use ddl_dynamics::MotionBounds;
 use tch::{Kind, Tensor};
-
-/// Speed (m/s) around which the unit of length begins to grow.
-const FAST_WALK: f64 = 2.0;
-/// Mean length of the second differences of positions (m) at which the last step has a third of its weight.
-const JITTER: f64 = 0.06;
-/// Number of steps whose mean velocity replaces a noisy last step.
-const RECENT: usize = 3;
 
 /// Units of length of all pedestrians in a batch, metres. Shapes: `observed` `[T, P, 2]` -> `[1, P, 1]`.
 pub(crate) fn units(observed: &Tensor, time_step: f64) -> Tensor {
@@ -41,7 +35,7 @@ pub(crate) fn velocities(observed: &Tensor, time_step: f64) -> Tensor {
     let frames = observed.size()[0];
     let steps = observed.narrow(0, 1, frames - 1) - observed.narrow(0, 0, frames - 1);
     let tremble = step_lengths(&steps).mean_dim([0i64].as_slice(), true, None::<Kind>);
-    let recent = steps.narrow(0, frames - 1 - RECENT as i64, RECENT as i64);
+    let recent = steps.narrow(0, frames - 1 - RECENT_STEPS as i64, RECENT_STEPS as i64);
     let mean = recent.mean_dim([0i64].as_slice(), true, None::<Kind>);
     let even = (-(tremble / JITTER).square()).exp();
     let last = steps.narrow(0, frames - 2, 1);

@@ -4,9 +4,10 @@ use super::data::Views;
 use crate::StarError;
 use crate::device::ComputeDevice;
 use crate::model::{Parameters, numbers};
+use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
 use ddl_network::proposal::{
-    AttentionLayers, ENDPOINT_UNIT, MemberAffine, ProposalLayers, RECENT, ReadoutLayers, SIMILARITY_SCALES, WAYPOINTS,
+    AttentionLayers, ENDPOINT_UNIT, MemberAffine, ProposalLayers, ReadoutLayers, SIMILARITY_SCALES, WAYPOINTS,
 };
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::{Layout, Weights};
@@ -277,11 +278,11 @@ impl TorchProposals {
         let seconds = HORIZON as f64 * self.config.time_step;
         let late = self.velocity(&own, OBSERVED - 1);
         let its_late = self.velocity(tracks, OBSERVED - 1);
-        let its_early = self.velocity(tracks, RECENT);
+        let its_early = self.velocity(tracks, RECENT_STEPS);
         let pairs = [
             &now - &here,
             &its_late - &late,
-            its_early - self.velocity(&own, RECENT),
+            its_early - self.velocity(&own, RECENT_STEPS),
             (&end - &now - &late * seconds) / ENDPOINT_UNIT,
             (&end - &here - &late * seconds) / ENDPOINT_UNIT,
             (&halfway - &now - &late * (seconds / 2.0)) / ENDPOINT_UNIT,
@@ -323,16 +324,16 @@ impl TorchProposals {
         (track.narrow(-2, 1, steps) - track.narrow(-2, 0, steps)) / self.config.time_step
     }
 
-    /// Mean velocity over the last [`RECENT`] steps (m/s): `[.., T, 2]` -> `[.., 2]`.
+    /// Mean velocity over the last [`RECENT_STEPS`] steps (m/s): `[.., T, 2]` -> `[.., 2]`.
     fn recent_velocity(&self, track: &Tensor) -> Tensor {
         self.velocity(track, OBSERVED - 1)
     }
 
-    /// Mean velocity over the [`RECENT`] steps that end at a step (m/s): `[.., T, 2]` -> `[.., 2]`.
+    /// Mean velocity over the [`RECENT_STEPS`] steps that end at a step (m/s): `[.., T, 2]` -> `[.., 2]`.
     fn velocity(&self, track: &Tensor, until: usize) -> Tensor {
-        let seconds = RECENT as f64 * self.config.time_step;
+        let seconds = RECENT_STEPS as f64 * self.config.time_step;
         let at = |step: usize| track.select(-2, step as i64);
-        (at(until) - at(until - RECENT)) / seconds
+        (at(until) - at(until - RECENT_STEPS)) / seconds
     }
 }
 
