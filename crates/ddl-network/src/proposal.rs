@@ -12,5 +12,4 @@ mod seen;
 pub use endpoints::{ENDPOINT_UNIT, PedestrianView, ProposalExample, ProposeEndpoints, ProposedEndpoints};
 pub use layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers, WAYPOINTS};
 pub use network::ProposalNetwork;
-pub use remembered::{REMEMBERED_FEATURES, SIMILARITY_SCALES};
-pub use seen::NEIGHBOUR_FEATURES;
+pub use remembered::SIMILARITY_SCALES;

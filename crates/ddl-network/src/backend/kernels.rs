@@ -50,7 +50,7 @@ impl Kernels {
     }
 }
 
-/// One pass through a network. [`forward_only`](Self::forward_only) computes no gradients; with the feature `training`
+/// One pass through a network. It computes no gradients unless it is made for training: with the feature `training`
 /// a pass can also run backwards.
 #[derive(Debug)]
 pub struct KernelBackend {
@@ -78,7 +78,7 @@ pub struct VisibleScenes {
 
 impl KernelBackend {
     /// A pass without gradients and without dropout.
-    pub fn forward_only(kernels: Arc<Kernels>) -> Self {
+    pub(crate) fn forward_only(kernels: Arc<Kernels>) -> Self {
         Self {
             kernels,
             mode: Mode::Evaluate,

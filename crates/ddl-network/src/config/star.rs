@@ -137,7 +137,7 @@ impl StarConfig {
     }
 
     /// Outputs for each pedestrian and time step: (a, b, c) of the Cholesky factor, or (x, y).
-    pub fn output_width(&self) -> i64 {
+    pub(crate) fn output_width(&self) -> i64 {
         if self.variant.dynamics() { 3 } else { 2 }
     }
 

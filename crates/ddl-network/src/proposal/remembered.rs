@@ -10,7 +10,7 @@ use ddl_data::{HORIZON, OBSERVED, WINDOW};
 /// relative to the pedestrian: present position, late and early velocity, displacement to the endpoint, endpoint, and
 /// displacement to the halfway position. The seventh is its late velocity itself. Displacements and endpoint are
 /// relative to the pedestrian's constant velocity.
-pub const REMEMBERED_FEATURES: usize = 14 + SIMILARITY_SCALES.len();
+pub(super) const REMEMBERED_FEATURES: usize = 14 + SIMILARITY_SCALES.len();
 /// Scales s of the inputs exp(-d / s), where d is the squared distance of an earlier pedestrian.
 pub const SIMILARITY_SCALES: [f64; 3] = [2.0, 8.0, 32.0];
 

@@ -7,7 +7,7 @@ use ddl_data::{HORIZON, OBSERVED, Position};
 
 /// Number of inputs for a neighbour: direction (2), two measures of nearness, relative velocity (2), velocity (2),
 /// closing speed.
-pub const NEIGHBOUR_FEATURES: usize = 9;
+pub(super) const NEIGHBOUR_FEATURES: usize = 9;
 
 /// Features of other pedestrians, for each of B pedestrians.
 #[derive(Default)]

@@ -18,8 +18,8 @@ pub struct HalfTensor {
 }
 
 impl Weights {
-    /// The tensors that forecasts need, in order and rounded to half precision. Tensors that [only training
-    /// reads](crate::weights::TensorLayout::is_training_only) are left out.
+    /// The tensors that forecasts need, in order and rounded to half precision. Tensors that only training
+    /// reads are left out.
     ///
     /// # Errors
     /// [`NetworkError::Weights`] for a number that half precision cannot hold: NaN, or an absolute value of 65,520 or

@@ -49,7 +49,7 @@ impl TensorLayout {
     }
 
     /// Whether only the training loss reads it; packed models leave it out.
-    pub fn is_training_only(&self) -> bool {
+    pub(crate) fn is_training_only(&self) -> bool {
         self.training_only
     }
 }
@@ -118,12 +118,12 @@ impl Layout {
     }
 
     /// All affine maps outside encoder layers, in order.
-    pub fn linears(&self) -> &[Linear] {
+    pub(crate) fn linears(&self) -> &[Linear] {
         &self.linears
     }
 
     /// All encoder layers, in order.
-    pub fn encoder_layers(&self) -> &[EncoderLayer] {
+    pub(crate) fn encoder_layers(&self) -> &[EncoderLayer] {
         &self.encoder_layers
     }
 
@@ -159,7 +159,7 @@ impl Layout {
     ///
     /// # Panics
     /// If no tensor has this index.
-    pub fn mark_training_only(&mut self, tensor: usize) {
+    pub(crate) fn mark_training_only(&mut self, tensor: usize) {
         self.tensors[tensor].training_only = true;
     }
 
@@ -171,7 +171,7 @@ impl Layout {
     }
 
     /// Declares an affine map with these initial values.
-    pub fn linear_with_initial(
+    pub(crate) fn linear_with_initial(
         &mut self,
         name: &str,
         [inputs, outputs]: [usize; 2],
