@@ -2,43 +2,39 @@
 
 use ddl_simd::{LANES, Simd};
 
-/// Adjacent columns of a matrix, all or some.
+/// The first columns of a matrix, or all.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MatrixColumns<'a> {
     numbers: &'a [f32],
     rows: usize,
     /// Length of a row of the whole matrix.
     stride: usize,
-    first: usize,
     count: usize,
 }
 
+/// A whole matrix whose numbers are overwritten or added to.
 pub(super) struct MatrixColumnsMut<'a> {
     numbers: &'a mut [f32],
     rows: usize,
-    stride: usize,
-    first: usize,
     count: usize,
 }
 
 impl<'a> MatrixColumns<'a> {
     pub(super) fn whole(numbers: &'a [f32], count: usize) -> Self {
-        Self::part(numbers, count, 0, count)
+        Self::first(numbers, count, count)
     }
 
-    /// `count` columns from `first` on, of a matrix with rows of `stride` numbers.
-    pub(super) fn part(numbers: &'a [f32], stride: usize, first: usize, count: usize) -> Self {
+    /// The first `count` columns of a matrix with rows of `stride` numbers.
+    pub(super) fn first(numbers: &'a [f32], stride: usize, count: usize) -> Self {
         assert!(
-            numbers.len().is_multiple_of(stride) && first + count <= stride,
-            "columns {first} to {} of {} numbers in rows of {stride}",
-            first + count,
+            numbers.len().is_multiple_of(stride) && count <= stride,
+            "{count} columns of {} numbers in rows of {stride}",
             numbers.len()
         );
         Self {
             numbers,
             rows: numbers.len() / stride,
             stride,
-            first,
             count,
         }
     }
@@ -50,24 +46,14 @@ impl<'a> MatrixColumns<'a> {
 
     #[inline(always)]
     pub(super) fn row(&self, row: usize) -> &'a [f32] {
-        &self.numbers[row * self.stride + self.first..][..self.count]
+        &self.numbers[row * self.stride..][..self.count]
     }
 }
 
 impl<'a> MatrixColumnsMut<'a> {
     pub(super) fn whole(numbers: &'a mut [f32], count: usize) -> Self {
-        Self::part(numbers, count, 0, count)
-    }
-
-    pub(super) fn part(numbers: &'a mut [f32], stride: usize, first: usize, count: usize) -> Self {
-        let rows = MatrixColumns::part(numbers, stride, first, count).rows;
-        Self {
-            numbers,
-            rows,
-            stride,
-            first,
-            count,
-        }
+        let rows = MatrixColumns::whole(numbers, count).rows;
+        Self { numbers, rows, count }
     }
 
     #[inline(always)]
@@ -82,7 +68,7 @@ impl<'a> MatrixColumnsMut<'a> {
 
     #[inline(always)]
     pub(super) fn row_mut(&mut self, row: usize) -> &mut [f32] {
-        &mut self.numbers[row * self.stride + self.first..][..self.count]
+        &mut self.numbers[row * self.count..][..self.count]
     }
 }
 

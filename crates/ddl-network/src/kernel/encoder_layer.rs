@@ -10,8 +10,6 @@ mod tests;
 use super::buffer::Buffer;
 use super::scenes::Frames;
 use super::temporal_attention::{KeyValue, TemporalGradients};
-use backward::Parts;
-use forward::Targets;
 use forward_results::AttentionResults;
 pub(crate) use forward_results::{CachedKeyValues, ForwardResults};
 pub use layer::Sizes;
@@ -28,10 +26,15 @@ impl EncoderKernel {
         dropouts: Dropouts,
         keep: bool,
     ) -> (Buffer, ForwardResults) {
-        let mut qkv = Buffer::any(3 * x.len());
-        self.project(0, x, Targets::Together(&mut qkv));
-        let attended = self.spatial.forward(&qkv, frames, dropouts.weights, keep);
-        let attention = AttentionResults::Spatial { qkv, attended };
+        let [query, key, value] = self.project(0, x);
+        let inputs = [&query[..], &key, &value];
+        let attended = self.spatial.forward(inputs, frames, dropouts.weights, keep);
+        let newest = CachedKeyValues { key, value };
+        let attention = AttentionResults::Spatial {
+            query,
+            newest,
+            attended,
+        };
         self.after_attention(x, attention, dropouts, keep)
     }
 
@@ -47,15 +50,22 @@ impl EncoderKernel {
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let AttentionResults::Spatial { qkv, attended } = &forward_results.attention else {
+        let AttentionResults::Spatial {
+            query,
+            newest,
+            attended,
+        } = &forward_results.attention
+        else {
             panic!("these results are of temporal attention");
         };
         let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
-        let mut of_qkv = Buffer::any(qkv.len());
+        let inputs = [&query[..], &newest.key, &newest.value];
+        let mut of_inputs = [0; 3].map(|_| Buffer::any(x.len()));
+        let gradients = of_inputs.each_mut().map(|gradient| &mut gradient[..]);
         self.spatial
-            .backward(qkv, frames, dropouts.weights, attended, &of_mixed, &mut of_qkv);
-        let parts = Parts::Together(&of_qkv);
-        self.project_backward(0, x, &parts, &mut gx, of_weights);
+            .backward(inputs, frames, dropouts.weights, attended, &of_mixed, gradients);
+        let of_inputs = of_inputs.each_ref().map(|gradient| &gradient[..]);
+        self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx
     }
 
@@ -69,8 +79,7 @@ impl EncoderKernel {
         dropouts: Dropouts,
         keep: bool,
     ) -> (Buffer, ForwardResults) {
-        let [mut query, mut key, mut value] = [0; 3].map(|_| Buffer::any(x.len()));
-        self.project(0, x, Targets::Apart(vec![&mut query, &mut key, &mut value]));
+        let [query, key, value] = self.project(0, x);
         let newest = CachedKeyValues { key, value };
         let mut mixed = Buffer::any(x.len());
         self.temporal.forward(&query, &views(cache), newest.view(), &mut mixed);
@@ -106,24 +115,22 @@ impl EncoderKernel {
         };
         self.temporal
             .backward(query, &views(cache), newest.view(), &of_mixed, gradients);
-        let parts = Parts::Apart(vec![&of_query, &of_newest.key, &of_newest.value]);
-        self.project_backward(0, x, &parts, &mut gx, of_weights);
+        let of_inputs = [&of_query[..], &of_newest.key, &of_newest.value];
+        self.project_backward(0, x, of_inputs, &mut gx, of_weights);
         gx
     }
 
     /// Keys and values of tokens, for later queries.
     /// `x` `[rows, width]`.
     pub(crate) fn key_values(&self, x: &[f32]) -> CachedKeyValues {
-        let [mut key, mut value] = [0; 2].map(|_| Buffer::any(x.len()));
-        self.project(1, x, Targets::Apart(vec![&mut key, &mut value]));
+        let [key, value] = self.project(1, x);
         CachedKeyValues { key, value }
     }
 
     /// The gradient of x through [`key_values`](Self::key_values). Those of the weights are added to `of_weights`.
     pub(crate) fn key_values_backward(&self, x: &[f32], gradient: &CachedKeyValues, of_weights: &mut [f32]) -> Buffer {
         let mut gx = Buffer::zeros(x.len());
-        let parts = Parts::Apart(vec![&gradient.key, &gradient.value]);
-        self.project_backward(1, x, &parts, &mut gx, of_weights);
+        self.project_backward(1, x, [&gradient.key[..], &gradient.value], &mut gx, of_weights);
         gx
     }
 }

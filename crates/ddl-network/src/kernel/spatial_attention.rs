@@ -66,10 +66,17 @@ impl SpatialAttention {
     }
 
     /// Mixes the values of the visible pedestrians.
-    /// `qkv` `[B, P, 3, heads, head width]` with all pedestrians P of the scenes; 1 or B `frames`.
+    /// `inputs`: queries, keys and values, `[B, P, heads, head width]` each, with all pedestrians P of the scenes; 1 or B
+    /// `frames`.
     /// [`backward`](Self::backward) panics if the result was made without `keep`.
-    pub(crate) fn forward(&self, qkv: &[f32], frames: Frames<'_>, dropout: Option<Dropout>, keep: bool) -> Attended {
-        let entries = self.check(qkv, frames);
+    pub(crate) fn forward(
+        &self,
+        inputs: [&[f32]; 3],
+        frames: Frames<'_>,
+        dropout: Option<Dropout>,
+        keep: bool,
+    ) -> Attended {
+        let entries = self.check(inputs, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
         let normalisers = if keep { entries * self.normalisers(frames) } else { 0 };
@@ -80,10 +87,10 @@ impl SpatialAttention {
         let (mut mixed, mut normalisers) = (&mut attended.mixed[..], &mut attended.normalisers[..]);
         let mut jobs = Vec::new();
         let groups = self.heads.groups();
-        for (qkv, task) in self.tasks(qkv, frames, dropout) {
+        for (inputs, task) in self.tasks(inputs, frames, dropout) {
             jobs.extend(task.blocks().map(|task| {
                 SceneForward {
-                    qkv,
+                    inputs,
                     mixed: mixed.split_off_mut(..task.queries().len() * row).unwrap_or_default(),
                     normalisers: normalisers
                         .split_off_mut(..task.twos.len() * groups)
@@ -98,38 +105,42 @@ impl SpatialAttention {
     }
 
     /// The gradient of the inputs of [`SpatialAttention::forward`] from that of its output.
-    /// `mixed_gradient` `[B, P, heads, head width]` -> `qkv_gradient` `[B, P, 3, heads, head width]`, overwritten.
+    /// `mixed_gradient` `[B, P, heads, head width]` -> `gradients` of the shapes of the inputs, overwritten.
     /// The first four arguments must be those of a forward pass with `keep`.
     pub(crate) fn backward(
         &self,
-        qkv: &[f32],
+        inputs: [&[f32]; 3],
         frames: Frames<'_>,
         dropout: Option<Dropout>,
         attended: &Attended,
         mixed_gradient: &[f32],
-        qkv_gradient: &mut [f32],
+        mut gradients: [&mut [f32]; 3],
     ) {
-        let entries = self.check(qkv, frames);
+        let entries = self.check(inputs, frames);
         let rows = entries * frames.scenes().pedestrians();
         let row = self.heads.row();
         let normalisers = entries * self.normalisers(frames);
         assert_eq!(attended.mixed.len(), rows * row, "mixed");
         assert_eq!(attended.normalisers.len(), normalisers, "normalisers");
         assert_eq!(mixed_gradient.len(), rows * row, "gradient of mixed");
-        assert_eq!(qkv_gradient.len(), qkv.len(), "gradient of qkv");
+        for gradient in &gradients {
+            assert_eq!(gradient.len(), rows * row, "gradient of an input");
+        }
         let (mut mixed, mut normalisers) = (&attended.mixed[..], &attended.normalisers[..]);
-        let (mut mixed_gradient, mut qkv_gradient) = (mixed_gradient, qkv_gradient);
+        let mut mixed_gradient = mixed_gradient;
         let mut jobs = Vec::new();
-        for (qkv, task) in self.tasks(qkv, frames, dropout) {
-            let pedestrians = task.scene.pedestrians;
+        for (inputs, task) in self.tasks(inputs, frames, dropout) {
+            let numbers = task.scene.pedestrians * row;
             jobs.push(SceneBackward {
-                qkv,
-                mixed: mixed.split_off(..pedestrians * row).unwrap_or_default(),
+                inputs,
+                mixed: mixed.split_off(..numbers).unwrap_or_default(),
                 normalisers: normalisers
                     .split_off(..task.twos.len() * self.heads.groups())
                     .unwrap_or_default(),
-                mixed_gradient: mixed_gradient.split_off(..pedestrians * row).unwrap_or_default(),
-                qkv_gradient: qkv_gradient.split_off_mut(..qkv.len()).unwrap_or_default(),
+                mixed_gradient: mixed_gradient.split_off(..numbers).unwrap_or_default(),
+                gradients: gradients
+                    .each_mut()
+                    .map(|gradient| gradient.split_off_mut(..numbers).unwrap_or_default()),
                 task,
             });
         }
@@ -146,26 +157,28 @@ impl SpatialAttention {
         self.heads.groups() * ranges.map(|range| range.len().div_ceil(2)).sum::<usize>()
     }
 
-    fn check(&self, qkv: &[f32], frames: Frames<'_>) -> usize {
-        let entry = frames.scenes().pedestrians() * 3 * self.heads.row();
-        let whole = !qkv.is_empty() && qkv.len().is_multiple_of(entry);
-        assert!(whole, "qkv has {} numbers, not entries of {entry}", qkv.len());
-        let entries = qkv.len() / entry;
+    fn check(&self, inputs: [&[f32]; 3], frames: Frames<'_>) -> usize {
+        let entry = frames.scenes().pedestrians() * self.heads.row();
+        for input in inputs {
+            let whole = !input.is_empty() && input.len().is_multiple_of(entry) && input.len() == inputs[0].len();
+            assert!(whole, "an input has {} numbers, not entries of {entry}", input.len());
+        }
+        let entries = inputs[0].len() / entry;
         frames.check(entries);
         entries
     }
 
-    /// All scenes of all entries with their parts of `qkv`, in the order of the rows.
+    /// All scenes of all entries with their parts of the inputs, in the order of the rows.
     fn tasks<'a>(
         &self,
-        qkv: &'a [f32],
+        inputs: [&'a [f32]; 3],
         frames: Frames<'a>,
         dropout: Option<Dropout>,
-    ) -> impl Iterator<Item = (&'a [f32], SceneTask<'a>)> {
+    ) -> impl Iterator<Item = ([&'a [f32]; 3], SceneTask<'a>)> {
         let (heads, decisions) = (self.heads, dropout.and_then(WeightDecisions::new));
-        let row = 3 * heads.row();
-        let entries = qkv.chunks_exact(frames.scenes().pedestrians() * row);
-        entries.enumerate().flat_map(move |(entry, qkv)| {
+        let row = heads.row();
+        let numbers = frames.scenes().pedestrians() * row;
+        (0..inputs[0].len() / numbers).flat_map(move |entry| {
             frames.of_entry(entry).map(move |scene| {
                 let task = SceneTask {
                     scene,
@@ -175,7 +188,8 @@ impl SpatialAttention {
                     decisions,
                     heads,
                 };
-                (&qkv[scene.first * row..][..scene.pedestrians * row], task)
+                let first = entry * numbers + scene.first * row;
+                (inputs.map(|input| &input[first..][..scene.pedestrians * row]), task)
             })
         })
     }

@@ -13,26 +13,6 @@ use crate::kernel::feed_forward::Gradients;
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 
-pub(super) enum Parts<'a> {
-    /// Concatenated in every row.
-    Together(&'a [f32]),
-    /// Separate matrices.
-    Apart(Vec<&'a [f32]>),
-}
-
-impl<'a> Parts<'a> {
-    /// `rows` rows from `first` on.
-    fn rows(&self, index: usize, width: usize, first: usize, rows: usize) -> MatrixColumns<'a> {
-        match self {
-            Self::Together(matrix) => {
-                let rows = &matrix[first * 3 * width..][..rows * 3 * width];
-                MatrixColumns::part(rows, 3 * width, index * width, width)
-            }
-            Self::Apart(matrices) => MatrixColumns::whole(&matrices[index][first * width..][..rows * width], width),
-        }
-    }
-}
-
 impl EncoderKernel {
     /// The backward pass of the part after attention: the gradient of x so far, and that of the mixed values.
     pub(super) fn before_attention(
@@ -108,11 +88,12 @@ impl EncoderKernel {
     }
 
     /// Adds the gradient of x through the projections from `first` on, and the gradients of their weights.
-    pub(super) fn project_backward(
+    /// `gradients` `[rows, width]` of each projection.
+    pub(super) fn project_backward<const N: usize>(
         &self,
         first: usize,
         x: &[f32],
-        parts: &Parts<'_>,
+        gradients: [&[f32]; N],
         gx: &mut [f32],
         of_weights: &mut [f32],
     ) {
@@ -123,17 +104,13 @@ impl EncoderKernel {
         let mut sums = Buffer::many_zeros(x.len().div_ceil(ROWS * width), count);
         let rows = x.chunks(ROWS * width).zip(gx.chunks_mut(ROWS * width));
         let jobs = rows.zip(&mut sums).enumerate();
-        let jobs = jobs.map(|(i, ((x, gx), sums))| {
-            let count = x.len() / width;
-            let projections = self.projections[first..].iter().enumerate();
-            let parts = projections.map(|(index, projection)| (projection, parts.rows(index, width, i * ROWS, count)));
-            ProjectBackward {
-                parts: parts.collect(),
-                width,
-                x,
-                gx,
-                sums,
-            }
+        let jobs = jobs.map(|(i, ((x, gx), sums))| ProjectBackward {
+            projections: &self.projections[first..],
+            gradients: gradients.map(|gradient| &gradient[i * ROWS * width..][..x.len()]),
+            width,
+            x,
+            gx,
+            sums,
         });
         let work = 2 * x.len() * count / width;
         run_each(self.dispatch, jobs, work);
@@ -203,8 +180,9 @@ impl TiledKernel for NormBackward<'_> {
     }
 }
 
-struct ProjectBackward<'a> {
-    parts: Vec<(&'a Affine, MatrixColumns<'a>)>,
+struct ProjectBackward<'a, const N: usize> {
+    projections: &'a [Affine],
+    gradients: [&'a [f32]; N],
     width: usize,
     x: &'a [f32],
     gx: &'a mut [f32],
@@ -212,16 +190,18 @@ struct ProjectBackward<'a> {
     sums: &'a mut [f32],
 }
 
-impl TiledKernel for ProjectBackward<'_> {
+impl<const N: usize> TiledKernel for ProjectBackward<'_, N> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
         let width = self.width;
         let x = MatrixColumns::whole(self.x, width);
         let mut gx = MatrixColumnsMut::whole(self.gx, width);
-        let (weights, biases) = self.sums.split_at_mut(self.parts.len() * width * width);
+        let (weights, biases) = self.sums.split_at_mut(N * width * width);
         let weights = weights.chunks_exact_mut(width * width);
         let of_weights = weights.zip(biases.chunks_exact_mut(width));
-        for ((projection, gy), (weight, bias)) in self.parts.into_iter().zip(of_weights) {
+        let parts = self.projections.iter().zip(self.gradients);
+        for ((projection, gy), (weight, bias)) in parts.zip(of_weights) {
+            let gy = MatrixColumns::whole(gy, width);
             projection.backward::<S, R, V>(simd, gy, &mut gx, true);
             projection.add_gradients::<S, R, V>(simd, x, gy, [weight, bias]);
         }

@@ -13,54 +13,24 @@ use ddl_simd::{Simd, TiledKernel};
 /// Rows that are computed together. The constant number makes sums over rows independent of the threads.
 pub(super) const ROWS: usize = 256;
 
-pub(super) enum Targets<'a> {
-    /// Concatenated in every row.
-    Together(&'a mut [f32]),
-    /// Separate matrices.
-    Apart(Vec<&'a mut [f32]>),
-}
-
-impl<'a> Targets<'a> {
-    /// Splits off the first rows, `numbers` numbers of each matrix.
-    fn split_off(&mut self, projections: usize, numbers: usize) -> Targets<'a> {
-        match self {
-            Self::Together(matrix) => {
-                let count = matrix.len().min(projections * numbers);
-                Targets::Together(matrix.split_off_mut(..count).unwrap_or_default())
-            }
-            Self::Apart(matrices) => {
-                let parts = matrices.iter_mut().map(|part| {
-                    let count = part.len().min(numbers);
-                    part.split_off_mut(..count).unwrap_or_default()
-                });
-                Targets::Apart(parts.collect())
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn columns(&mut self, index: usize, projections: usize, width: usize) -> MatrixColumnsMut<'_> {
-        match self {
-            Self::Together(matrix) => MatrixColumnsMut::part(matrix, projections * width, index * width, width),
-            Self::Apart(matrices) => MatrixColumnsMut::whole(matrices[index], width),
-        }
-    }
-}
-
 impl EncoderKernel {
-    /// Computes queries, keys and values, beginning with projection `first`.
-    pub(super) fn project(&self, first: usize, x: &[f32], mut targets: Targets<'_>) {
+    /// N projections of x, beginning with `first`: queries, keys and values, `[rows, width]` each.
+    pub(super) fn project<const N: usize>(&self, first: usize, x: &[f32]) -> [Buffer; N] {
         let width = self.sizes.width;
         assert_eq!(x.len() % width, 0, "x is not made of rows of {width}");
         let projections = &self.projections[first..];
+        let mut results = [0; N].map(|_| Buffer::any(x.len()));
+        let mut rest = results.each_mut().map(|result| &mut result[..]);
         let jobs = x.chunks(ROWS * width).map(|x| Project {
             projections,
             width,
             x,
-            targets: targets.split_off(projections.len(), x.len()),
+            targets: rest
+                .each_mut()
+                .map(|rest| rest.split_off_mut(..x.len()).unwrap_or_default()),
         });
-        let work = x.len() * width * projections.len();
-        run_each(self.dispatch, jobs, work);
+        run_each(self.dispatch, jobs, x.len() * width * N);
+        results
     }
 
     /// Without `keep`, the result serves no backward pass.
@@ -126,21 +96,19 @@ impl EncoderKernel {
     }
 }
 
-struct Project<'a> {
+struct Project<'a, const N: usize> {
     projections: &'a [Affine],
     width: usize,
     x: &'a [f32],
-    targets: Targets<'a>,
+    targets: [&'a mut [f32]; N],
 }
 
-impl TiledKernel for Project<'_> {
+impl<const N: usize> TiledKernel for Project<'_, N> {
     #[inline(always)]
-    fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
+    fn run<S: Simd, const R: usize, const V: usize>(self, simd: S) {
         let x = MatrixColumns::whole(self.x, self.width);
-        let count = self.projections.len();
-        for (i, projection) in self.projections.iter().enumerate() {
-            let mut target = self.targets.columns(i, count, self.width);
-            projection.forward::<S, R, V>(simd, x, &mut target);
+        for (projection, target) in self.projections.iter().zip(self.targets) {
+            projection.forward::<S, R, V>(simd, x, &mut MatrixColumnsMut::whole(target, self.width));
         }
     }
 }

@@ -13,7 +13,8 @@ pub(crate) struct ForwardResults {
 
 pub(super) enum AttentionResults {
     Spatial {
-        qkv: Buffer,
+        query: Buffer,
+        newest: CachedKeyValues,
         attended: Attended,
     },
     Temporal {

@@ -134,7 +134,7 @@ impl TiledKernel for UnitsBackward<'_, '_> {
                 multiply::<S, R, V>(simd, gy, w2_of_block, (Start::Zero, End::Unchanged), &mut of_hidden);
                 let scale = decisions.map_or(1.0, |(decisions, _)| decisions.scale);
                 deactivate(simd, hidden, scale, gradient);
-                let gradient = MatrixColumns::part(gradient, BLOCK, 0, count);
+                let gradient = MatrixColumns::first(gradient, BLOCK, count);
                 multiply::<S, R, V>(
                     simd,
                     gradient,

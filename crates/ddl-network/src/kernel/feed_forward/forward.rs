@@ -71,7 +71,7 @@ impl TiledKernel for RowsForward<'_> {
                 let count = layer.units_of(block);
                 multiply::<S, R, V>(
                     simd,
-                    MatrixColumns::part(hidden, BLOCK, 0, count),
+                    MatrixColumns::first(hidden, BLOCK, count),
                     layer.after.transposed.rows(block * BLOCK, count),
                     (start, End::Unchanged),
                     &mut MatrixColumnsMut::whole(y, width),

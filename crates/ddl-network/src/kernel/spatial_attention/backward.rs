@@ -11,12 +11,13 @@ use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
 
 pub(super) struct SceneBackward<'a> {
     pub(super) task: SceneTask<'a>,
-    pub(super) qkv: &'a [f32],
+    /// Queries, keys and values of the scene.
+    pub(super) inputs: [&'a [f32]; 3],
     pub(super) mixed: &'a [f32],
     /// For each pair of queries and group of heads.
     pub(super) normalisers: &'a [[Lanes; 2]],
     pub(super) mixed_gradient: &'a [f32],
-    pub(super) qkv_gradient: &'a mut [f32],
+    pub(super) gradients: [&'a mut [f32]; 3],
 }
 
 impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
@@ -41,13 +42,13 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
         let task = self.job.task.clone();
         let row = task.heads.row();
-        self.buffers.load(simd, &task, self.job.qkv, group, quads);
+        self.buffers.load(simd, &task, self.job.inputs, group, quads);
         self.load_gradients(simd, group, quads);
         let buffers = &mut *self.buffers;
-        let rows = self.job.qkv_gradient.chunks_exact_mut(3 * row);
-        for (key, gradient) in rows.enumerate() {
+        let [query_gradients, key_gradients, value_gradients] = &mut self.job.gradients;
+        let rows = key_gradients.chunks_exact_mut(row);
+        for (key, (key_gradient, value_gradient)) in rows.zip(value_gradients.chunks_exact_mut(row)).enumerate() {
             weigh::<S, DROP>(simd, buffers, &task, key, quads);
-            let (key_gradient, value_gradient) = gradient[row..].split_at_mut(row);
             for quad in 0..quads {
                 let (of_key, of_value) = spread(simd, buffers, key, quad, quads);
                 let part = HeadPart::new(task.heads, group, quad);
@@ -59,13 +60,13 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
         }
         let scale = simd.splat(task.heads.scale());
         let gradients = buffers.query_gradients.chunks_exact(quads);
-        for (two, gradients) in self.job.qkv_gradient.chunks_mut(6 * row).zip(gradients) {
-            let (first, second) = two.split_at_mut(3 * row);
-            let mut second = second.get_mut(..row);
+        for (two, gradients) in query_gradients.chunks_mut(2 * row).zip(gradients) {
+            let (first, second) = two.split_at_mut(row);
+            let mut second = (!second.is_empty()).then_some(second);
             for (quad, gradient) in gradients.iter().enumerate() {
                 let part = HeadPart::new(task.heads, group, quad);
                 let gradient = simd.scaled(simd.read(gradient), scale);
-                part.store(simd, gradient, &mut first[..row], second.as_deref_mut());
+                part.store(simd, gradient, first, second.as_deref_mut());
             }
         }
     }

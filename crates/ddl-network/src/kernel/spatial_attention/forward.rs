@@ -8,7 +8,8 @@ use ddl_simd::{DEPTH, Kernel, Lanes, Simd};
 
 pub(super) struct SceneForward<'a> {
     pub(super) task: SceneTask<'a>,
-    pub(super) qkv: &'a [f32],
+    /// Queries, keys and values of the scene.
+    pub(super) inputs: [&'a [f32]; 3],
     pub(super) mixed: &'a mut [f32],
     /// For each pair of queries and group of heads; empty if they are not kept.
     pub(super) normalisers: &'a mut [[Lanes; 2]],
@@ -34,7 +35,7 @@ impl Buffered<'_, SceneForward<'_>, SceneBuffers> {
     #[inline(always)]
     fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
         let (task, row) = (&self.job.task, self.job.task.heads.row());
-        self.buffers.load(simd, task, self.job.qkv, group, quads);
+        self.buffers.load(simd, task, self.job.inputs, group, quads);
         let buffers = &mut *self.buffers;
         // A key that is not visible would have the weight 0, so that leaving it out changes no bit.
         buffers.weights.resize(task.keys.len(), Lanes::ZERO);

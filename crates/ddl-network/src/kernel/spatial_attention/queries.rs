@@ -107,7 +107,14 @@ impl SceneBuffers {
     }
 
     #[inline(always)]
-    pub(super) fn load<S: Simd>(&mut self, simd: S, task: &SceneTask<'_>, qkv: &[f32], group: usize, quads: usize) {
+    pub(super) fn load<S: Simd>(
+        &mut self,
+        simd: S,
+        task: &SceneTask<'_>,
+        [query, key, value]: [&[f32]; 3],
+        group: usize,
+        quads: usize,
+    ) {
         let row = task.heads.row();
         let (asking, keys) = (task.queries(), task.keys.clone());
         let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
@@ -116,28 +123,21 @@ impl SceneBuffers {
         let count = keys.len().next_multiple_of(2) * quads;
         self.keys.resize(count, HalfQuad::ZERO);
         self.values.resize(count, HalfQuad::ZERO);
-        let rows = |pedestrians: &Range<usize>| &qkv[3 * row * pedestrians.start..3 * row * pedestrians.end];
-        let twos = rows(&asking).chunks(6 * row);
+        let twos = query[row * asking.start..row * asking.end].chunks(2 * row);
         for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
-            let (first, second) = two.split_at(3 * row);
-            let second = second.get(..row);
+            let (first, second) = (&two[..row], two.get(row..2 * row));
             for (quad, query) in queries.iter_mut().enumerate() {
-                let part = HeadPart::new(task.heads, group, quad);
-                let loaded = part.load(simd, &first[..row], second);
+                let loaded = HeadPart::new(task.heads, group, quad).load(simd, first, second);
                 simd.write(simd.scaled(loaded, scale), query);
             }
         }
-        let twos = rows(&keys).chunks(6 * row);
-        let into = self.keys.chunks_exact_mut(2 * quads);
-        let into = into.zip(self.values.chunks_exact_mut(2 * quads));
-        for (two, (keys, values)) in twos.zip(into) {
-            let (first, second) = two.split_at(3 * row);
-            for (into, start) in [(keys, row), (values, 2 * row)] {
-                let (low, high) = into.split_at_mut(quads);
-                let second = second.get(start..start + row);
+        for (input, results) in [(key, &mut self.keys), (value, &mut self.values)] {
+            let twos = input[row * keys.start..row * keys.end].chunks(2 * row);
+            for (two, result) in twos.zip(results.chunks_exact_mut(2 * quads)) {
+                let (first, second) = (&two[..row], two.get(row..2 * row));
+                let (low, high) = result.split_at_mut(quads);
                 for quad in 0..quads {
-                    let part = HeadPart::new(task.heads, group, quad);
-                    let loaded = part.load(simd, &first[start..start + row], second);
+                    let loaded = HeadPart::new(task.heads, group, quad).load(simd, first, second);
                     simd.write_halves(loaded, &mut low[quad], &mut high[quad]);
                 }
             }

@@ -15,7 +15,8 @@ struct SceneCase {
     visible: Vec<bool>,
     entries: usize,
     dropout: Option<Dropout>,
-    qkv: Vec<f32>,
+    /// Queries, keys and values.
+    inputs: [Vec<f32>; 3],
     gradient: Vec<f32>,
 }
 
@@ -30,7 +31,7 @@ impl SceneCase {
             visible: numbers.visible(sizes, frames),
             entries,
             dropout: None,
-            qkv: numbers.even(3 * rows, bound),
+            inputs: [0; 3].map(|_| numbers.even(rows, bound)),
             gradient: numbers.even(rows, 1.0),
         }
     }
@@ -40,31 +41,35 @@ impl SceneCase {
         let attention = attention.with_instructions(set).unwrap();
         let scenes = Scenes::new(&self.sizes, lists(&self.sizes, &self.visible));
         let frames = scenes.throughout();
-        let attended = attention.forward(&self.qkv, frames, self.dropout, true);
-        let mut gradient = vec![f32::NAN; self.qkv.len()];
+        let attended = attention.forward(self.inputs(), frames, self.dropout, true);
+        let mut gradients = [0; 3].map(|_| vec![f32::NAN; self.gradient.len()]);
         attention.backward(
-            &self.qkv,
+            self.inputs(),
             frames,
             self.dropout,
             &attended,
             &self.gradient,
-            &mut gradient,
+            gradients.each_mut().map(|gradient| &mut gradient[..]),
         );
-        (attended.mixed().to_vec(), gradient)
+        (attended.mixed().to_vec(), gradients.concat())
+    }
+
+    fn inputs(&self) -> [&[f32]; 3] {
+        self.inputs.each_ref().map(|input| &input[..])
     }
 
     fn expected(&self) -> (Vec<f64>, Vec<f64>) {
         let (heads, width) = self.heads;
         let pedestrians: usize = self.sizes.iter().sum();
-        let (qkv, gradient) = (wide(&self.qkv), wide(&self.gradient));
+        let (inputs, gradient) = (wide(&self.inputs.concat()), wide(&self.gradient));
         let index = |entry: usize, pedestrian: usize, part: usize, head: usize| {
-            (((entry * pedestrians + pedestrian) * 3 + part) * heads + head) * width
+            part * gradient.len() + ((entry * pedestrians + pedestrian) * heads + head) * width
         };
         let pairs: usize = self.sizes.iter().map(|size| size * size).sum();
         let frames = self.visible.len() / pairs;
         let decisions = self.dropout.and_then(WeightDecisions::new);
         let mut mixed = vec![0.0; gradient.len()];
-        let mut qkv_gradient = vec![0.0; qkv.len()];
+        let mut gradients_of_inputs = vec![0.0; inputs.len()];
         for entry in 0..self.entries {
             let mut visible = &self.visible[(entry % frames) * pairs..];
             let mut first = 0;
@@ -75,7 +80,7 @@ impl SceneCase {
                     let seen = (0..size).filter(|&j| row[j]).map(|j| first + j);
                     let seen: Vec<usize> = seen.collect();
                     for head in 0..heads {
-                        let vector = |pedestrian, part| &qkv[index(entry, pedestrian, part, head)..][..width];
+                        let vector = |pedestrian, part| &inputs[index(entry, pedestrian, part, head)..][..width];
                         let keys: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 1)).collect();
                         let values: Vec<&[f64]> = seen.iter().map(|&j| vector(j, 2)).collect();
                         let factor = |&j: &usize| match decisions {
@@ -88,12 +93,12 @@ impl SceneCase {
                             values: &values,
                             factors: &seen.iter().map(factor).collect::<Vec<_>>(),
                         };
-                        let start = ((entry * pedestrians + i) * heads + head) * width;
+                        let start = index(entry, i, 0, head);
                         mixed[start..start + width].copy_from_slice(&query.mixed());
                         let gradients = query.gradients(&gradient[start..start + width]);
                         let mut add = |pedestrian, part, numbers: &[f64]| {
                             let place = index(entry, pedestrian, part, head);
-                            for (sum, number) in qkv_gradient[place..].iter_mut().zip(numbers) {
+                            for (sum, number) in gradients_of_inputs[place..].iter_mut().zip(numbers) {
                                 *sum += number;
                             }
                         };
@@ -107,7 +112,7 @@ impl SceneCase {
                 first += size;
             }
         }
-        (mixed, qkv_gradient)
+        (mixed, gradients_of_inputs)
     }
 
     fn check(&self, tolerance: f64) {
@@ -173,12 +178,9 @@ fn agrees_where_a_block_reads_some_of_the_keys() {
 fn a_vanishing_weight_is_zero() {
     let mut case = SceneCase::new(8, STAR, &[2], (1, 1), 1.0);
     case.visible.fill(true);
-    for (pedestrian, row) in case.qkv.chunks_exact_mut(96).enumerate() {
-        let (key, value) = [(0.0, 3.0), (-50.0 * std::f32::consts::LN_2, 100_f32.exp2())][pedestrian];
-        row[..32].fill(1.0);
-        row[32..64].fill(key);
-        row[64..].fill(value);
-    }
+    let row = |number: f32| [number; 32];
+    let keys = [row(0.0), row(-50.0 * std::f32::consts::LN_2)];
+    case.inputs = [[row(1.0); 2], keys, [row(3.0), row(100_f32.exp2())]].map(|rows| rows.concat());
     for set in InstructionSet::available() {
         let (mixed, _) = case.run(set);
         assert!(
@@ -195,13 +197,13 @@ fn bears_big_scores() {
     let case = SceneCase::new(6, STAR, &[9, 30], (2, 1), 20.0);
     case.check(2e-4);
     let mut same = SceneCase::new(7, STAR, &[6], (1, 1), 1.0);
-    for row in same.qkv.chunks_exact_mut(96) {
-        row[..64].fill(1e4); // scores of 2e8, all equal
+    for input in &mut same.inputs[..2] {
+        input.fill(1e4); // scores of 2e8, all equal
     }
     same.visible.fill(true);
     let (mixed, _) = same.run(InstructionSet::detect());
     for number in 0..32 {
-        let value = |pedestrian: usize| same.qkv[pedestrian * 96 + 64 + number];
+        let value = |pedestrian: usize| same.inputs[2][pedestrian * 32 + number];
         let mean = (0..6).map(value).sum::<f32>() / 6.0;
         for row in mixed.chunks_exact(32) {
             assert!((row[number] - mean).abs() < 1e-6, "{}: {mean}", row[number]);
@@ -216,7 +218,7 @@ fn results_do_not_depend_on_what_was_there() {
     let attention = SpatialAttention::new(8, 4);
     for case in [&big, &small] {
         let scenes = Scenes::new(&case.sizes, lists(&case.sizes, &case.visible));
-        let attended = attention.forward(&case.qkv, scenes.throughout(), None, false);
+        let attended = attention.forward(case.inputs(), scenes.throughout(), None, false);
         assert_eq!(attended.mixed(), case.run(InstructionSet::detect()).0);
     }
 }
