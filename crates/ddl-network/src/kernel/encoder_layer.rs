@@ -9,6 +9,7 @@ mod tests;
 
 use super::buffer::Buffer;
 use super::scenes::Frames;
+use super::spatial_attention::Attended;
 use super::temporal_attention::{KeyValue, TemporalGradients};
 use forward_results::AttentionResults;
 pub(crate) use forward_results::{CachedKeyValues, ForwardResults};
@@ -30,7 +31,7 @@ impl EncoderKernel {
         let inputs = [&query[..], &key, &value];
         let attended = self.spatial.forward(inputs, frames, dropouts.weights, keep);
         let newest = CachedKeyValues { key, value };
-        let attention = AttentionResults::Spatial {
+        let attention = AttentionResults {
             query,
             newest,
             attended,
@@ -50,14 +51,11 @@ impl EncoderKernel {
         gy: &[f32],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let AttentionResults::Spatial {
+        let AttentionResults {
             query,
             newest,
             attended,
-        } = &forward_results.attention
-        else {
-            panic!("these results are of temporal attention");
-        };
+        } = &forward_results.attention;
         let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
         let inputs = [&query[..], &newest.key, &newest.value];
         let mut of_inputs = [0; 3].map(|_| Buffer::any(x.len()));
@@ -83,7 +81,11 @@ impl EncoderKernel {
         let newest = CachedKeyValues { key, value };
         let mut mixed = Buffer::any(x.len());
         self.temporal.forward(&query, &views(cache), newest.view(), &mut mixed);
-        let attention = AttentionResults::Temporal { query, newest, mixed };
+        let attention = AttentionResults {
+            query,
+            newest,
+            attended: Attended::of_mixed(mixed),
+        };
         self.after_attention(x, attention, dropouts, keep)
     }
 
@@ -101,9 +103,7 @@ impl EncoderKernel {
         of_cache: &mut [&mut CachedKeyValues],
         of_weights: &mut [f32],
     ) -> Buffer {
-        let AttentionResults::Temporal { query, newest, .. } = &forward_results.attention else {
-            panic!("these results are of spatial attention");
-        };
+        let AttentionResults { query, newest, .. } = &forward_results.attention;
         let (mut gx, of_mixed) = self.before_attention(forward_results, dropouts, gy, of_weights);
         let mut of_query = Buffer::zeros(x.len());
         let mut of_newest = CachedKeyValues::zeros(x.len());

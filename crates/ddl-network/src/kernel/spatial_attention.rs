@@ -35,7 +35,7 @@ pub(crate) struct SpatialAttention {
     dispatch: Dispatch,
 }
 
-/// The output of [`SpatialAttention::forward`], and what the backward pass needs in addition.
+/// The output of an attention, and what the backward pass of [`SpatialAttention`] needs in addition.
 #[derive(Clone, Debug)]
 pub(crate) struct Attended {
     mixed: Buffer,
@@ -45,6 +45,14 @@ pub(crate) struct Attended {
 }
 
 impl Attended {
+    /// Without normalisers.
+    pub(crate) fn of_mixed(mixed: Buffer) -> Self {
+        Self {
+            mixed,
+            normalisers: Vec::new(),
+        }
+    }
+
     /// Mixed values, `[B, P, heads, head width]`.
     pub(crate) fn mixed(&self) -> &[f32] {
         &self.mixed

@@ -11,26 +11,10 @@ pub(crate) struct ForwardResults {
     pub(super) normal2: NormalisedRows,
 }
 
-pub(super) enum AttentionResults {
-    Spatial {
-        query: Buffer,
-        newest: CachedKeyValues,
-        attended: Attended,
-    },
-    Temporal {
-        query: Buffer,
-        newest: CachedKeyValues,
-        mixed: Buffer,
-    },
-}
-
-impl AttentionResults {
-    pub(super) fn mixed(&self) -> &[f32] {
-        match self {
-            Self::Spatial { attended, .. } => attended.mixed(),
-            Self::Temporal { mixed, .. } => mixed,
-        }
-    }
+pub(super) struct AttentionResults {
+    pub(super) query: Buffer,
+    pub(super) newest: CachedKeyValues,
+    pub(super) attended: Attended,
 }
 
 /// Empty if there will be no backward pass.
