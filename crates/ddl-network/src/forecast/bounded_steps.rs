@@ -85,27 +85,8 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
     }
 
     let (distance, [cos, sin]) = polar([gx - px, gy - py], &mut exact);
-    let s = distance / (time.left.max(1) as f32 * time.dt);
-    let s = s.min(top).max(s.like(f32::MIN_POSITIVE));
-    let mut range = [s, s];
-    if time.left > 1 {
-        let (reach, later) = (distance / time.dt, top * (time.left - 1) as f32);
-        let slowest = s * MotionBounds::<f32>::MIN_SPEED_RATIO as f32;
-        let fastest = s * MotionBounds::<f32>::MAX_SPEED_RATIO as f32;
-        range = [slowest.max(reach - later).min(s), fastest.min(reach).min(top).max(s)];
-    }
-
-    let g = MotionBounds::<f32>::momentum(time) as f32;
-    let along = (s * (1.0 - g) + (vx * cos + vy * sin) * g).max(range[0]);
-    let most = along * MotionBounds::<f32>::MAX_LATERAL_RATIO as f32;
-    let across = ((cos * vy - sin * vx) * g).max(most * -1.0).min(most);
-    let r = along + across / along * across * 2.0;
-    let twice = across + across;
-    let neutral = [
-        along * cos * cos - twice * cos * sin + r * sin * sin,
-        (along - r) * cos * sin + across * (cos * cos - sin * sin),
-        along * sin * sin + twice * cos * sin + r * cos * cos,
-    ];
+    let (s, range) = speeds(distance, top, time);
+    let neutral = neutral(s, [cos, sin], [vx, vy], range, time);
     let neutral = within(neutral, range, &mut exact);
     // The sums begin with 0 as in `ddl-dynamics`, which changes the sign of a zero.
     let given = [a * a + sigma - 1.0, a * b + 0.0, b * b + sigma + c * c - 1.0];
@@ -147,6 +128,43 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
     arrival.where_at_least(left, gx, x).store(&mut ends[0].0);
     arrival.where_at_least(left, gy, y).store(&mut ends[1].0);
     exact
+}
+
+/// The arriving speed, and the range of the eigenvalues.
+#[inline(always)]
+fn speeds<S: Simd>(distance: Numbers<S>, top: Numbers<S>, time: StepTime<f32>) -> (Numbers<S>, [Numbers<S>; 2]) {
+    let s = distance / (time.left.max(1) as f32 * time.dt);
+    let s = s.min(top).max(s.like(f32::MIN_POSITIVE));
+    if time.left <= 1 {
+        return (s, [s, s]);
+    }
+    let (reach, later) = (distance / time.dt, top * (time.left - 1) as f32);
+    let slowest = s * MotionBounds::<f32>::MIN_SPEED_RATIO as f32;
+    let fastest = s * MotionBounds::<f32>::MAX_SPEED_RATIO as f32;
+    let range = [slowest.max(reach - later).min(s), fastest.min(reach).min(top).max(s)];
+    (s, range)
+}
+
+/// The neutral metric before its eigenvalues are brought within the range.
+#[inline(always)]
+fn neutral<S: Simd>(
+    s: Numbers<S>,
+    [cos, sin]: [Numbers<S>; 2],
+    [vx, vy]: [Numbers<S>; 2],
+    range: [Numbers<S>; 2],
+    time: StepTime<f32>,
+) -> [Numbers<S>; 3] {
+    let g = MotionBounds::<f32>::momentum(time) as f32;
+    let along = (s * (1.0 - g) + (vx * cos + vy * sin) * g).max(range[0]);
+    let most = along * MotionBounds::<f32>::MAX_LATERAL_RATIO as f32;
+    let across = ((cos * vy - sin * vx) * g).max(most * -1.0).min(most);
+    let r = along + across / along * across * 2.0;
+    let twice = across + across;
+    [
+        along * cos * cos - twice * cos * sin + r * sin * sin,
+        (along - r) * cos * sin + across * (cos * cos - sin * sin),
+        along * sin * sin + twice * cos * sin + r * cos * cos,
+    ]
 }
 
 #[inline(always)]

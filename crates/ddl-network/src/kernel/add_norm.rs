@@ -130,24 +130,7 @@ impl AddNorm {
                 four.set(simd, r, v, simd.add(load(simd, x, column), term));
             }
         }
-        let mean = simd.spread_each(means(simd, width, four.sums(simd)));
-        for r in 0..DEPTH {
-            for v in 0..vectors {
-                let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
-                if !FIXED {
-                    centred = simd.mul(centred, simd.load(&self.inside[v].0));
-                }
-                four.set(simd, r, v, centred);
-            }
-        }
-        // The variances of the four rows are in the first four lanes; roots of all lanes would take several times as
-        // long.
-        let mut variances = Lanes::ZERO;
-        simd.store(means(simd, width, four.products(simd, four)), &mut variances.0);
-        let mut scales = [0.0; DEPTH];
-        for (scale, variance) in scales.iter_mut().zip(variances.0) {
-            *scale = 1.0 / (variance + EPSILON).sqrt();
-        }
+        let scales = self.centre(simd, four);
         for r in 0..count {
             let scale = simd.splat(scales[r]);
             let y = &mut y[r * width..(r + 1) * width];
@@ -173,6 +156,31 @@ impl AddNorm {
                 }
             }
         }
+    }
+
+    /// Subtracts the mean of each row. Returns 1 over the deviations.
+    #[inline(always)]
+    fn centre<S: Simd, const FIXED: bool>(&self, simd: S, four: &mut Four<FIXED>) -> [f32; DEPTH] {
+        let (width, vectors) = (self.fixed_width::<FIXED>(), four.vectors());
+        let mean = simd.spread_each(means(simd, width, four.sums(simd)));
+        for r in 0..DEPTH {
+            for v in 0..vectors {
+                let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
+                if !FIXED {
+                    centred = simd.mul(centred, simd.load(&self.inside[v].0));
+                }
+                four.set(simd, r, v, centred);
+            }
+        }
+        // The variances of the four rows are in the first four lanes; roots of all lanes would take several times as
+        // long.
+        let mut variances = Lanes::ZERO;
+        simd.store(means(simd, width, four.products(simd, four)), &mut variances.0);
+        let mut scales = [0.0; DEPTH];
+        for (scale, variance) in scales.iter_mut().zip(variances.0) {
+            *scale = 1.0 / (variance + EPSILON).sqrt();
+        }
+        scales
     }
 
     /// Gradients: `normal` of the forward pass and `gy` `[rows, width]` -> those of x and t, `[rows, width]`,
