@@ -11,13 +11,7 @@ use crate::process::{find_on_path, run};
 use crate::tools::Tools;
 use crate::workspace::Workspace;
 
-const NAMES: [&str; 5] = [
-    "chromium",
-    "chromium-browser",
-    "google-chrome",
-    "google-chrome-stable",
-    "chrome",
-];
+const NAMES: &str = "chromium chromium-browser google-chrome google-chrome-stable chrome";
 
 /// Runs a Python script that drives the browser with Playwright: `script FOLDER --browser PROGRAM [--screenshots DIR]`.
 pub(crate) fn check(workspace: &Workspace, script: &str, folder: &Path, screenshots: Option<&Path>) -> Result<()> {
@@ -36,7 +30,7 @@ pub(crate) fn find_or_install() -> Result<PathBuf> {
         let missing = || format!("DDL_BROWSER={} is not a program", named.display());
         return find_on_path(&named).with_context(missing);
     }
-    let find = || NAMES.iter().find_map(|name| find_on_path(OsStr::new(name)));
+    let find = || NAMES.split(' ').find_map(|name| find_on_path(OsStr::new(name)));
     if let Some(browser) = find() {
         return Ok(browser);
     }

@@ -16,9 +16,7 @@ pub(crate) fn folder() -> Result<PathBuf> {
         .map(PathBuf::from)
         .filter(|path| path.is_absolute())
         .or_else(|| env::home_dir().map(|home| home.join(".cache")))
-        .context(
-            "no home folder: set XDG_CACHE_HOME, or give a folder for libtorch with `cargo xtask setup --cache`",
-        )?;
+        .context("no home folder: set XDG_CACHE_HOME, or name a folder with `cargo xtask setup --cache`")?;
     Ok(base.join("ddl"))
 }
 

@@ -56,19 +56,15 @@ pub(crate) fn ensure(workspace: &Workspace, request: &Request) -> Result<Ready> 
 
 fn choose(generated: &Path, request: &Request) -> Result<(PathBuf, &'static str)> {
     let configured = config::read(generated);
-    let variable = env::var_os("LIBTORCH")
-        .filter(|value| !value.is_empty())
-        .map(PathBuf::from);
+    let variable = env::var_os("LIBTORCH").filter(|value| !value.is_empty());
+    let variable = variable.map(PathBuf::from);
     // Cargo passes the configured folder to every program it runs, including this one: only a different value was set
     // by the user.
     if let Some(folder) = variable.filter(|folder| configured.as_ref() != Some(folder)) {
         let folder = absolute(&folder)?;
         if let Err(reason) = locate::validate(&folder) {
-            bail!(
-                "LIBTORCH={} cannot be used: {reason}; unset LIBTORCH, or point it to libtorch \
-                 {VERSION}",
-                folder.display()
-            );
+            let shown = folder.display();
+            bail!("LIBTORCH={shown} cannot be used: {reason}; unset LIBTORCH, or point it to libtorch {VERSION}");
         }
         return Ok((folder, "from the variable LIBTORCH"));
     }
@@ -95,10 +91,7 @@ fn require_compiler() -> Result<()> {
     let compiler = env::var("CXX").unwrap_or_default();
     let program = compiler.split_whitespace().next().unwrap_or("c++");
     if find_on_path(OsStr::new(program)).is_none() {
-        bail!(
-            "a C++ compiler is missing ({program} is not on the search path): install one, on \
-             Debian or Ubuntu with `apt install g++`"
-        );
+        bail!("a C++ compiler is missing ({program} is not on the search path): on Debian or Ubuntu `apt install g++`");
     }
     Ok(())
 }

@@ -35,12 +35,9 @@ impl Tools {
             fs::create_dir_all(cache::folder()?)?;
             let work = tempfile::tempdir_in(cache::folder()?)?.keep();
             let pip = "-m pip install --quiet --disable-pip-version-check --only-binary=:all: --no-cache-dir --no-deps \
-                       --require-hashes --no-warn-script-location --target";
+                       --require-hashes --no-warn-script-location --root-user-action ignore --target";
             let mut pip = python.call(pip.split_whitespace());
-            pip.arg(&work)
-                .arg("--requirement")
-                .arg(&list)
-                .env("PIP_ROOT_USER_ACTION", "ignore");
+            pip.arg(&work).arg("--requirement").arg(&list);
             let outcome = run(pip.stdout(std::io::stderr())).context("connect to a package index");
             // Another process may have been faster.
             if outcome.is_err() || fs::rename(&work, &folder).is_err() {

@@ -13,13 +13,7 @@ use crate::process::read;
 
 /// Variables that would replace the configured flags, and so the path to libtorch, or make the build of the binding
 /// ignore `LIBTORCH`.
-const HARMFUL: [&str; 5] = [
-    "RUSTFLAGS",
-    "CARGO_ENCODED_RUSTFLAGS",
-    "RUSTDOCFLAGS",
-    "CARGO_ENCODED_RUSTDOCFLAGS",
-    "LIBTORCH_USE_PYTORCH",
-];
+const HARMFUL: &str = "RUSTFLAGS CARGO_ENCODED_RUSTFLAGS RUSTDOCFLAGS CARGO_ENCODED_RUSTDOCFLAGS LIBTORCH_USE_PYTORCH";
 
 /// Prefixes of variables that `cargo run` sets. A second cargo would see a changed environment and rebuild.
 const LEAKING_PREFIXES: [&str; 4] = ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_BIN_", "CARGO_CRATE_"];
@@ -100,7 +94,7 @@ impl Workspace {
 fn variables_to_remove() -> Vec<OsString> {
     static WARN: Once = Once::new();
     WARN.call_once(|| {
-        for name in HARMFUL.iter().filter(|name| env::var_os(name).is_some()) {
+        for name in HARMFUL.split(' ').filter(|name| env::var_os(name).is_some()) {
             eprintln!(
                 "warning: {name} is set, but ignored: it would replace the configured flags and lose the path to \
                  libtorch (docs/libtorch.md)"
@@ -113,7 +107,7 @@ fn variables_to_remove() -> Vec<OsString> {
     });
     // The generated configuration has the same LIBTORCH. Without the variable, a plain `cargo build` and one started
     // here see the same environment, and nothing is rebuilt.
-    let fixed = HARMFUL.iter().chain(&["LIBTORCH"]).map(OsString::from);
+    let fixed = HARMFUL.split(' ').chain(["LIBTORCH"]).map(OsString::from);
     fixed.chain(leaking).collect()
 }
 
@@ -129,7 +123,7 @@ mod tests {
     #[test]
     fn a_child_never_sees_libtorch_or_flags() {
         let removed = variables_to_remove();
-        for name in HARMFUL.iter().chain(&["LIBTORCH"]) {
+        for name in HARMFUL.split(' ').chain(["LIBTORCH"]) {
             assert!(removed.contains(&OsString::from(name)), "{name}");
         }
     }

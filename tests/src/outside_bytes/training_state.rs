@@ -27,11 +27,14 @@ fn training() -> Result<(Trainer, Origin), Box<dyn std::error::Error>> {
     Ok((trainer, config.network_origin()))
 }
 
+/// The file of a training, and what resumes it.
+type Resumable = ValidFile<(RefCell<Trainer>, Origin)>;
+
 /// Edits of a valid file.
 pub(super) fn read(bytes: &[u8]) {
     // Tensors of libtorch stay on their thread.
     thread_local! {
-        static VALID: ValidFile<(RefCell<Trainer>, Origin)> = ValidFile::new("optimizer.safetensors", without_digest, |path| {
+        static VALID: Resumable = ValidFile::new("optimizer.safetensors", without_digest, |path| {
             let (mut trainer, origin) = training().expect("the training can be started");
             trainer.save(&origin, path).expect("its state can be written");
             (RefCell::new(trainer), origin)

@@ -65,15 +65,15 @@ pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
     // rustdoc's pages link to a list of crates, which is on the first page of the site.
     redirect(&api.join("index.html"), "../index.html#crates")?;
     lead_out(workspace, &site)?;
-    let fronts = fs::read_dir(&api)?
-        .flatten()
-        .map(|folder| folder.path().join("index.html"));
+    let folders = fs::read_dir(&api)?.flatten();
+    let fronts = folders.map(|folder| folder.path().join("index.html"));
     let mut lychee = tools.program(workspace, "lychee");
-    lychee
-        .arg("--root-dir")
-        .arg(&site)
-        .arg(site.join("index.html"))
-        .arg(site.join("guide"));
+    lychee.args([
+        "--root-dir".as_ref(),
+        site.as_path(),
+        &site.join("index.html"),
+        &site.join("guide"),
+    ]);
     run(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
 }
 

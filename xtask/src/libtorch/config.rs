@@ -33,8 +33,7 @@ fn render(libtorch: &Path) -> Result<String> {
     };
     if folder.contains([',', '\n']) {
         bail!(
-            "libtorch's path {shown} has a comma or a line break, where the linker would cut it \
-               off: choose another folder"
+            "libtorch's path {shown} has a comma or a line break, where the linker cuts it off: choose another folder"
         );
     }
     let quote = |text: String| toml::Value::String(text).to_string();
