@@ -1,17 +1,15 @@
 //! Selection of windows to show (moments): evenly spread moments of a fold, and a typical case of each kind.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 use ddl_data::{HORIZON, Position, Window};
-use serde::{Deserialize, Serialize};
-
-use crate::ForecastSnapshot;
 use ddl_core::{Forecast, distance};
 use ddl_eval::category::{Interaction, MotionKind};
 use ddl_eval::metric::collision::closest_approach;
 use ddl_eval::metric::displacement::DisplacementErrors;
 use ddl_eval::{EvaluationError, Scene};
+
+use crate::snapshot::{ForecastSnapshot, Highlight, HighlightKind};
 
 /// Number of evenly spread moments of each recording.
 const MOMENTS_A_RECORDING: usize = 8;
@@ -20,70 +18,6 @@ const GONE: f64 = 2.0;
 const ARRIVED: f64 = 0.2;
 /// Smallest distance of pedestrians that keep their distance: twice the radius of a pedestrian, m.
 const APART: f64 = 0.4;
-
-/// What a [`Highlight`] shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum HighlightKind {
-    /// A pedestrian who reaches the goal of the representative hypothesis.
-    Convergence,
-    /// Pedestrians who walk together.
-    Group,
-    /// A pedestrian who slows down.
-    SlowingDown,
-    /// Pedestrians who pass each other and keep their distance.
-    KeepingDistance,
-    /// A pedestrian who turns.
-    Turning,
-}
-
-impl HighlightKind {
-    /// All kinds, in the order in which they are shown.
-    pub const ALL: [Self; 5] = [
-        Self::Convergence,
-        Self::Group,
-        Self::SlowingDown,
-        Self::KeepingDistance,
-        Self::Turning,
-    ];
-}
-
-impl fmt::Display for HighlightKind {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Convergence => "convergence",
-            Self::Group => "walking together",
-            Self::SlowingDown => "slowing down",
-            Self::KeepingDistance => "keeping distance",
-            Self::Turning => "turning",
-        })
-    }
-}
-
-/// The reason to show a moment, and the pedestrians concerned.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
-pub struct Highlight {
-    /// What it shows.
-    pub show: HighlightKind,
-    /// Indices of the pedestrians concerned, in the order of the moment.
-    #[serde(rename = "pedestrians")]
-    pub pedestrians: Vec<usize>,
-    /// Text that states the rule of the choice, with its numbers.
-    pub rule: String,
-}
-
-impl Highlight {
-    /// A case of these pedestrians, picked by this rule.
-    pub fn new(show: HighlightKind, pedestrians: Vec<usize>, rule: impl Into<String>) -> Self {
-        Self {
-            show,
-            pedestrians,
-            rule: rule.into(),
-        }
-    }
-}
 
 /// Chooses moments to show from the forecasts of one fold (one forecast for each window), in order of recording and
 /// time.
@@ -154,12 +88,7 @@ fn median(show: HighlightKind, mut cases: Vec<GalleryCase>) -> (usize, Highlight
             case.min_ade
         ),
     };
-    let pick = Highlight {
-        show,
-        pedestrians: case.pedestrians,
-        rule,
-    };
-    (case.window, pick)
+    (case.window, Highlight::new(show, case.pedestrians, rule))
 }
 
 fn shows(scene: &Scene<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)> {

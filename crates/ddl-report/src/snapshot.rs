@@ -1,14 +1,16 @@
 //! One window of a recording with its forecast (a snapshot), as data for galleries and the player.
 
-use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
-use serde::{Deserialize, Serialize};
+use std::fmt;
 
-use crate::gallery::Highlight;
 use ddl_core::{Forecast, average_displacement, medoid};
+use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_eval::metric::stability::RolloutStability;
 use ddl_eval::{EvaluationError, Scene, WindowProblem};
+use serde::{Deserialize, Serialize};
 
-const KEPT: f64 = 1e3;
+/// Steps in a metre, or in a weight of 1, to which numbers are rounded.
+const STEPS: f64 = 1e3;
+/// Probability of the region whose radii a snapshot holds.
 const REGION: f64 = 0.9;
 
 /// Observation, forecast and true future at one moment of a recording.
@@ -29,7 +31,6 @@ pub struct ForecastSnapshot {
     /// Raw frames in a step of 0.4 s.
     pub frame_step: i64,
     /// The pedestrians of the window.
-    #[serde(rename = "pedestrians")]
     pub pedestrians: Vec<SnapshotPedestrian>,
     /// The reasons to show the snapshot; empty for an evenly spread one.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -77,6 +78,58 @@ pub struct SnapshotHypothesis {
     /// Whether the forecaster's certificate holds; `None` without a certificate.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified: Option<bool>,
+}
+
+/// What a [`Highlight`] shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum HighlightKind {
+    /// A pedestrian who reaches the goal of the representative hypothesis.
+    Convergence,
+    /// Pedestrians who walk together.
+    Group,
+    /// A pedestrian who slows down.
+    SlowingDown,
+    /// Pedestrians who pass each other and keep their distance.
+    KeepingDistance,
+    /// A pedestrian who turns.
+    Turning,
+}
+
+impl fmt::Display for HighlightKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Convergence => "convergence",
+            Self::Group => "walking together",
+            Self::SlowingDown => "slowing down",
+            Self::KeepingDistance => "keeping distance",
+            Self::Turning => "turning",
+        })
+    }
+}
+
+/// The reason to show a moment, and the pedestrians concerned.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
+pub struct Highlight {
+    /// What it shows.
+    pub show: HighlightKind,
+    /// Indices of the pedestrians concerned, in the order of the moment.
+    pub pedestrians: Vec<usize>,
+    /// Text that states the rule of the choice, with its numbers.
+    pub rule: String,
+}
+
+impl Highlight {
+    /// A case of these pedestrians, picked by this rule.
+    pub fn new(show: HighlightKind, pedestrians: Vec<usize>, rule: impl Into<String>) -> Self {
+        Self {
+            show,
+            pedestrians,
+            rule: rule.into(),
+        }
+    }
 }
 
 impl SnapshotPedestrian {
@@ -194,5 +247,5 @@ fn positions(path: &[Position]) -> Vec<Position> {
 }
 
 fn round(value: f64) -> f64 {
-    (value * KEPT).round() / KEPT
+    (value * STEPS).round() / STEPS
 }

@@ -11,7 +11,7 @@ mod places;
 
 use ddl::data::{Convention, Dataset, OBSERVED, Position, Recording, TIME_STEP, Window};
 use ddl::eval::metric::region::equivalent_radius;
-use ddl::report::figure::{CoveragePanel, coverage};
+use ddl::report::figure::{TimePanel, coverage};
 use ddl::{AdaptiveRegions, BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _};
 use std::error::Error;
 use std::fmt::Write as _;
@@ -251,14 +251,13 @@ fn drawn(recordings: &[Watched]) -> Result<String, ddl::report::FigureError> {
             let percent = 100.0 * share(later, kind, MOST);
             format!("{percent:.0} %, {:.1} m", radius(later, kind, 1))
         };
-        CoveragePanel {
+        TimePanel {
             name: watched.name.clone(),
             notes: [0, 1].map(note),
-            fixed: watched.sliding(0, MOST),
-            adaptive: watched.sliding(1, MOST),
+            curves: [0, 1].map(|kind| watched.sliding(kind, MOST)),
         }
     };
-    let panels: Vec<CoveragePanel> = recordings.iter().map(panel).collect();
+    let panels: Vec<TimePanel> = recordings.iter().map(panel).collect();
     let title = "Share of true positions inside the regions of 90 %, over the minute before";
     coverage(title, LEVELS[MOST], &panels)
 }

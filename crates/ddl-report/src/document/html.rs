@@ -1,147 +1,119 @@
 //! A document as the body of an HTML page.
 
-use super::parts::{Document, Part, Span, spans};
-use super::table::Table;
+use maud::{Markup, PreEscaped, html};
 
-#[derive(Debug, Clone, PartialEq, Eq)]
+use crate::document::parts::{Document, Part, Span, spans};
+use crate::document::table::Table;
+
+#[derive(Debug)]
 pub(crate) struct ContentsEntry {
     pub(crate) id: String,
-    pub(crate) heading: String,
-    pub(crate) warned: bool,
+    pub(crate) heading: Markup,
+    /// Class `warned` if the section holds a warning.
+    pub(crate) class: Option<&'static str>,
 }
 
 impl Document {
-    /// HTML for the body of a page: lead, title and parts. Each section has an `id` made from its heading; text is
-    /// escaped.
-    pub fn to_html(&self) -> String {
-        format!(
-            "<header>\n<h1>{}</h1>\n<p class=\"lead\">{}</p>\n</header>\n{}",
-            inline(&self.title),
-            inline(&self.lead),
-            self.sections().0
-        )
-    }
-
-    /// The parts as HTML, without title and lead, and the list of sections; those with a warning have the class
-    /// `warned`.
-    pub(crate) fn sections(&self) -> (String, Vec<ContentsEntry>) {
-        let mut body = String::new();
+    /// The parts without title and lead, and the list of sections. Each section has an `id` made from its heading.
+    pub(crate) fn sections(&self) -> (Markup, Vec<ContentsEntry>) {
         let mut contents: Vec<ContentsEntry> = Vec::new();
         let mut used: Vec<String> = Vec::new();
-        for (at, part) in self.parts.iter().enumerate() {
-            let rendered = match part {
-                Part::Heading { level: 1, text } => {
-                    let end = if contents.is_empty() { "" } else { "</section>\n" };
+        let mut body = String::new();
+        for chunk in self.parts.chunk_by(|_, next| !is_section(next)) {
+            let markup = match chunk {
+                [Part::Heading { level: 1, text }, parts @ ..] => {
                     let (id, heading) = (unused(identifier(text), &mut used), inline(text));
-                    let warned = warns(&self.parts[at + 1..]);
-                    let class = if warned { " class=\"warned\"" } else { "" };
-                    let section = format!("{end}<section id=\"{id}\"{class}>\n<h2>{heading}</h2>\n");
-                    contents.push(ContentsEntry { id, heading, warned });
+                    let warned = parts.iter().any(|part| matches!(part, Part::Warning(_)));
+                    let class = warned.then_some("warned");
+                    let section = html! {
+                        section id=(id) class=[class] { h2 { (heading) } (all(parts, &mut used)) }
+                    };
+                    contents.push(ContentsEntry { id, heading, class });
                     section
                 }
-                Part::Details { summary, parts } => {
-                    let parts: Vec<String> = parts.iter().map(|part| plain(part, &mut used)).collect();
-                    format!(
-                        "<details>\n<summary>{}</summary>\n{}</details>\n",
-                        inline(summary),
-                        parts.concat()
-                    )
-                }
-                other => plain(other, &mut used),
+                parts => all(parts, &mut used),
             };
-            body.push_str(&rendered);
+            body.push_str(&markup.into_string());
         }
-        if !contents.is_empty() {
-            body.push_str("</section>\n");
-        }
-        (body, contents)
+        (PreEscaped(body), contents)
     }
 }
 
-fn plain(part: &Part, used: &mut Vec<String>) -> String {
+fn is_section(part: &Part) -> bool {
+    matches!(part, Part::Heading { level: 1, .. })
+}
+
+fn all(parts: &[Part], used: &mut Vec<String>) -> Markup {
+    html! { @for part in parts { (rendered(part, used)) "\n" } }
+}
+
+fn rendered(part: &Part, used: &mut Vec<String>) -> Markup {
     match part {
         Part::Heading { level, text } => {
-            let level = (level + 1).min(6);
-            let id = unused(identifier(text), used);
-            format!("<h{level} id=\"{id}\">{}</h{level}>\n", inline(text))
+            let (id, text) = (unused(identifier(text), used), inline(text));
+            match level {
+                1 => html! { h2 id=(id) { (text) } },
+                2 => html! { h3 id=(id) { (text) } },
+                _ => html! { h4 id=(id) { (text) } },
+            }
         }
-        Part::Paragraph(text) => format!("<p>{}</p>\n", inline(text)),
-        Part::Warning(text) => format!(
-            "<p class=\"warning\" role=\"note\"><strong>Warning.</strong> {}</p>\n",
-            inline(text)
-        ),
-        Part::List(items) => {
-            let items: Vec<String> = items.iter().map(|item| inline(item)).collect();
-            format!("<ul>\n<li>{}</li>\n</ul>\n", items.join("</li>\n<li>"))
-        }
-        Part::Table(table) => render(table),
-        // Details do not nest.
-        Part::Details { .. } => String::new(),
+        Part::Paragraph(text) => html! { p { (inline(text)) } },
+        Part::Warning(text) => warning(text),
+        Part::List(items) => html! { ul { @for item in items { li { (inline(item)) } } } },
+        Part::Table(table) => of_table(table),
+        Part::Details { summary, parts } => html! {
+            details { summary { (inline(summary)) } "\n" (all(parts, used)) }
+        },
     }
 }
 
-fn warns(parts: &[Part]) -> bool {
-    parts
-        .iter()
-        .take_while(|part| !matches!(part, Part::Heading { level: 1, .. }))
-        .any(|part| matches!(part, Part::Warning(_)))
+pub(crate) fn warning(text: &str) -> Markup {
+    html! { p.warning role="note" { strong { "Warning." } " " (inline(text)) } }
 }
 
 /// The table in a box that scrolls and that the keyboard can reach.
-fn render(table: &Table) -> String {
-    let caption = table.caption().map_or(String::new(), |caption| {
-        format!("<caption>{}</caption>\n", inline(caption))
-    });
-    let class = |column: usize| {
-        if table.is_text(column) { " class=\"text\"" } else { "" }
-    };
-    let header: Vec<String> = table
-        .header()
-        .iter()
-        .enumerate()
-        .map(|(column, cell)| format!("<th scope=\"col\"{}>{}</th>", class(column), inline(cell)))
-        .collect();
-    let row = |row: &Vec<String>| {
-        let cells: Vec<String> = row
-            .iter()
-            .enumerate()
-            .map(|(column, cell)| match (column, inline(cell)) {
-                (0, cell) => format!("<th scope=\"row\" class=\"text\">{cell}</th>"),
-                (_, cell) => format!("<td{}>{cell}</td>", class(column)),
-            })
-            .collect();
-        ["<tr>", &cells.concat(), "</tr>\n"].concat()
-    };
-    format!(
-        "<div class=\"table\" tabindex=\"0\">\n<table>\n{caption}<thead><tr>{}</tr></thead>\n\
-         <tbody>\n{}</tbody>\n</table>\n</div>\n",
-        header.concat(),
-        table.rows().iter().map(row).collect::<String>()
-    )
-}
-
-pub(crate) fn inline(text: &str) -> String {
-    let rendered = spans(text).into_iter().map(|span| match span {
-        Span::Plain(text) => escape(text),
-        Span::Code(code) => format!("<code>{}</code>", escape(code)),
-    });
-    rendered.collect()
-}
-
-/// Text with escaped markup characters, also for attributes.
-pub(crate) fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
-            '\'' => escaped += "&#39;",
-            other => escaped.push(other),
+fn of_table(table: &Table) -> Markup {
+    let class = |column| table.is_text(column).then_some("text");
+    html! {
+        div.table tabindex="0" {
+            table {
+                @if let Some(caption) = table.caption() { caption { (inline(caption)) } }
+                thead {
+                    tr {
+                        @for (column, cell) in table.header().iter().enumerate() {
+                            th scope="col" class=[class(column)] { (inline(cell)) }
+                        }
+                    }
+                }
+                tbody {
+                    @for row in table.rows() {
+                        tr {
+                            @for (column, cell) in row.iter().enumerate() {
+                                @if column == 0 {
+                                    th.text scope="row" { (inline(cell)) }
+                                } @else {
+                                    td class=[class(column)] { (inline(cell)) }
+                                }
+                            }
+                        }
+                        "\n"
+                    }
+                }
+            }
         }
     }
-    escaped
+}
+
+/// Text whose words between backticks are code.
+pub(crate) fn inline(text: &str) -> Markup {
+    html! {
+        @for span in spans(text) {
+            @match span {
+                Span::Plain(text) => (text),
+                Span::Code(code) => code { (code) },
+            }
+        }
+    }
 }
 
 pub(crate) fn identifier(words: &str) -> String {
@@ -152,7 +124,7 @@ pub(crate) fn identifier(words: &str) -> String {
 }
 
 pub(crate) fn unused(name: String, used: &mut Vec<String>) -> String {
-    let before = used.iter().filter(|known| **known == name).count();
+    let before = used.iter().filter(|earlier| **earlier == name).count();
     used.push(name.clone());
     match before {
         0 => name,
@@ -169,32 +141,30 @@ mod tests {
         let mut table = Table::new(["method", "eth", "source"]).text_column("source");
         table.row(["A|B", "1", "x"]);
         let document = Document {
-            lead: "a < b & `c < d`".to_owned(),
-            title: "\"T\"".to_owned(),
+            lead: String::new(),
+            title: String::new(),
             parts: vec![
                 Part::heading("One: `x`"),
+                Part::Paragraph("\"a\" < b & `c < d`".to_owned()),
                 Part::heading("One x"),
                 Part::Warning("<script>".to_owned()),
                 Part::Table(table.captioned("In metres.")),
             ],
         };
-        let html = document.to_html();
+        let (html, contents) = document.sections();
         for expected in [
-            "<h1>&quot;T&quot;</h1>",
-            "a &lt; b &amp; <code>c &lt; d</code>",
-            "<section id=\"one-x\">\n<h2>One: <code>x</code></h2>\n</section>",
+            "&quot;a&quot; &lt; b &amp; <code>c &lt; d</code>",
+            "<section id=\"one-x\"><h2>One: <code>x</code></h2>",
             "<section id=\"one-x-2\" class=\"warned\">",
             "&lt;script&gt;",
             "<caption>In metres.</caption>",
             "<th scope=\"col\">eth</th><th scope=\"col\" class=\"text\">source</th>",
-            "<tr><th scope=\"row\" class=\"text\">A|B</th><td>1</td><td class=\"text\">x</td></tr>",
+            "<tr><th class=\"text\" scope=\"row\">A|B</th><td>1</td><td class=\"text\">x</td></tr>",
         ] {
-            assert!(html.contains(expected), "{expected}");
+            assert!(html.0.contains(expected), "{expected} in {}", html.0);
         }
-        let (_, contents) = document.sections();
-        assert_eq!(contents[0].heading, "One: <code>x</code>");
+        assert_eq!(contents[0].heading.0, "One: <code>x</code>");
         assert_eq!(contents[1].id, "one-x-2");
-        let warned: Vec<bool> = contents.iter().map(|entry| entry.warned).collect();
-        assert_eq!(warned, [false, true]);
+        assert_eq!([contents[0].class, contents[1].class], [None, Some("warned")]);
     }
 }

@@ -1,11 +1,11 @@
 //! The tables of a document for a paper.
 
-use super::parts::{Document, Part, Span, spans, unfolded};
-use super::table::Table;
+use crate::document::parts::{Document, Part, Span, spans, unfolded};
+use crate::document::table::Table;
 
 impl Document {
     /// The tables for a paper, each a `table*`, to be included with `\input`; needs `booktabs` and `adjustbox`.
-    pub fn to_latex(&self) -> String {
+    pub(crate) fn to_latex(&self) -> String {
         let mut text = format!(
             "% {}\n% {}\n% Needs \\usepackage{{booktabs,adjustbox}}.\n",
             one_line(&self.title),

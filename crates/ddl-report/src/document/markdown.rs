@@ -1,10 +1,10 @@
 //! A document as markdown.
 
-use super::parts::{Document, Part, unfolded};
+use crate::document::parts::{Document, Part, unfolded};
 
 impl Document {
     /// The document as markdown with pipe tables.
-    pub fn to_markdown(&self) -> String {
+    pub(crate) fn to_markdown(&self) -> String {
         let head = format!("{}\n\n# {}\n", self.lead, self.title);
         let parts = unfolded(&self.parts).map(render);
         parts.fold(head, |page, part| page + "\n" + &part)

@@ -1,23 +1,23 @@
 //! The parts of a document.
 
-use super::table::Table;
+use crate::document::table::Table;
 
 /// Headings, paragraphs, warnings and tables in reading order.
 ///
 /// In every text, `words between backticks` are code; there is no other markup.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Document {
+pub(crate) struct Document {
     /// The first line, such as the data convention of the numbers.
-    pub lead: String,
+    pub(crate) lead: String,
     /// The title.
-    pub title: String,
+    pub(crate) title: String,
     /// The content below the title.
-    pub parts: Vec<Part>,
+    pub(crate) parts: Vec<Part>,
 }
 
 /// A piece of a [`Document`].
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Part {
+pub(crate) enum Part {
     /// A heading; level 1 is the level below the title.
     Heading {
         /// Level, from 1.
@@ -44,7 +44,7 @@ pub enum Part {
 
 impl Part {
     /// A heading below the title.
-    pub fn heading(text: impl Into<String>) -> Self {
+    pub(crate) fn heading(text: impl Into<String>) -> Self {
         Self::Heading {
             level: 1,
             text: text.into(),
@@ -52,7 +52,7 @@ impl Part {
     }
 
     /// A heading below [`Part::heading`].
-    pub fn subheading(text: impl Into<String>) -> Self {
+    pub(crate) fn subheading(text: impl Into<String>) -> Self {
         Self::Heading {
             level: 2,
             text: text.into(),

@@ -1,7 +1,5 @@
 //! A table of text and numbers, and its markdown form.
 
-use comfy_table::{CellAlignment, presets::ASCII_MARKDOWN};
-
 /// A table. The first column is text; the others hold numbers, unless marked by [`text_column`](Self::text_column).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
@@ -13,7 +11,7 @@ pub struct Table {
 
 impl Table {
     /// A table with these column names and no rows.
-    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
+    pub(crate) fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
         let header: Vec<_> = header.into_iter().map(Into::into).collect();
         let text = (0..header.len()).map(|column| column == 0).collect();
         Self {
@@ -24,9 +22,15 @@ impl Table {
         }
     }
 
+    /// A table with columns of text, a column for each fold, and further columns.
+    pub(crate) fn of_folds(text: &[&str], folds: &[&str], end: &[&str]) -> Self {
+        let table = Self::new([text, folds, end].concat());
+        text.iter().fold(table, |table, name| table.text_column(name))
+    }
+
     /// Marks the columns of this name as text.
     #[must_use]
-    pub fn text_column(mut self, name: &str) -> Self {
+    pub(crate) fn text_column(mut self, name: &str) -> Self {
         for (text, _) in self.text.iter_mut().zip(&self.header).filter(|(_, cell)| *cell == name) {
             *text = true;
         }
@@ -35,7 +39,7 @@ impl Table {
 
     /// Adds a caption, which should name the data convention, the unit and what was averaged.
     #[must_use]
-    pub fn captioned(self, caption: impl Into<String>) -> Self {
+    pub(crate) fn captioned(self, caption: impl Into<String>) -> Self {
         Self {
             caption: Some(caption.into()),
             ..self
@@ -43,12 +47,12 @@ impl Table {
     }
 
     /// The caption, if it has one.
-    pub fn caption(&self) -> Option<&str> {
+    pub(crate) fn caption(&self) -> Option<&str> {
         self.caption.as_deref()
     }
 
     /// The column names.
-    pub fn header(&self) -> &[String] {
+    pub(crate) fn header(&self) -> &[String] {
         &self.header
     }
 
@@ -58,12 +62,12 @@ impl Table {
     }
 
     /// Whether a column is text, and not numbers.
-    pub fn is_text(&self, column: usize) -> bool {
+    pub(crate) fn is_text(&self, column: usize) -> bool {
         self.text.get(column).copied().unwrap_or(false)
     }
 
     /// Adds a row. Missing cells are empty, cells beyond the header are dropped.
-    pub fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) -> &mut Self {
+    pub(crate) fn row<S: Into<String>>(&mut self, cells: impl IntoIterator<Item = S>) -> &mut Self {
         let mut row: Vec<_> = cells.into_iter().map(Into::into).collect();
         row.resize(self.header.len(), String::new());
         self.rows.push(row);
@@ -76,60 +80,33 @@ fn escape(cell: &str) -> String {
     cell.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
-/// A Markdown table with padded columns; `{:#}` leaves the padding out.
+/// A Markdown table with padded columns.
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        if f.alternate() {
-            return self.write_unpadded(f);
-        }
-        let mut table = comfy_table::Table::new();
-        table
-            .load_style(ASCII_MARKDOWN)
-            .set_header(self.header.iter().map(|cell| escape(cell)))
-            .add_rows(self.rows.iter().map(|row| row.iter().map(|cell| escape(cell))));
-        for (column, text) in table.column_iter_mut().zip(&self.text) {
-            let side = if *text {
-                CellAlignment::Left
-            } else {
-                CellAlignment::Right
-            };
-            column.set_cell_alignment(side);
-        }
-        for (number, line) in table.lines().enumerate() {
-            // The line under the header sets the alignment of the columns.
-            let line = if number == 1 {
-                align_numbers(&line, &self.text)
-            } else {
-                line
-            };
-            writeln!(f, "{line}")?;
+        let lines = std::iter::once(&self.header).chain(&self.rows);
+        let lines: Vec<Vec<String>> = lines.map(|cells| cells.iter().map(|cell| escape(cell)).collect()).collect();
+        let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
+        let widths: Vec<usize> = (0..self.header.len()).map(|column| width(column).unwrap_or(0)).collect();
+        let columns = || widths.iter().zip(&self.text);
+        for (number, cells) in lines.iter().enumerate() {
+            for (cell, (&width, text)) in cells.iter().zip(columns()) {
+                if *text {
+                    write!(f, "| {cell:<width$} ")?;
+                } else {
+                    write!(f, "| {cell:>width$} ")?;
+                }
+            }
+            writeln!(f, "|")?;
+            if number == 0 {
+                // The line under the header sets the alignment of the columns.
+                for (&width, text) in columns() {
+                    write!(f, "|{:->length$}", if *text { "-" } else { ":" }, length = width + 2)?;
+                }
+                writeln!(f, "|")?;
+            }
         }
         Ok(())
     }
-}
-
-impl Table {
-    fn write_unpadded(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let line = |cells: &[String]| {
-            let cells = cells.iter().map(|cell| format!(" {} |", escape(cell)));
-            format!("|{}", cells.collect::<String>())
-        };
-        let rule = self.text.iter().map(|&text| if text { "---|" } else { "--:|" });
-        writeln!(f, "{}", line(&self.header))?;
-        writeln!(f, "|{}", rule.collect::<String>())?;
-        for row in &self.rows {
-            writeln!(f, "{}", line(row))?;
-        }
-        Ok(())
-    }
-}
-
-fn align_numbers(rule: &str, text: &[bool]) -> String {
-    let columns = rule.trim_matches('|').split('|').zip(text);
-    columns.fold("|".to_owned(), |rule, (dashes, text)| match dashes.strip_suffix('-') {
-        Some(shorter) if !text => rule + shorter + ":|",
-        _ => rule + dashes + "|",
-    })
 }
 
 #[cfg(test)]
@@ -149,10 +126,6 @@ mod tests {
                 "| x y  |   |       |",
                 "| 1    | 2 | three |"
             ]
-        );
-        assert_eq!(
-            format!("{table:#}"),
-            "| a\\|b | c | d |\n|---|--:|---|\n| x y |  |  |\n| 1 | 2 | three |\n"
         );
     }
 }

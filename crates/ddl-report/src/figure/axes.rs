@@ -2,11 +2,9 @@
 
 use ddl_data::Position;
 
-use super::{
-    drawing::Drawing,
-    plan::{PlanView, bounds},
-    scale::{round_step, ticks},
-};
+use crate::figure::drawing::Drawing;
+use crate::figure::plan::{PlanView, bounds};
+use crate::figure::scale::{round_step, ticks};
 
 /// Smallest width of the shown area, metres, for scenes in which all pedestrians stand still.
 const LEAST_SPAN: f64 = 4.0;

@@ -1,63 +1,49 @@
-//! A picture of fixed size whose shapes have classes instead of colours.
+//! A picture of fixed size as SVG, whose shapes have classes instead of colours.
 
-use svg::{
-    Document, Node,
-    node::element::{Circle, Group, Line, Path, Rectangle, SVG, Style, Text, Title},
-};
+use maud::{Markup, PreEscaped, Render, html};
 
 /// The rules of `figure.css`; each colour in it is `var(--name, COLOUR ON WHITE)`.
 pub(crate) const STYLE: &str = include_str!("figure.css");
 pub(super) const PLOT_STYLE: &str = include_str!("plot.css");
+const NAMESPACE: &str = "http://www.w3.org/2000/svg";
 
 #[derive(Debug, Clone)]
 pub(crate) struct Drawing {
-    width: f64,
-    height: f64,
+    size: [f64; 2],
     title: String,
-    data: Vec<(String, String)>,
-    shapes: Group,
+    /// Markup of the shapes, one a line.
+    shapes: String,
 }
 
 impl Drawing {
     pub(crate) fn new(width: f64, height: f64, title: impl Into<String>) -> Self {
         Self {
-            width,
-            height,
+            size: [width, height],
             title: printable(title),
-            data: Vec::new(),
-            shapes: Group::new(),
+            shapes: String::new(),
         }
     }
 
-    /// Data of the picture for scripts: the attribute `data-NAME`.
-    pub(crate) fn data(&mut self, name: &str, value: impl Into<String>) {
-        self.data.push((format!("data-{name}"), value.into()));
-    }
-
-    fn add(&mut self, shape: impl Into<Box<dyn Node>>) {
-        self.shapes.append(shape);
+    fn add(&mut self, shape: &Markup) {
+        shape.render_to(&mut self.shapes);
+        self.shapes.push('\n');
     }
 
     pub(crate) fn line(&mut self, class: &str, from: [f64; 2], to: [f64; 2]) {
-        let line = Line::new()
-            .set("class", class)
-            .set("x1", px(from[0]))
-            .set("y1", px(from[1]))
-            .set("x2", px(to[0]))
-            .set("y2", px(to[1]));
-        self.add(line);
+        let ([x1, y1], [x2, y2]) = (from.map(px), to.map(px));
+        self.add(&html! { line class=(class) x1=(x1) y1=(y1) x2=(x2) y2=(y2) {} });
     }
 
     pub(crate) fn path(&mut self, class: &str, points: &[[f64; 2]]) {
-        self.styled_path(class, points, "");
+        self.outline(class, &outline(points), None);
     }
 
     pub(crate) fn styled_path(&mut self, class: &str, points: &[[f64; 2]], style: &str) {
-        self.outline(class, &outline(points), style);
+        self.outline(class, &outline(points), Some(style));
     }
 
     pub(crate) fn polygon(&mut self, class: &str, points: &[[f64; 2]]) {
-        self.outline(class, &(outline(points) + "Z"), "");
+        self.outline(class, &(outline(points) + "Z"), None);
     }
 
     pub(crate) fn rectangle(&mut self, class: &str, [[left, top], [right, bottom]]: [[f64; 2]; 2]) {
@@ -65,88 +51,76 @@ impl Drawing {
         self.polygon(class, &corners);
     }
 
-    fn outline(&mut self, class: &str, outline: &str, style: &str) {
-        let path = Path::new().set("class", class).set("d", outline);
-        let path = if style.is_empty() {
-            path
-        } else {
-            path.set("style", style)
-        };
-        self.add(path);
+    fn outline(&mut self, class: &str, outline: &str, style: Option<&str>) {
+        self.add(&html! { path class=(class) d=(outline) style=[style] {} });
     }
 
-    pub(crate) fn circle(&mut self, class: &str, at: [f64; 2], radius: f64) {
-        self.styled_circle(class, at, radius, "");
+    pub(crate) fn circle(&mut self, class: &str, centre: [f64; 2], radius: f64) {
+        self.disc(class, centre, radius, None);
     }
 
-    pub(crate) fn styled_circle(&mut self, class: &str, at: [f64; 2], radius: f64, style: &str) {
-        let circle = Circle::new()
-            .set("class", class)
-            .set("cx", px(at[0]))
-            .set("cy", px(at[1]))
-            .set("r", px(radius));
-        let circle = if style.is_empty() {
-            circle
-        } else {
-            circle.set("style", style)
-        };
-        self.add(circle);
+    pub(crate) fn styled_circle(&mut self, class: &str, centre: [f64; 2], radius: f64, style: &str) {
+        self.disc(class, centre, radius, Some(style));
     }
 
-    pub(crate) fn text(&mut self, class: &str, at: [f64; 2], words: impl Into<String>) {
-        self.add(text(class, at, words));
+    fn disc(&mut self, class: &str, centre: [f64; 2], radius: f64, style: Option<&str>) {
+        let ([cx, cy], r) = (centre.map(px), px(radius));
+        self.add(&html! { circle class=(class) cx=(cx) cy=(cy) r=(r) style=[style] {} });
     }
 
-    pub(crate) fn upward_text(&mut self, class: &str, at: [f64; 2], words: &str) {
-        let turn = format!("rotate(-90 {} {})", px(at[0]), px(at[1]));
-        self.add(text(class, at, words).set("transform", turn));
+    pub(crate) fn text(&mut self, class: &str, start: [f64; 2], words: impl Into<String>) {
+        self.turned_text(class, start, words, None);
+    }
+
+    pub(crate) fn upward_text(&mut self, class: &str, start: [f64; 2], words: &str) {
+        let [x, y] = start.map(px);
+        self.turned_text(class, start, words, Some(format!("rotate(-90 {x} {y})")));
+    }
+
+    fn turned_text(&mut self, class: &str, start: [f64; 2], words: impl Into<String>, transform: Option<String>) {
+        let [x, y] = start.map(px);
+        self.add(&html! { text class=(class) x=(x) y=(y) transform=[transform] { (printable(words)) } });
     }
 
     pub(crate) fn within(&mut self, [[left, top], [right, bottom]]: [[f64; 2]; 2], draw: impl FnOnce(&mut Self)) {
         let around = std::mem::take(&mut self.shapes);
         draw(self);
         let inside = std::mem::replace(&mut self.shapes, around);
-        let [left, top, width, height] = [left, top, right - left, bottom - top].map(px);
-        let window = SVG::new()
-            .set("x", left)
-            .set("y", top)
-            .set("width", width)
-            .set("height", height)
-            .set("viewBox", (left, top, width, height));
-        self.add(window.add(inside));
+        let [x, y, width, height] = [left, top, right - left, bottom - top].map(px);
+        let shown = format!("{x} {y} {width} {height}");
+        self.add(&html! {
+            svg x=(x) y=(y) width=(width) height=(height) viewBox=(shown) { "\n" (PreEscaped(inside)) }
+        });
     }
 
     /// Markup for a page that has the rules of [`STYLE`]; `class` is added to the class of the picture.
-    pub(crate) fn inline(&self, class: &str) -> String {
-        self.document(&format!("figure {class}"), None).to_string()
+    pub(crate) fn inline(&self, class: &str) -> Markup {
+        self.document(&format!("figure {class}"), None)
     }
 
     /// A separate file on a white background, with the rules for it; `rules` are added to those of [`STYLE`].
     pub(crate) fn to_file(&self, rules: &str) -> String {
         let style = on_white(STYLE) + &on_white(rules);
-        let document = self.document("figure", Some(&style));
+        let document = self.document("figure", Some(style)).into_string();
         format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{document}\n")
     }
 
-    fn document(&self, class: &str, style: Option<&str>) -> Document {
-        let mut document = Document::new()
-            .set("class", class.trim_end())
-            .set("viewBox", (0, 0, px(self.width), px(self.height)))
-            .set("width", px(self.width))
-            .set("height", px(self.height))
-            .set("role", "img");
-        for (name, value) in &self.data {
-            document = document.set(name.as_str(), value.as_str());
+    fn document(&self, class: &str, style: Option<String>) -> Markup {
+        let [width, height] = self.size.map(px);
+        html! {
+            svg class=(class.trim_end()) viewBox=(format!("0 0 {width} {height}")) width=(width) height=(height)
+                role="img" xmlns=(NAMESPACE)
+            {
+                title { (self.title) }
+                "\n"
+                @if let Some(style) = style {
+                    style { (PreEscaped(style)) }
+                    rect.plate width="100%" height="100%" {}
+                    "\n"
+                }
+                (PreEscaped(&self.shapes))
+            }
         }
-        document = document.add(Title::new(self.title.as_str()));
-        if let Some(style) = style {
-            let plate = Rectangle::new()
-                .set("class", "plate")
-                .set("width", "100%")
-                .set("height", "100%");
-            document = document.add(Style::new(style)).add(plate);
-        }
-        document.add(self.shapes.clone())
     }
 }
 
@@ -156,21 +130,14 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     0.56 * size * text.chars().count() as f64
 }
 
-fn text(class: &str, at: [f64; 2], words: impl Into<String>) -> Text {
-    Text::new(printable(words))
-        .set("class", class)
-        .set("x", px(at[0]))
-        .set("y", px(at[1]))
-}
-
 /// Titles come from users, and XML does not allow control characters.
 fn printable(words: impl Into<String>) -> String {
     words.into().replace(char::is_control, " ")
 }
 
 fn outline(points: &[[f64; 2]]) -> String {
-    let step = |(at, point): (usize, &[f64; 2])| {
-        let letter = if at == 0 { 'M' } else { 'L' };
+    let step = |(index, point): (usize, &[f64; 2])| {
+        let letter = if index == 0 { 'M' } else { 'L' };
         format!("{letter}{} {}", px(point[0]), px(point[1]))
     };
     points.iter().enumerate().map(step).collect()
@@ -208,7 +175,7 @@ mod tests {
         assert!(!file.contains("var(") && file.contains("stroke: #1d5fc2"));
         assert!(file.contains(".own { fill: #010203; }"));
         assert!(file.contains("<rect") && file.contains("a &lt; b") && file.contains("x &amp; y "));
-        let inline = drawing.inline("wide");
+        let inline = drawing.inline("wide").into_string();
         assert!(inline.contains("class=\"figure wide\"") && !inline.contains('#'));
         assert!(inline.contains("cx=\"1\""));
     }

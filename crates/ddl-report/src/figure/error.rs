@@ -14,20 +14,3 @@ pub enum FigureError {
     #[error("case `{case}`: {problem}")]
     GoalCase { case: String, problem: String },
 }
-
-#[derive(Debug, thiserror::Error)]
-pub(super) enum GoalCaseProblem {
-    #[error("the track must hold 20 positions (8 observed, 12 true), found {found}")]
-    TrackLength { found: usize },
-    #[error("expert {index} must hold 20 positions, found {found}")]
-    ExpertLength { index: usize, found: usize },
-    #[error(
-        "{what} is {position:?}, which is not within 1000 km of the last observed position; give metres in the \
-         coordinates of the track"
-    )]
-    Place { what: String, position: [f64; 2] },
-    #[error("goal {goal} has the weight {weight}, which is not between 0 and 1")]
-    Weight { goal: usize, weight: f64 },
-    #[error("the weights sum to {sum}, not to 1; divide them by their sum")]
-    NotNormalised { sum: f64 },
-}

@@ -1,10 +1,10 @@
 //! A pedestrian with its estimated goals: one panel of a picture.
 
 use ddl_data::{OBSERVED, Position, WINDOW};
-
-use super::error::{FigureError, GoalCaseProblem};
 use ddl_core::{Forecast, distance};
 use ddl_eval::baseline::WeightedGoals;
+
+use crate::figure::error::FigureError;
 
 /// Positions farther from the pedestrian are an error (m).
 const FARTHEST: f64 = 1e6;
@@ -30,17 +30,16 @@ impl GoalCase {
     /// weights outside [0, 1], or that do not sum to 1.
     pub fn new(title: impl Into<String>, track: &[Position], goals: WeightedGoals) -> Result<Self, FigureError> {
         let title = title.into();
-        let nearest = check(track, &goals).map_err(|problem| FigureError::GoalCase {
-            case: title.clone(),
-            problem: problem.to_string(),
-        })?;
-        Ok(Self {
-            title,
-            track: track.to_vec(),
-            goals,
-            experts: Vec::new(),
-            nearest,
-        })
+        match check(track, &goals) {
+            Ok(nearest) => Ok(Self {
+                title,
+                track: track.to_vec(),
+                goals,
+                experts: Vec::new(),
+                nearest,
+            }),
+            Err(problem) => Err(FigureError::GoalCase { case: title, problem }),
+        }
     }
 
     /// The same case with the tracks of the expert library that the goals come from, in any order.
@@ -56,35 +55,33 @@ impl GoalCase {
         let faulty = (0..).zip(&experts).find_map(|(index, expert)| {
             if expert.len() != WINDOW {
                 let found = expert.len();
-                return Some(GoalCaseProblem::ExpertLength { index, found });
+                return Some(format!("expert {index} must hold 20 positions, found {found}"));
             }
-            check_near(here, expert, |at| format!("position {at} of expert {index}")).err()
+            check_near(here, expert, |step| format!("position {step} of expert {index}")).err()
         });
         if let Some(problem) = faulty {
-            let (case, problem) = (self.title, problem.to_string());
+            let case = self.title;
             return Err(FigureError::GoalCase { case, problem });
         }
         self.experts = experts;
         Ok(self)
     }
 
-    /// The title.
-    pub fn title(&self) -> &str {
+    pub(super) fn title(&self) -> &str {
         &self.title
     }
 
-    /// The goals with their weights.
-    pub fn goals(&self) -> &WeightedGoals {
+    pub(super) fn goals(&self) -> &WeightedGoals {
         &self.goals
     }
 
     /// Index of the goal nearest the true endpoint; among equally near goals the most probable one, then the first.
-    pub fn nearest_goal(&self) -> usize {
+    pub(super) fn nearest_goal(&self) -> usize {
         self.nearest
     }
 
     /// Distance of the nearest goal from the true endpoint, metres.
-    pub fn error(&self) -> f64 {
+    pub(super) fn error(&self) -> f64 {
         distance(self.goals.goals()[self.nearest], self.track[WINDOW - 1])
     }
 
@@ -105,22 +102,24 @@ impl GoalCase {
     }
 }
 
-fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, GoalCaseProblem> {
+/// The index of the nearest goal, or what is wrong.
+fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, String> {
     if track.len() != WINDOW {
-        return Err(GoalCaseProblem::TrackLength { found: track.len() });
+        let found = track.len();
+        return Err(format!("the track must hold 20 positions (8 observed, 12 true), found {found}"));
     }
     let (here, end) = (track[OBSERVED - 1], track[WINDOW - 1]);
-    check_near(here, track, |at| format!("position {at} of the track"))?;
-    check_near(here, goals.goals(), |at| format!("goal {at}"))?;
+    check_near(here, track, |step| format!("position {step} of the track"))?;
+    check_near(here, goals.goals(), |goal| format!("goal {goal}"))?;
     let weights = goals.weights();
     for (goal, &weight) in weights.iter().enumerate() {
         if !(0.0..=1.0 + Forecast::WEIGHT_TOLERANCE).contains(&weight) {
-            return Err(GoalCaseProblem::Weight { goal, weight });
+            return Err(format!("goal {goal} has the weight {weight}, which is not between 0 and 1"));
         }
     }
     let sum: f64 = weights.iter().sum();
     if (sum - 1.0).abs() > Forecast::WEIGHT_TOLERANCE {
-        return Err(GoalCaseProblem::NotNormalised { sum });
+        return Err(format!("the weights sum to {sum}, not to 1; divide them by their sum"));
     }
     let distances = goals.goals().iter().map(|goal| distance(*goal, end));
     let by_distance = |a: &(usize, (f64, &f64)), b: &(usize, (f64, &f64))| {
@@ -131,15 +130,17 @@ fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, GoalCasePro
     Ok(nearest.map_or(0, |(index, _)| index))
 }
 
-fn check_near(here: Position, places: &[Position], name: impl Fn(usize) -> String) -> Result<(), GoalCaseProblem> {
+fn check_near(here: Position, positions: &[Position], name: impl Fn(usize) -> String) -> Result<(), String> {
     // NaN is not near.
-    let near = |place: &Position| distance(*place, here) <= FARTHEST;
-    match places.iter().position(|place| !near(place)) {
+    let near = |position: &Position| distance(*position, here) <= FARTHEST;
+    match positions.iter().position(|position| !near(position)) {
         None => Ok(()),
-        Some(at) => Err(GoalCaseProblem::Place {
-            what: name(at),
-            position: places[at],
-        }),
+        Some(index) => Err(format!(
+            "{} is {:?}, which is not within 1000 km of the last observed position; give metres in the coordinates of \
+             the track",
+            name(index),
+            positions[index]
+        )),
     }
 }
 

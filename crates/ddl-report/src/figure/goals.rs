@@ -2,16 +2,14 @@
 
 use ddl_data::Position;
 
-use super::{
-    axes::{Axes, PANEL},
-    drawing::{Drawing, PLOT_STYLE},
-    error::FigureError,
-    goal_case::GoalCase,
-    legend::{LegendEntry, LegendRows},
-    marks::{goal_ring, nearest_goal},
-    pedestrian,
-    wrap::wrapped,
-};
+use crate::figure::axes::{Axes, PANEL};
+use crate::figure::drawing::{Drawing, PLOT_STYLE};
+use crate::figure::error::FigureError;
+use crate::figure::goal_case::GoalCase;
+use crate::figure::legend::{LegendEntry, LegendRows};
+use crate::figure::marks::{goal_ring, nearest_goal};
+use crate::figure::pedestrian;
+use crate::figure::wrap::wrapped;
 
 const MOST_CASES: usize = 9;
 /// Space around everything, pixels.

@@ -1,10 +1,8 @@
 //! The legend: a column beside a plot, or rows above several plots.
 
-use super::{
-    drawing::{Drawing, text_width},
-    marks::{goal_ring, nearest_goal, star},
-    pedestrian::hypothesis_style,
-};
+use crate::figure::drawing::{Drawing, text_width};
+use crate::figure::marks::{goal_ring, nearest_goal, star};
+use crate::figure::pedestrian::hypothesis_style;
 
 const ENTRY: f64 = 26.0;
 const SAMPLE: f64 = 42.0;

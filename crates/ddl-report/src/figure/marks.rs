@@ -1,6 +1,6 @@
 //! Stars, arrows, and goals as rings whose area is proportional to their probability.
 
-use super::drawing::Drawing;
+use crate::figure::drawing::Drawing;
 
 const CERTAIN: f64 = 24.0;
 /// Least radius, so that goals of small weight are visible.

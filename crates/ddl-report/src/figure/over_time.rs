@@ -1,10 +1,8 @@
 //! Two curves over time, one panel for each recording.
 
-use super::{
-    drawing::{Drawing, PLOT_STYLE},
-    scale::{Scale, ticks},
-    wrap::wrapped,
-};
+use crate::figure::drawing::{Drawing, PLOT_STYLE};
+use crate::figure::scale::{Scale, ticks};
+use crate::figure::wrap::wrapped;
 
 const COLUMNS: usize = 3;
 /// Margin of the picture, and horizontal and vertical space between panels, pixels.
@@ -28,7 +26,7 @@ pub(crate) struct OverTime<'a> {
     /// Names of the two curves.
     pub(crate) keys: [&'a str; 2],
     pub(crate) values: Values,
-    pub(crate) panels: Vec<TimePanel>,
+    pub(crate) panels: &'a [TimePanel],
 }
 
 /// The quantity on the vertical axis.
@@ -42,12 +40,13 @@ pub(crate) enum Values {
 
 /// Two curves of one recording.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct TimePanel {
-    pub(crate) name: String,
+pub struct TimePanel {
+    /// The recording.
+    pub name: String,
     /// Two notes beside the name, in the colours of the curves.
-    pub(crate) notes: [String; 2],
-    /// Time (minutes, ascending) and value.
-    pub(crate) curves: [Vec<[f64; 2]>; 2],
+    pub notes: [String; 2],
+    /// Points of both curves: time (minutes, ascending) and value.
+    pub curves: [Vec<[f64; 2]>; 2],
 }
 
 impl OverTime<'_> {
@@ -64,9 +63,9 @@ impl OverTime<'_> {
         let heading = wrapped(self.title, 16.0, size[0] - 2.0 * EDGE, 1).concat();
         drawing.text("heading", [EDGE, EDGE + 14.0], heading);
         self.draw_legend(&mut drawing);
-        for (at, panel) in self.panels.iter().enumerate() {
-            let left = EDGE + LEFT + across(at % COLUMNS);
-            let top = HEAD + 26.0 + up(at / COLUMNS);
+        for (index, panel) in self.panels.iter().enumerate() {
+            let left = EDGE + LEFT + across(index % COLUMNS);
+            let top = HEAD + 26.0 + up(index / COLUMNS);
             panel.draw(&mut drawing, [left, top], self.values);
         }
         drawing.to_file(PLOT_STYLE)
@@ -128,7 +127,7 @@ impl TimePanel {
             drawing.text("small end", [left - 6.0, y + 4.0], label);
         }
         for (class, curve) in CLASSES.into_iter().zip(&self.curves) {
-            let points = curve.iter().map(|&[at, value]| [time.at(at), up(value)]);
+            let points = curve.iter().map(|&[minutes, value]| [time.at(minutes), up(value)]);
             let class = format!("curve {class}");
             drawing.path(&class, &points.collect::<Vec<_>>());
         }
@@ -152,12 +151,12 @@ mod tests {
             title: "Errors",
             keys: ["without", "with"],
             values: Values::Metres,
-            panels: vec![panel(0.4), panel(4.0)],
+            panels: &[panel(0.4), panel(4.0)],
         };
         let svg = drawn.to_file();
         assert_eq!(svg.matches("curve c0").count(), 1 + 2);
         for label in ["0.4", "4", "0.2 m", "without"] {
-            assert!(svg.lines().any(|line| line == label), "{label}: {svg}");
+            assert!(svg.contains(&format!(">{label}</text>")), "{label}: {svg}");
         }
         assert!(!svg.contains("the aim") && !svg.contains("NaN"));
     }

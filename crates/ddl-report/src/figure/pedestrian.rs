@@ -2,12 +2,10 @@
 
 use ddl_data::{OBSERVED, Position, TIME_STEP};
 
-use super::{
-    drawing::Drawing,
-    marks::{arrow, star},
-    plan::PlanView,
-};
-use crate::{SnapshotHypothesis, SnapshotPedestrian};
+use crate::figure::drawing::Drawing;
+use crate::figure::marks::{arrow, star};
+use crate::figure::plan::PlanView;
+use crate::snapshot::{SnapshotHypothesis, SnapshotPedestrian};
 
 const ARROW_EVERY: usize = 3;
 /// Time of the displacement that an arrow of velocity shows, s.

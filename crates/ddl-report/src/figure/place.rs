@@ -2,13 +2,11 @@
 
 use ddl_data::Position;
 
-use super::{
-    axes::{Axes, PLACE},
-    drawing::{Drawing, PLOT_STYLE},
-    scale::round_step,
-    traffic::{Ends, Traffic},
-    wrap::wrapped,
-};
+use crate::figure::axes::{Axes, PLACE};
+use crate::figure::drawing::{Drawing, PLOT_STYLE};
+use crate::figure::scale::round_step;
+use crate::figure::traffic::{Ends, Traffic};
+use crate::figure::wrap::wrapped;
 
 /// Side of a square (m), if it is large enough in pixels.
 const SIDE: f64 = 0.5;

@@ -3,14 +3,12 @@
 use ddl_core::{Disc, Forecast};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
-use super::{
-    axes::{Axes, SCENE},
-    drawing::{Drawing, PLOT_STYLE},
-    error::FigureError,
-    legend::{self, LegendEntry},
-    pedestrian,
-};
-use crate::{ForecastSnapshot, SnapshotPedestrian};
+use crate::figure::axes::{Axes, SCENE};
+use crate::figure::drawing::{Drawing, PLOT_STYLE};
+use crate::figure::error::FigureError;
+use crate::figure::legend::{self, LegendEntry};
+use crate::figure::pedestrian;
+use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
 
 /// Probability that the drawn region contains the pedestrian at the end of the horizon.
 const LEVEL: f64 = 0.9;

@@ -1,6 +1,6 @@
 //! Line breaks of titles.
 
-use super::drawing::text_width;
+use crate::figure::drawing::text_width;
 
 /// A text in at most `most` lines (at least one); the rest is cut.
 pub(super) fn wrapped(text: &str, size: f64, width: f64, most: usize) -> Vec<String> {

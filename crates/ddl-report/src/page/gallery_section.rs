@@ -1,22 +1,16 @@
 //! The gallery: the picked cases as figures in the style of Figures 3 and 4 of the DDL paper, with captions.
 
-use std::fmt::Write as _;
-
 use ddl_data::{OBSERVED, Position};
+use maud::{Markup, html};
 
-use crate::{
-    ForecastSnapshot, SnapshotPedestrian,
-    document::{escape, inline},
-    figure::{
-        drawing::Drawing,
-        marks::{arrow, star},
-        pedestrian,
-        plan::{PlanView, bounds},
-    },
-    gallery::{Highlight, HighlightKind},
-};
+use crate::document::inline;
+use crate::figure::drawing::Drawing;
+use crate::figure::marks::{arrow, star};
+use crate::figure::pedestrian;
+use crate::figure::plan::{PlanView, bounds};
+use crate::snapshot::{ForecastSnapshot, Highlight, HighlightKind, SnapshotPedestrian};
 
-const SCENE: [f64; 2] = [360.0, 300.0];
+const CASE: [f64; 2] = [360.0, 300.0];
 /// Margin around the shown tracks, px.
 const MARGIN: f64 = 22.0;
 /// Least width of the shown area, m.
@@ -24,18 +18,28 @@ const LEAST_SPAN: f64 = 3.0;
 /// Heights of title and legend of a file, px.
 const STRIPS: [f64; 2] = [30.0, 44.0];
 
-/// Draws the pedestrians of the pick, and the others in grey; `alone` adds a title and a legend, for a separate file.
-fn case_figure(moment: &ForecastSnapshot, pick: &Highlight, alone: bool) -> Drawing {
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum CaseFrame {
+    /// In a page, which has a caption and a legend.
+    Page,
+    /// In a separate file, with a title and a legend.
+    File,
+}
+
+/// Draws the pedestrians of the pick, and the others in grey.
+fn case_figure(moment: &ForecastSnapshot, pick: &Highlight, frame: CaseFrame) -> Drawing {
     let title = format!("{}: {}, frame {}", pick.show, moment.recording, moment.frame);
-    let above = if alone { STRIPS[0] } else { 0.0 };
-    let below = if alone { STRIPS[1] } else { 0.0 };
-    let height = SCENE[1] + above + below;
-    let mut drawing = Drawing::new(SCENE[0], height, &title);
-    let chosen: Vec<&SnapshotPedestrian> = pick.pedestrians.iter().map(|&at| &moment.pedestrians[at]).collect();
+    let [above, below] = match frame {
+        CaseFrame::Page => [0.0; 2],
+        CaseFrame::File => STRIPS,
+    };
+    let height = CASE[1] + above + below;
+    let mut drawing = Drawing::new(CASE[0], height, &title);
+    let chosen: Vec<&SnapshotPedestrian> = pick.pedestrians.iter().map(|&i| &moment.pedestrians[i]).collect();
     let plan = fitting(&chosen, above);
-    for (at, pedestrian) in moment.pedestrians.iter().enumerate() {
-        let mut all = pedestrian.observed.iter().chain(&pedestrian.truth);
-        if !pick.pedestrians.contains(&at) && all.any(|place| is_seen(&plan, *place, above)) {
+    for (i, pedestrian) in moment.pedestrians.iter().enumerate() {
+        let mut track = pedestrian.observed.iter().chain(&pedestrian.truth);
+        if !pick.pedestrians.contains(&i) && track.any(|place| is_seen(&plan, *place, above)) {
             pedestrian::bystander(&mut drawing, &plan, pedestrian);
         }
     }
@@ -52,7 +56,7 @@ fn case_figure(moment: &ForecastSnapshot, pick: &Highlight, alone: bool) -> Draw
     for pedestrian in &chosen {
         label(&mut drawing, &plan, pedestrian, above);
     }
-    if alone {
+    if frame == CaseFrame::File {
         plate(&mut drawing, [0.0, above]);
         plate(&mut drawing, [height - below, height]);
         drawing.text("title", [12.0, 20.0], title);
@@ -71,10 +75,10 @@ fn fitting(chosen: &[&SnapshotPedestrian], above: f64) -> PlanView {
         paths.copied().chain(shown.goal)
     });
     let [low, high] = bounds(seen).unwrap_or([[0.0; 2], [1.0; 2]]);
-    let fit = |axis: usize| (SCENE[axis] - 2.0 * MARGIN) / (high[axis] - low[axis]).max(LEAST_SPAN);
+    let fit = |axis: usize| (CASE[axis] - 2.0 * MARGIN) / (high[axis] - low[axis]).max(LEAST_SPAN);
     PlanView {
         centre: [0, 1].map(|axis| f64::midpoint(low[axis], high[axis])),
-        middle: [SCENE[0] / 2.0, above + SCENE[1] / 2.0],
+        middle: [CASE[0] / 2.0, above + CASE[1] / 2.0],
         scale: fit(0).min(fit(1)),
     }
 }
@@ -82,7 +86,7 @@ fn fitting(chosen: &[&SnapshotPedestrian], above: f64) -> PlanView {
 fn is_seen(plan: &PlanView, place: Position, above: f64) -> bool {
     let [x, y] = plan.px(place);
     let slack = 30.0;
-    (-slack..=SCENE[0] + slack).contains(&x) && (above - slack..=above + SCENE[1] + slack).contains(&y)
+    (-slack..=CASE[0] + slack).contains(&x) && (above - slack..=above + CASE[1] + slack).contains(&y)
 }
 
 fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian, above: f64) {
@@ -93,14 +97,14 @@ fn label(drawing: &mut Drawing, plan: &PlanView, pedestrian: &SnapshotPedestrian
     let (class, x) = if ahead > 0.0 {
         ("small halo end", (first[0] - 7.0).max(width + 2.0))
     } else {
-        ("small halo", (first[0] + 7.0).min(SCENE[0] - width - 2.0))
+        ("small halo", (first[0] + 7.0).min(CASE[0] - width - 2.0))
     };
-    let y = (first[1] + 4.0).clamp(above + 12.0, above + SCENE[1] - 22.0);
+    let y = (first[1] + 4.0).clamp(above + 12.0, above + CASE[1] - 22.0);
     drawing.text(class, [x, y], words);
 }
 
 fn plate(drawing: &mut Drawing, [top, bottom]: [f64; 2]) {
-    drawing.rectangle("plate", [[0.0, top], [SCENE[0], bottom]]);
+    drawing.rectangle("plate", [[0.0, top], [CASE[0], bottom]]);
 }
 
 /// A bar of 1, 2, 5 ... metres at the lower left.
@@ -136,14 +140,20 @@ fn key(drawing: &mut Drawing, y: f64) {
     drawing.text("small", [199.0, y], "velocity (move in 0.8 s)");
 }
 
-fn cases(moments: &[ForecastSnapshot]) -> Vec<(usize, &ForecastSnapshot, &Highlight)> {
-    let mut cases: Vec<(usize, &ForecastSnapshot, &Highlight)> = moments
-        .iter()
-        .enumerate()
-        .flat_map(|(at, moment)| moment.picks.iter().map(move |pick| (at, moment, pick)))
-        .collect();
-    cases.sort_by_key(|(_, _, pick)| pick.show);
-    cases
+/// A highlight and the index of its moment.
+struct GalleryEntry<'a> {
+    index: usize,
+    moment: &'a ForecastSnapshot,
+    pick: &'a Highlight,
+}
+
+fn entries(moments: &[ForecastSnapshot]) -> Vec<GalleryEntry<'_>> {
+    let picks = |(index, moment): (usize, &'_ ForecastSnapshot)| {
+        moment.picks.iter().map(move |pick| GalleryEntry { index, moment, pick })
+    };
+    let mut entries: Vec<GalleryEntry<'_>> = moments.iter().enumerate().flat_map(picks).collect();
+    entries.sort_by_key(|entry| entry.pick.show);
+    entries
 }
 
 fn meaning(show: HighlightKind) -> &'static str {
@@ -158,53 +168,50 @@ fn meaning(show: HighlightKind) -> &'static str {
     }
 }
 
-pub(super) fn html(moments: &[ForecastSnapshot]) -> String {
-    let cases = cases(moments);
-    if cases.is_empty() {
-        return "<p class=\"nothing\">No cases were picked for this page.</p>\n".to_owned();
+pub(super) fn html(moments: &[ForecastSnapshot]) -> Markup {
+    let entries = entries(moments);
+    html! {
+        @if entries.is_empty() {
+            p.nothing { "No cases were picked for this page." }
+        } @else {
+            div.cases { @for entry in &entries { (entry.html()) "\n" } }
+        }
     }
-    let mut html = "<div class=\"cases\">\n".to_owned();
-    for (at, moment, pick) in cases {
-        let figure = case_figure(moment, pick, false).inline("case");
-        let pedestrian = pick.pedestrians.first().copied().unwrap_or(0);
-        let who: Vec<String> = pick
-            .pedestrians
-            .iter()
-            .map(|&i| escape(&moment.pedestrians[i].pedestrian.to_string()))
-            .collect();
-        let fold = if moment.fold == moment.recording {
-            String::new()
-        } else {
-            format!(" (fold <code>{}</code>)", escape(&moment.fold))
-        };
-        let plural = if who.len() == 1 { "pedestrian" } else { "pedestrians" };
-        let _ = write!(
-            html,
-            "<figure>\n{figure}\n<figcaption>\n<h3>{}</h3>\n<p>{} {} of recording <code>{}</code>{}, \
-             frame {}; forecast by {}.</p>\n<p class=\"rule\">Why this one: {}.</p>\n<button type=\"button\" \
-             data-moment=\"{at}\" data-pedestrian=\"{pedestrian}\">Play this \
-             moment</button>\n</figcaption>\n</figure>\n",
-            capitalised(&pick.show.to_string()),
-            meaning(pick.show),
-            capitalised(&format!("{plural} {}", who.join(", "))),
-            escape(&moment.recording),
-            fold,
-            moment.frame,
-            escape(&moment.forecaster),
-            inline(pick.rule.trim_end_matches('.')),
-        );
+}
+
+impl GalleryEntry<'_> {
+    fn html(&self) -> Markup {
+        let Self { index, moment, pick } = *self;
+        let who = pick.pedestrians.iter().map(|&i| moment.pedestrians[i].pedestrian.to_string());
+        let who: Vec<String> = who.collect();
+        let plural = if who.len() == 1 { "Pedestrian" } else { "Pedestrians" };
+        html! {
+            figure {
+                (case_figure(moment, pick, CaseFrame::Page).inline("case"))
+                figcaption {
+                    h3 { (capitalised(&pick.show.to_string())) }
+                    p {
+                        (meaning(pick.show)) " " (plural) " " (who.join(", ")) " of recording "
+                        code { (moment.recording) }
+                        @if moment.fold != moment.recording { " (fold " code { (moment.fold) } ")" }
+                        ", frame " (moment.frame) "; forecast by " (moment.forecaster) "."
+                    }
+                    p.rule { "Why this one: " (inline(pick.rule.trim_end_matches('.'))) "." }
+                    button type="button" data-moment=(index)
+                        data-pedestrian=(pick.pedestrians.first().copied().unwrap_or(0))
+                    { "Play this moment" }
+                }
+            }
+        }
     }
-    html + "</div>\n"
 }
 
 pub(super) fn figures(moments: &[ForecastSnapshot]) -> Vec<(String, Drawing)> {
-    cases(moments)
-        .into_iter()
-        .map(|(_, moment, pick)| {
-            let name = format!("case {} {} {}", pick.show, moment.recording, moment.frame);
-            (name, case_figure(moment, pick, true))
-        })
-        .collect()
+    let named = |GalleryEntry { moment, pick, .. }| {
+        let name = format!("case {} {} {}", pick.show, moment.recording, moment.frame);
+        (name, case_figure(moment, pick, CaseFrame::File))
+    };
+    entries(moments).into_iter().map(named).collect()
 }
 
 fn capitalised(words: &str) -> String {

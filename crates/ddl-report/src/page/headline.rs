@@ -1,44 +1,33 @@
 //! The first screen: what was measured, the best result with its conditions, and the comparison.
 
-use std::fmt::Write as _;
+use maud::{Markup, html};
 
-use super::{
-    headline_chart::{MOST_LINES, Shape, headline_chart},
-    standing::{Standing, StandingLine, standing},
-};
-use crate::{
-    Report,
-    document::{escape, inline},
-};
+use crate::document::{inline, warning};
+use crate::page::headline_chart::{ChartShape, MOST_LINES, headline_chart};
+use crate::page::standing::{Standing, StandingLine, standing};
+use crate::report::Report;
 
-pub(super) fn headline(report: &Report) -> String {
+pub(super) fn headline(report: &Report) -> Markup {
     let Some(standing) = standing(report) else {
-        return "<p class=\"nothing\">This report holds no results.</p>\n".to_owned();
+        return html! { p.nothing { "This report holds no results." } };
     };
     let subject = standing.subject();
-    let mut html = subject.map_or(String::new(), |line| verdict(&standing, line));
-    if let Some(warning) = standing.shared.protocol.warning() {
-        let _ = writeln!(
-            html,
-            "<p class=\"warning\" role=\"note\"><strong>Warning.</strong> {}</p>",
-            inline(warning)
-        );
-    }
     let caption = format!(
         "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses of each pedestrian, of \
          which the best is scored. {} The tables below hold every number.",
         standing.in_words,
         shown_of(standing.lines.len())
     );
-    let _ = write!(
-        html,
-        "<figure class=\"comparison\">\n{}\n{}\n<figcaption>{}</figcaption>\n</figure>\n",
-        headline_chart(&standing, Shape::Wide).inline("wide"),
-        headline_chart(&standing, Shape::Narrow).inline("narrow"),
-        inline(&caption)
-    );
-    html.extend(subject.map(|line| facts(&standing, line)));
-    html
+    html! {
+        @if let Some(line) = subject { (verdict(&standing, line)) }
+        @if let Some(words) = standing.shared.protocol.warning() { (warning(words)) }
+        figure.comparison {
+            (headline_chart(&standing, ChartShape::Wide).inline("wide"))
+            (headline_chart(&standing, ChartShape::Narrow).inline("narrow"))
+            figcaption { (inline(&caption)) }
+        }
+        @if let Some(line) = subject { (facts(&standing, line)) }
+    }
 }
 
 fn shown_of(lines: usize) -> String {
@@ -49,42 +38,40 @@ fn shown_of(lines: usize) -> String {
     }
 }
 
-fn verdict(standing: &Standing, subject: &StandingLine) -> String {
+fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
     let mut measured = standing.folds.iter().zip(&subject.folds);
     let first = measured.find_map(|(fold, pair)| Some((fold, (*pair)?)));
     let ([ade, fde], over) = match (subject.mean, standing.folds.as_slice(), first) {
         (Some(mean), [one], _) => (mean, format!("on `{one}`")),
-        (Some(mean), all, _) if standing.all_folds => (mean, format!("plain mean of the {} folds", all.len())),
-        (Some(mean), some, _) => (
+        (Some(mean), folds, _) if standing.all_folds => (mean, format!("plain mean of the {} folds", folds.len())),
+        (Some(mean), folds, _) => (
             mean,
-            format!("plain mean of the {} folds measured: {}", some.len(), some.join(", ")),
+            format!("plain mean of the {} folds measured: {}", folds.len(), folds.join(", ")),
         ),
         (None, _, Some((fold, pair))) => (
             pair,
             format!("on `{fold}`, because it lacks other folds of this report"),
         ),
-        (None, _, None) => return String::new(),
+        (None, _, None) => return Markup::default(),
     };
-    let number = |name: &str, value: f64| {
-        format!(
-            "<div class=\"number\"><b data-number=\"{name}\">{value:.3}</b><span class=\"unit\">m</span>\
-             <span class=\"name\">{name}, best of {}</span></div>\n",
-            subject.hypotheses
-        )
-    };
-    let lead = format!(
-        "<strong>{}</strong> under protocol <code>{}</code>: {}, {}. {}",
-        escape(&subject.label),
-        standing.shared.protocol,
-        inline(&over),
-        inline(&format!("convention `{}`", standing.shared.convention)),
-        rank(standing, subject),
-    );
-    format!(
-        "<div class=\"best\">\n<p class=\"verdict\">{lead}</p>\n<div class=\"numbers\">\n{}{}</div>\n</div>\n",
-        number("minADE", ade),
-        number("minFDE", fde)
-    )
+    html! {
+        div.best {
+            p.verdict {
+                strong { (subject.label) } " under protocol " code { (standing.shared.protocol) } ": "
+                (inline(&over)) ", convention " code { (standing.shared.convention) } ". "
+                (rank(standing, subject))
+            }
+            div.numbers {
+                @for (name, value) in [("minADE", ade), ("minFDE", fde)] {
+                    div.number {
+                        b data-number=(name) { (format!("{value:.3}")) }
+                        span.unit { "m" }
+                        span.name { (name) ", best of " (subject.hypotheses) }
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Text with the rank of the line by minADE, among lines with the same folds and the same number of hypotheses.
@@ -100,7 +87,7 @@ fn rank(standing: &Standing, subject: &StandingLine) -> String {
     let of_all = format!("the {} measured with {guesses}", forecasters(ranked.len()));
     match best.mean {
         Some([ade, fde]) if best.label != subject.label => {
-            let label = escape(&best.label);
+            let label = &best.label;
             format!("Of {of_all}, {label} has the least error ({ade:.3}/{fde:.3} m).")
         }
         _ if ranked.len() > 1 => format!("It has the least error of {of_all}."),
@@ -108,7 +95,7 @@ fn rank(standing: &Standing, subject: &StandingLine) -> String {
     }
 }
 
-fn facts(standing: &Standing, subject: &StandingLine) -> String {
+fn facts(standing: &Standing, subject: &StandingLine) -> Markup {
     let [pedestrians, windows] = subject.scored.map(grouped);
     let facts = [
         (
@@ -128,18 +115,18 @@ fn facts(standing: &Standing, subject: &StandingLine) -> String {
         ),
         ("Conditions", subject.settings.clone()),
     ];
-    let mut html = "<dl class=\"facts\">\n".to_owned();
-    for (name, words) in facts {
-        let _ = writeln!(html, "<div><dt>{name}</dt><dd>{}</dd></div>", inline(&words));
+    html! {
+        dl.facts {
+            @for (name, words) in &facts { div { dt { (name) } dd { (inline(words)) } } }
+        }
     }
-    html + "</dl>\n"
 }
 
 fn grouped(count: usize) -> String {
     let digits = count.to_string();
     let mut words = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             words.push(',');
         }
         words.push(digit);

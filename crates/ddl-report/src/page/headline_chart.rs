@@ -1,9 +1,8 @@
 //! The chart at the head of the page: the errors of every forecaster on every fold, as dots.
 
-use crate::{
-    figure::{drawing::Drawing, scale::Scale},
-    page::standing::{Standing, StandingLine},
-};
+use crate::figure::drawing::Drawing;
+use crate::figure::scale::Scale;
+use crate::page::standing::{Standing, StandingLine};
 
 /// Largest number of lines of the chart; the tables contain all lines.
 pub(crate) const MOST_LINES: usize = 10;
@@ -15,13 +14,13 @@ const NUMBER: f64 = 46.0;
 const TICKS_APART: f64 = 26.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Shape {
+pub(crate) enum ChartShape {
     Wide,
     Narrow,
 }
 
 /// One column for each fold; in it each line has a full dot at minADE and a hollow one at minFDE, m.
-pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
+pub(crate) fn headline_chart(standing: &Standing, shape: ChartShape) -> Drawing {
     let lines = &standing.lines[..standing.lines.len().min(MOST_LINES)];
     let chart = Chart {
         lines,
@@ -41,8 +40,8 @@ pub(crate) fn headline_chart(standing: &Standing, shape: Shape) -> Drawing {
         standing.shared.protocol
     );
     match shape {
-        Shape::Wide => wide(&chart, &names, &title),
-        Shape::Narrow => narrow(&chart, &names, &title),
+        ChartShape::Wide => wide(&chart, &names, &title),
+        ChartShape::Narrow => narrow(&chart, &names, &title),
     }
 }
 
@@ -90,14 +89,14 @@ fn wide(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
         let guesses = format!("K = {}", line.hypotheses);
         drawing.text("small end", [left, y + 4.0], guesses);
     }
-    for (at, name) in names.iter().enumerate() {
-        let x = left + gap + (column + gap) * at as f64;
+    for (fold, name) in names.iter().enumerate() {
+        let x = left + gap + (column + gap) * fold as f64;
         let scale = Scale::of(&chart.values, [x, x + column - NUMBER]);
         drawing.text("title", [x, 16.0], name);
         axis(&mut drawing, &scale, [top, bottom]);
         for (row, line) in lines.iter().enumerate() {
             let y = top + LINE * (row as f64 + 0.5);
-            dumbbell(&mut drawing, &scale, columns(line)[at], chart.is_subject(line), y);
+            dumbbell(&mut drawing, &scale, columns(line)[fold], chart.is_subject(line), y);
         }
     }
     chart.key(&mut drawing, [left + gap, bottom + 38.0]);
@@ -112,7 +111,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
     chart.key(&mut drawing, [0.0, 12.0]);
     // The mean comes first, because the folds may only be visible after scrolling.
     for (place, name) in names.iter().cycle().skip(names.len() - 1).take(names.len()).enumerate() {
-        let at = (place + names.len() - 1) % names.len();
+        let fold = (place + names.len() - 1) % names.len();
         let top = 28.0 + block * place as f64;
         let scale = Scale::of(&chart.values, [6.0, width - NUMBER]);
         drawing.text("title", [0.0, top + 14.0], name);
@@ -124,7 +123,7 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
                 [0.0, y - 4.0],
                 format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
             );
-            dumbbell(&mut drawing, &scale, columns(line)[at], chart.is_subject(line), y + 8.0);
+            dumbbell(&mut drawing, &scale, columns(line)[fold], chart.is_subject(line), y + 8.0);
         }
     }
     drawing
@@ -136,13 +135,13 @@ fn name_class(subject: bool) -> &'static str {
 
 fn axis(drawing: &mut Drawing, scale: &Scale, [top, bottom]: [f64; 2]) {
     let mut last = f64::NEG_INFINITY;
-    for (at, (value, label)) in scale.ticks().into_iter().enumerate() {
+    for (tick, (value, label)) in scale.ticks().into_iter().enumerate() {
         let x = scale.at(value);
         if x - last < TICKS_APART {
             continue;
         }
         last = x;
-        drawing.line(if at == 0 { "axis" } else { "grid" }, [x, top], [x, bottom]);
+        drawing.line(if tick == 0 { "axis" } else { "grid" }, [x, top], [x, bottom]);
         drawing.text("small middle", [x, bottom + 14.0], label);
     }
 }

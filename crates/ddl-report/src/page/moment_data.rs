@@ -18,22 +18,18 @@
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
 
-use super::error::{PageError, SnapshotProblem};
-use crate::{ForecastSnapshot, SnapshotHypothesis, SnapshotPedestrian, gallery::Highlight};
-
-/// Largest absolute coordinate, m: millimetres stay far below the largest whole number of an `f64`.
-const REACH: f64 = ddl_data::COORDINATE_LIMIT;
+use crate::page::error::PageError;
+use crate::snapshot::{ForecastSnapshot, Highlight, SnapshotHypothesis, SnapshotPedestrian};
 
 #[derive(Serialize)]
 #[serde(rename_all = "camelCase")]
-pub(super) struct MomentData<'a> {
+struct MomentData<'a> {
     fold: &'a str,
     forecaster: &'a str,
     recording: &'a str,
     frame: i64,
     frame_step: i64,
     picks: &'a [Highlight],
-    #[serde(rename = "pedestrians")]
     pedestrians: Vec<PedestrianData<'a>>,
 }
 
@@ -56,106 +52,9 @@ struct PedestrianData<'a> {
     made_up: Option<CompletionCounts>,
 }
 
-/// The part of the true future that is required.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Truth {
-    /// All positions, because errors are shown.
-    Whole,
-    /// Any number of positions.
-    AsSeen,
-}
-
-pub(super) fn check(moments: &[ForecastSnapshot], truth: Truth) -> Result<(), PageError> {
-    for (index, moment) in moments.iter().enumerate() {
-        problem(moment, truth).map_or(Ok(()), |problem| {
-            Err(PageError::Moment {
-                index,
-                recording: moment.recording.clone(),
-                frame: moment.frame,
-                problem: problem.to_string(),
-            })
-        })?;
-    }
-    Ok(())
-}
-
-fn problem(moment: &ForecastSnapshot, truth: Truth) -> Option<SnapshotProblem> {
-    if moment.pedestrians.is_empty() {
-        return Some(SnapshotProblem::Empty("no pedestrian"));
-    }
-    let people = moment.pedestrians.len();
-    let absent = |pick: &Highlight| {
-        let pedestrian = *pick.pedestrians.iter().find(|&&one| one >= people)?;
-        Some(SnapshotProblem::Highlight {
-            show: pick.show,
-            pedestrian,
-            pedestrians: people,
-        })
-    };
-    let mut numbered = moment.pedestrians.iter().enumerate();
-    numbered
-        .find_map(|(pedestrian, who)| of_pedestrian(pedestrian, who, truth))
-        .or_else(|| moment.picks.iter().find_map(absent))
-}
-
-fn of_pedestrian(pedestrian: usize, who: &SnapshotPedestrian, truth: Truth) -> Option<SnapshotProblem> {
-    if who.hypotheses.is_empty() {
-        return Some(SnapshotProblem::Empty("a pedestrian has no hypothesis"));
-    }
-    let path = |field, path: &[Position], expected| {
-        if path.len() != expected {
-            let found = path.len();
-            return Some(SnapshotProblem::Length {
-                pedestrian,
-                field,
-                expected,
-                found,
-            });
-        }
-        place(pedestrian, field, path)
-    };
-    path("observed", &who.observed, OBSERVED)
-        .or_else(|| {
-            let expected = match truth {
-                Truth::Whole => HORIZON,
-                Truth::AsSeen => who.truth.len().min(HORIZON),
-            };
-            path("truth", &who.truth, expected)
-        })
-        .or_else(|| {
-            let mut numbered = who.hypotheses.iter().enumerate();
-            numbered.find_map(|(hypothesis, of)| {
-                let goal = of.goal.as_slice();
-                path("hypotheses", &of.positions, HORIZON)
-                    .or_else(|| place(pedestrian, "goal", goal))
-                    .or_else(|| {
-                        (!(0.0..=1.0).contains(&of.weight)).then_some(SnapshotProblem::Weight {
-                            pedestrian,
-                            hypothesis,
-                            weight: of.weight,
-                        })
-                    })
-            })
-        })
-}
-
-fn place(pedestrian: usize, field: &'static str, path: &[Position]) -> Option<SnapshotProblem> {
-    let value = *path
-        .as_flattened()
-        .iter()
-        .find(|value| value.is_nan() || value.abs() > REACH)?;
-    Some(SnapshotProblem::Coordinate {
-        pedestrian,
-        field,
-        value,
-    })
-}
-
 pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, PageError> {
-    let lines: Vec<String> = moments
-        .iter()
-        .map(|moment| serde_json::to_string(&MomentData::of(moment)))
-        .collect::<Result<_, _>>()?;
+    let lines = moments.iter().map(|moment| serde_json::to_string(&MomentData::of(moment)));
+    let lines: Vec<String> = lines.collect::<Result<_, _>>()?;
     Ok(format!("[{}]", lines.join(",\n")))
 }
 
@@ -176,21 +75,21 @@ impl<'a> MomentData<'a> {
 impl<'a> PedestrianData<'a> {
     fn of(pedestrian: &'a SnapshotPedestrian) -> Self {
         let last = pedestrian.observed[OBSERVED - 1];
-        let all = &pedestrian.hypotheses;
-        let letters = |of: fn(&SnapshotHypothesis) -> Option<bool>| all.iter().map(of).map(letter).collect();
+        let hypotheses = &pedestrian.hypotheses;
+        let letters = |of: fn(&SnapshotHypothesis) -> Option<bool>| hypotheses.iter().map(of).map(letter).collect();
         Self {
             pedestrian: &pedestrian.pedestrian,
             observed: steps([0.0, 0.0], &pedestrian.observed),
             truth: steps(last, &pedestrian.truth),
-            paths: all.iter().map(|h| steps(last, &h.positions)).collect(),
-            goals: all
+            paths: hypotheses.iter().map(|h| steps(last, &h.positions)).collect(),
+            goals: hypotheses
                 .iter()
                 .map(|h| h.goal.map(|goal| [0, 1].map(|axis| mm(goal[axis]) - mm(last[axis]))))
                 .collect(),
-            weights: all.iter().map(|h| mm(h.weight)).collect(),
-            radii: if all.iter().all(|h| h.radii.len() == HORIZON) {
+            weights: hypotheses.iter().map(|h| mm(h.weight)).collect(),
+            radii: if hypotheses.iter().all(|h| h.radii.len() == HORIZON) {
                 let in_mm = |h: &SnapshotHypothesis| h.radii.iter().map(|&radius| mm(radius)).collect();
-                all.iter().map(in_mm).collect()
+                hypotheses.iter().map(in_mm).collect()
             } else {
                 Vec::new()
             },

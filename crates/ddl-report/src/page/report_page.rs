@@ -1,22 +1,19 @@
 //! The HTML page of a report.
 
-use super::{
-    error::PageError,
-    gallery_section, headline,
-    headline_chart::{Shape, headline_chart},
-    moment_data::{self, Truth},
-    player::{PLAYER_SCRIPTS, THEME_BUTTON, head, player},
-    standing,
-    template::{fill, json_in_script},
-    training_section,
-};
-use crate::{
-    ForecastSnapshot, Report, TrainingCurve,
-    document::{ContentsEntry, escape, identifier, inline, unused},
-    figure::drawing::Drawing,
-};
+use maud::{Markup, PreEscaped, html};
 
-const TEMPLATE: &str = include_str!("page.html");
+use crate::document::{ContentsEntry, identifier, inline, unused};
+use crate::figure::drawing::Drawing;
+use crate::page::error::PageError;
+use crate::page::headline_chart::{ChartShape, headline_chart};
+use crate::page::moment_check::{self, Truth};
+use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
+use crate::page::{gallery_section, headline, moment_data, standing, training_section};
+use crate::report::Report;
+use crate::snapshot::ForecastSnapshot;
+use crate::training_curve::TrainingCurve;
+
+const CASES_KEY: &str = include_str!("cases_key.html");
 /// Scripts of the rest of this page, run after those of the player.
 const REPORT_SCRIPTS: [&str; 2] = [include_str!("script/curves.js"), include_str!("script/report_file.js")];
 
@@ -48,32 +45,65 @@ impl<'a> Page<'a> {
     /// A moment is incomplete, or the epochs of a curve do not ascend; the error names it.
     pub fn to_html(&self) -> Result<String, PageError> {
         self.check()?;
-        let document = self.report.document();
-        let (tables, contents) = document.sections();
-        let contents: Vec<String> = contents.iter().map(item).collect();
-        let report = json_in_script(&self.report.to_json()?);
-        let moments = json_in_script(&moment_data::to_json(self.moments)?);
-        let curves = json_in_script(&serde_json::to_string(self.curves)?);
-        let scripts = [PLAYER_SCRIPTS.join("\n"), REPORT_SCRIPTS.join("\n")].join("\n");
-        Ok(fill(
-            TEMPLATE,
-            &[
-                ("head", &head(&document.title)),
-                ("theme-button", THEME_BUTTON),
-                ("title", &escape(&document.title)),
-                ("lead", &inline(&document.lead)),
-                ("headline", &headline::headline(self.report)),
-                ("player", &player(self.moments)),
-                ("gallery", &gallery_section::html(self.moments)),
-                ("training", &training_section::html(self.curves)),
-                ("contents", &contents.concat()),
-                ("tables", &tables),
-                ("report-json", &report),
-                ("moments-json", &moments),
-                ("curves-json", &curves),
-                ("scripts", &scripts),
-            ],
-        ))
+        let moments = moment_data::to_json(self.moments)?;
+        let curves = serde_json::to_string(self.curves)?;
+        let report = self.report.to_json()?;
+        let data = [("report-json", &*report), ("moments-json", &moments), ("curves-json", &curves)];
+        let links = [
+            ("results", "Results"),
+            ("player", "Player"),
+            ("cases", "Cases"),
+            ("training", "Training"),
+            ("tables", "Tables"),
+        ];
+        let body = html! {
+            body {
+                a.skip href="#results" { "To the results" }
+                (bar(&links))
+                main { (self.content()) }
+                footer {
+                    p {
+                        "The numbers of this page come from the " code { "report.json" }
+                        " that is embedded in it, bit for bit. "
+                        button type="button" id="save-report" { "Save report.json" }
+                    }
+                }
+                (scripts(&data, &[&PLAYER_SCRIPTS[..], &REPORT_SCRIPTS].concat()))
+            }
+        };
+        Ok(document(self.report.title(), &body).into_string())
+    }
+
+    fn content(&self) -> Markup {
+        let results = self.report.document();
+        let (tables, contents) = results.sections();
+        html! {
+            header id="results" {
+                p.kicker { "Pedestrian trajectory forecasting" }
+                h1 { (results.title) }
+                p.lead { (inline(&results.lead)) }
+            }
+            section.headline aria-label="The best result and its comparison" { (headline::headline(self.report)) }
+            (player(self.moments))
+            section #cases {
+                h2 { "Cases" }
+                ul.key aria-label="Legend" { (PreEscaped(CASES_KEY)) }
+                (gallery_section::html(self.moments))
+            }
+            section #training {
+                h2 { "Training" }
+                (training_section::html(self.curves))
+            }
+            section #tables {
+                h2 { "All tables" }
+                ol.contents {
+                    @for ContentsEntry { id, heading, class } in &contents {
+                        li class=[class] { a href={ "#" (id) } { (heading) } }
+                    }
+                }
+            }
+            div.tables { (tables) }
+        }
     }
 
     /// Every figure as a separate SVG file on white: its name and its content.
@@ -84,7 +114,7 @@ impl<'a> Page<'a> {
         self.check()?;
         let mut figures: Vec<(String, Drawing)> = Vec::new();
         if let Some(standing) = standing::standing(self.report) {
-            figures.push(("comparison".to_owned(), headline_chart(&standing, Shape::Wide)));
+            figures.push(("comparison".to_owned(), headline_chart(&standing, ChartShape::Wide)));
         }
         figures.extend(gallery_section::figures(self.moments));
         figures.extend(training_section::figures(self.curves));
@@ -98,12 +128,7 @@ impl<'a> Page<'a> {
     }
 
     fn check(&self) -> Result<(), PageError> {
-        moment_data::check(self.moments, Truth::Whole)?;
+        moment_check::check(self.moments, Truth::Whole)?;
         training_section::check(self.curves)
     }
-}
-
-fn item(entry: &ContentsEntry) -> String {
-    let class = if entry.warned { " class=\"warned\"" } else { "" };
-    format!("<li{class}><a href=\"#{}\">{}</a></li>\n", entry.id, entry.heading)
 }

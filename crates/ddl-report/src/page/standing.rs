@@ -1,12 +1,9 @@
 //! The ranking at the head of the page: comparable rows, and the best of them.
 
 use ddl_data::WindowRule;
-
-use crate::{
-    Report,
-    report::{ResultGroup, TableLine, groups, order},
-};
 use ddl_eval::{Conditions, Scores};
+
+use crate::report::{Report, ResultGroup, TableLine, groups, order};
 
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Standing {

@@ -1,17 +1,15 @@
 //! Training curves: one panel for each fold and quantity, variants named at the ends of their lines.
 
-use std::fmt::Write as _;
+use maud::{Markup, html};
 
-use super::error::PageError;
-use crate::{
-    EpochPoint, TrainingCurve,
-    document::escape,
-    figure::{drawing::Drawing, scale::Scale},
-};
+use crate::figure::drawing::Drawing;
+use crate::figure::scale::Scale;
+use crate::page::error::PageError;
+use crate::training_curve::{EpochPoint, TrainingCurve};
 
 const SIZE: [f64; 2] = [360.0, 230.0];
 const LEFT: f64 = 46.0;
-const RIGHT: f64 = 110.0;
+const RIGHT: f64 = SIZE[0] - 110.0;
 const TOP: f64 = 34.0;
 const BOTTOM: f64 = 36.0;
 /// Height of a label, px; closer labels are moved apart.
@@ -22,6 +20,8 @@ const COLOURS: usize = 5;
 struct TrainingPanel {
     fold: String,
     quantity: String,
+    /// First and last epoch.
+    epochs: [usize; 2],
     drawing: Drawing,
 }
 
@@ -86,30 +86,23 @@ fn series<'a>(
 fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Option<TrainingPanel> {
     let epochs = || series.iter().flat_map(|s| s.points.iter().map(|(epoch, _)| *epoch));
     let (first, last) = (epochs().min()?, epochs().max()?);
-    let (right, bottom) = (SIZE[0] - RIGHT, SIZE[1] - BOTTOM);
+    let bottom = SIZE[1] - BOTTOM;
     let up = Scale::of(all, [bottom, TOP]);
     let span = (last - first).max(1) as f64;
-    let across = |epoch: usize| LEFT + (epoch - first) as f64 / span * (right - LEFT);
+    let across = |epoch: usize| LEFT + (epoch - first) as f64 / span * (RIGHT - LEFT);
 
     let mut drawing = Drawing::new(SIZE[0], SIZE[1], format!("{fold}: {quantity} by epoch"));
-    drawing.data("fold", fold);
-    drawing.data("quantity", if quantity == VALIDATION { "validation" } else { "loss" });
-    drawing.data("loss", quantity);
-    drawing.data("left", LEFT.to_string());
-    drawing.data("right", right.to_string());
-    drawing.data("first", first.to_string());
-    drawing.data("last", last.to_string());
     drawing.text("title", [0.0, 14.0], fold);
     for (value, label) in up.ticks() {
         let y = up.at(value);
-        drawing.line("grid", [LEFT, y], [right, y]);
+        drawing.line("grid", [LEFT, y], [RIGHT, y]);
         drawing.text("small end", [LEFT - 6.0, y + 4.0], label);
     }
-    drawing.line("axis", [LEFT, bottom], [right, bottom]);
+    drawing.line("axis", [LEFT, bottom], [RIGHT, bottom]);
     for epoch in epoch_ticks(first, last) {
         drawing.text("small middle", [across(epoch), bottom + 15.0], epoch.to_string());
     }
-    drawing.text("small middle", [f64::midpoint(LEFT, right), bottom + 31.0], "epoch");
+    drawing.text("small middle", [f64::midpoint(LEFT, RIGHT), bottom + 31.0], "epoch");
     for s in series {
         let points: Vec<[f64; 2]> = s.points.iter().map(|(e, v)| [across(*e), up.at(*v)]).collect();
         drawing.path(&format!("curve c{}", s.colour), &points);
@@ -118,11 +111,12 @@ fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Opti
         }
     }
     for (colour, y, words) in labels(series, &up, [TOP, bottom]) {
-        drawing.text(&format!("small c{colour}"), [right + 7.0, y + 4.0], words);
+        drawing.text(&format!("small c{colour}"), [RIGHT + 7.0, y + 4.0], words);
     }
     Some(TrainingPanel {
         fold: fold.to_owned(),
         quantity: quantity.to_owned(),
+        epochs: [first, last],
         drawing,
     })
 }
@@ -183,31 +177,35 @@ pub(super) fn check(curves: &[TrainingCurve]) -> Result<(), PageError> {
     Ok(())
 }
 
-pub(super) fn html(curves: &[TrainingCurve]) -> String {
+pub(super) fn html(curves: &[TrainingCurve]) -> Markup {
     let panels = training_panels(curves);
-    if panels.is_empty() {
-        return "<p class=\"nothing\">Nothing in this report was trained, or no training was recorded.</p>\n"
-            .to_owned();
-    }
-    let mut quantities: Vec<&str> = Vec::new();
-    for panel in &panels {
-        if !quantities.contains(&panel.quantity.as_str()) {
-            quantities.push(&panel.quantity);
+    html! {
+        @if panels.is_empty() {
+            p.nothing { "Nothing in this report was trained, or no training was recorded." }
+        }
+        @for quantity in distinct(panels.iter().map(|panel| panel.quantity.as_str())) {
+            h3 { (quantity) }
+            div.panels {
+                @for panel in panels.iter().filter(|panel| panel.quantity == quantity) { (panel.html()) "\n" }
+            }
         }
     }
-    let mut html = String::new();
-    for quantity in quantities {
-        let _ = write!(html, "<h3>{}</h3>\n<div class=\"panels\">\n", escape(quantity));
-        for panel in panels.iter().filter(|panel| panel.quantity == quantity) {
-            let _ = write!(
-                html,
-                "<figure>\n{}\n<figcaption aria-live=\"off\">&nbsp;</figcaption>\n</figure>\n",
-                panel.drawing.inline("curves")
-            );
+}
+
+impl TrainingPanel {
+    /// The figure, with what the script needs to read values from it.
+    fn html(&self) -> Markup {
+        let kind = if self.quantity == VALIDATION { "validation" } else { "loss" };
+        let [first, last] = self.epochs;
+        html! {
+            figure data-fold=(self.fold) data-quantity=(kind) data-loss=(self.quantity) data-left=(LEFT)
+                data-right=(RIGHT) data-first=(first) data-last=(last)
+            {
+                (self.drawing.inline("curves"))
+                figcaption aria-live="off" { "\u{a0}" }
+            }
         }
-        html.push_str("</div>\n");
     }
-    html
 }
 
 pub(super) fn figures(curves: &[TrainingCurve]) -> Vec<(String, Drawing)> {

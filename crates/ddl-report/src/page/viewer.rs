@@ -1,14 +1,12 @@
 //! A page with only the player, for forecasts without a known future.
 
-use super::{
-    error::PageError,
-    moment_data::{self, Truth},
-    player::{PLAYER_SCRIPTS, THEME_BUTTON, head, player},
-    template::{fill, json_in_script},
-};
-use crate::{ForecastSnapshot, document::escape};
+use maud::html;
 
-const TEMPLATE: &str = include_str!("viewer.html");
+use crate::page::error::PageError;
+use crate::page::moment_check::{self, Truth};
+use crate::page::moment_data;
+use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
+use crate::snapshot::ForecastSnapshot;
 
 /// Content of a page that plays forecasts of own tracks: one file, which needs no network and no other file.
 #[derive(Debug, Clone, Copy)]
@@ -29,25 +27,26 @@ impl Viewer<'_> {
     /// # Errors
     /// A moment is incomplete; the error names it.
     pub fn to_html(&self) -> Result<String, PageError> {
-        moment_data::check(self.moments, Truth::AsSeen)?;
-        let moments = json_in_script(&moment_data::to_json(self.moments)?);
-        let notes: Vec<String> = self
-            .notes
-            .iter()
-            .map(|note| format!("<p>{}</p>\n", escape(note)))
-            .collect();
-        Ok(fill(
-            TEMPLATE,
-            &[
-                ("head", &head(self.title)),
-                ("theme-button", THEME_BUTTON),
-                ("title", &escape(self.title)),
-                ("lead", &escape(self.lead)),
-                ("player", &player(self.moments)),
-                ("notes", &notes.concat()),
-                ("moments-json", &moments),
-                ("scripts", &PLAYER_SCRIPTS.join("\n")),
-            ],
-        ))
+        moment_check::check(self.moments, Truth::AsSeen)?;
+        let moments = moment_data::to_json(self.moments)?;
+        let body = html! {
+            body.viewer data-first="busiest" {
+                a.skip href="#player" { "To the player" }
+                (bar(&[("player", "Player"), ("notes", "Notes")]))
+                main {
+                    header {
+                        p.kicker { "Forecasts of pedestrians" }
+                        h1 { (self.title) }
+                        p.lead { (self.lead) }
+                    }
+                    (player(self.moments))
+                    section #notes aria-label="Notes" {
+                        @for note in self.notes { p { (note) } }
+                    }
+                }
+                (scripts(&[("moments-json", &moments)], &PLAYER_SCRIPTS))
+            }
+        };
+        Ok(document(self.title, &body).into_string())
     }
 }

@@ -1,14 +1,11 @@
 //! The ablation: the contributions of the goal and of the dynamics, and the paper's Table II.
 
-use super::{
-    cells::{NOTHING, errors},
-    group::{ResultGroup, TableLine},
-};
-use crate::{
-    document::{Part, Table},
-    literature::{AblationRow, LITERATURE, ablation_table},
-};
 use ddl_eval::Conditions;
+
+use crate::document::{Part, Table};
+use crate::literature::{AblationRow, LITERATURE, ablation_table};
+use crate::report::cells::{errors, or_nothing};
+use crate::report::group::{ResultGroup, TableLine};
 
 /// One table for each group that has a variant without one of the two components, then the paper's table.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
@@ -88,23 +85,14 @@ fn variant(line: &TableLine<'_>) -> Option<&'static AblationRow> {
 fn measured(group: &ResultGroup<'_>) -> Table {
     let folds = group.folds();
     let start = ["variant", "goal shift", "dynamics", "seeds"];
-    let columns = start.into_iter().chain(folds.iter().copied());
-    let mut table = Table::new(columns.chain(["mean", "mean FDE@minADE"]))
-        .text_column("goal shift")
-        .text_column("dynamics")
-        .text_column("seeds");
+    let mut table = Table::of_folds(&start, &folds, &["mean", "mean FDE@minADE"]);
     for row in &LITERATURE.ablation {
-        let lines = group
-            .lines
-            .iter()
-            .filter(|line| variant(line).is_some_and(|known| known.variant == row.variant));
-        for line in lines {
+        let is_of_row = |line: &&TableLine<'_>| variant(line).is_some_and(|other| other.variant == row.variant);
+        for line in group.lines.iter().filter(is_of_row) {
             let seeds: Vec<String> = line.seeds().iter().flatten().map(u64::to_string).collect();
-            let start = [row.variant.clone()].into_iter().chain(row.components());
-            let start = start.chain([seeds.join(", ")]);
-            let at_ade = line.over_folds(&folds, |s| s.fde_at_min_ade);
-            let at_ade = at_ade.map_or(NOTHING.to_owned(), |spread| spread.to_string());
-            table.row(start.chain(errors(line, &folds)).chain([at_ade]));
+            let start = row.start().into_iter().chain([seeds.join(", ")]);
+            let fde = or_nothing(line.over_folds(&folds, |s| s.fde_at_min_ade));
+            table.row(start.chain(errors(line, &folds)).chain([fde]));
         }
     }
     table

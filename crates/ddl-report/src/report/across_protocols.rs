@@ -1,12 +1,11 @@
 //! The same forecaster under every protocol: the effect of choosing with the truth.
 //! This is the only table with several protocols. It states that their numbers are not comparable.
 
-use super::{
-    cells::{NOTHING, errors},
-    group::{ResultGroup, TableLine},
-};
-use crate::document::{Part, Table};
 use ddl_eval::Protocol;
+
+use crate::document::{Part, Table};
+use crate::report::cells::{NOTHING, errors};
+use crate::report::group::{ResultGroup, TableLine};
 
 const NOTE: &str = "Every line has the same windows and folds. Under `published` the goal of each pedestrian is chosen \
     with the true end, among the goals of the published estimator, whose query reads one future frame. Then the best \
@@ -49,10 +48,7 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
 
 fn table(groups: &[&ResultGroup<'_>]) -> Table {
     let folds = groups[0].folds();
-    let columns = ["forecaster", "protocol", "candidates"].into_iter();
-    let mut table = Table::new(columns.chain(folds.iter().copied()).chain(["mean"]))
-        .text_column("protocol")
-        .text_column("candidates");
+    let mut table = Table::of_folds(&["forecaster", "protocol", "candidates"], &folds, &["mean"]);
     for group in groups {
         for (line, label) in group.labelled() {
             if !heads_for_goals(line) {
@@ -62,8 +58,8 @@ fn table(groups: &[&ResultGroup<'_>]) -> Table {
                 Protocol::Published => {
                     let goals = line.rows[0].scores.goal_fde.map(|_| "20 goals");
                     let samples = line.conditions().epochs.map(|_| "20 samples");
-                    let both: Vec<&str> = goals.into_iter().chain(samples).collect();
-                    both.join(" x ")
+                    let chosen_from: Vec<&str> = goals.into_iter().chain(samples).collect();
+                    chosen_from.join(" x ")
                 }
                 _ => line.rows[0].scores.hypotheses.to_string(),
             };

@@ -1,11 +1,12 @@
 //! Results by kind of motion and of interaction.
 
-use super::{
-    cells::{NOTHING, counts},
-    group::{ResultGroup, TableLine},
-};
-use crate::document::{Part, Table};
+use std::fmt;
+
 use ddl_eval::{CategoryScores, category::Category};
+
+use crate::document::{Part, Table};
+use crate::report::cells::{counts, or_nothing};
+use crate::report::group::{ResultGroup, TableLine};
 
 pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres, mean over the pedestrians of the \
     folds named, which all forecasters of the table have (not over the folds, some of which hold few pedestrians of a \
@@ -16,7 +17,7 @@ pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in met
 /// One table with a line for each category and a column for each forecaster. Empty if no row has scores by category, or
 /// if the forecasters share no fold.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
-    let known: Vec<(&TableLine<'_>, String)> = group
+    let lines: Vec<(&TableLine<'_>, String)> = group
         .labelled()
         .filter(|(line, _)| {
             let mut rows = line.rows.iter();
@@ -24,16 +25,16 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         })
         .collect();
     let mut folds = group.folds();
-    for (line, _) in &known {
+    for (line, _) in &lines {
         folds = line.present(&folds);
     }
-    if known.is_empty() || folds.is_empty() {
+    if lines.is_empty() || folds.is_empty() {
         return Vec::new();
     }
     let columns = ["category", "pedestrians"].map(str::to_owned).into_iter();
-    let mut table = Table::new(columns.chain(known.iter().map(|(_, label)| label.clone())));
+    let mut table = Table::new(columns.chain(lines.iter().map(|(_, label)| label.clone())));
     for category in Category::all() {
-        let cells: Vec<Option<Pooled>> = known
+        let cells: Vec<Option<Pooled>> = lines
             .iter()
             .map(|(line, _)| Pooled::of(line, &folds, category))
             .collect();
@@ -42,10 +43,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         }
         let pedestrians = cells.iter().flatten().map(|cell| cell.pedestrians);
         let start = [category.to_string(), counts(pedestrians.collect())];
-        let cells = cells
-            .into_iter()
-            .map(|cell| cell.map_or(NOTHING.to_owned(), |cell| cell.in_words()));
-        table.row(start.into_iter().chain(cells));
+        table.row(start.into_iter().chain(cells.into_iter().map(or_nothing)));
     }
     vec![
         Part::subheading("By category of pedestrian"),
@@ -88,8 +86,10 @@ impl Pooled {
             min_fde: fde / pedestrians as f64,
         })
     }
+}
 
-    fn in_words(&self) -> String {
-        format!("{:.3}/{:.3}", self.min_ade, self.min_fde)
+impl fmt::Display for Pooled {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:.3}/{:.3}", self.min_ade, self.min_fde)
     }
 }

@@ -1,8 +1,12 @@
 //! Cells of the tables.
 
-use super::group::TableLine;
+use crate::report::group::TableLine;
 
 pub(super) const NOTHING: &str = "-";
+
+pub(super) fn or_nothing<T: std::fmt::Display>(value: Option<T>) -> String {
+    value.map_or(NOTHING.to_owned(), |value| value.to_string())
+}
 
 /// `ADE/FDE`, if both are known.
 pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> String {
@@ -33,8 +37,8 @@ pub(super) fn counts(mut counts: Vec<usize>) -> String {
 }
 
 /// Text that names the folds of a number.
-pub(super) fn folds(present: &[&str], all: &[&str]) -> String {
-    if present.len() == all.len() {
+pub(super) fn folds(present: &[&str], folds: &[&str]) -> String {
+    if present.len() == folds.len() {
         "all".to_owned()
     } else {
         present.join(", ")

@@ -1,14 +1,11 @@
 //! The parts of a report and their order.
 
 use ddl_data::Convention;
-
-use super::{
-    ablation, across_protocols, categories,
-    group::{ResultGroup, groups},
-    metrics, published, section, significance, watching,
-};
-use crate::document::{Document, Part};
 use ddl_eval::ResultRow;
+
+use crate::document::{Document, Part};
+use crate::report::group::{ResultGroup, groups};
+use crate::report::{ablation, across_protocols, categories, metrics, published, section, significance, watching};
 
 pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let groups = groups(rows);
@@ -43,11 +40,11 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
 fn first_line(groups: &[ResultGroup<'_>]) -> String {
     let mut conventions: Vec<Convention> = groups.iter().map(|group| group.convention).collect();
     conventions.dedup();
-    let all: Vec<String> = conventions
+    let described: Vec<String> = conventions
         .iter()
         .map(|convention| format!("`{convention}` ({})", describe_convention(*convention)))
         .collect();
-    match all.as_slice() {
+    match described.as_slice() {
         [] => "Data convention: none, this report holds no results.".to_owned(),
         [one] => format!("Data convention: {one}."),
         several => format!(

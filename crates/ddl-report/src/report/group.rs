@@ -1,10 +1,10 @@
 //! Groups of rows: those of one table, and those of one line of it.
 
 use ddl_data::{Convention, WindowRule};
-
-use super::spread::SeedSpread;
-use crate::document::Part;
 use ddl_eval::{Conditions, Protocol, ResultRow, Scores, significance::BlockErrors};
+
+use crate::document::Part;
+use crate::report::spread::SeedSpread;
 
 /// Comparable rows: one table.
 pub(crate) struct ResultGroup<'a> {
@@ -25,7 +25,7 @@ pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
     let mut groups: Vec<ResultGroup<'_>> = Vec::new();
     for row in rows {
         let c = &row.conditions;
-        let at = groups.iter().position(|group| group.admits(c)).unwrap_or_else(|| {
+        let index = groups.iter().position(|group| group.admits(c)).unwrap_or_else(|| {
             groups.push(ResultGroup {
                 convention: c.convention,
                 window_rule: c.window_rule,
@@ -35,7 +35,7 @@ pub(crate) fn groups(rows: &[ResultRow]) -> Vec<ResultGroup<'_>> {
             });
             groups.len() - 1
         });
-        let group = &mut groups[at];
+        let group = &mut groups[index];
         match group.lines.iter_mut().find(|line| line.admits(c)) {
             Some(line) => line.rows.push(row),
             None => group.lines.push(TableLine { rows: vec![row] }),
@@ -107,9 +107,9 @@ impl ResultGroup<'_> {
     /// The name of each line; equal names of different settings are numbered.
     pub(crate) fn labels(&self) -> Vec<String> {
         let labels: Vec<String> = self.lines.iter().map(|l| l.conditions().label()).collect();
-        let numbered = |(at, label): (usize, &String)| {
+        let numbered = |(index, label): (usize, &String)| {
             let same = labels.iter().filter(|other| *other == label).count();
-            let before = labels[..at].iter().filter(|other| *other == label).count();
+            let before = labels[..index].iter().filter(|other| *other == label).count();
             if same > 1 {
                 format!("{label} #{}", before + 1)
             } else {
@@ -205,15 +205,9 @@ impl<'a> TableLine<'a> {
 
     /// Text with the conditions of the line: seeds, training, device, commit.
     pub(crate) fn settings(&self) -> String {
-        let c: &Conditions = self.conditions();
-        let known = |text: &str| {
-            if text.is_empty() {
-                "unknown".to_owned()
-            } else {
-                text.to_owned()
-            }
-        };
-        let commit = known(&c.commit);
+        let c: &'a Conditions = self.conditions();
+        let or_unknown = |text: &'a str| if text.is_empty() { "unknown" } else { text };
+        let commit = or_unknown(&c.commit);
         // Training and seed of another program are unknown.
         if let (None, Some(origin)) = (c.epochs, &c.selection) {
             return format!(
@@ -237,7 +231,7 @@ impl<'a> TableLine<'a> {
                 parts.extend(c.recipe.clone());
             }
         }
-        parts.push(format!("device {}", known(&c.device)));
+        parts.push(format!("device {}", or_unknown(&c.device)));
         parts.push(format!("commit {commit}"));
         parts.join("; ")
     }

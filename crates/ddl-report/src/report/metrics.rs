@@ -1,12 +1,11 @@
 //! Metrics besides minADE and minFDE.
 
-use super::{
-    cells::{self, NOTHING},
-    group::{ResultGroup, TableLine},
-    spread::SeedSpread,
-};
-use crate::document::{Part, Table};
 use ddl_eval::Scores;
+
+use crate::document::{Part, Table};
+use crate::report::cells::{self, NOTHING};
+use crate::report::group::{ResultGroup, TableLine};
+use crate::report::spread::SeedSpread;
 
 /// A metric of the further tables: name of its column, decimals, value.
 type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);
@@ -64,13 +63,13 @@ const WHOLE: [MetricColumn; 13] = [
 ];
 
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
-    let both = [("Further metrics", &FURTHER[..]), ("The forecast as a whole", &WHOLE)];
+    let tables = [("Further metrics", &FURTHER[..]), ("The forecast as a whole", &WHOLE)];
     let part = |(name, columns): (&str, &[MetricColumn])| {
         let caption = format!("{name}. {}", group.conditions_in_words());
         let table = table(group, columns).captioned(caption);
         [Part::subheading(name), Part::Table(table)]
     };
-    both.into_iter().flat_map(part).collect()
+    tables.into_iter().flat_map(part).collect()
 }
 
 /// One line for each forecaster, one column for each metric, mean over its folds.

@@ -1,9 +1,10 @@
 //! Published numbers of others, as printed by their sources.
 
 use ddl_data::Convention;
-
-use crate::{document::Part, literature};
 use ddl_eval::ResultRow;
+
+use crate::document::Part;
+use crate::literature::{LITERATURE, measured_table, published_table, social_gan_joint_table};
 
 pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
     let star = rows.iter().any(|row| row.conditions.convention == Convention::Star);
@@ -25,25 +26,25 @@ pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
              `published` results in the `star` convention alone."
                 .to_owned(),
         ),
-        Part::Table(literature::table_one()),
+        Part::Table(published_table(&LITERATURE.table_one, 2)),
         Part::subheading("Best published systems in the `star` convention (minADE20/minFDE20)"),
-        Part::Table(literature::star_convention_table()),
+        Part::Table(published_table(&LITERATURE.star_convention, 2)),
         Part::subheading("Best published systems in the `social-gan` convention (minADE20/minFDE20)"),
-        Part::Table(literature::social_gan_convention_table()),
+        Part::Table(published_table(&LITERATURE.social_gan_convention, 2)),
         Part::subheading("One forecast in the `social-gan` convention (ADE/FDE)"),
         Part::Paragraph(
             "Windows of at least one pedestrian: compare with window rule `social-gan` (at least 1 pedestrians) under \
              `single`, and leave univ out, whose windows are others."
                 .to_owned(),
         ),
-        Part::Table(literature::social_gan_single_table()),
+        Part::Table(published_table(&LITERATURE.social_gan_single, 3)),
         Part::subheading("Joint errors on eth in the `social-gan` convention"),
-        Part::Table(literature::social_gan_joint_table()),
+        Part::Table(social_gan_joint_table()),
         Part::heading("Reference values of baselines"),
         Part::Paragraph(
             "Measured once on all test windows of the `star` convention, window rule `published`; ADE/FDE in metres."
                 .to_owned(),
         ),
-        Part::Table(literature::measured_table()),
+        Part::Table(measured_table()),
     ]
 }

@@ -1,9 +1,11 @@
 //! Errors by recording, for own recordings that were measured together.
 
-use super::{cells::pair, group::ResultGroup};
-use crate::document::{Part, Table};
 use ddl_data::Convention;
 use ddl_eval::{RecordingErrors, ResultRow};
+
+use crate::document::{Part, Table};
+use crate::report::cells::pair;
+use crate::report::group::ResultGroup;
 
 /// A table for each set of own recordings: a row for each recording and one for all, a column for each forecaster.
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
@@ -39,12 +41,12 @@ fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
     let columns = ["recording".to_owned(), "pedestrian-windows".to_owned()];
     let forecasters = measured.iter().map(|(label, ..)| label.clone());
     let mut table = Table::new(columns.into_iter().chain(forecasters));
-    for of in recordings {
+    for RecordingErrors { recording, pedestrians, .. } in recordings {
         let errors = measured.iter().map(|(.., recordings)| {
-            let same = recordings.iter().find(|same| same.recording == of.recording);
-            pair(same.map(|of| rounded(of.min_ade)), same.map(|of| rounded(of.min_fde)))
+            let same = recordings.iter().find(|same| same.recording == *recording);
+            pair(same.map(|r| rounded(r.min_ade)), same.map(|r| rounded(r.min_fde)))
         });
-        let start = [of.recording.clone(), of.pedestrians.to_string()];
+        let start = [recording.clone(), pedestrians.to_string()];
         table.row(start.into_iter().chain(errors));
     }
     let errors = measured

@@ -2,13 +2,10 @@
 
 use ddl_data::WindowRule;
 
-use super::{
-    categories,
-    cells::{counts, errors},
-    group::ResultGroup,
-    metrics, recordings, significance,
-};
 use crate::document::{Part, Table};
+use crate::report::cells::{counts, errors};
+use crate::report::group::ResultGroup;
+use crate::report::{categories, metrics, recordings, significance};
 
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let rule = describe_rule(group.window_rule);
@@ -26,7 +23,10 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         ]),
     ];
     parts.extend(group.warning());
-    parts.push(Part::Table(headline(group).captioned(caption(group))));
+    parts.push(Part::Table(headline(group).captioned(format!(
+        "minADE/minFDE in metres. {}",
+        group.conditions_in_words()
+    ))));
     parts.push(Part::List(conditions(group)));
     parts.extend(recordings::parts(group));
     let mut more = metrics::parts(group);
@@ -39,10 +39,6 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         parts: more,
     });
     parts
-}
-
-fn caption(group: &ResultGroup<'_>) -> String {
-    format!("minADE/minFDE in metres. {}", group.conditions_in_words())
 }
 
 fn describe_rule(rule: WindowRule) -> String {
@@ -58,8 +54,7 @@ fn describe_rule(rule: WindowRule) -> String {
 
 fn headline(group: &ResultGroup<'_>) -> Table {
     let folds = group.folds();
-    let columns = ["forecaster"].into_iter().chain(folds.iter().copied()).chain(["mean"]);
-    let mut table = Table::new(columns);
+    let mut table = Table::of_folds(&["forecaster"], &folds, &["mean"]);
     let pedestrians = folds.iter().map(|fold| counts(group.pedestrians(fold)));
     table.row(["pedestrians scored".to_owned()].into_iter().chain(pedestrians));
     for (line, label) in group.labelled() {
@@ -73,7 +68,7 @@ fn conditions(group: &ResultGroup<'_>) -> Vec<String> {
     let mut alike: Vec<(String, Vec<String>)> = Vec::new();
     for (line, label) in group.labelled() {
         let settings = line.settings();
-        match alike.iter_mut().find(|(known, _)| *known == settings) {
+        match alike.iter_mut().find(|(others, _)| *others == settings) {
             Some((_, labels)) => labels.push(label),
             None => alike.push((settings, vec![label])),
         }

@@ -1,13 +1,11 @@
 //! Intervals of the errors, and of the differences between lines.
 
+use ddl_eval::significance::{BlockErrors, BlockMetric, Interval, mean_interval, paired_difference};
 use rayon::prelude::*;
 
-use super::{
-    cells::{self, NOTHING},
-    group::{ResultGroup, TableLine},
-};
 use crate::document::{Part, Table};
-use ddl_eval::significance::{BlockErrors, BlockMetric, Interval, mean_interval, paired_difference};
+use crate::report::cells::{self, NOTHING, or_nothing};
+use crate::report::group::{ResultGroup, TableLine};
 
 pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 95 % interval over 10,000 resamples of \
     20 s of recording (windows overlap and are not independent samples). p is the probability that chance alone makes \
@@ -96,8 +94,7 @@ impl<'a> MeasuredLine<'a> {
 
     fn intervals(&self) -> [String; 2] {
         [BlockMetric::MinAde, BlockMetric::MinFde].map(|metric| {
-            let interval = mean_interval(&self.slices(), metric);
-            interval.map_or(NOTHING.to_owned(), in_words)
+            or_nothing(mean_interval(&self.slices(), metric).map(in_words))
         })
     }
 

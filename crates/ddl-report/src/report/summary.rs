@@ -1,15 +1,14 @@
 //! The rows and columns of a report that a results page shows.
 
 use ddl_data::Convention;
-
-use super::{
-    cells::{counts, pair},
-    group::{ResultGroup, TableLine, groups},
-    metrics, significance,
-    spread::SeedSpread,
-};
-use crate::{document::Table, literature};
 use ddl_eval::{Protocol, ResultRow};
+
+use crate::document::Table;
+use crate::literature;
+use crate::report::cells::{counts, pair};
+use crate::report::group::{ResultGroup, TableLine, groups};
+use crate::report::spread::SeedSpread;
+use crate::report::{metrics, significance};
 
 /// Rows that only the full tables show, by the end of their names.
 const LEFT_OUT: [&str; 3] = [

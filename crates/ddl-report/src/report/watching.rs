@@ -1,11 +1,13 @@
 //! The effect of the memory of a recording over the time of observation: `online` forecasts beside those of the same
 //! model without the memory.
 
-use super::group::{ResultGroup, TableLine, groups};
-use crate::document::{Part, Table};
-use crate::figure::over_time::{OverTime, TimePanel, Values};
 use ddl_eval::significance::BlockErrors;
 use ddl_eval::{Protocol, ResultRow};
+
+use crate::document::{Part, Table};
+use crate::figure::over_time::{OverTime, TimePanel, Values};
+use crate::report::cells::or_nothing;
+use crate::report::group::{ResultGroup, TableLine, groups};
 
 const QUARTERS: usize = 4;
 /// Number of blocks whose mean is a point of a curve: one minute.
@@ -51,7 +53,7 @@ fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> 
     let Some(other) = others.find(|g| g.protocol == without && g.same_windows(group)) else {
         return Vec::new();
     };
-    let mut all = Vec::new();
+    let mut models = Vec::new();
     for (line, forecaster) in group.labelled() {
         let same = |other: &&TableLine<'_>| is_same_model(line, other);
         let Some(alone) = other.lines.iter().find(same) else {
@@ -65,7 +67,7 @@ fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> 
                 let same = |block: &&BlockErrors| block.recording == recording[0].recording;
                 let alone: Vec<BlockErrors> = alone.iter().filter(same).cloned().collect();
                 if !alone.is_empty() {
-                    all.push(Watched {
+                    models.push(Watched {
                         forecaster: forecaster.clone(),
                         watching: recording.to_vec(),
                         alone,
@@ -74,18 +76,18 @@ fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> 
             }
         }
     }
-    all
+    models
 }
 
 /// A table for an online group: a row for each model and recording, a column for each quarter of the recording.
 pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Part> {
-    let all = watched(group, groups);
-    if all.is_empty() {
+    let models = watched(group, groups);
+    if models.is_empty() {
         return Vec::new();
     }
     let columns = ["first quarter", "second", "third", "last"];
     let mut table = Table::new(["forecaster", "recording"].into_iter().chain(columns)).text_column("recording");
-    for watched in &all {
+    for watched in &models {
         let cells = by_quarter(&watched.watching).into_iter();
         let cells = cells.zip(by_quarter(&watched.alone)).map(cell);
         let start = [watched.forecaster.clone(), watched.recording().to_owned()];
@@ -106,9 +108,10 @@ pub(super) fn parts(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<
 pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
     let groups = groups(rows);
     let figure = |group: &ResultGroup<'_>| {
-        let all = watched(group, &groups);
-        let first = all.first()?.forecaster.clone();
-        let of_first = all.iter().filter(|watched| watched.forecaster == first);
+        let models = watched(group, &groups);
+        let first = models.first()?.forecaster.clone();
+        let of_first = models.iter().filter(|watched| watched.forecaster == first);
+        let panels: Vec<TimePanel> = of_first.map(Watched::panel).collect();
         let title = format!(
             "{} over watching time (m, mean of a minute); {}, windows {}",
             error(group.protocol),
@@ -122,7 +125,7 @@ pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
                 "with what was seen in it until then",
             ],
             values: Values::Metres,
-            panels: of_first.map(Watched::panel).collect(),
+            panels: &panels,
         };
         let name = format!("watching {} {} {}", group.protocol, group.convention, group.window_rule);
         Some((name, drawn.to_file()))
@@ -169,11 +172,9 @@ fn mean<'a>(blocks: impl Iterator<Item = &'a BlockErrors>) -> f64 {
 }
 
 fn cell((watching, alone): (Option<f64>, Option<f64>)) -> String {
-    match (watching, alone) {
-        (Some(watching), Some(alone)) => {
-            let change = 100.0 * (watching / alone - 1.0);
-            format!("{watching:.3} ({change:+.1} %)")
-        }
-        _ => super::cells::NOTHING.to_owned(),
-    }
+    let both = watching.zip(alone);
+    or_nothing(both.map(|(watching, alone)| {
+        let change = 100.0 * (watching / alone - 1.0);
+        format!("{watching:.3} ({change:+.1} %)")
+    }))
 }

@@ -46,15 +46,15 @@ fn every_role_is_drawn_and_named() {
     let svg = figure::goals("Goals & ends", &cases).unwrap();
     assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
     for text in [
-        "\nGoals &amp; ends\n</text>",
-        "\n&lt;eth&gt;, pedestrian 7\n",
-        "\nhotel, pedestrian 9\n",
-        "\nobserved, 3.2 s\n",
-        "\ntruth, 4.8 s, and its end\n",
-        "\nhow similar pedestrians went on\n",
-        "\ngoals of 1, 5, 20 % probability\n",
-        "\ngoal nearest the true end\n",
-        "\nAxes: metres from the last observed position\n",
+        ">Goals &amp; ends</text>",
+        ">&lt;eth&gt;, pedestrian 7<",
+        ">hotel, pedestrian 9<",
+        ">observed, 3.2 s<",
+        ">truth, 4.8 s, and its end<",
+        ">how similar pedestrians went on<",
+        ">goals of 1, 5, 20 % probability<",
+        ">goal nearest the true end<",
+        ">Axes: metres from the last observed position<",
     ] {
         assert_eq!(count(&svg, text), 1, "`{text}`");
     }

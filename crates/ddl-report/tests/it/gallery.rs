@@ -4,10 +4,7 @@ use ddl_core::{Forecast, average_displacement};
 use ddl_data::{Dataset, Window, WindowRule};
 use ddl_eval::Protocol;
 use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint};
-use ddl_report::{
-    ForecastSnapshot,
-    gallery::{self, HighlightKind},
-};
+use ddl_report::{ForecastSnapshot, HighlightKind, gallery};
 
 fn windows() -> Vec<Window> {
     let dataset = Dataset::simulated(1);
@@ -40,8 +37,8 @@ fn each_kind_of_case_is_picked_once_and_time_is_covered() {
     // In order of time, from the first to the last eighth of the recording.
     let frames: Vec<i64> = moments.iter().map(|m| m.frame).collect();
     assert!(frames.is_sorted());
-    let all: Vec<i64> = windows.iter().map(|w| w.frames()[7]).collect();
-    let (first, last) = (all[all.len() / 8], all[7 * all.len() / 8]);
+    let present: Vec<i64> = windows.iter().map(|w| w.frames()[7]).collect();
+    let (first, last) = (present[present.len() / 8], present[7 * present.len() / 8]);
     assert!(frames[0] <= first && frames[frames.len() - 1] >= last);
     for moment in &moments {
         for pick in &moment.picks {

@@ -4,6 +4,5 @@
 
 mod figure;
 mod gallery;
-mod measured_baselines;
 mod page;
 mod report;

@@ -32,12 +32,13 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
     let mut shown: Vec<&PicturedPedestrian<'_>> = Vec::new();
     for kind in MotionKind::ALL {
         // Each pedestrian only once.
-        let candidates: Vec<&PicturedPedestrian<'_>> = pedestrians
+        let mut candidates: Vec<&PicturedPedestrian<'_>> = pedestrians
             .iter()
             .filter(|pedestrian| pedestrian.kind == kind && !shown.iter().any(|other| other.is(pedestrian)))
             .collect();
-        let errors: Vec<_> = candidates.iter().map(|w| (kind, w.error)).collect();
-        shown.extend(figure::typical_pedestrians(&errors).into_iter().map(|i| candidates[i]));
+        candidates.sort_by(|a, b| a.error.total_cmp(&b.error));
+        // Of an even number the lower of the two in the middle.
+        shown.extend(candidates.get(candidates.len().saturating_sub(1) / 2));
     }
     let cases = shown
         .into_iter()

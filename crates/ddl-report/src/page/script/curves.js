@@ -4,7 +4,7 @@
   const curves = embedded("curves-json");
 
   const readOut = (svg, event) => {
-    const data = svg.dataset;
+    const data = svg.parentElement.dataset;
     const box = svg.getBoundingClientRect();
     const x = ((event.clientX - box.left) / box.width) * svg.viewBox.baseVal.width;
     const share = (x - data.left) / (data.right - data.left);

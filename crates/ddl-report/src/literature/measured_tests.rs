@@ -4,14 +4,15 @@ use ddl_core::Forecaster;
 use ddl_data::{Convention, Dataset, Window, WindowRule, locate};
 use ddl_eval::baseline::{ConstantAcceleration, ConstantVelocity, SocialForce, StraightLine, TrueEndpoint};
 use ddl_eval::{Conditions, Protocol, ResultRow};
-use ddl_report::literature;
+
+use crate::literature::{BaselineReference, FOLDS, LITERATURE};
 
 /// The test windows of every fold; without recordings the tests are skipped, except in CI.
 fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {
     let star = Convention::Star;
     let windows = |dataset: Dataset| {
-        let of = |fold: &&'static str| (*fold, dataset.fold(fold).unwrap().test_windows(WindowRule::Published));
-        literature::FOLDS.iter().map(of).collect()
+        let cut = |fold: &&'static str| (*fold, dataset.fold(fold).unwrap().test_windows(WindowRule::Published));
+        FOLDS.iter().map(cut).collect()
     };
     match locate(star, None).and_then(|folder| Dataset::load(star, &folder)) {
         Ok(dataset) => Some(windows(dataset)),
@@ -24,8 +25,8 @@ fn folds() -> Option<Vec<(&'static str, Vec<Window>)>> {
     }
 }
 
-fn measured(name: &str) -> &'static literature::BaselineReference {
-    let mut rows = literature::LITERATURE.measured.iter();
+fn measured(name: &str) -> &'static BaselineReference {
+    let mut rows = LITERATURE.measured.iter();
     rows.find(|row| row.method == name).unwrap()
 }
 
@@ -48,11 +49,11 @@ fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
     let printed = deterministic
         .into_iter()
         .map(|forecaster| (forecaster.name(), forecaster, [0.000_501; 2]));
-    let all: Vec<(String, Box<dyn Forecaster>, [f64; 2])> = printed
+    let forecasters: Vec<(String, Box<dyn Forecaster>, [f64; 2])> = printed
         .chain([(of_noise, Box::new(noisy) as _, [0.005, 0.012])])
         .collect();
     for (f, (fold, windows)) in folds.iter().enumerate() {
-        for (name, forecaster, tolerance) in &all {
+        for (name, forecaster, tolerance) in &forecasters {
             let (star, rule) = (Convention::Star, WindowRule::Published);
             let conditions = Conditions::new(star, rule, Protocol::Published, *fold, "baseline");
             let scores = ResultRow::measure(conditions, forecaster, windows).unwrap().scores;

@@ -2,8 +2,8 @@
 //!
 //! - [`scene()`]: one scene with its forecasts;
 //! - [`place()`]: the tracks of a place;
-//! - [`goals()`]: estimated goals, one panel for each pedestrian ([`GoalCase`], chosen by [`typical_pedestrians`]);
-//! - [`coverage()`]: coverage of regions over time.
+//! - [`goals()`]: estimated goals, one panel for each pedestrian ([`GoalCase`]);
+//! - [`coverage()`]: coverage of regions over time, one [`TimePanel`] for each recording.
 //!
 //! Maps show metres at one scale for both axes. Colours are those of the [page](crate::page).
 
@@ -22,13 +22,12 @@ pub(crate) mod plan;
 pub(crate) mod scale;
 mod scene;
 mod traffic;
-mod typical;
 mod wrap;
 
-pub use coverage::{CoveragePanel, coverage};
+pub use coverage::coverage;
 pub use error::FigureError;
 pub use goal_case::GoalCase;
 pub use goals::goals;
+pub use over_time::TimePanel;
 pub use place::place;
 pub use scene::scene;
-pub use typical::typical_pedestrians;

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
-use crate::{ReportError, document::Document};
 use ddl_data::Convention;
 use ddl_eval::ResultRow;
+use serde::{Deserialize, Serialize};
+
+use crate::document::Document;
+use crate::error::ReportError;
 
 mod ablation;
 mod across_protocols;
@@ -60,14 +61,14 @@ impl Report {
     /// As [`Report::new`]; the rows before the conflict are kept.
     pub fn extend(&mut self, rows: impl IntoIterator<Item = ResultRow>) -> Result<(), ReportError> {
         for row in rows {
-            match self.rows.iter().find(|known| known.conditions == row.conditions) {
+            match self.rows.iter().find(|earlier| earlier.conditions == row.conditions) {
                 None => self.rows.push(row),
-                Some(known) if known.scores == row.scores => {}
-                Some(known) => {
+                Some(earlier) if earlier.scores == row.scores => {}
+                Some(earlier) => {
                     return Err(ReportError::Conflict {
                         row: row.conditions.label(),
                         fold: row.conditions.fold,
-                        first: known.scores.min_ade,
+                        first: earlier.scores.min_ade,
                         second: row.scores.min_ade,
                     });
                 }
@@ -91,8 +92,13 @@ impl Report {
         self.document().to_markdown()
     }
 
+    /// The tables for a paper as LaTeX, to be included with `\\input`; they need `booktabs` and `adjustbox`.
+    pub fn to_latex(&self) -> String {
+        self.document().to_latex()
+    }
+
     /// The report as a document, for markdown, HTML or LaTeX.
-    pub fn document(&self) -> Document {
+    pub(crate) fn document(&self) -> Document {
         content::document(&self.title, &self.rows)
     }
 

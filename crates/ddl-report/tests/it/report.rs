@@ -250,7 +250,7 @@ fn files_are_named_checked_and_read_back() {
     let report = Report::new("Quick", rows).unwrap();
     let [markdown, latex, (name, json)] = report.files().unwrap();
     assert_eq!(markdown, ("report.md", report.to_markdown()));
-    assert_eq!(latex, ("report.tex", report.document().to_latex()));
+    assert_eq!(latex, ("report.tex", report.to_latex()));
     assert_eq!(name, "report.json");
     let file = std::env::temp_dir().join(format!("ddl-report-{}.json", std::process::id()));
     std::fs::write(&file, &json).unwrap();
@@ -283,12 +283,12 @@ fn differences_come_with_their_interval_and_their_p_value() {
     let worse = of_forecaster(five_folds(Protocol::Fair, 1, 0.30), "straight line");
     let page = markdown(better.into_iter().chain(worse));
     let sure = page.split("### How sure").nth(1).unwrap();
-    let found = cells(line(sure, "| straight line "));
-    assert_eq!(found[1], "all");
-    assert!(found[2].starts_with("0.300 [0.2"), "{found:?}");
-    assert!(found[4].starts_with("+0.050 [+0.04"), "{found:?}");
-    assert_eq!(found[5], "<0.001");
-    assert_eq!(found[6], "+0.100 [+0.100, +0.100]");
+    let row = cells(line(sure, "| straight line "));
+    assert_eq!(row[1], "all");
+    assert!(row[2].starts_with("0.300 [0.2"), "{row:?}");
+    assert!(row[4].starts_with("+0.050 [+0.04"), "{row:?}");
+    assert_eq!(row[5], "<0.001");
+    assert_eq!(row[6], "+0.100 [+0.100, +0.100]");
     assert_eq!(cells(line(sure, "| DDL "))[4..], ["-"; 4]);
 }
 
@@ -307,7 +307,7 @@ fn protocols_meet_in_one_table_with_its_warning() {
     let published = ["published", "20 goals x 20 samples", "0.125/0.250"];
     assert_eq!(rows[0][1..4], published);
     assert_eq!(rows[1][1..4], ["fair", "20", "0.250/0.500"]);
-    let (html, latex) = (report.document().to_html(), report.document().to_latex());
+    let (html, latex) = (Page::new(&report).to_html().unwrap(), report.to_latex());
     for cell in ["0.250/0.500", "0.125/0.250", "0.36/0.65"] {
         assert!(html.contains(&format!("<td>{cell}</td>")), "{cell}");
         assert!(latex.contains(&format!("& {cell} ")), "{cell}");

@@ -6,6 +6,6 @@ mod markdown;
 mod parts;
 mod table;
 
-pub(crate) use html::{ContentsEntry, escape, identifier, inline, unused};
-pub use parts::{Document, Part};
+pub(crate) use html::{ContentsEntry, identifier, inline, unused, warning};
+pub(crate) use parts::{Document, Part};
 pub use table::Table;
