@@ -7,7 +7,7 @@
 
 use std::{error::Error, f64::consts::TAU, path::Path};
 
-use ddl_core::{Forecast, ForecastError, Forecaster, distance};
+use ddl_core::{Forecast, ForecastError, Forecaster};
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
 use ddl_eval::baseline::{self, GoalSource, StraightLine, WeightedGoals};
 use ddl_eval::metric::stability::RolloutStability;
@@ -53,36 +53,31 @@ impl GoalSource for Fan {
     }
 
     fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-        let of = |i| {
+        let goals_of = |i| {
             let (goals, weights) = Fan::of(window.observed(i));
             Ok(WeightedGoals::new(goals, weights)?)
         };
-        (0..window.len()).map(of).collect()
+        (0..window.len()).map(goals_of).collect()
     }
 }
 
-/// A forecaster whose paths start with the observed velocity and bend to the goal, which they nearly reach. If the
-/// future is visible, it makes 20 paths to the goal nearest the true endpoint.
+/// A forecaster whose paths start with the observed velocity and bend to the goal, which they nearly reach.
 struct Bending;
 
-/// A path from the current position and velocity to the goal; `bend` moves its middle sideways (m).
-fn way(observed: &[Position], goal: Position, bend: f64) -> Vec<Position> {
+/// A path from the current position and velocity to the goal.
+fn way(observed: &[Position], goal: Position) -> Vec<Position> {
     let (before, last) = (observed[OBSERVED - 2], observed[OBSERVED - 1]);
-    let (dx, dy) = (goal[0] - last[0], goal[1] - last[1]);
-    let length = dx.hypot(dy).max(1e-9);
     (1..=HORIZON)
         .map(|t| {
             let s = t as f64 / HORIZON as f64;
             // A parabola that starts with the pedestrian's velocity, blended into the straight line.
             let fade = s * s * (3.0 - 2.0 * s);
-            let aside = bend * (std::f64::consts::PI * s).sin() / length;
             let along = 1.0 - (1.0 - s).powf(1.15);
-            let on = |axis: usize, to: f64, across: f64| {
+            [0, 1].map(|axis| {
                 let inertia = last[axis] + (last[axis] - before[axis]) * t as f64;
-                let straight = last[axis] + 0.985 * along * to;
-                (1.0 - fade) * inertia + fade * straight + aside * across
-            };
-            [on(0, dx, -dy), on(1, dy, dx)]
+                let straight = last[axis] + 0.985 * along * (goal[axis] - last[axis]);
+                (1.0 - fade) * inertia + fade * straight
+            })
         })
         .collect()
 }
@@ -97,26 +92,14 @@ impl Forecaster for Bending {
         for i in 0..window.len() {
             let observed = window.observed(i);
             let (fan, fan_weights) = Fan::of(observed);
-            let nearest = |end| {
-                let nearer = |a: &&Position, b: &&Position| distance(**a, end).total_cmp(&distance(**b, end));
-                fan.iter().min_by(nearer).copied()
-            };
-            let chosen: Vec<(Position, f64, f64)> = match window.end(i).and_then(nearest) {
-                Some(goal) => (0..20).map(|k| (goal, 0.05 * (f64::from(k) - 9.5), 0.05)).collect(),
-                None => fan
-                    .iter()
-                    .zip(&fan_weights)
-                    .map(|(goal, weight)| (*goal, 0.0, *weight))
-                    .collect(),
-            };
-            for (goal, bend, weight) in chosen {
-                let path = way(observed, goal, bend);
-                let judged = RolloutStability::of(observed[OBSERVED - 1], &path, goal);
+            for goal in &fan {
+                let path = way(observed, *goal);
+                let judged = RolloutStability::of(observed[OBSERVED - 1], &path, *goal);
                 certified.push(judged.decreasing && judged.largest_turn < 75.0);
                 positions.extend(path);
-                weights.push(weight);
-                goals.push(goal);
             }
+            weights.extend(fan_weights);
+            goals.extend(fan);
         }
         let k = weights.len() / window.len();
         let forecast = Forecast::new(window.len(), k, positions, weights, Some(goals))?;
@@ -146,12 +129,12 @@ fn rows(fold: &str, windows: &[Window], rule: WindowRule) -> Result<Vec<ResultRo
 fn under_way(windows: &[Window]) -> Result<Vec<ForecastSnapshot>, Box<dyn Error>> {
     let spread = windows.iter().step_by((windows.len() / MOMENTS).max(1));
     let mut moments = Vec::new();
-    for (at, window) in spread.enumerate() {
+    for (index, window) in spread.enumerate() {
         let under_way = window.without_future();
         let forecast = Bending.forecast(&under_way)?;
         let seen: Vec<Vec<Position>> = (0..window.len())
             .map(|i| {
-                let steps = HORIZON.saturating_sub(5 * at * (i % 3)) * usize::from(at + 1 < MOMENTS);
+                let steps = HORIZON.saturating_sub(5 * index * (i % 3)) * usize::from(index + 1 < MOMENTS);
                 window.track(i)[OBSERVED..OBSERVED + steps].to_vec()
             })
             .collect();
@@ -168,8 +151,8 @@ fn under_way(windows: &[Window]) -> Result<Vec<ForecastSnapshot>, Box<dyn Error>
 fn made_up(folds: &[&str]) -> Vec<TrainingCurve> {
     let mut curves = Vec::new();
     let variants = ["full", "no-dynamics", "no-goal-shift"];
-    let all = (0..folds.len()).flat_map(|f| (0..variants.len()).map(move |v| (f, v)));
-    for ((f, v), seed) in all.flat_map(|of| [(of, 1), (of, 2)]) {
+    let pairs = (0..folds.len()).flat_map(|f| (0..variants.len()).map(move |v| (f, v)));
+    for ((f, v), seed) in pairs.flat_map(|pair| [(pair, 1), (pair, 2)]) {
         let floor = 0.02 + 0.006 * f as f64 + 0.012 * v as f64;
         let wobble = |epoch: usize| (TAU * (0.37 * epoch as f64 + 0.3 * seed as f64)).sin();
         let point = |epoch: usize| {

@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use ddl_data::{HORIZON, Position, Window};
 use ddl_core::{Forecast, distance};
+use ddl_data::{HORIZON, Position, Window};
 use ddl_eval::category::{Interaction, MotionKind};
 use ddl_eval::metric::collision::closest_approach;
 use ddl_eval::metric::displacement::DisplacementErrors;

@@ -92,7 +92,7 @@ impl Report {
         self.document().to_markdown()
     }
 
-    /// The tables for a paper as LaTeX, to be included with `\\input`; they need `booktabs` and `adjustbox`.
+    /// The tables for a paper as LaTeX, to be included with `\input`; they need `booktabs` and `adjustbox`.
     pub fn to_latex(&self) -> String {
         self.document().to_latex()
     }

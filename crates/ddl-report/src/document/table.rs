@@ -84,9 +84,13 @@ fn escape(cell: &str) -> String {
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let lines = std::iter::once(&self.header).chain(&self.rows);
-        let lines: Vec<Vec<String>> = lines.map(|cells| cells.iter().map(|cell| escape(cell)).collect()).collect();
+        let lines: Vec<Vec<String>> = lines
+            .map(|cells| cells.iter().map(|cell| escape(cell)).collect())
+            .collect();
         let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
-        let widths: Vec<usize> = (0..self.header.len()).map(|column| width(column).unwrap_or(0)).collect();
+        let widths: Vec<usize> = (0..self.header.len())
+            .map(|column| width(column).unwrap_or(0))
+            .collect();
         let columns = || widths.iter().zip(&self.text);
         for (number, cells) in lines.iter().enumerate() {
             for (cell, (&width, text)) in cells.iter().zip(columns()) {

@@ -162,7 +162,7 @@ mod tests {
                 assert!(width <= 1100.0 && height < 800.0, "{width} x {height}");
                 let mut drawing = Drawing::new(width, height, "");
                 axes.draw(&mut drawing);
-                let count = drawing.inline("").matches("small middle").count();
+                let count = drawing.inline("").0.matches("small middle").count();
                 assert!((2..=most).contains(&count), "{count} ticks");
             }
         }

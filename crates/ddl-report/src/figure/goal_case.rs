@@ -1,7 +1,7 @@
 //! A pedestrian with its estimated goals: one panel of a picture.
 
-use ddl_data::{OBSERVED, Position, WINDOW};
 use ddl_core::{Forecast, distance};
+use ddl_data::{OBSERVED, Position, WINDOW};
 use ddl_eval::baseline::WeightedGoals;
 
 use crate::figure::error::FigureError;
@@ -54,8 +54,8 @@ impl GoalCase {
         let here = self.here();
         let faulty = (0..).zip(&experts).find_map(|(index, expert)| {
             if expert.len() != WINDOW {
-                let found = expert.len();
-                return Some(format!("expert {index} must hold 20 positions, found {found}"));
+                let count = expert.len();
+                return Some(format!("expert {index} must hold 20 positions, found {count}"));
             }
             check_near(here, expert, |step| format!("position {step} of expert {index}")).err()
         });
@@ -105,8 +105,10 @@ impl GoalCase {
 /// The index of the nearest goal, or what is wrong.
 fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, String> {
     if track.len() != WINDOW {
-        let found = track.len();
-        return Err(format!("the track must hold 20 positions (8 observed, 12 true), found {found}"));
+        let count = track.len();
+        return Err(format!(
+            "the track must hold 20 positions (8 observed, 12 true), found {count}"
+        ));
     }
     let (here, end) = (track[OBSERVED - 1], track[WINDOW - 1]);
     check_near(here, track, |step| format!("position {step} of the track"))?;
@@ -114,7 +116,9 @@ fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, String> {
     let weights = goals.weights();
     for (goal, &weight) in weights.iter().enumerate() {
         if !(0.0..=1.0 + Forecast::WEIGHT_TOLERANCE).contains(&weight) {
-            return Err(format!("goal {goal} has the weight {weight}, which is not between 0 and 1"));
+            return Err(format!(
+                "goal {goal} has the weight {weight}, which is not between 0 and 1"
+            ));
         }
     }
     let sum: f64 = weights.iter().sum();
@@ -183,12 +187,12 @@ mod tests {
         let good = [8.0, 1.0];
         let short = "the track must hold 20 positions (8 observed, 12 true), found 19";
         refused(&track()[..19], good, 0.5, short);
-        for (at, place, said) in [
+        for (step, place, said) in [
             (7, [f64::NAN, 0.0], "position 0 of the track"),
             (13, [6.5, f64::INFINITY], "position 13 of the track is [6.5, inf]"),
         ] {
             let mut broken = track();
-            broken[at] = place;
+            broken[step] = place;
             refused(&broken, good, 0.5, said);
         }
         for far in [f64::NAN, 1e300, -2e6] {

@@ -130,8 +130,8 @@ impl<'a> LegendRows<'a> {
 
     pub(super) fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2]) {
         for (entry, [x, y]) in self.entries.iter().zip(&self.places) {
-            let at = [left + x, top + y + 0.5 * ENTRY];
-            entry.draw(drawing, at, entry.indent(false));
+            let start = [left + x, top + y + 0.5 * ENTRY];
+            entry.draw(drawing, start, entry.indent(false));
         }
     }
 }

@@ -41,8 +41,8 @@ fn radius(weight: f64) -> f64 {
     (CERTAIN * weight.sqrt()).max(SMALLEST)
 }
 
-pub(super) fn goal_ring(drawing: &mut Drawing, at: [f64; 2], weight: f64) {
-    drawing.circle("goal weighted", at, radius(weight));
+pub(super) fn goal_ring(drawing: &mut Drawing, centre: [f64; 2], weight: f64) {
+    drawing.circle("goal weighted", centre, radius(weight));
 }
 
 /// The goal nearest the true endpoint: a bold ring on a white rim, with four ticks around it.

@@ -76,7 +76,7 @@ fn draw_squares(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, shades: &
     for (square, &count) in &traffic.crossed {
         let shade = shades.partition_point(|&least| least <= count).saturating_sub(1);
         let corner = |by: i64| square.map(|number| (number + by) as f64 * traffic.side);
-        let [[left, bottom], [right, top]] = [corner(0), corner(1)].map(|at| axes.plan().px(at));
+        let [[left, bottom], [right, top]] = [corner(0), corner(1)].map(|corner| axes.plan().px(corner));
         drawing.rectangle(&shade_class(shade, shades), [[left, top], [right, bottom]]);
     }
 }
@@ -93,10 +93,10 @@ fn draw_ends(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, most: usize)
 
 /// Two half discs whose areas are proportional to the counts, down to a least size: tracks that begin on the left,
 /// tracks that end on the right.
-fn draw_mark(drawing: &mut Drawing, at: [f64; 2], ends: Ends, most: usize) {
+fn draw_mark(drawing: &mut Drawing, centre: [f64; 2], ends: Ends, most: usize) {
     for (class, count, side) in [("come", ends.begun, -1.0), ("leave", ends.ended, 1.0)] {
         if count > 0 {
-            drawing.polygon(class, &half_disc(at, radius(count, most), side));
+            drawing.polygon(class, &half_disc(centre, radius(count, most), side));
         }
     }
 }
@@ -141,8 +141,8 @@ impl Legend<'_> {
     fn marks(&mut self, most: usize, side: f64) {
         self.heading("tracks in", side);
         for (words, begun, ended) in [("begin there", most, 0), ("end there", 0, most)] {
-            let at = [self.left + 0.5 * SAMPLE, self.y];
-            draw_mark(self.drawing, at, Ends { begun, ended }, most);
+            let centre = [self.left + 0.5 * SAMPLE, self.y];
+            draw_mark(self.drawing, centre, Ends { begun, ended }, most);
             self.words(&format!("{most} {words}"));
             self.y += 0.3 * ROW;
         }
@@ -155,8 +155,8 @@ impl Legend<'_> {
     }
 
     fn words(&mut self, words: &str) {
-        let at = [self.left + SAMPLE + 12.0, self.y + 4.0];
-        self.drawing.text("key", at, words);
+        let start = [self.left + SAMPLE + 12.0, self.y + 4.0];
+        self.drawing.text("key", start, words);
         self.y += ROW;
     }
 }

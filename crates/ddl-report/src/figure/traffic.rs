@@ -39,9 +39,9 @@ impl Traffic {
                     *crossed.entry(square).or_insert(0) += 1;
                 }
             };
-            for (at, &place) in track.iter().enumerate() {
+            for (step, &place) in track.iter().enumerate() {
                 cross(place);
-                if let Some(&next) = track.get(at + 1) {
+                if let Some(&next) = track.get(step + 1) {
                     between(place, next, side).for_each(&mut cross);
                 }
             }

@@ -147,11 +147,14 @@ struct GalleryEntry<'a> {
     pick: &'a Highlight,
 }
 
-fn entries(moments: &[ForecastSnapshot]) -> Vec<GalleryEntry<'_>> {
-    let picks = |(index, moment): (usize, &'_ ForecastSnapshot)| {
-        moment.picks.iter().map(move |pick| GalleryEntry { index, moment, pick })
+fn entries<'a>(moments: &'a [ForecastSnapshot]) -> Vec<GalleryEntry<'a>> {
+    let picks = |(index, moment): (usize, &'a ForecastSnapshot)| {
+        moment
+            .picks
+            .iter()
+            .map(move |pick| GalleryEntry { index, moment, pick })
     };
-    let mut entries: Vec<GalleryEntry<'_>> = moments.iter().enumerate().flat_map(picks).collect();
+    let mut entries: Vec<GalleryEntry<'a>> = moments.iter().enumerate().flat_map(picks).collect();
     entries.sort_by_key(|entry| entry.pick.show);
     entries
 }
@@ -182,7 +185,10 @@ pub(super) fn html(moments: &[ForecastSnapshot]) -> Markup {
 impl GalleryEntry<'_> {
     fn html(&self) -> Markup {
         let Self { index, moment, pick } = *self;
-        let who = pick.pedestrians.iter().map(|&i| moment.pedestrians[i].pedestrian.to_string());
+        let who = pick
+            .pedestrians
+            .iter()
+            .map(|&i| moment.pedestrians[i].pedestrian.to_string());
         let who: Vec<String> = who.collect();
         let plural = if who.len() == 1 { "Pedestrian" } else { "Pedestrians" };
         html! {

@@ -123,7 +123,13 @@ fn narrow(chart: &Chart<'_>, names: &[String], title: &str) -> Drawing {
                 [0.0, y - 4.0],
                 format!("{}, K = {}", shortened(&line.label, 44), line.hypotheses),
             );
-            dumbbell(&mut drawing, &scale, columns(line)[fold], chart.is_subject(line), y + 8.0);
+            dumbbell(
+                &mut drawing,
+                &scale,
+                columns(line)[fold],
+                chart.is_subject(line),
+                y + 8.0,
+            );
         }
     }
     drawing

@@ -37,7 +37,9 @@ fn check_moment(moment: &ForecastSnapshot, truth: Truth) -> Result<(), String> {
     for pick in &moment.picks {
         if let Some(absent) = pick.pedestrians.iter().find(|&&pedestrian| pedestrian >= count) {
             let show = pick.show;
-            return Err(format!("the pick `{show}` names pedestrian {absent} of {count}, counted from 0"));
+            return Err(format!(
+                "the pick `{show}` names pedestrian {absent} of {count}, counted from 0"
+            ));
         }
     }
     Ok(())
@@ -68,8 +70,10 @@ fn check_pedestrian(index: usize, pedestrian: &SnapshotPedestrian, truth: Truth)
 
 fn check_path(index: usize, field: &str, path: &[Position], expected: usize) -> Result<(), String> {
     if path.len() != expected {
-        let found = path.len();
-        return Err(format!("pedestrian {index} has {found} positions in `{field}`, not {expected}"));
+        let count = path.len();
+        return Err(format!(
+            "pedestrian {index} has {count} positions in `{field}`, not {expected}"
+        ));
     }
     check_coordinates(index, field, path)
 }

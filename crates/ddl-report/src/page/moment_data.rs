@@ -53,7 +53,9 @@ struct PedestrianData<'a> {
 }
 
 pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, PageError> {
-    let lines = moments.iter().map(|moment| serde_json::to_string(&MomentData::of(moment)));
+    let lines = moments
+        .iter()
+        .map(|moment| serde_json::to_string(&MomentData::of(moment)));
     let lines: Vec<String> = lines.collect::<Result<_, _>>()?;
     Ok(format!("[{}]", lines.join(",\n")))
 }
@@ -76,7 +78,8 @@ impl<'a> PedestrianData<'a> {
     fn of(pedestrian: &'a SnapshotPedestrian) -> Self {
         let last = pedestrian.observed[OBSERVED - 1];
         let hypotheses = &pedestrian.hypotheses;
-        let letters = |of: fn(&SnapshotHypothesis) -> Option<bool>| hypotheses.iter().map(of).map(letter).collect();
+        let letters =
+            |verdict: fn(&SnapshotHypothesis) -> Option<bool>| hypotheses.iter().map(verdict).map(letter).collect();
         Self {
             pedestrian: &pedestrian.pedestrian,
             observed: steps([0.0, 0.0], &pedestrian.observed),

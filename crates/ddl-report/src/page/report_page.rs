@@ -48,7 +48,11 @@ impl<'a> Page<'a> {
         let moments = moment_data::to_json(self.moments)?;
         let curves = serde_json::to_string(self.curves)?;
         let report = self.report.to_json()?;
-        let data = [("report-json", &*report), ("moments-json", &moments), ("curves-json", &curves)];
+        let data: [(&str, &str); 3] = [
+            ("report-json", &report),
+            ("moments-json", &moments),
+            ("curves-json", &curves),
+        ];
         let links = [
             ("results", "Results"),
             ("player", "Player"),

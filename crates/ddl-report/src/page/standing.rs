@@ -90,11 +90,12 @@ fn all_folds(group: &ResultGroup<'_>, measured: &[&str]) -> bool {
 
 impl StandingLine {
     fn of(line: &TableLine<'_>, label: String, folds: &[&str]) -> Self {
-        let both = |of: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| Some([of(|s| s.min_ade)?, of(|s| s.min_fde)?]);
-        let on_fold = |fold: &&str| both(&|of| Some(line.on_fold(fold, of)?.mean()));
-        let count = |of: fn(&Scores) -> usize| -> usize {
+        let pair =
+            |mean: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| Some([mean(|s| s.min_ade)?, mean(|s| s.min_fde)?]);
+        let on_fold = |fold: &&str| pair(&|metric| Some(line.on_fold(fold, metric)?.mean()));
+        let count = |number: fn(&Scores) -> usize| -> usize {
             let first = folds.iter().filter_map(|fold| line.on(fold).next());
-            first.map(|row| of(&row.scores)).sum()
+            first.map(|row| number(&row.scores)).sum()
         };
         Self {
             label,
@@ -102,7 +103,7 @@ impl StandingLine {
             settings: line.settings(),
             hypotheses: line.rows[0].scores.hypotheses,
             folds: folds.iter().map(on_fold).collect(),
-            mean: both(&|of| Some(line.over_folds(folds, of)?.mean())),
+            mean: pair(&|metric| Some(line.over_folds(folds, metric)?.mean())),
             scored: [count(|s| s.pedestrians), count(|s| s.windows)],
         }
     }

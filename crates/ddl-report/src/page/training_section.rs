@@ -44,9 +44,9 @@ fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
             let of_loss = of_fold().filter(|curve| curve.loss == loss);
             // All folds have the same scale.
             let same_loss = curves.iter().filter(|curve| curve.loss == loss);
-            let all = values(same_loss, |point| Some(point.loss));
+            let losses = values(same_loss, |point| Some(point.loss));
             let series = series(of_loss, &variants, |point| Some(point.loss));
-            panels.extend(panel(fold, loss, &series, &all));
+            panels.extend(panel(fold, loss, &series, &losses));
         }
         let series = series(of_fold(), &variants, |point| point.validation);
         panels.extend(panel(fold, VALIDATION, &series, &validation));
@@ -54,9 +54,9 @@ fn training_panels(curves: &[TrainingCurve]) -> Vec<TrainingPanel> {
     panels
 }
 
-fn values<'a>(curves: impl Iterator<Item = &'a TrainingCurve>, of: fn(&EpochPoint) -> Option<f64>) -> Vec<f64> {
-    let points = curves.flat_map(|curve| &curve.epochs).filter_map(of);
-    points.filter(|value| value.is_finite()).collect()
+fn values<'a>(curves: impl Iterator<Item = &'a TrainingCurve>, value: fn(&EpochPoint) -> Option<f64>) -> Vec<f64> {
+    let points = curves.flat_map(|curve| &curve.epochs).filter_map(value);
+    points.filter(|number| number.is_finite()).collect()
 }
 
 fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
@@ -72,10 +72,10 @@ fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 fn series<'a>(
     curves: impl Iterator<Item = &'a TrainingCurve>,
     variants: &[&str],
-    of: fn(&EpochPoint) -> Option<f64>,
+    value: fn(&EpochPoint) -> Option<f64>,
 ) -> Vec<Series<'a>> {
     let one = |curve: &'a TrainingCurve| {
-        let finite = |point: &EpochPoint| Some((point.epoch, of(point).filter(|v| v.is_finite())?));
+        let finite = |point: &EpochPoint| Some((point.epoch, value(point).filter(|v| v.is_finite())?));
         let points: Vec<(usize, f64)> = curve.epochs.iter().filter_map(finite).collect();
         let colour = variants.iter().position(|variant| *variant == curve.variant)? % COLOURS;
         (!points.is_empty()).then_some(Series { curve, colour, points })
@@ -83,11 +83,11 @@ fn series<'a>(
     curves.filter_map(one).collect()
 }
 
-fn panel(fold: &str, quantity: &str, series: &[Series<'_>], all: &[f64]) -> Option<TrainingPanel> {
+fn panel(fold: &str, quantity: &str, series: &[Series<'_>], range: &[f64]) -> Option<TrainingPanel> {
     let epochs = || series.iter().flat_map(|s| s.points.iter().map(|(epoch, _)| *epoch));
     let (first, last) = (epochs().min()?, epochs().max()?);
     let bottom = SIZE[1] - BOTTOM;
-    let up = Scale::of(all, [bottom, TOP]);
+    let up = Scale::of(range, [bottom, TOP]);
     let span = (last - first).max(1) as f64;
     let across = |epoch: usize| LEFT + (epoch - first) as f64 / span * (RIGHT - LEFT);
 
@@ -195,7 +195,11 @@ pub(super) fn html(curves: &[TrainingCurve]) -> Markup {
 impl TrainingPanel {
     /// The figure, with what the script needs to read values from it.
     fn html(&self) -> Markup {
-        let kind = if self.quantity == VALIDATION { "validation" } else { "loss" };
+        let kind = if self.quantity == VALIDATION {
+            "validation"
+        } else {
+            "loss"
+        };
         let [first, last] = self.epochs;
         html! {
             figure data-fold=(self.fold) data-quantity=(kind) data-loss=(self.quantity) data-left=(LEFT)

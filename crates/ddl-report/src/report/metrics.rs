@@ -82,8 +82,8 @@ fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
     for (line, label) in group.labelled() {
         let present = line.present(&folds);
         let named = cells::folds(&present, &folds);
-        let cells = metrics.iter().map(|&(_, decimals, of)| {
-            let spread = over_folds(line, &present, of);
+        let cells = metrics.iter().map(|&(_, decimals, metric)| {
+            let spread = over_folds(line, &present, metric);
             spread.map_or(NOTHING.to_owned(), |spread| format!("{spread:.decimals$}"))
         });
         table.row([label, named].into_iter().chain(cells));
@@ -95,15 +95,15 @@ fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
 pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
     let mut columns = FURTHER.iter().chain(&WHOLE);
     let column = columns.find(|(column, ..)| *column == name);
-    let mean = column.and_then(|&(_, decimals, of)| {
-        let mean = over_folds(line, folds, of)?.mean();
+    let mean = column.and_then(|&(_, decimals, metric)| {
+        let mean = over_folds(line, folds, metric)?.mean();
         Some(format!("{mean:.decimals$}"))
     });
     mean.unwrap_or_else(|| NOTHING.to_owned())
 }
 
 /// `None` if a fold lacks the metric.
-fn over_folds(line: &TableLine<'_>, folds: &[&str], of: fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
-    let spread = line.over_folds(folds, |s| of(s).unwrap_or(f64::NAN));
+fn over_folds(line: &TableLine<'_>, folds: &[&str], metric: fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
+    let spread = line.over_folds(folds, |s| metric(s).unwrap_or(f64::NAN));
     spread.filter(|spread| !spread.mean().is_nan())
 }

@@ -93,9 +93,8 @@ impl<'a> MeasuredLine<'a> {
     }
 
     fn intervals(&self) -> [String; 2] {
-        [BlockMetric::MinAde, BlockMetric::MinFde].map(|metric| {
-            or_nothing(mean_interval(&self.slices(), metric).map(in_words))
-        })
+        [BlockMetric::MinAde, BlockMetric::MinFde]
+            .map(|metric| or_nothing(mean_interval(&self.slices(), metric).map(in_words)))
     }
 
     fn names(&self) -> Vec<&str> {

@@ -79,8 +79,8 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
     if let Some(best) = literature::best(convention) {
         let start = [format!("{}, the best published", best.method), "best of 20".to_owned()];
         let published = |fold: &&str| {
-            let at = convention.fold_names().position(|name| name == *fold);
-            at.and_then(|at| best.folds.get(at))
+            let index = convention.fold_names().position(|name| name == *fold);
+            index.and_then(|index| best.folds.get(index))
         };
         let cells = folds.iter().filter_map(published).chain([&best.mean]);
         let cells = cells.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"));

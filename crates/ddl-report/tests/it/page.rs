@@ -86,7 +86,11 @@ fn the_report_is_embedded_bit_for_bit_and_its_tables_are_there() {
     let html = Page::new(&report).to_html().unwrap();
     assert_eq!(embedded(&html, "report-json"), report.to_json().unwrap());
     assert!(html.contains("<title>A &amp; B</title>"));
-    let tables = report.to_markdown().lines().filter(|line| line.starts_with("|--")).count();
+    let tables = report
+        .to_markdown()
+        .lines()
+        .filter(|line| line.starts_with("|--"))
+        .count();
     assert_eq!(html.matches("<table>").count(), tables);
     // Every entry of the contents is a link to a section, and sections that use the future are marked.
     for link in html.split("<a href=\"#").skip(1) {
@@ -290,14 +294,14 @@ fn forty_crowded_moments_stay_below_six_megabytes() {
     assert!(html.len() < 6_000_000, "{} bytes", html.len());
 }
 
-fn walked(mut at: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
+fn walked(mut place: [i64; 2], steps: &Value) -> (Vec<Position>, [i64; 2]) {
     let steps: Vec<i64> = steps.as_array().unwrap().iter().map(|n| n.as_i64().unwrap()).collect();
     let mut path = Vec::new();
     for step in steps.chunks_exact(2) {
-        at = [at[0] + step[0], at[1] + step[1]];
-        path.push(at.map(|mm| mm as f64 / 1000.0));
+        place = [place[0] + step[0], place[1] + step[1]];
+        path.push(place.map(|mm| mm as f64 / 1000.0));
     }
-    (path, at)
+    (path, place)
 }
 
 proptest! {

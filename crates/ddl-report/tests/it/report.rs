@@ -341,13 +341,13 @@ fn the_ablation_stands_beside_the_papers() {
 /// errors of 0.1 and 0.5 m give 0.2 m (the mean of the folds would be 0.3 m).
 #[test]
 fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
-    let of = |(fold, pedestrians, min_ade): (&str, usize, f64)| {
+    let measured = |(fold, pedestrians, min_ade): (&str, usize, f64)| {
         let mut row = row(Protocol::Fair, fold, 1, 0.25);
         row.scores.categories = turning(pedestrians, min_ade);
         row
     };
-    let mut rows = [("eth", 30, 0.1), ("hotel", 10, 0.5)].map(of).to_vec();
-    let others = [("eth", 30, 0.3), ("hotel", 10, 0.3), ("univ", 90, 0.9)].map(of);
+    let mut rows = [("eth", 30, 0.1), ("hotel", 10, 0.5)].map(measured).to_vec();
+    let others = [("eth", 30, 0.3), ("hotel", 10, 0.3), ("univ", 90, 0.9)].map(measured);
     rows.extend(of_forecaster(others.to_vec(), "lines"));
     let page = markdown(rows);
     assert!(page.contains("pooled over eth, hotel."), "{page}");
