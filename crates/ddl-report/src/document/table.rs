@@ -80,17 +80,19 @@ fn escape(cell: &str) -> String {
     cell.replace('|', "\\|").replace(['\n', '\r'], " ")
 }
 
-/// A Markdown table with padded columns.
+/// A Markdown table with padded columns; `{:#}` leaves the padding out.
 impl std::fmt::Display for Table {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let lines = std::iter::once(&self.header).chain(&self.rows);
         let lines: Vec<Vec<String>> = lines
             .map(|cells| cells.iter().map(|cell| escape(cell)).collect())
             .collect();
-        let width = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
-        let widths: Vec<usize> = (0..self.header.len())
-            .map(|column| width(column).unwrap_or(0))
-            .collect();
+        let longest = |column: usize| lines.iter().map(|cells| cells[column].chars().count()).max();
+        let widths: Vec<usize> = if f.alternate() {
+            vec![0; self.header.len()]
+        } else {
+            (0..self.header.len()).filter_map(longest).collect()
+        };
         let columns = || widths.iter().zip(&self.text);
         for (number, cells) in lines.iter().enumerate() {
             for (cell, (&width, text)) in cells.iter().zip(columns()) {
@@ -104,7 +106,12 @@ impl std::fmt::Display for Table {
             if number == 0 {
                 // The line under the header sets the alignment of the columns.
                 for (&width, text) in columns() {
-                    write!(f, "|{:->length$}", if *text { "-" } else { ":" }, length = width + 2)?;
+                    write!(
+                        f,
+                        "|{:->length$}",
+                        if *text { "-" } else { ":" },
+                        length = width.max(1) + 2
+                    )?;
                 }
                 writeln!(f, "|")?;
             }
@@ -130,6 +137,10 @@ mod tests {
                 "| x y  |   |       |",
                 "| 1    | 2 | three |"
             ]
+        );
+        assert_eq!(
+            format!("{table:#}"),
+            "| a\\|b | c | d |\n|---|--:|---|\n| x y |  |  |\n| 1 | 2 | three |\n"
         );
     }
 }
