@@ -1,6 +1,6 @@
 //! A table of text and numbers, and its markdown form.
 
-/// A table. The first column is text; the others hold numbers, unless marked by [`text_column`](Self::text_column).
+/// A table. The first column is text; the others hold numbers, unless they are marked as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
     caption: Option<String>,
