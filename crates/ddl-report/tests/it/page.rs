@@ -226,7 +226,7 @@ fn figures_are_files_of_their_own() {
 fn what_is_not_there_is_said() {
     let html = Page::new(&report()).to_html().unwrap();
     for words in [
-        "<section class=\"empty\" id=\"player\">",
+        "<section id=\"player\" class=\"empty\">",
         "No moments were recorded",
         "No cases were picked",
         "no training was recorded",
@@ -344,7 +344,7 @@ fn a_viewer_plays_what_is_not_over_yet() {
         "<title>yard &lt;1&gt;</title>",
         "two &amp; two",
         "<p>made by x &lt; y</p>",
-        "<section class=\"ready\" id=\"player\">",
+        "<section id=\"player\" class=\"ready\">",
     ] {
         assert!(html.contains(words), "{words}");
     }
