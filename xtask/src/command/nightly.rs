@@ -5,7 +5,7 @@ use std::time::Instant;
 use anyhow::{Result, ensure};
 use clap::{Args, ValueEnum};
 
-use super::{docs, python, set_up};
+use super::{docs, python, set_up, test};
 use crate::browser;
 use crate::debian;
 use crate::libtorch::{self, Request};
@@ -103,8 +103,8 @@ fn faults(workspace: &Workspace, words: &[String]) -> Result<()> {
     set_up(workspace)?;
     let name = words.first().map_or("faults::", String::as_str);
     // The test `program` makes cargo build the program. One after the other, because they measure time and memory.
-    let tests = "test -p ddl-tests -p ddl-cli --features ddl-tests/torch,ddl-cli/torch --test program --test it \
-                 --test it_torch -- --test-threads 1 --nocapture";
+    let tests = "test --workspace --features ddl-cli/torch,ddl-tests/torch --test program --test it --test it_torch -- \
+                 --test-threads 1 --nocapture";
     let mut tests = workspace.cargo(tests.split(' '));
     // With the variable, the tests use the full number of repetitions.
     run(tests.arg(name).env("OMP_NUM_THREADS", "1").env("DDL_NIGHTLY", "1"))
@@ -130,7 +130,7 @@ fn cluster(workspace: &Workspace, words: &[String]) -> Result<()> {
     debian::ensure_program("slurmctld", &["slurmctld", "slurmd", "munge"])?;
     set_up(workspace)?;
     bring_in(workspace)?;
-    run(&mut workspace.cargo("build --package ddl-cli --features torch".split(' ')))?;
+    test::build_with_torch(workspace)?;
     run(workspace
         .program("python3")
         .args(["tests/cluster/check_cluster.py", "target/debug/ddl"])

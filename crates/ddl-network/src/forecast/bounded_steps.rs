@@ -274,7 +274,8 @@ mod tests {
             dt in prop_oneof![9 => Just(0.4_f32), 1 => 1e-6..2e3_f32],
         ) {
             let time = StepTime { done, left, dt };
-            let goals: Vec<_> = rows.iter().map(|(position, way, ..)| [position[0] + way[0], position[1] + way[1]]).collect();
+            let goal = |(position, way, ..): &Row| [position[0] + way[0], position[1] + way[1]];
+            let goals: Vec<_> = rows.iter().map(goal).collect();
             let steps = rows.iter().zip(&goals).zip(bounds(&rows));
             let finite = |goal: &[f32; 2]| goal.iter().all(|x| x.is_finite());
             prop_assume!(goals.iter().all(finite));

@@ -74,8 +74,8 @@ impl SpatialAttention {
     }
 
     /// Mixes the values of the visible pedestrians.
-    /// `inputs`: queries, keys and values, `[B, P, heads, head width]` each, with all pedestrians P of the scenes; 1 or B
-    /// `frames`.
+    /// `inputs`: queries, keys and values, `[B, P, heads, head width]` each, with all pedestrians P of the scenes; 1 or
+    /// B `frames`.
     /// [`backward`](Self::backward) panics if the result was made without `keep`.
     pub(crate) fn forward(
         &self,
