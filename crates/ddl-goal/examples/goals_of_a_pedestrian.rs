@@ -30,7 +30,7 @@ fn walk(speed: f64, heading: f64, turn: f64) -> Vec<[f64; 2]> {
 
 fn library() -> Result<ExpertLibrary, Box<dyn Error>> {
     let pedestrian = |i: u32| {
-        let share = |of: u32| f64::from(i % of) / f64::from(of);
+        let share = |parts: u32| f64::from(i % parts) / f64::from(parts);
         let turn = 0.35 * (f64::from(i % 3) - 1.0) + 0.1 * (share(7) - 0.5);
         walk(0.8 + 0.8 * share(41), std::f64::consts::TAU * share(97), turn)
     };
@@ -49,7 +49,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!(
         "seen for 3.2 s, now at ({x:.2}, {y:.2}) m; {} experts of {} pedestrians give the goals in 4.8 s:",
         estimator.params().experts,
-        estimator.library().len()
+        estimator.library().tracks().len()
     );
     println!("weight         goal (m)  from the true end");
     let off = |[x, y]: [f64; 2]| (x - end[0]).hypot(y - end[1]);

@@ -16,7 +16,8 @@ const TEMPERATURE: f64 = 0.4;
 const ROUNDING: f64 = 1e-9;
 /// Steps of Lloyd's iteration. More steps would fit the goals to these analogues and not to the pedestrian.
 const STEPS: usize = 3;
-const KEPT: usize = 100;
+/// Experts of a goal set, the most similar ones.
+const REPORTED_EXPERTS: usize = 100;
 
 /// A library prepared for [`crate::RetrievalFrame::Heading`].
 #[derive(Clone, Debug)]
@@ -48,26 +49,26 @@ impl Analogues {
 
     pub(crate) fn goals(&self, track: &[[f64; 2]], experts: usize, clusters: usize) -> Result<GoalSet, GoalError> {
         let motion = Motion::new(track, self.time_step)?;
-        let found = self.index.nearest(&motion.components, experts);
-        let points = self.weighted_deviations(&found);
+        let analogues = self.index.nearest(&motion.components, experts);
+        let points = self.weighted_deviations(&analogues);
         let choice = choose(&points, clusters, STEPS);
         let goals: Vec<_> = choice.goals.iter().map(|&d| motion.place(d, 1.0)).collect();
         if !goals.as_flattened().iter().all(|value| value.is_finite()) {
             let index = QuerySpan::Observed.velocities() - 1;
             return Err(TrackError::VelocityOverflow { index }.into());
         }
-        let experts = found.iter().take(KEPT).map(Expert::from).collect();
+        let experts = analogues.iter().take(REPORTED_EXPERTS).map(Expert::from).collect();
         Ok(GoalSet::new(goals, choice.weights, experts))
     }
 
     /// Deviations of the analogues, weighted by similarity; the weights sum to 1.
-    fn weighted_deviations(&self, found: &[Alike]) -> Points {
+    fn weighted_deviations(&self, analogues: &[Alike]) -> Points {
         let distance = |alike: &Alike| f64::from(alike.distance);
-        let nearest = found.first().map_or(0.0, distance);
-        let temperature = TEMPERATURE * found.last().map_or(0.0, distance).max(ROUNDING);
+        let nearest = analogues.first().map_or(0.0, distance);
+        let temperature = TEMPERATURE * analogues.last().map_or(0.0, distance).max(ROUNDING);
         let likeness = |alike: &Alike| ((nearest - distance(alike)) / temperature).exp();
         let mut points = Points::default();
-        for alike in found {
+        for alike in analogues {
             let [ahead, left] = self.deviations[alike.index];
             let left = if alike.mirrored { -left } else { left };
             points.push([ahead, left], likeness(alike));

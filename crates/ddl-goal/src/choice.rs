@@ -114,11 +114,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn weighted(points: &[([f64; 2], f64)]) -> Points {
-        let mut all = Points::default();
+        let mut weighted = Points::default();
         for &(point, weight) in points {
-            all.push(point, weight);
+            weighted.push(point, weight);
         }
-        all
+        weighted
     }
 
     fn cost(points: &Points, centres: &[[f64; 2]]) -> f64 {

@@ -25,10 +25,10 @@ pub enum ParamsError {
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum TrackError {
-    #[error("the track has {found} positions, at least {needed} are needed")]
-    TooShort { found: usize, needed: usize },
-    #[error("the track has {found} positions, a track of the library needs exactly {needed}")]
-    WrongLength { found: usize, needed: usize },
+    #[error("the track has {positions} positions, at least {needed} are needed")]
+    TooShort { positions: usize, needed: usize },
+    #[error("the track has {positions} positions, a track of the library needs exactly {needed}")]
+    WrongLength { positions: usize, needed: usize },
     #[error("position {index} is ({x}, {y}): must be finite")]
     NonFinite { index: usize, x: f64, y: f64 },
     #[error("the step from position {index} is too long for a velocity in the range of f64")]

@@ -69,8 +69,8 @@ impl GoalEstimator {
         let method = match params.frame {
             RetrievalFrame::Heading => Preparation::Heading(Analogues::new(&library)?),
             RetrievalFrame::World => {
-                if library.len() < params.experts {
-                    let (tracks, experts) = (library.len(), params.experts);
+                if library.tracks().len() < params.experts {
+                    let (tracks, experts) = (library.tracks().len(), params.experts);
                     return Err(GoalError::TooFewTracks { tracks, experts });
                 }
                 let retriever = Retriever::new(&library, params.gamma, params.query)?;
@@ -160,8 +160,8 @@ impl GoalEstimator {
         let (library, observed) = (self.library(), QuerySpan::Observed.positions());
         let other = &library.tracks()[expert.index];
         if track.len() < observed {
-            let (found, needed) = (track.len(), observed);
-            return Err(TrackError::TooShort { found, needed }.into());
+            let (positions, needed) = (track.len(), observed);
+            return Err(TrackError::TooShort { positions, needed }.into());
         }
         if self.params().frame == RetrievalFrame::World {
             let moved = |p: &[f64; 2]| [0, 1].map(|d| track[0][d] + p[d] - other[0][d]);

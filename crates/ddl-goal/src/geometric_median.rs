@@ -56,14 +56,15 @@ pub(crate) fn geometric_median(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2]
 fn mean(points: &[[f64; 2]], weights: &[f64]) -> [f64; 2] {
     let total: f64 = weights.iter().sum();
     std::array::from_fn(|axis| {
-        let each = points.iter().zip(weights);
-        each.map(|(point, weight)| weight * point[axis]).sum::<f64>() / total
+        let pairs = points.iter().zip(weights);
+        pairs.map(|(point, weight)| weight * point[axis]).sum::<f64>() / total
     })
 }
 
 fn total_distance(centre: [f64; 2], points: &[[f64; 2]], weights: &[f64]) -> f64 {
-    let each = points.iter().zip(weights);
-    each.map(|(&point, weight)| weight * squared_distance(point, centre).sqrt())
+    let pairs = points.iter().zip(weights);
+    pairs
+        .map(|(&point, weight)| weight * squared_distance(point, centre).sqrt())
         .sum()
 }
 

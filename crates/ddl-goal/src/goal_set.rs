@@ -144,13 +144,8 @@ impl GoalSet {
         self
     }
 
-    /// Index of the goal with the largest weight: always 0.
-    pub fn most_likely(&self) -> usize {
-        0
-    }
-
     /// The geometric median of the goals. It minimises the mean distance to them under their weights raised to the
-    /// power [`SHARPNESS`](Self::SHARPNESS), before they were [tempered](Self::tempered). It need not be a goal of the
+    /// power 1.5, before they were [tempered](Self::tempered). It need not be a goal of the
     /// set.
     ///
     /// # Numerics
@@ -164,7 +159,7 @@ impl GoalSet {
 
     /// Power of the weights in [`median`](Self::median), chosen on validation splits of training recordings
     /// (`docs/tried.md`).
-    pub const SHARPNESS: f64 = 1.5;
+    const SHARPNESS: f64 = 1.5;
 
     /// Index of the goal nearest to `point` (m), the first of equally near ones. With the true endpoint this is the
     /// oracle choice of the published protocol.
@@ -226,7 +221,6 @@ mod tests {
         assert_eq!(set.goals(), ordered);
         let nearest = [[8.0, 8.0], [-1.0, 1.0], [6.0, 0.0], [2.0, 4.0]].map(|p| set.nearest(p));
         assert_eq!(nearest, [0, 1, 2, 3]);
-        assert_eq!(set.most_likely(), 0);
     }
 
     /// By hand: 0.45 is less than the sum of the other weights, but 0.45^1.5 = 0.302 is more than 0.2^1.5 +

@@ -50,8 +50,8 @@ impl HeadingFrame {
             [first, last] => [first, first, last],
             [first, .., before, last] => [first, before, last],
             _ => {
-                let found = observed.len();
-                return Err(TrackError::TooShort { found, needed: 2 });
+                let positions = observed.len();
+                return Err(TrackError::TooShort { positions, needed: 2 });
             }
         };
         check_finite(observed)?;
@@ -78,7 +78,7 @@ impl HeadingFrame {
     }
 
     /// Unit vector of the heading in world coordinates: the first axis.
-    pub fn heading(&self) -> [f64; 2] {
+    pub(crate) fn heading(&self) -> [f64; 2] {
         self.heading
     }
 
@@ -98,7 +98,7 @@ impl HeadingFrame {
     }
 
     /// Rotates a displacement or velocity from world coordinates to the axes of this frame.
-    pub fn turn_to_frame(&self, vector: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn turn_to_frame(&self, vector: [f64; 2]) -> [f64; 2] {
         let [cos, sin] = self.heading;
         [cos * vector[0] + sin * vector[1], cos * vector[1] - sin * vector[0]]
     }

@@ -15,8 +15,7 @@ pub const TRACK_LENGTH: usize = 20;
 /// use ddl_goal::ExpertLibrary;
 /// let track: Vec<[f64; 2]> = (0..20).map(|i| [0.5 * f64::from(i), 0.0]).collect();
 /// let library = ExpertLibrary::new(vec![track], 0.4)?;
-/// assert_eq!(library.len(), 1);
-/// assert_eq!(library.end(0), [9.5, 0.0]);
+/// assert_eq!(library.tracks().len(), 1);
 /// # Ok::<(), ddl_goal::LibraryError>(())
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -59,9 +58,9 @@ impl ExpertLibrary {
         }
         let library = Self { time_step, tracks };
         library.of_each(|track| {
-            let (found, needed) = (track.len(), TRACK_LENGTH);
-            if found != needed {
-                return Err(TrackError::WrongLength { found, needed });
+            let (positions, needed) = (track.len(), TRACK_LENGTH);
+            if positions != needed {
+                return Err(TrackError::WrongLength { positions, needed });
             }
             check_finite(track)
         })?;
@@ -78,31 +77,21 @@ impl ExpertLibrary {
             .collect()
     }
 
-    /// Number of tracks.
-    pub fn len(&self) -> usize {
-        self.tracks.len()
-    }
-
-    /// Always false: a library has at least one track.
-    pub fn is_empty(&self) -> bool {
-        false
-    }
-
-    /// The tracks, positions in metres.
+    /// The tracks, at least one, positions in metres.
     pub fn tracks(&self) -> &[Vec<[f64; 2]>] {
         &self.tracks
     }
 
     /// Seconds between two positions of a track.
-    pub fn time_step(&self) -> f64 {
+    pub(crate) fn time_step(&self) -> f64 {
         self.time_step
     }
 
     /// Endpoint of track `index` relative to its first position (m): equation 6 of the paper.
     ///
     /// # Panics
-    /// If `index` is not below [`ExpertLibrary::len`].
-    pub fn end(&self, index: usize) -> [f64; 2] {
+    /// If there is no such track.
+    pub(crate) fn end(&self, index: usize) -> [f64; 2] {
         let track = &self.tracks[index];
         [0, 1].map(|d| track[TRACK_LENGTH - 1][d] - track[0][d])
     }
@@ -123,8 +112,8 @@ mod tests {
         assert_eq!(refused(&[], 0.4), LibraryError::Empty);
         let time_step = refused(&[&track], f64::NAN).to_string();
         assert!(time_step.starts_with("the time step is NaN s"));
-        let (found, needed) = (8, 20);
-        let source = TrackError::WrongLength { found, needed };
+        let (positions, needed) = (8, 20);
+        let source = TrackError::WrongLength { positions, needed };
         assert_eq!(
             refused(&[&track, &track[..8]], 0.4),
             LibraryError::Track { index: 1, source }
@@ -139,7 +128,6 @@ mod tests {
     fn a_library_survives_json_and_an_invalid_one_is_refused() {
         let track: Vec<[f64; 2]> = (0..20).map(|i| [0.1 * f64::from(i), 1.0 / 3.0]).collect();
         let library = ExpertLibrary::new(vec![track], 0.4).unwrap();
-        assert!(!library.is_empty());
         let json = serde_json::to_string(&library).unwrap();
         let read = serde_json::from_str::<ExpertLibrary>;
         assert_eq!(read(&json).unwrap(), library);

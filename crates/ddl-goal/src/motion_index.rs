@@ -49,14 +49,14 @@ impl MotionIndex {
         if wanted == 0 {
             return Vec::new();
         }
-        let mut kept = Dispatch::detect().run_on_registers(NearestMotions {
+        let mut keys = Dispatch::detect().run_on_registers(NearestMotions {
             blocks: &self.blocks,
             query,
             wanted,
         });
-        kept.sort_unstable();
-        kept.truncate(wanted);
-        kept.iter().map(|&key| alike(key)).collect()
+        keys.sort_unstable();
+        keys.truncate(wanted);
+        keys.iter().map(|&key| alike(key)).collect()
     }
 }
 
@@ -74,7 +74,7 @@ impl RegisterKernel for NearestMotions<'_> {
     #[inline(always)]
     fn run<R: Register>(self, _: R) -> Vec<u64> {
         // Room for the keys that one block adds before the nearest are selected.
-        let mut kept = vec![0; 2 * (self.wanted + LANES)];
+        let mut keys = vec![0; 2 * (self.wanted + LANES)];
         let mut count = 0;
         let mut bound = f32::INFINITY;
         for (first, block) in (0..).step_by(LANES).zip(self.blocks) {
@@ -85,19 +85,19 @@ impl RegisterKernel for NearestMotions<'_> {
                 if distances.iter().fold(f32::INFINITY, least) < bound {
                     // Each key is written, and kept if it is near enough: this avoids an unpredictable branch.
                     for (lane, &distance) in distances.iter().enumerate() {
-                        kept[count] = key(distance, 2 * (first + lane) + mirrored);
+                        keys[count] = key(distance, 2 * (first + lane) + mirrored);
                         count += usize::from(distance < bound);
                     }
                 }
             }
             if count >= 2 * self.wanted {
-                let (_, &mut last, _) = kept[..count].select_nth_unstable(self.wanted - 1);
+                let (_, &mut last, _) = keys[..count].select_nth_unstable(self.wanted - 1);
                 count = self.wanted;
                 bound = distance_of(last);
             }
         }
-        kept.truncate(count);
-        kept
+        keys.truncate(count);
+        keys
     }
 }
 
@@ -106,22 +106,22 @@ impl RegisterKernel for NearestMotions<'_> {
 fn distances(query: &[f32; COMPONENTS], block: &Block) -> [[f32; LANES]; 2] {
     let (same, signed) = query.split_at(SIGNED);
     let (blocks_same, blocks_signed) = block.split_at(SIGNED);
-    let mut own = [0.0; LANES];
+    let mut plain = [0.0; LANES];
     for (&query, track) in same.iter().zip(blocks_same) {
         for lane in 0..LANES {
             let difference = query - track[lane];
-            own[lane] += difference * difference;
+            plain[lane] += difference * difference;
         }
     }
-    let mut image = own;
+    let mut image = plain;
     for (&query, track) in signed.iter().zip(blocks_signed) {
         for lane in 0..LANES {
             let (difference, sum) = (query - track[lane], query + track[lane]);
-            own[lane] += difference * difference;
+            plain[lane] += difference * difference;
             image[lane] += sum * sum;
         }
     }
-    [own, image]
+    [plain, image]
 }
 
 /// Distance and number in one integer that sorts by distance, then number. The bits of floats that are not negative
@@ -154,8 +154,8 @@ mod tests {
         prop_oneof![coarse, prop::array::uniform16(-3.0..3.0_f32)]
     }
 
-    fn all(motions: &[[f32; COMPONENTS]], query: &[f32; COMPONENTS]) -> Vec<Alike> {
-        let mut all = Vec::new();
+    fn sorted(motions: &[[f32; COMPONENTS]], query: &[f32; COMPONENTS]) -> Vec<Alike> {
+        let mut candidates = Vec::new();
         for (index, motion) in motions.iter().enumerate() {
             for mirrored in [false, true] {
                 let sign = if mirrored { -1.0 } else { 1.0 };
@@ -164,15 +164,15 @@ mod tests {
                     let m = if i < SIGNED { *m } else { sign * m };
                     sum + (q - m) * (q - m)
                 });
-                all.push(Alike {
+                candidates.push(Alike {
                     index,
                     mirrored,
                     distance,
                 });
             }
         }
-        all.sort_by(|a, b| a.distance.total_cmp(&b.distance)); // stable: ties keep their order
-        all
+        candidates.sort_by(|a, b| a.distance.total_cmp(&b.distance)); // stable: ties keep their order
+        candidates
     }
 
     proptest! {
@@ -182,7 +182,7 @@ mod tests {
         fn the_nearest_are_those_of_a_full_sort(
             motions in prop::collection::vec(motion(), 1..200), query in motion(), wanted in 0..450_usize,
         ) {
-            let mut expected = all(&motions, &query);
+            let mut expected = sorted(&motions, &query);
             expected.truncate(wanted);
             prop_assert_eq!(MotionIndex::new(&motions).nearest(&query, wanted), expected);
         }

@@ -19,7 +19,7 @@ pub enum QuerySpan {
 
 impl QuerySpan {
     /// Number of velocities compared: 7 or 8.
-    pub fn velocities(self) -> usize {
+    pub(crate) fn velocities(self) -> usize {
         match self {
             Self::Observed => 7,
             Self::PublishedFuture => 8,
@@ -39,7 +39,7 @@ impl QuerySpan {
 pub(crate) fn velocities(track: &[[f64; 2]], time_step: f64, span: QuerySpan) -> Result<Vec<[f64; 2]>, TrackError> {
     let needed = span.positions();
     let read = track.get(..needed).ok_or(TrackError::TooShort {
-        found: track.len(),
+        positions: track.len(),
         needed,
     })?;
     check_finite(read)?;

@@ -5,8 +5,6 @@ use std::path::PathBuf;
 use ddl_data::LiveError;
 use thiserror::Error;
 
-use crate::memory::LARGEST_CAPACITY;
-
 /// A memory cannot be created, updated, written or read. After an error of `observe` the memory is unchanged.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -20,8 +18,8 @@ pub enum MemoryError {
          memory's frame rate"
     )]
     OtherFrameStep { memory: i64, recording: i64 },
-    #[error("the capacity must lie in 1..={LARGEST_CAPACITY} segments, found {found}")]
-    Capacity { found: usize },
+    #[error("the capacity is {capacity} segments: it must lie in 1..={largest}")]
+    Capacity { capacity: usize, largest: usize },
     #[error("cannot write {}: {source}", .path.display())]
     Write { path: PathBuf, source: std::io::Error },
     #[error("cannot read {}: {source}", .path.display())]

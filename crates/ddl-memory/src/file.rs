@@ -11,9 +11,9 @@ use ddl_data::{PedestrianId, checked_frame, write_atomically};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 
-use crate::memory::Seen;
+use crate::error::MemoryError;
+use crate::memory::{SceneMemory, Seen};
 use crate::track::{MAX_RUNS, RunningTrack, Track};
-use crate::{MemoryError, SceneMemory};
 
 /// The beginning of a file: format and version.
 const MAGIC: &str = "ddl-memory 1 ";
@@ -133,8 +133,10 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
         memory.segments += track.segments();
     }
     if memory.segments > memory.capacity {
-        let (found, most) = (memory.segments, memory.capacity);
-        return Err(format!("it holds {found} segments, more than its capacity {most}"));
+        return Err(format!(
+            "it holds {} segments, more than its capacity {}",
+            memory.segments, memory.capacity
+        ));
     }
     Ok(memory)
 }

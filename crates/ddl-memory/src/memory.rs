@@ -6,12 +6,12 @@ use std::collections::btree_map::Entry;
 use ddl_data::{PedestrianId, Position, checked_frame, checked_frame_step};
 use serde::{Deserialize, Serialize};
 
-use crate::MemoryError;
+use crate::error::MemoryError;
 use crate::piece::is_remembered;
 use crate::track::{RunningTrack, Track};
 
 /// Largest capacity in segments; a memory of this size takes up to 180 MB.
-pub(crate) const LARGEST_CAPACITY: usize = 1 << 18;
+const LARGEST_CAPACITY: usize = 1 << 18;
 /// A full memory removes this fraction (1/n) of its capacity at once ...
 const FORGOTTEN_AT_ONCE: usize = 32;
 /// ... from this fraction (1/n) of the tracks, the oldest ones.
@@ -93,7 +93,10 @@ impl SceneMemory {
     pub fn new(frame_step: i64, capacity: usize) -> Result<Self, MemoryError> {
         let frame_step = checked_frame_step(frame_step)?;
         if !(1..=LARGEST_CAPACITY).contains(&capacity) {
-            return Err(MemoryError::Capacity { found: capacity });
+            return Err(MemoryError::Capacity {
+                capacity,
+                largest: LARGEST_CAPACITY,
+            });
         }
         Ok(Self::empty(frame_step, capacity))
     }

@@ -207,8 +207,8 @@ impl TryFrom<Vec<Position>> for Piece {
 
     fn try_from(path: Vec<Position>) -> Result<Self, String> {
         if !(1..=PATH).contains(&path.len()) {
-            let found = path.len();
-            return Err(format!("a run has {found} positions, it needs 1 to {PATH}"));
+            let count = path.len();
+            return Err(format!("a run has {count} positions, it needs 1 to {PATH}"));
         }
         match path.iter().find(|position| !is_remembered(**position)) {
             Some(position) => Err(format!("position {position:?} is too far from the origin")),

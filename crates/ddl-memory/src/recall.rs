@@ -2,7 +2,7 @@
 
 use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack};
 
-use crate::SceneMemory;
+use crate::memory::SceneMemory;
 use crate::piece::{Motion, Piece};
 
 /// Squared distance from which segments are ignored.

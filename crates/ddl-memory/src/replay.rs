@@ -2,7 +2,8 @@
 
 use ddl_data::{OBSERVED, Recording, Window};
 
-use crate::{MemoryError, SceneMemory};
+use crate::error::MemoryError;
+use crate::memory::SceneMemory;
 
 /// The order in which the frames of a recording are observed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -70,8 +71,7 @@ impl SceneMemory {
     }
 
     /// The window with at most `count` remembered tracks per pedestrian; their own running tracks are left out.
-    #[must_use]
-    pub fn recalling(&self, window: Window, count: usize) -> Window {
+    fn recalling(&self, window: Window, count: usize) -> Window {
         let recall = |i: usize| match window.observed(i).first_chunk() {
             Some(observed) => self.recall(observed, Some(window.pedestrians()[i]), count),
             None => Vec::new(),

@@ -2,7 +2,7 @@
 
 use ddl_data::{Position, TIME_STEP};
 
-use crate::SceneMemory;
+use crate::memory::SceneMemory;
 use crate::track::Track;
 
 /// Content of a memory and statistics of its input.

@@ -20,7 +20,7 @@ impl GoalEstimator {
         let tracks = tracks("experts", &experts, TRACK_LENGTH, false)?;
         let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(of_any)?;
         let params = GoalEstimatorParams::default()
-            .experts(similar.min(library.len()))
+            .experts(similar.min(library.tracks().len()))
             .clusters(goals)
             .seed(seed)
             .check()
@@ -30,7 +30,7 @@ impl GoalEstimator {
     }
 
     fn __len__(&self) -> usize {
-        self.0.library().len()
+        self.0.library().tracks().len()
     }
 
     /// Goals `(n, k, 2)` and weights `(n, k)`.

@@ -83,7 +83,7 @@ fn facts_of(goals: &GoalModel, parameters: &serde_json::Value) -> anyhow::Result
         "parameters": parameters,
         "goal_parameters": goals.parameter_count(),
         "goals": goals.words(),
-        "experts": goals.estimator().map_or(0, |estimator| estimator.library().len()),
+        "experts": goals.estimator().map_or(0, |estimator| estimator.library().tracks().len()),
         "epochs": epochs,
     }))
 }

@@ -45,6 +45,12 @@ fn has_heading(track: &[[f64; 2]]) -> bool {
     toward[0].hypot(toward[1]) > 1e-3
 }
 
+/// The direction of the first axis in the world.
+fn heading(frame: &HeadingFrame) -> [f64; 2] {
+    let (ahead, origin) = (frame.to_world([1.0, 0.0]), frame.origin());
+    [ahead[0] - origin[0], ahead[1] - origin[1]]
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -53,8 +59,8 @@ proptest! {
         let frame = HeadingFrame::new(&track)?;
         prop_assert!(distance(frame.to_world(frame.to_frame(point)), point) < 1e-12 * 1e3);
         prop_assert!(distance(frame.to_frame(frame.to_world(point)), point) < 1e-12 * 1e3);
-        let [cos, sin] = frame.heading();
-        prop_assert!((cos.hypot(sin) - 1.0).abs() < 1e-15);
+        let [cos, sin] = heading(&frame);
+        prop_assert!((cos.hypot(sin) - 1.0).abs() < 1e-12);
         prop_assert_eq!(frame.to_frame(frame.origin()), [0.0, 0.0]);
     }
 
@@ -92,18 +98,18 @@ proptest! {
 #[test]
 fn a_standing_pedestrian_has_the_axes_of_the_world() {
     let frame = HeadingFrame::new(&[[5.0, 6.0]; 8]).unwrap();
-    assert_eq!((frame.origin(), frame.heading()), ([5.0, 6.0], [1.0, 0.0]));
+    assert_eq!((frame.origin(), heading(&frame)), ([5.0, 6.0], [1.0, 0.0]));
     // A pedestrian that stopped still faces its last walking direction.
     let mut stopped: Positions = (0..7).map(|i| [0.0, 0.1 * f64::from(i)]).collect();
     stopped.push(stopped[6]);
-    assert_eq!(HeadingFrame::new(&stopped).unwrap().heading(), [0.0, 1.0]);
+    assert_eq!(heading(&HeadingFrame::new(&stopped).unwrap()), [0.0, 1.0]);
 }
 
 #[test]
 fn invalid_positions_are_reported() {
     let refused = |positions: &[[f64; 2]]| HeadingFrame::new(positions).unwrap_err();
-    let (found, needed) = (1, 2);
-    assert_eq!(refused(&[[0.0, 0.0]]), TrackError::TooShort { found, needed });
+    let (positions, needed) = (1, 2);
+    assert_eq!(refused(&[[0.0, 0.0]]), TrackError::TooShort { positions, needed });
     let nan = refused(&[[0.0, f64::NAN], [0.0, 0.0]]);
     assert!(matches!(nan, TrackError::NonFinite { index: 0, .. }));
     let far = refused(&[[-1e308, 0.0], [1e308, 0.0]]);

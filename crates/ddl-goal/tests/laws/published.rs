@@ -56,7 +56,7 @@ fn expert_distances_are_the_published_ones() {
     assert_eq!(reference.pedestrians.len(), 100);
     for (fold, recording, tracks) in [("eth", "eth", 36_784), ("zara1", "zara01", 37_042)] {
         let estimator = published(&dataset, recording, 100 + FURTHER);
-        assert_eq!(estimator.library().len(), tracks);
+        assert_eq!(estimator.library().tracks().len(), tracks);
         let windows = windows(&dataset, recording, WindowRule::Complete);
         let (mut same_rank, mut compared) = (0, 0);
         let (mut error, mut published_error) = (0.0, 0.0);

@@ -76,7 +76,7 @@ proptest! {
         let text = std::fs::read_to_string(&path).unwrap();
         let content = &text[HEAD..];
         let is_digit = |c: char| c.is_ascii_digit() || "-.".contains(c);
-        let starts: Vec<usize> = content.match_indices(is_digit).map(|found| found.0).collect();
+        let starts: Vec<usize> = content.match_indices(is_digit).map(|(start, _)| start).collect();
         let start = *at.get(&starts);
         let end = content[start..].find(|c| !is_digit(c)).map_or(content.len(), |length| start + length);
         let edited = [&content[..start], number, &content[end..]].concat();
@@ -130,7 +130,7 @@ fn impossible_memories_are_refused() {
     let text = std::fs::read_to_string(&path).unwrap();
     for (from, to, problem) in [
         ("\"capacity\":20", "\"capacity\":1", "more than its capacity 1"),
-        ("\"capacity\":20", "\"capacity\":0", "the capacity must lie"),
+        ("\"capacity\":20", "\"capacity\":0", "the capacity is 0 segments"),
         ("\"frame_step\":1", "\"frame_step\":0", "the frame step must lie"),
         ("\"last_frame\":24", "\"last_frame\":23", "after the last frame"),
         ("\"last_frame\":24", "\"last_frame\":9007199254740992", "not below 2^53"),

@@ -27,21 +27,21 @@ fn answers(memory: &SceneMemory, now: &Frames) -> Vec<Vec<RememberedTrack>> {
 /// the memory.
 fn sees_the_future(fed: impl Fn(&Frames, usize) -> SceneMemory, frames: &Frames, end: usize) -> bool {
     let now = frames[..end].to_vec();
-    let found = answers(&fed(frames, end), &now);
+    let recalled = answers(&fed(frames, end), &now);
     let was_seen = |person: PedestrianId, track: &[[f64; 2]; WINDOW]| {
         now.windows(WINDOW).any(|window| {
             let mut pairs = window.iter().zip(track);
             pairs.all(|((_, pedestrians), position)| pedestrians.contains(&(person, *position)))
         })
     };
-    let examples = found.iter().flatten();
+    let examples = recalled.iter().flatten();
     let mut pedestrians = now.iter().flat_map(|(_, pedestrians)| pedestrians);
     let mut ids: Vec<PedestrianId> = pedestrians.by_ref().map(|(id, _)| *id).collect();
     ids.sort_unstable();
     ids.dedup();
     let mut tracks = examples.map(|example| &example.track);
     let shows = tracks.any(|track| !ids.iter().any(|id| was_seen(*id, track)));
-    shows || answers(&fed(&with_noise_from(frames, end), end), &now) != found
+    shows || answers(&fed(&with_noise_from(frames, end), end), &now) != recalled
 }
 
 #[test]

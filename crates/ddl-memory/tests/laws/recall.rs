@@ -26,8 +26,8 @@ fn segments(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Segment>)> {
     }
     let pedestrian = |((id, _), track): ((PedestrianId, i64), BTreeMap<i64, Position>)| {
         let segment = |first: &i64| {
-            let at = |t: usize| track.get(&(first + t as i64 * step)).copied();
-            let positions: Option<Vec<Position>> = (0..WINDOW).map(at).collect();
+            let position = |t: usize| track.get(&(first + t as i64 * step)).copied();
+            let positions: Option<Vec<Position>> = (0..WINDOW).map(position).collect();
             positions?.try_into().ok()
         };
         let last = track.last_key_value().map_or(0, |(frame, _)| *frame);
@@ -75,17 +75,17 @@ proptest! {
     #[test]
     fn a_recall_agrees_with_a_search_through_all_stretches(frames in crate::crowds(), count in 0..20_usize) {
         let memory = memory_of(&frames, SceneMemory::DEFAULT_CAPACITY);
-        let all: Vec<Segment> = segments(&frames).into_iter().flat_map(|track| track.2).collect();
-        prop_assert_eq!(memory.segments(), all.len());
+        let held_segments: Vec<Segment> = segments(&frames).into_iter().flat_map(|track| track.2).collect();
+        prop_assert_eq!(memory.segments(), held_segments.len());
         for (id, observed) in queries(&frames) {
-            for own in [Some(id), None, Some(PedestrianId(-1))] {
-                let expected = reference(&frames, &observed, own);
-                let found = memory.recall(&observed, own, count);
-                prop_assert_eq!(found.len(), expected.len().min(count));
-                for (example, expected) in found.iter().zip(expected) {
+            for left_out in [Some(id), None, Some(PedestrianId(-1))] {
+                let expected = reference(&frames, &observed, left_out);
+                let recalled = memory.recall(&observed, left_out, count);
+                prop_assert_eq!(recalled.len(), expected.len().min(count));
+                for (example, expected) in recalled.iter().zip(expected) {
                     prop_assert!(is_near(example.distance, expected));
                     prop_assert!(is_near(distance(&example.track, &observed), expected));
-                    prop_assert!(all.contains(&example.track));
+                    prop_assert!(held_segments.contains(&example.track));
                 }
             }
         }
@@ -157,9 +157,13 @@ fn a_jump_of_the_tracker_costs_no_precision() {
         assert_eq!(memory.segments(), 41);
         for first in (0..41).filter(|first| !(14..24).contains(first)) {
             let observed = std::array::from_fn(|t| [at(first + t)[0] + 1e-3, 0.0]);
-            let found = memory.recall(&observed, None, 1)[0];
-            assert_eq!(found.track, std::array::from_fn(|t| at(first + t)));
-            assert!((found.distance - 1e-6).abs() < 1e-7, "{far} {first} {}", found.distance);
+            let nearest = memory.recall(&observed, None, 1)[0];
+            assert_eq!(nearest.track, std::array::from_fn(|t| at(first + t)));
+            assert!(
+                (nearest.distance - 1e-6).abs() < 1e-7,
+                "{far} {first} {}",
+                nearest.distance
+            );
         }
     }
 }

@@ -63,7 +63,7 @@ fn a_memory_needs_a_step_and_a_capacity() {
     }
     for capacity in [0, (1 << 18) + 1, usize::MAX] {
         let error = SceneMemory::new(1, capacity);
-        assert!(matches!(error, Err(MemoryError::Capacity { found }) if found == capacity));
+        assert!(matches!(error, Err(MemoryError::Capacity { capacity: refused, .. }) if refused == capacity));
     }
     let mut memory = SceneMemory::new(1 << 31, 1 << 18).unwrap();
     memory.observe(1 - (1 << 53), [(PedestrianId(1), [0.0; 2])]).unwrap();

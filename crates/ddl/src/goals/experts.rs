@@ -32,7 +32,7 @@ pub(crate) fn save(library: &ExpertLibrary, origin: &Origin, path: &Path) -> Res
         .flatten()
         .flat_map(|coordinate| coordinate.to_le_bytes())
         .collect();
-    let shape = vec![library.len(), WINDOW, 2];
+    let shape = vec![library.tracks().len(), WINDOW, 2];
     let broken = |error: safetensors::SafeTensorError| DdlError::run(path, error.to_string());
     let view = TensorView::new(Dtype::F64, shape, &bytes).map_err(broken)?;
     let header = origin.to_header(&tensors_digest([(TRACKS, view.clone())]));
