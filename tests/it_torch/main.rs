@@ -23,13 +23,3 @@ fn readers_of_trainings_handle_edited_files() {
         .into_iter()
         .for_each(ddl_tests::outside_bytes::check);
 }
-
-#[test]
-fn the_example_of_training_runs() {
-    let here = std::path::Path::new(".");
-    let output = ddl_tests::example::run("ddl-star", "training_steps", here, "1 0.1");
-    assert_eq!(output.succeeds(), "1 steps, dropout 0.1\n");
-    // A new example is run automatically.
-    let folder = ddl_tests::guide::checkout().join("crates/ddl-star");
-    assert_eq!(ddl_tests::example::all_of(&folder).len(), 1);
-}

@@ -38,19 +38,6 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! ## Shapes
-//!
-//! T: time steps; P: pedestrians of all windows of a batch, concatenated; H: hypotheses. Positions are in metres, time
-//! steps 0.4 s apart.
-//!
-//! | | shape |
-//! |---|---|
-//! | [`SceneBatch::positions`] | `[T, P, 2]` |
-//! | goals, in training / in a rollout | `[P, 2]` / `[G, P, 2]`, G = H or 1 |
-//! | noise, [`NoiseInput::Draws`] | `[1 or H, 16]`, shared by all pedestrians |
-//! | [`TorchNetwork::teacher_forced`] | `[T - 1, P, 2]`: time steps 2 to T, each from the true ones before it |
-//! | [`TorchNetwork::roll_out`] | positions `[12, H, P, 2]`: each time step from the forecast before it; factors `[12, H, P, 3]` |
-//!
 //! ## State of a training
 //!
 //! [`Trainer::save`] and [`ProposalTrainer::save`] write weights, Adam's moments and the progress into one safetensors
@@ -73,9 +60,6 @@ mod training;
 
 pub use device::{ComputeDevice, LIBTORCH_VERSION, set_threads};
 pub use error::StarError;
-pub use model::{
-    FlowConstants, NoiseInput, Parameters, Rollout, SceneBatch, StepBounds, TorchBackend, TorchNetwork, bounded_step,
-    natural_gradient_step,
-};
+pub use model::{Parameters, TorchBackend, TorchNetwork};
 pub use proposal::{ProposalTrainer, TorchProposals};
-pub use training::{Trainer, mean_distance, mean_squared_distance};
+pub use training::Trainer;

@@ -1,4 +1,7 @@
 //! The forecasting network on libtorch's tensors.
+//!
+//! Shapes: T time steps; P pedestrians of all windows of a batch, concatenated; H hypotheses. Positions are in metres,
+//! time steps 0.4 s apart.
 
 mod attention;
 mod backend;
@@ -21,12 +24,13 @@ mod shared_weights;
 mod tensor_backend;
 
 pub use backend::TorchBackend;
-pub use batch::SceneBatch;
-pub use emission::NoiseInput;
-pub use flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
+pub(crate) use batch::SceneBatch;
+pub(crate) use emission::NoiseInput;
 pub(crate) use network::Layers;
 pub use network::TorchNetwork;
 pub(crate) use numbers::{numbers, tensor};
 pub use parameters::Parameters;
-pub use rollout::Rollout;
 pub(crate) use tensor_backend::{KernelPass, Pass};
+
+#[cfg(test)]
+mod published_tests;

@@ -10,7 +10,8 @@ mod prepared;
 mod schedule;
 mod trainer;
 
-pub use loss::{mean_distance, mean_squared_distance};
+#[cfg(test)]
+pub(crate) use loss::{mean_distance, mean_squared_distance};
 pub use trainer::Trainer;
 
 use std::sync::Mutex;

@@ -141,8 +141,7 @@ fn a_run_stopped_anywhere_and_resumed_gives_the_same_weights() {
 
 #[test]
 fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
-    // NaN at the end of the network, which libtorch computes, and at its beginning, from which it must pass through the
-    // kernels.
+    // NaN at the end of the network, and at its beginning, from which it must pass through the kernels.
     for bias in [
         "output_layer.bias",
         "input_embedding_layer_temporal.bias",

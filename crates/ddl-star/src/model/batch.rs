@@ -4,7 +4,7 @@ use super::neighbours::Neighbours;
 use super::numbers::tensor;
 use super::scene_means::SceneMeans;
 use crate::StarError;
-use ddl_data::{Rotation, Window};
+use ddl_data::Window;
 use ddl_network::{NetworkError, visibility};
 use std::sync::Arc;
 use tch::{Device, Kind, Tensor};
@@ -14,7 +14,7 @@ use tch::{Device, Kind, Tensor};
 /// # Shapes
 /// T frames, P pedestrians in total: positions `[T, P, 2]` in metres; neighbours in the first M frames.
 #[derive(Debug)]
-pub struct SceneBatch {
+pub(crate) struct SceneBatch {
     pub(crate) positions: Tensor,
     pub(crate) neighbours: Arc<Neighbours>,
     pub(crate) scene_means: SceneMeans,
@@ -27,7 +27,7 @@ impl SceneBatch {
     ///
     /// # Errors
     /// [`NetworkError::Shape`] when there is no window, or one is shorter than `frames`.
-    pub fn new(
+    pub(crate) fn new(
         windows: &[&Window],
         frames: usize,
         mask_frames: usize,
@@ -65,17 +65,6 @@ impl SceneBatch {
         })
     }
 
-    /// All positions rotated about the world's origin. Neighbours are kept.
-    #[must_use]
-    pub fn rotated(&self, rotation: Rotation) -> Self {
-        let ([xx, xy], [yx, yy]) = (rotation.apply([1.0, 0.0]), rotation.apply([0.0, 1.0]));
-        let images = Tensor::from_slice(&[xx, xy, yx, yy])
-            .reshape([2, 2])
-            .to_kind(self.positions.kind())
-            .to_device(self.positions.device());
-        self.turned(&images)
-    }
-
     /// All positions transformed by the images of the axes, the rows of `images` `[2, 2]`. Neighbours are kept.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {
@@ -95,12 +84,12 @@ impl SceneBatch {
     }
 
     /// The number of pedestrians in all windows.
-    pub fn pedestrians(&self) -> usize {
+    pub(crate) fn pedestrians(&self) -> usize {
         self.positions.size()[1] as usize
     }
 
     /// Positions, `[T, P, 2]`, metres.
-    pub fn positions(&self) -> &Tensor {
+    pub(crate) fn positions(&self) -> &Tensor {
         &self.positions
     }
 }

@@ -1,11 +1,12 @@
 //! The output layer and its noise.
 
-use ddl_network::StarConfig;
+use super::tensor_backend::TensorBackend;
+use ddl_network::weights::Linear;
 use tch::Tensor;
 
 /// The noise of the output layer.
 #[derive(Debug)]
-pub enum NoiseInput {
+pub(crate) enum NoiseInput {
     /// One vector for each hypothesis (or one for all), `[1 or H, noise]`.
     Draws(Tensor),
     /// The expectation over N(0, 1) noise.
@@ -21,59 +22,52 @@ impl NoiseInput {
     }
 }
 
-/// The output layer with its noise, prepared once for all steps.
+/// The output layer of a pass, with its noise prepared once for all steps.
 #[derive(Debug)]
-pub(crate) struct Emission<'a> {
-    weight: &'a Tensor,
-    bias: &'a Tensor,
-    noise: Prepared<'a>,
+pub(super) struct Emission<B: TensorBackend> {
+    layer: Linear,
+    /// The inputs of the layer after the token, `[B, P, noise]`.
+    noise: B::Tokens,
+    /// For the expectation of the metric.
+    covariance: Option<NoiseCovariance>,
 }
 
-#[derive(Debug)]
-enum Prepared<'a> {
-    Draws(&'a Tensor),
-    Expected {
-        /// The columns of the weight for the token.
-        weight: Tensor,
-        spread: Option<NoiseCovariance>,
-    },
-}
-
-impl<'a> Emission<'a> {
-    /// Shapes: `weight` `[outputs, width + noise]`, `bias` `[outputs]`.
-    pub(crate) fn new([weight, bias]: [&'a Tensor; 2], noise: &'a NoiseInput, config: &StarConfig) -> Self {
-        let (width, count) = (config.output_inputs(), config.noise_width);
-        let noise = match noise {
-            NoiseInput::Draws(draws) => Prepared::Draws(draws),
-            NoiseInput::Expected => {
-                let of_noise = weight.narrow(1, width, count);
-                let dynamics = config.variant.dynamics();
-                Prepared::Expected {
-                    weight: weight.narrow(1, 0, width),
-                    spread: dynamics.then(|| NoiseCovariance::of(&of_noise)),
-                }
-            }
+impl<B: TensorBackend> Emission<B> {
+    /// Shapes: `noise_weight` `[outputs, noise]`, the columns of the layer's weight for the noise; `entries` and
+    /// `pedestrians` are those of the tokens.
+    pub(super) fn new(
+        backend: &B,
+        layer: Linear,
+        noise_weight: &Tensor,
+        noise: &NoiseInput,
+        [entries, pedestrians]: [i64; 2],
+        dynamics: bool,
+    ) -> Self {
+        let shape = [entries, pedestrians, noise_weight.size()[1]];
+        let (rows, covariance) = match noise {
+            NoiseInput::Draws(draws) => (draws.unsqueeze(1).expand(shape, false), None),
+            NoiseInput::Expected => (
+                Tensor::zeros(shape, (noise_weight.kind(), noise_weight.device())),
+                dynamics.then(|| NoiseCovariance::of(noise_weight)),
+            ),
         };
-        Self { weight, bias, noise }
+        Self {
+            layer,
+            noise: backend.given(&rows),
+            covariance,
+        }
     }
 
-    /// The output for each pedestrian: (a, b, c), or (x, y). All pedestrians share the noise.
-    /// Shapes: `tokens` `[B, P, width]` -> `[B, P, outputs]`.
-    pub(crate) fn of(&self, tokens: &Tensor) -> Tensor {
-        let (batch, pedestrians) = (tokens.size()[0], tokens.size()[1]);
-        let bias = Some(self.bias);
-        match &self.noise {
-            Prepared::Draws(noise) => {
-                let noise = noise.unsqueeze(1).expand([batch, pedestrians, -1], false);
-                Tensor::cat(&[tokens, &noise], -1).linear(self.weight, bias)
-            }
-            Prepared::Expected { weight, spread } => {
-                let mean = tokens.linear(weight, bias);
-                match spread {
-                    Some(spread) => spread.expected_factor(&mean),
-                    None => mean,
-                }
-            }
+    /// The outputs for each pedestrian, (a, b, c) or (x, y), after all batch entries of all tokens. All pedestrians
+    /// share the noise.
+    pub(super) fn of(&self, backend: &B, tokens: &[B::Tokens]) -> Tensor {
+        let outputs = tokens
+            .iter()
+            .map(|token| backend.linear(self.layer, &backend.concatenate(token, &self.noise)));
+        let outputs = backend.outputs(&outputs.collect::<Vec<_>>());
+        match &self.covariance {
+            Some(covariance) => covariance.expected_factor(&outputs),
+            None => outputs,
         }
     }
 }

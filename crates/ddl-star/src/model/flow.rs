@@ -10,24 +10,24 @@ const SMALLEST_RADIUS_SQUARED: f64 = 1e-14;
 
 /// Constants of the flow.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlowConstants {
+pub(super) struct FlowConstants {
     /// sigma of P = L L^T + sigma I (eq. 11).
-    pub sigma: f64,
+    pub(super) sigma: f64,
     /// Duration of a step in seconds.
-    pub time_step: f64,
+    pub(super) time_step: f64,
 }
 
 /// The [`MotionBounds`] of a batch.
 #[derive(Debug)]
-pub struct StepBounds {
+pub(super) struct StepBounds {
     /// Largest speed, m/s; broadcasts to `[.., 1]`.
-    pub top_speed: Tensor,
+    pub(super) top_speed: Tensor,
     /// The pedestrians' own velocities, m/s; broadcasts to `[.., 2]`.
-    pub velocity: Tensor,
+    pub(super) velocity: Tensor,
     /// Share of the network's metric in the metric of a step, 0 to 1; broadcasts to `[.., 1]`.
-    pub share: Tensor,
+    pub(super) share: Tensor,
     /// Whether the network emits metrics in m/s, as published, instead of departures from the neutral motion.
-    pub absolute: bool,
+    pub(super) absolute: bool,
 }
 
 /// Next positions under v = -(L L^T + sigma I) u, with u the unit vector away from the goal, by a plain Euler step
@@ -40,7 +40,12 @@ pub struct StepBounds {
 /// # Numerics
 /// P is never formed: P u = L (L^T u) + sigma u, so that sigma is not lost in f32. At the goal u and its derivative are
 /// 0: the pedestrian stays, and no value is NaN.
-pub fn natural_gradient_step(positions: &Tensor, goals: &Tensor, factors: &Tensor, constants: FlowConstants) -> Tensor {
+pub(super) fn natural_gradient_step(
+    positions: &Tensor,
+    goals: &Tensor,
+    factors: &Tensor,
+    constants: FlowConstants,
+) -> Tensor {
     let (_, u) = away(positions, goals);
     let (u1, u2) = (u.narrow(-1, 0, 1), u.narrow(-1, 1, 1));
     let [a, b, c] = entries(factors);
@@ -59,7 +64,7 @@ pub fn natural_gradient_step(positions: &Tensor, goals: &Tensor, factors: &Tenso
 ///
 /// # Numerics
 /// A clamped eigenvalue has no derivative; the bounds and the neutral motion count as constants.
-pub fn bounded_step(
+pub(super) fn bounded_step(
     positions: &Tensor,
     goals: &Tensor,
     factors: &Tensor,
@@ -175,3 +180,7 @@ fn away(positions: &Tensor, goals: &Tensor) -> (Tensor, Tensor) {
 fn entries(factors: &Tensor) -> [Tensor; 3] {
     [0, 1, 2].map(|i| factors.narrow(-1, i, 1))
 }
+
+#[cfg(test)]
+#[path = "flow_tests.rs"]
+mod tests;

@@ -93,21 +93,20 @@ impl TorchNetwork {
     }
 
     /// The device of the network.
-    pub fn device(&self) -> Device {
+    pub(crate) fn device(&self) -> Device {
         self.device
     }
 
     /// The precision of all its numbers.
-    pub fn kind(&self) -> Kind {
+    pub(crate) fn kind(&self) -> Kind {
         self.kind
     }
 
-    /// Copies of weight and bias of the output layer, with gradients of their own.
-    pub(crate) fn copy_output(&self) -> [Tensor; 2] {
-        [0, 1].map(|one| {
-            let learned = &self.parameters.tensors()[self.layers.output.tensor + one];
-            learned.detach().copy().set_requires_grad(true)
-        })
+    /// A copy of the output layer's weight for the noise, `[outputs, noise]`, with a gradient of its own.
+    pub(crate) fn copy_noise_weight(&self) -> Tensor {
+        let weight = &self.parameters.tensors()[self.layers.output.tensor];
+        let of_noise = weight.narrow(1, self.layers.config.output_inputs(), self.layers.config.noise_width);
+        of_noise.detach().copy().set_requires_grad(true)
     }
 
     /// The weights in the form of the kernels; `None` if the kernels cannot compute it: on other devices than the CPU,

@@ -76,7 +76,7 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'
     let kernels = network.kernels().unwrap();
     assert_eq!(kernels.is_some(), matches!(by, By::Kernels), "{by:?}");
     let (loss, gradient) = if let Some(kernels) = kernels {
-        let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_output());
+        let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_noise_weight());
         let loss = loss(&network, Pass::Kernels(&pass));
         let gradient = pass.gradient(&loss, network.layers(), parameters.count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
@@ -110,7 +110,7 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) -> Tensor {
     let (noise, steps) = (NoiseInput::Expected, (12, StepRule::Bounded));
     let walk = network.layers().roll_out(&batch, &goals, &noise, steps, pass);
     let truth = batch.positions().narrow(0, 8, 12);
-    crate::mean_distance(&walk.positions.squeeze_dim(1), &truth)
+    crate::training::mean_distance(&walk.positions.squeeze_dim(1), &truth)
 }
 
 /// A loss, with the largest relative errors of it and of its gradient.

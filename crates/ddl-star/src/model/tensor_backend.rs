@@ -1,8 +1,12 @@
 //! Backends that convert tokens from and to tensors, and passes of training with their gradients.
+//!
+//! A network is computed by one of them alone, from its inputs to its outputs. libtorch computes what follows, the path
+//! and its loss, and gives back the gradients of the outputs.
 
 use super::backend::TorchBackend;
 use super::batch::SceneBatch;
 use super::network::Layers;
+use ddl_network::StarConfig;
 use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, VisibleScenes};
 use ddl_network::weights::Linear;
 use std::ops::Range;
@@ -17,8 +21,8 @@ pub(crate) trait TensorBackend: Backend {
     /// The batch entries, each `[1, P, width]`.
     fn each_entry(&self, x: &Self::Tokens) -> Vec<Self::Tokens>;
 
-    /// All batch entries of all tokens as a tensor of libtorch.
-    fn joined(&self, all: &[Self::Tokens]) -> Tensor;
+    /// All batch entries of the outputs of a network as a tensor of libtorch.
+    fn outputs(&self, entries: &[Self::Tokens]) -> Tensor;
 
     /// The neighbours at the time steps `steps`: a single step applies to every batch entry, several steps to one entry
     /// each.
@@ -35,10 +39,10 @@ impl TensorBackend for TorchBackend {
         x.split(1, 0).into_iter().map(Rc::new).collect()
     }
 
-    fn joined(&self, all: &[Rc<Tensor>]) -> Tensor {
-        match all {
+    fn outputs(&self, entries: &[Rc<Tensor>]) -> Tensor {
+        match entries {
             [one] => one.shallow_clone(),
-            all => Tensor::cat(&all.iter().map(|x| &**x).collect::<Vec<_>>(), 0),
+            several => Tensor::cat(&several.iter().map(|x| &**x).collect::<Vec<_>>(), 0),
         }
     }
 
@@ -58,19 +62,19 @@ impl TensorBackend for KernelBackend {
         entries.map(|entry| self.entry(x, entry)).collect()
     }
 
-    fn joined(&self, all: &[Rc<Rows>]) -> Tensor {
+    fn outputs(&self, entries: &[Rc<Rows>]) -> Tensor {
         let tensor = |rows: &Rc<Rows>| {
             let shape = rows.shape().map(|count| count as i64);
             Tensor::from_slice(rows).reshape(shape)
         };
-        let joined = match all {
+        let outputs = match entries {
             [one] => tensor(one),
-            all => Tensor::cat(&all.iter().map(tensor).collect::<Vec<_>>(), 0),
+            several => Tensor::cat(&several.iter().map(tensor).collect::<Vec<_>>(), 0),
         };
-        // libtorch's graph begins at this leaf. In the backward pass, its gradient is added to the rows first.
-        let leaf = joined.set_requires_grad(true);
-        let joined = leaf.shallow_clone();
-        let all = all.to_vec();
+        // libtorch's graph begins at this leaf: its backward pass ends before that of the kernels begins.
+        let leaf = outputs.set_requires_grad(true);
+        let outputs = leaf.shallow_clone();
+        let entries = entries.to_vec();
         self.record_backward(move |_| {
             let gradient = leaf.grad();
             if !gradient.defined() {
@@ -78,12 +82,12 @@ impl TensorBackend for KernelBackend {
             }
             let gradient = numbers(&gradient);
             let mut rest = &gradient[..];
-            for rows in &all {
+            for rows in &entries {
                 let part = rest.split_off(..rows.len()).unwrap_or_default();
                 rows.add_gradient(Buffer::copy(part));
             }
         });
-        joined
+        outputs
     }
 
     fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> VisibleScenes {
@@ -112,11 +116,14 @@ pub(crate) enum Pass<'a> {
 }
 
 impl Pass<'_> {
-    /// Weight and bias of the output layer, which libtorch computes in both cases.
-    pub(super) fn output(&self, layer: Linear) -> [&Tensor; 2] {
+    /// The columns of the output layer's weight for the noise, `[outputs, noise]`: they shape the expected metric.
+    pub(super) fn noise_weight(&self, layer: Linear, config: &StarConfig) -> Tensor {
         match self {
-            Self::Torch(backend) => backend.learned(layer.tensor),
-            Self::Kernels(pass) => pass.output.each_ref(),
+            Self::Torch(backend) => {
+                let [weight, _] = backend.learned(layer.tensor);
+                weight.narrow(1, config.output_inputs(), config.noise_width)
+            }
+            Self::Kernels(pass) => pass.noise_weight.shallow_clone(),
         }
     }
 }
@@ -125,16 +132,16 @@ impl Pass<'_> {
 #[derive(Debug)]
 pub(crate) struct KernelPass {
     pub(super) backend: KernelBackend,
-    /// Copies of the weights of the output layer, with gradients of their own.
-    output: [Tensor; 2],
+    /// A copy with a gradient of its own.
+    noise_weight: Tensor,
 }
 
 impl KernelPass {
-    /// A pass with dropout by this seed. `output` is of `TorchNetwork::copy_output`.
-    pub(crate) fn new(kernels: &Arc<Kernels>, mode: Mode, seed: u64, output: [Tensor; 2]) -> Self {
+    /// A pass with dropout by this seed. `noise_weight` is of `TorchNetwork::copy_noise_weight`.
+    pub(crate) fn new(kernels: &Arc<Kernels>, mode: Mode, seed: u64, noise_weight: Tensor) -> Self {
         Self {
             backend: KernelBackend::training(Arc::clone(kernels), mode, seed),
-            output,
+            noise_weight,
         }
     }
 
@@ -146,14 +153,16 @@ impl KernelPass {
         loss.f_backward()?;
         let mut sums = vec![0.0; count];
         self.backend.backward(&mut sums);
-        let mut rest = &mut sums[layers.output.span()];
-        for learned in &self.output {
-            let (of_learned, after) = rest.split_at_mut(learned.numel());
-            let gradient = learned.f_grad()?;
-            if gradient.defined() {
-                of_learned.copy_from_slice(&numbers(&gradient));
+        let gradient = self.noise_weight.f_grad()?;
+        if gradient.defined() {
+            let width = self.noise_weight.size()[1] as usize;
+            let Linear { inputs, outputs, .. } = layers.output;
+            let rows = sums[layers.output.span()].chunks_exact_mut(inputs).take(outputs);
+            for (row, terms) in rows.zip(numbers(&gradient).chunks_exact(width)) {
+                for (sum, term) in row[inputs - width..].iter_mut().zip(terms) {
+                    *sum += term;
+                }
             }
-            rest = after;
         }
         Ok(sums)
     }

@@ -43,13 +43,13 @@ pub(crate) fn by_kernels(
     let pedestrians: usize = sizes.sum();
     let jobs = parts.into_iter().zip(0..).map(|(part, index)| {
         let seed = seed_of_part(draw.kernels, index);
-        (part, seed, draw.noise.shallow_clone(), network.copy_output())
+        (part, seed, draw.noise.shallow_clone(), network.copy_noise_weight())
     });
     let gradients: Vec<Result<(Tensor, Vec<f32>), StarError>> = jobs
         .collect::<Vec<_>>()
         .into_par_iter()
-        .map(|(part, seed, noise, output)| {
-            let pass = KernelPass::new(kernels, Mode::Train, seed, output);
+        .map(|(part, seed, noise, noise_weight)| {
+            let pass = KernelPass::new(kernels, Mode::Train, seed, noise_weight);
             let share = part.scenes.pedestrians() as f64 / pedestrians as f64;
             let loss = loss(layers, objective, &part, noise, Pass::Kernels(&pass))? * share;
             let gradient = pass.gradient(&loss, layers, count)?;
@@ -78,7 +78,7 @@ fn seed_of_part(of_step: u64, part: u64) -> u64 {
     }
 }
 
-/// The mean loss of the pedestrians of a batch, in a pass with the weights of the output layer.
+/// The mean loss of the pedestrians of a batch, in a pass.
 fn loss(
     layers: &Layers,
     objective: Objective,

@@ -6,7 +6,7 @@ use tch::{Kind, Tensor};
 ///
 /// # Shapes
 /// Both `[T, P, 2]` -> scalar, in square metres.
-pub fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
+pub(crate) fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
     (forecast - truth)
         .square()
         .sum_dim_intlist([-1i64].as_slice(), false, None::<Kind>)
@@ -20,7 +20,7 @@ pub fn mean_squared_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
 ///
 /// # Numerics
 /// The derivative is 0 where both are equal.
-pub fn mean_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
+pub(crate) fn mean_distance(forecast: &Tensor, truth: &Tensor) -> Tensor {
     (forecast - truth)
         .norm_scalaropt_dim(2, [-1i64].as_slice(), false)
         .mean(None::<Kind>)

@@ -3,13 +3,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_dynamics::{
-    Attractor, CholeskyMetric, Euler, MotionBounds, NaturalGradientFlow, StableEuler, StepTime, rollout,
-};
-use ddl_star::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
+use super::*;
+use ddl_dynamics::{Attractor, CholeskyMetric, Euler, NaturalGradientFlow, StableEuler, rollout};
 use nalgebra::Vector2;
 use proptest::prelude::*;
-use tch::{Kind, Tensor};
+use tch::Kind;
 
 const SIGMA: f64 = 1e-8;
 const HORIZON: i64 = 12;

@@ -3,10 +3,12 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+use super::{NoiseInput, Pass, SceneBatch, TorchBackend, TorchNetwork};
+use crate::device::ComputeDevice;
+use crate::training::mean_squared_distance;
 use ddl_data::{PedestrianId, Window};
 use ddl_network::backend::Mode;
 use ddl_network::{DeviceChoice, StarConfig, StepRule, Variant};
-use ddl_star::{ComputeDevice, NoiseInput, SceneBatch, TorchNetwork, mean_squared_distance};
 use serde_json::Value;
 use tch::{Device, Kind, Tensor};
 
@@ -14,7 +16,7 @@ struct Reference(Value);
 
 impl Reference {
     fn load() -> Self {
-        Self(serde_json::from_str(include_str!("reference/star_ddl_forward.json")).unwrap())
+        Self(serde_json::from_str(include_str!("../../tests/reference/star_ddl_forward.json")).unwrap())
     }
 
     fn numbers(&self, pointer: &str) -> Vec<f64> {
@@ -121,8 +123,11 @@ fn agrees(kind: Kind, tolerance: f64) {
     let pedestrians = batch.pedestrians() as i64;
     let noise = NoiseInput::Draws(reference.tensor("/noise", &[1, 16], kind));
 
+    let torch = TorchBackend::new(network.parameters(), Mode::Evaluate);
     let goal = reference.tensor("/true_goal", &[pedestrians, 2], kind);
-    let forecast = network.teacher_forced(&batch, &goal, &noise, Mode::Evaluate);
+    let forecast = network
+        .layers()
+        .teacher_forced(&batch, &goal, &noise, Pass::Torch(&torch));
     let expected = reference.tensor("/train_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&forecast, &expected);
     assert!(
@@ -146,10 +151,10 @@ fn agrees(kind: Kind, tolerance: f64) {
 
     let goal = reference.tensor("/estimated_goal", &[1, pedestrians, 2], kind);
     let _guard = tch::no_grad_guard();
-    let rolled = network
-        .roll_out(&batch, &goal, &noise, 12, StepRule::Euler)
-        .positions
-        .squeeze_dim(1);
+    let rollout = network
+        .layers()
+        .roll_out(&batch, &goal, &noise, (12, StepRule::Euler), Pass::Torch(&torch));
+    let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));
     assert!(difference < tolerance, "rolled-out positions differ by {difference}");
