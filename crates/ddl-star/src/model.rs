@@ -6,7 +6,6 @@
 mod attention;
 mod backend;
 mod batch;
-mod dropout;
 mod emission;
 mod flow;
 mod forecaster;

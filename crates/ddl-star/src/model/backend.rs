@@ -1,7 +1,6 @@
 //! The operations of a backbone on libtorch: on any device, in any precision, with automatic gradients.
 
 use super::attention::{among_pedestrians, over_cache};
-use super::dropout::dropout;
 use super::neighbours::SeenNeighbours;
 use super::parameters::Parameters;
 use super::shared_weights::SharedWeights;
@@ -64,9 +63,10 @@ impl TorchBackend {
     fn after_attention(&self, layer: EncoderLayer, x: &Tensor, mixed: &Tensor) -> Rc<Tensor> {
         let (first, p, mode) = (layer.tensor, layer.dropout, self.mode);
         let attended = self.affine(mixed, first + 2);
-        let x = self.norm(&(x + dropout(attended, p, mode)), first + 8);
-        let hidden = dropout(self.affine(&x, first + 4).relu(), p, mode);
-        let fed = dropout(self.affine(&hidden, first + 6), p, mode);
+        let train = mode == Mode::Train;
+        let x = self.norm(&(x + attended.dropout(p, train)), first + 8);
+        let hidden = self.affine(&x, first + 4).relu().dropout(p, train);
+        let fed = self.affine(&hidden, first + 6).dropout(p, train);
         Rc::new(self.norm(&(x + fed), first + 10))
     }
 
