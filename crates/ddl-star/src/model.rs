@@ -23,7 +23,7 @@ mod shared_weights;
 mod tensor_backend;
 
 pub use backend::TorchBackend;
-pub(crate) use batch::SceneBatch;
+pub(crate) use batch::WindowBatch;
 pub(crate) use emission::NoiseInput;
 pub(crate) use network::Layers;
 pub use network::TorchNetwork;

@@ -14,7 +14,7 @@ use tch::{Device, Kind, Tensor};
 /// # Shapes
 /// T frames, P pedestrians in total: positions `[T, P, 2]` in metres; neighbours in the first M frames.
 #[derive(Debug)]
-pub(crate) struct SceneBatch {
+pub(crate) struct WindowBatch {
     pub(crate) positions: Tensor,
     pub(crate) neighbours: Arc<Neighbours>,
     pub(crate) scene_means: SceneMeans,
@@ -22,7 +22,7 @@ pub(crate) struct SceneBatch {
     pub(crate) share: Tensor,
 }
 
-impl SceneBatch {
+impl WindowBatch {
     /// Concatenates windows: `frames` of each, with the neighbours of the first `mask_frames`.
     ///
     /// # Errors
@@ -47,9 +47,9 @@ impl SceneBatch {
             check_length(window, frames)?;
             for i in 0..window.len() {
                 for (t, [x, y]) in window.track(i).iter().take(frames).enumerate() {
-                    let at = 2 * (t * pedestrians + first + i);
-                    positions[at] = *x;
-                    positions[at + 1] = *y;
+                    let first_number = 2 * (t * pedestrians + first + i);
+                    positions[first_number] = *x;
+                    positions[first_number + 1] = *y;
                 }
             }
             first += window.len();

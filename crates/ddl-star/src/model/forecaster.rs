@@ -1,7 +1,7 @@
 //! Forecasts of the network on libtorch, through the trait `ForecastWindows`.
 
 use super::backend::TorchBackend;
-use super::batch::SceneBatch;
+use super::batch::WindowBatch;
 use super::emission::NoiseInput;
 use super::network::TorchNetwork;
 use super::numbers::{numbers, tensor};
@@ -30,8 +30,8 @@ impl TorchNetwork {
         let (device, kind) = (self.device(), self.kind());
         let views: Vec<&Window> = batch.windows.iter().collect();
         let half_box = self.config().neighbour_box;
-        let mut scenes = SceneBatch::new(&views, OBSERVED, OBSERVED, half_box, device, kind)?;
-        let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
+        let mut scenes = WindowBatch::new(&views, OBSERVED, OBSERVED, half_box, device, kind)?;
+        let tensor = |values: &[f64], shape: &[i64]| tensor(values, shape, (kind, device));
         let pedestrians = scenes.pedestrians() as i64;
         if let Some(shares) = &batch.shares {
             scenes.share = tensor(shares, &[1, pedestrians, 1])?;

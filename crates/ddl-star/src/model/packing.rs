@@ -91,11 +91,11 @@ mod tests {
             let scenes = scenes(&sizes);
             let packing = Packing::new(&scenes);
             let pedestrians: usize = sizes.iter().sum();
-            let at = packing.pedestrians();
+            let pedestrian_at = packing.pedestrians();
             prop_assert_eq!(packing.places().len(), pedestrians);
-            prop_assert_eq!(at.len(), packing.rows() * packing.length());
+            prop_assert_eq!(pedestrian_at.len(), packing.rows() * packing.length());
             for (pedestrian, &place) in packing.places().iter().enumerate() {
-                prop_assert_eq!(at[place], pedestrian);
+                prop_assert_eq!(pedestrian_at[place], pedestrian);
             }
             for scene in &scenes {
                 let places = &packing.places()[scene.clone()];

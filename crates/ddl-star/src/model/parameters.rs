@@ -40,12 +40,12 @@ impl Parameters {
     }
 
     /// Names, shapes and places.
-    pub fn layout(&self) -> &Arc<Layout> {
+    pub(crate) fn layout(&self) -> &Arc<Layout> {
         &self.layout
     }
 
     /// Names and tensors, in order.
-    pub fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
         let names = self.layout.tensors().iter().map(TensorLayout::name);
         names.zip(&self.tensors)
     }
@@ -58,7 +58,7 @@ impl Parameters {
     }
 
     /// The number of learned parameters.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.layout.count()
     }
 

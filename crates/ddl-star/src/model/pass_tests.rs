@@ -27,13 +27,13 @@ fn scenes() -> [Vec<Window>; 3] {
     [some, many, vec![alone]]
 }
 
-fn batch(windows: &[Window], kind: Kind) -> SceneBatch {
+fn batch(windows: &[Window], kind: Kind) -> WindowBatch {
     let windows: Vec<&Window> = windows.iter().collect();
-    SceneBatch::new(&windows, WINDOW, WINDOW - 1, 2.0, tch::Device::Cpu, kind).unwrap()
+    WindowBatch::new(&windows, WINDOW, WINDOW - 1, 2.0, tch::Device::Cpu, kind).unwrap()
 }
 
 fn configs() -> Vec<StarConfig> {
-    let own = [Variant::NoDynamics, Variant::Full].map(StarConfig::recommended);
+    let goal_frame = [Variant::NoDynamics, Variant::Full].map(StarConfig::recommended);
     let world = Variant::ALL.map(StarConfig::published);
     let with = |config: StarConfig| {
         BackboneKind::ALL.map(|backbone| StarConfig {
@@ -42,7 +42,7 @@ fn configs() -> Vec<StarConfig> {
             ..config.clone()
         })
     };
-    world.into_iter().chain(own).flat_map(with).collect()
+    world.into_iter().chain(goal_frame).flat_map(with).collect()
 }
 
 fn name(config: &StarConfig) -> String {
@@ -129,19 +129,19 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
             (&some, walks),
             (&many, walks),
         ] {
-            let of = |by| gradient(&config, by, |network, pass| loss(windows, network, pass));
-            let (known_loss, known) = of(By::Torch);
-            let size = known.norm().double_value(&[]);
+            let computed = |by| gradient(&config, by, |network, pass| loss(windows, network, pass));
+            let (torch_loss, torch_gradient) = computed(By::Torch);
+            let size = torch_gradient.norm().double_value(&[]);
             assert!(size > 1e-3, "{}: {size}", name(&config));
             for (by, of_loss, of_gradient) in [
                 (By::Kernels, of_loss, of_gradient),
                 (By::SharedWeights, 1e-12, 1e-8 * of_gradient),
             ] {
                 let name = format!("{}, {by:?}", name(&config));
-                let (loss, ours) = of(by);
-                let off = (loss / known_loss - 1.0).abs();
-                assert!(off < of_loss, "{name}: {loss} {known_loss}");
-                let off = (ours - &known).norm().double_value(&[]);
+                let (loss, ours) = computed(by);
+                let off = (loss / torch_loss - 1.0).abs();
+                assert!(off < of_loss, "{name}: {loss} {torch_loss}");
+                let off = (ours - &torch_gradient).norm().double_value(&[]);
                 assert!(off < of_gradient * size, "{name}: {off} of {size}");
             }
         }
@@ -197,19 +197,19 @@ fn answers(network: &dyn ForecastWindows, questions: &[Question]) -> Vec<WindowR
 }
 
 /// Largest difference of positions (m) and factors.
-fn apart(ours: &[WindowRollout], known: &[WindowRollout]) -> f64 {
-    assert_eq!(ours.len(), known.len());
+fn apart(ours: &[WindowRollout], reference: &[WindowRollout]) -> f64 {
+    assert_eq!(ours.len(), reference.len());
     let numbers = |rollout: &WindowRollout| -> Vec<f64> {
         let factors = rollout.factors.iter().flatten().flatten();
         let positions = rollout.positions.as_flattened().iter();
         positions.chain(factors).copied().collect()
     };
-    let pairs = ours.iter().zip(known).flat_map(|(ours, known)| {
-        let (ours, known) = (numbers(ours), numbers(known));
-        assert_eq!(ours.len(), known.len());
-        ours.into_iter().zip(known)
+    let pairs = ours.iter().zip(reference).flat_map(|(ours, reference)| {
+        let (ours, reference) = (numbers(ours), numbers(reference));
+        assert_eq!(ours.len(), reference.len());
+        ours.into_iter().zip(reference)
     });
-    let differences = pairs.map(|(ours, known)| (ours - known).abs());
+    let differences = pairs.map(|(ours, reference)| (ours - reference).abs());
     // `total_cmp` orders NaN as the largest value.
     differences.max_by(f64::total_cmp).unwrap()
 }

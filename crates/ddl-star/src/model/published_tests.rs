@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{NoiseInput, Pass, SceneBatch, TorchBackend, TorchNetwork};
+use super::{NoiseInput, Pass, TorchBackend, TorchNetwork, WindowBatch};
 use crate::device::ComputeDevice;
 use crate::training::mean_squared_distance;
 use ddl_data::{PedestrianId, Window};
@@ -104,10 +104,10 @@ impl Reference {
         network
     }
 
-    fn batch(&self, kind: Kind) -> SceneBatch {
+    fn batch(&self, kind: Kind) -> WindowBatch {
         let windows = self.windows();
         let views: Vec<&Window> = windows.iter().collect();
-        SceneBatch::new(&views, 20, 19, 10.0, Device::Cpu, kind).unwrap()
+        WindowBatch::new(&views, 20, 19, 10.0, Device::Cpu, kind).unwrap()
     }
 }
 

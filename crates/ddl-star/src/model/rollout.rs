@@ -1,6 +1,6 @@
 //! From windows and goals to positions on tensors: teacher-forced for training, recurrent for forecasts.
 
-use super::batch::SceneBatch;
+use super::batch::WindowBatch;
 use super::emission::{Emission, NoiseInput};
 use super::flow::{FlowConstants, StepBounds};
 use super::goal_frame::GoalFrame;
@@ -34,7 +34,7 @@ impl Layers {
     /// 1..T.
     pub(crate) fn teacher_forced(
         &self,
-        batch: &SceneBatch,
+        batch: &WindowBatch,
         goals: &Tensor,
         noise: &NoiseInput,
         pass: Pass<'_>,
@@ -48,7 +48,7 @@ impl Layers {
 
     fn teacher_forced_by<B: TensorBackend>(
         &self,
-        batch: &SceneBatch,
+        batch: &WindowBatch,
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
         (backend, backbone): (&B, &dyn Backbone<B>),
@@ -90,7 +90,7 @@ impl Layers {
     /// integrator -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
     pub(crate) fn roll_out(
         &self,
-        batch: &SceneBatch,
+        batch: &WindowBatch,
         goals: &Tensor,
         noise: &NoiseInput,
         steps: (usize, StepRule),
@@ -105,7 +105,7 @@ impl Layers {
 
     fn roll_out_by<B: TensorBackend>(
         &self,
-        batch: &SceneBatch,
+        batch: &WindowBatch,
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
         (horizon, rule): (usize, StepRule),
@@ -154,7 +154,7 @@ impl Layers {
 
     /// Goals and frames of the pedestrians for this network. Shapes: `batch` of at least 8 frames, unless the network
     /// reads positions relative to the goal in the world's frame; `goals` `[.., P, 2]`.
-    fn guidance(&self, batch: &SceneBatch, goals: &Tensor, rule: StepRule) -> Guidance {
+    fn guidance(&self, batch: &WindowBatch, goals: &Tensor, rule: StepRule) -> Guidance {
         let config = &self.config;
         let time_step = config.time_step;
         let observed = || batch.positions.narrow(0, 0, OBSERVED as i64);
@@ -192,7 +192,7 @@ impl Layers {
 /// The features of the last observed frame, and the memory of all observed ones. The hypotheses differ only in the goal
 /// that positions are relative to, so there is one batch entry for each distinct reference.
 fn observe<B: TensorBackend>(
-    batch: &SceneBatch,
+    batch: &WindowBatch,
     guidance: &Guidance,
     (backend, backbone): (&B, &dyn Backbone<B>),
 ) -> (B::Tokens, Memory<B>) {
@@ -220,7 +220,7 @@ fn observe<B: TensorBackend>(
 
 /// Positions relative to the mean over all pedestrians of the scene and all frames so far.
 /// Shapes: `positions` `[T, P, 2]` -> the same.
-fn centre(batch: &SceneBatch, positions: &Tensor) -> Tensor {
+fn centre(batch: &WindowBatch, positions: &Tensor) -> Tensor {
     let frames = positions.size()[0];
     let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device())).view([frames, 1, 1]);
     positions - batch.scene_means.of(&(positions.cumsum(0, positions.kind()) / count))

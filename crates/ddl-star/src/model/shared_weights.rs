@@ -54,18 +54,18 @@ impl SharedWeights {
     pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
         let uses = self.uses.take();
         let tensors: Vec<&Tensor> = parameters.tensors().iter().collect();
-        let outputs = uses.iter().map(|of| &of.output);
+        let outputs = uses.iter().map(|applied| &applied.output);
         let asked: Vec<&Tensor> = tensors.iter().copied().chain(outputs).collect();
-        let mut found = Tensor::f_run_backward(&[loss], &asked, false, false)?;
-        let of_outputs = found.split_off(tensors.len());
+        let mut gradients = Tensor::f_run_backward(&[loss], &asked, false, false)?;
+        let of_outputs = gradients.split_off(tensors.len());
         let mut shares = shares(&uses, of_outputs)?;
-        let rows = found
+        let rows = gradients
             .into_iter()
             .zip(tensors)
-            .map(|(own, tensor)| {
-                let whole = match (own.defined(), shares.remove(&place(tensor))) {
-                    (true, Some(share)) => own.f_add(&share)?,
-                    (true, None) => own,
+            .map(|(direct, tensor)| {
+                let whole = match (direct.defined(), shares.remove(&place(tensor))) {
+                    (true, Some(share)) => direct.f_add(&share)?,
+                    (true, None) => direct,
                     (false, Some(share)) => share,
                     (false, None) => tensor.f_zeros_like()?,
                 };
@@ -79,18 +79,18 @@ impl SharedWeights {
 /// The gradients of weights and biases, by their address, from those of the uses' outputs.
 fn shares(uses: &[Use], of_outputs: Vec<Tensor>) -> Result<BTreeMap<usize, Tensor>, TchError> {
     let mut by_weight: BTreeMap<usize, UsedRows> = BTreeMap::new();
-    for (of, gradient) in uses.iter().zip(of_outputs) {
+    for (applied, gradient) in uses.iter().zip(of_outputs) {
         // The loss may not depend on a use. For example, the memory of the last frame is never read.
         if !gradient.defined() {
             continue;
         }
-        let (outputs, inputs) = of.weight.size2()?;
-        let rows = by_weight.entry(place(&of.weight)).or_insert_with(|| UsedRows {
-            bias: place(&of.bias),
+        let (outputs, inputs) = applied.weight.size2()?;
+        let rows = by_weight.entry(place(&applied.weight)).or_insert_with(|| UsedRows {
+            bias: place(&applied.bias),
             inputs: Vec::new(),
             gradients: Vec::new(),
         });
-        rows.inputs.push(of.input.f_reshape([-1, inputs])?);
+        rows.inputs.push(applied.input.f_reshape([-1, inputs])?);
         rows.gradients.push(gradient.f_reshape([-1, outputs])?);
     }
     let mut shares = BTreeMap::new();
@@ -131,8 +131,8 @@ mod tests {
             let _unused = uniform("unused", &[4]);
             let initial = layout.initial(rng);
             let parameters = Parameters::new(layout, &initial, Device::Cpu, Kind::Double);
-            let of = |tensors: [usize; 2]| tensors.map(|tensor| parameters.tensors()[tensor].shallow_clone());
-            let (first, second) = (of(first), of(second));
+            let learned = |tensors: [usize; 2]| tensors.map(|tensor| parameters.tensors()[tensor].shallow_clone());
+            let (first, second) = (learned(first), learned(second));
             tch::manual_seed(seed as i64);
             let start = Tensor::randn([2, pedestrians, 3], (Kind::Double, Device::Cpu));
             let loss = |linear: &dyn Fn(&Tensor, &[Tensor; 2]) -> Tensor| {
@@ -148,10 +148,10 @@ mod tests {
             let shared = SharedWeights::default();
             let ours = loss(&|x, [weight, bias]| shared.linear(x, weight, bias));
             let ours = shared.gradient(&ours, &parameters).unwrap();
-            let known = loss(&|x, [weight, bias]| x.linear(weight, Some(bias)));
-            let known = parameters.gradient_of(&known).unwrap();
-            let size = known.abs().max().double_value(&[]).max(1.0);
-            let difference = (ours - known).abs().max().double_value(&[]);
+            let expected = loss(&|x, [weight, bias]| x.linear(weight, Some(bias)));
+            let expected = parameters.gradient_of(&expected).unwrap();
+            let size = expected.abs().max().double_value(&[]).max(1.0);
+            let difference = (ours - expected).abs().max().double_value(&[]);
             prop_assert!(difference < 1e-12 * size, "{} of {}", difference, size);
         }
     }

@@ -4,7 +4,7 @@
 //! and its loss, and gives back the gradients of the outputs.
 
 use super::backend::TorchBackend;
-use super::batch::SceneBatch;
+use super::batch::WindowBatch;
 use super::network::Layers;
 use ddl_network::StarConfig;
 use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, VisibleScenes};
@@ -26,7 +26,7 @@ pub(crate) trait TensorBackend: Backend {
 
     /// The neighbours at the time steps `steps`: a single step applies to every batch entry, several steps to one entry
     /// each.
-    fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> Self::Seen;
+    fn seen(&self, batch: &WindowBatch, steps: Range<usize>) -> Self::Seen;
 }
 
 impl TensorBackend for TorchBackend {
@@ -46,7 +46,7 @@ impl TensorBackend for TorchBackend {
         }
     }
 
-    fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> Self::Seen {
+    fn seen(&self, batch: &WindowBatch, steps: Range<usize>) -> Self::Seen {
         batch.neighbours.during(steps)
     }
 }
@@ -90,7 +90,7 @@ impl TensorBackend for KernelBackend {
         outputs
     }
 
-    fn seen(&self, batch: &SceneBatch, steps: Range<usize>) -> VisibleScenes {
+    fn seen(&self, batch: &WindowBatch, steps: Range<usize>) -> VisibleScenes {
         VisibleScenes {
             scenes: Arc::clone(batch.neighbours.scenes()),
             steps,

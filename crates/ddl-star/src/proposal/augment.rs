@@ -58,10 +58,10 @@ fn remembering(remembered: &RememberedViews, matrix: &Tensor, training: &Proposa
     let tracks = remembered.tracks.matmul(&matrix.unsqueeze(2));
     let whole_track = tracks.narrow(3, 0, 1);
     let whole = uniform(1).ge(memory.partial).to_kind(options.0);
-    let kept = uniform(size[2]).lt_tensor(&uniform(1)).to_kind(options.0);
+    let drawn = uniform(size[2]).lt_tensor(&uniform(1)).to_kind(options.0);
     RememberedViews {
         tracks: &tracks + whole_track.randn_like() * memory.jitter,
         distances: remembered.distances.shallow_clone(),
-        present: &remembered.present * kept.maximum(&whole),
+        present: &remembered.present * drawn.maximum(&whole),
     }
 }

@@ -54,11 +54,11 @@ impl RememberedViews {
         })
     }
 
-    fn map(&self, of: impl Fn(&Tensor) -> Tensor) -> Self {
+    fn map(&self, change: impl Fn(&Tensor) -> Tensor) -> Self {
         Self {
-            tracks: of(&self.tracks),
-            distances: of(&self.distances),
-            present: of(&self.present),
+            tracks: change(&self.tracks),
+            distances: change(&self.distances),
+            present: change(&self.present),
         }
     }
 }
@@ -83,7 +83,7 @@ impl Views {
             neighbours.resize(neighbours.len() + (slots - taken) * OBSERVED * 2, 0.0);
             present.extend((0..slots).map(|slot| f64::from(u8::from(slot < taken))));
         }
-        let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
+        let tensor = |values: &[f64], shape: &[i64]| tensor(values, shape, (kind, device));
         let slots = slots as i64;
         Ok(Self {
             own: tensor(&own, &[count, track / 2, 2])?,

@@ -106,7 +106,7 @@ impl TorchProposals {
                 .for_each_of(self.config.members);
             let alone = self.forward(&views);
             // [M, B, K, ..] -> B times [M K, ..]
-            let each = (self.config.members * self.config.ends) as usize;
+            let per_pedestrian = (self.config.members * self.config.ends) as usize;
             let members = self.config.members as f64;
             let listed = |proposals: &Proposals| -> Result<_, StarError> {
                 let weights = proposals.logits.softmax(-1, Kind::Double) / members;
@@ -115,8 +115,8 @@ impl TorchProposals {
                 Ok((ends, numbers(&weights.transpose(0, 1))?))
             };
             let (endpoints, weights) = listed(&alone)?;
-            let endpoints = endpoints.chunks_exact(each).map(<[_]>::to_vec);
-            let weights = weights.chunks_exact(each).map(<[_]>::to_vec);
+            let endpoints = endpoints.chunks_exact(per_pedestrian).map(<[_]>::to_vec);
+            let weights = weights.chunks_exact(per_pedestrian).map(<[_]>::to_vec);
             let mut of_chunk: Vec<ProposedEndpoints> = endpoints
                 .zip(weights)
                 .map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights })
@@ -125,7 +125,9 @@ impl TorchProposals {
             let branch = self.config.memory.as_ref().filter(|_| remembers);
             if let Some((memory, proposals)) = branch.zip(self.forward_remembering(&views)) {
                 let (ends, weights) = listed(&proposals)?;
-                let others = ends.chunks_exact(each).zip(weights.chunks_exact(each));
+                let others = ends
+                    .chunks_exact(per_pedestrian)
+                    .zip(weights.chunks_exact(per_pedestrian));
                 for ((view, proposed), (ends, weights)) in chunk.iter().zip(&mut of_chunk).zip(others) {
                     if !view.remembered.is_empty() {
                         let share = memory.share(&view.remembered);
@@ -272,9 +274,10 @@ impl TorchProposals {
     fn remembered_features(&self, views: &Views) -> Tensor {
         let tracks = &views.remembered.tracks;
         let own = views.own.unsqueeze(2);
-        let at = |track: &Tensor, step: usize| track.select(-2, step as i64);
-        let here = at(&own, OBSERVED - 1);
-        let [now, halfway, end] = [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|step| at(tracks, step));
+        let position = |track: &Tensor, step: usize| track.select(-2, step as i64);
+        let here = position(&own, OBSERVED - 1);
+        let [now, halfway, end] =
+            [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|step| position(tracks, step));
         let seconds = HORIZON as f64 * self.config.time_step;
         let late = self.velocity(&own, OBSERVED - 1);
         let its_late = self.velocity(tracks, OBSERVED - 1);
@@ -332,8 +335,8 @@ impl TorchProposals {
     /// Mean velocity over the [`RECENT_STEPS`] steps that end at a step (m/s): `[.., T, 2]` -> `[.., 2]`.
     fn velocity(&self, track: &Tensor, until: usize) -> Tensor {
         let seconds = RECENT_STEPS as f64 * self.config.time_step;
-        let at = |step: usize| track.select(-2, step as i64);
-        (at(until) - at(until - RECENT_STEPS)) / seconds
+        let position = |step: usize| track.select(-2, step as i64);
+        (position(until) - position(until - RECENT_STEPS)) / seconds
     }
 }
 

@@ -67,14 +67,14 @@ impl ProposalTrainer {
             return Err(StarError::NoTrainingWindows);
         }
         let (device, kind) = (network.device().torch(), network.kind());
-        let all: Vec<&ProposalExample> = examples.iter().chain(reversed).collect();
-        let views = Views::new(all.iter().map(|example| &example.view), network.config(), device, kind)?;
-        let future: Vec<f64> = all
+        let both: Vec<&ProposalExample> = examples.iter().chain(reversed).collect();
+        let views = Views::new(both.iter().map(|example| &example.view), network.config(), device, kind)?;
+        let future: Vec<f64> = both
             .iter()
             .flat_map(|example| example.future.as_flattened())
             .copied()
             .collect();
-        let future = tensor(&future, &[all.len() as i64, -1, 2], (kind, device))?;
+        let future = tensor(&future, &[both.len() as i64, -1, 2], (kind, device))?;
         Ok(Self {
             adam: Adam::new(network.parameters()),
             gate: FiniteGate::new(device, kind),
@@ -97,8 +97,8 @@ impl ProposalTrainer {
 
     /// Whether all steps are done.
     pub fn is_finished(&self) -> bool {
-        let (done, all) = self.steps();
-        done >= all
+        let (done, total) = self.steps();
+        done >= total
     }
 
     /// Ends training and returns the network with the running mean of its weights.
@@ -155,7 +155,7 @@ impl ProposalTrainer {
         let step = self.progress.steps;
         let training = &self.training;
         // Steps of this part of the training: done, and in total.
-        let (done, all) = match step.checked_sub(training.steps) {
+        let (done, total) = match step.checked_sub(training.steps) {
             None => (step, training.steps),
             Some(done) => (done, training.memory.steps),
         };
@@ -166,7 +166,7 @@ impl ProposalTrainer {
         let training = &self.training;
         let (rows, views, future) = self.batch(step);
         let weights = LossWeights {
-            relaxed: training.relaxed_ends_at(done, all),
+            relaxed: training.relaxed_ends_at(done, total),
             waypoints: training.waypoint_weight,
             probability: training.probability_weight,
         };
@@ -178,17 +178,17 @@ impl ProposalTrainer {
         let norm = gradient.norm();
         let (distance, norm_value) = (distance.double_value(&[]), norm.double_value(&[]));
         self.ensure_finite(step, &rows, [("loss", distance), ("gradient norm", norm_value)])?;
-        let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, all);
+        let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, total);
         // Members are trained independently, so the norm of all their gradients grows with the square root of their
         // number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
         self.adam.step(parameters, &gradient, &norm, clip, rate, &self.gate);
         let _guard = tch::no_grad_guard();
         // The decay is smaller at first, so that the initial weights are soon forgotten.
-        let kept = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));
-        let _ = self.average.lerp_(&parameters.flat().detach(), 1.0 - kept);
-        let kept = if done == 0 { 0.0 } else { REPORTED };
-        self.progress.distance = kept * self.progress.distance + (1.0 - kept) * distance;
+        let decay = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));
+        let _ = self.average.lerp_(&parameters.flat().detach(), 1.0 - decay);
+        let decay = if done == 0 { 0.0 } else { REPORTED };
+        self.progress.distance = decay * self.progress.distance + (1.0 - decay) * distance;
         self.progress.steps += 1;
         Ok(ProposalStep {
             done: self.progress.steps,
@@ -227,12 +227,12 @@ impl ProposalTrainer {
     fn batch(&self, step: u64) -> (Tensor, Views, Tensor) {
         let mut rng = stream(self.training.seed, Stage::ProposalStep, step);
         let (members, batch) = (self.network.config().members, self.training.batch);
-        let (onward, all) = (self.onward as i64, self.future.size()[0]);
-        let reversed = if all > onward { self.training.reversed } else { 0.0 };
+        let (onward, examples) = (self.onward as i64, self.future.size()[0]);
+        let reversed = if examples > onward { self.training.reversed } else { 0.0 };
         let rows: Vec<i64> = (0..members * batch)
             .map(|_| {
                 let backwards = rng.random::<f64>() < reversed;
-                rng.random_range(if backwards { onward..all } else { 0..onward })
+                rng.random_range(if backwards { onward..examples } else { 0..onward })
             })
             .collect();
         let rows = Tensor::from_slice(&rows)

@@ -40,12 +40,12 @@ pub(crate) fn save(
     origin: &Origin,
     path: &Path,
 ) -> Result<(), StarError> {
-    let own = [
+    let state = [
         (WEIGHTS, parameters.flat()),
         (FIRST_MOMENT, &adam.first_moment),
         (SECOND_MOMENT, &adam.second_moment),
     ];
-    let mut tensors = own
+    let mut tensors = state
         .iter()
         .chain(&extra.vectors)
         .map(|(name, tensor)| stored(name, tensor))

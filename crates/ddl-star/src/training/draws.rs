@@ -70,7 +70,7 @@ impl StepDraws {
             }
         }
         let count = seeds.len() as i64;
-        let tensor = |of: &[f64], shape: &[i64]| tensor(of, shape, (kind, device));
+        let tensor = |values: &[f64], shape: &[i64]| tensor(values, shape, (kind, device));
         let turns = if turned || mirrored {
             Some(tensor(&turns, &[count, 2, 2])?)
         } else {

@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn every_part_has_its_own_dropout() {
-        let mut seeds: Vec<u64> = (0..40).map(|at| seed_of_part(at / 20, at % 20)).collect();
+        let mut seeds: Vec<u64> = (0..40).map(|index| seed_of_part(index / 20, index % 20)).collect();
         assert_eq!([seeds[0], seeds[20]], [0, 1]);
         seeds.sort_unstable();
         seeds.dedup();

@@ -91,7 +91,7 @@ mod tests {
         let parameters = parameters();
         let mut adam = Adam::new(&parameters);
         let gate = FiniteGate::new(Device::Cpu, Kind::Double);
-        let mut known: Vec<f64> = Vec::try_from(parameters.flat()).unwrap();
+        let mut expected: Vec<f64> = Vec::try_from(parameters.flat()).unwrap();
         let (mut m, mut v) = ([0.0; 12], [0.0; 12]);
         for step in 1..=5_i32 {
             let gradient: Vec<f64> = (0..12).map(|i| f64::from(i - 5) * 0.3 * f64::from(step)).collect();
@@ -102,11 +102,11 @@ mod tests {
                 v[i] = 0.999 * v[i] + 0.001 * g * g;
                 let m_hat: f64 = m[i] / (1.0 - 0.9_f64.powi(step));
                 let v_hat: f64 = v[i] / (1.0 - 0.999_f64.powi(step));
-                known[i] -= 0.01 * m_hat / (v_hat.sqrt() + 1e-8);
+                expected[i] -= 0.01 * m_hat / (v_hat.sqrt() + 1e-8);
             }
             let gradient = Tensor::from_slice(&gradient);
             adam.step(&parameters, &gradient, &gradient.norm(), 2.0, 0.01, &gate);
-            let difference = parameters.flat() - Tensor::from_slice(&known);
+            let difference = parameters.flat() - Tensor::from_slice(&expected);
             assert!(largest(&difference) < 1e-13, "step {step}");
         }
     }

@@ -1,7 +1,7 @@
 //! The batches of a training, each made once.
 
 use crate::StarError;
-use crate::model::{SceneBatch, tensor};
+use crate::model::{WindowBatch, tensor};
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW, Window};
 use std::cell::OnceCell;
 use std::ops::Range;
@@ -25,7 +25,7 @@ pub(crate) struct PreparedBatches {
 /// A batch, or a part of it, with its future and the goals of its pedestrians.
 #[derive(Debug)]
 pub(crate) struct TrainingBatch {
-    pub(crate) scenes: SceneBatch,
+    pub(crate) scenes: WindowBatch,
     /// `[P, 2]`, metres.
     pub(crate) goals: Tensor,
 }
@@ -50,7 +50,7 @@ impl TrainingBatch {
         let observed = &observed + observed.randn_like() * deviations;
         let positions = Tensor::cat(&[observed, future], 0);
         Self {
-            scenes: SceneBatch { positions, ..scenes },
+            scenes: WindowBatch { positions, ..scenes },
             goals,
         }
     }
@@ -105,7 +105,7 @@ impl PreparedBatches {
 
     fn part_of(&self, windows: &[usize]) -> Result<TrainingBatch, StarError> {
         let scenes: Vec<&Window> = windows.iter().map(|&index| &self.windows[index]).collect();
-        let scenes = SceneBatch::new(&scenes, WINDOW, WINDOW - 1, self.neighbour_box, self.device, self.kind)?;
+        let scenes = WindowBatch::new(&scenes, WINDOW, WINDOW - 1, self.neighbour_box, self.device, self.kind)?;
         let goals = match &self.goals {
             None => scenes.positions.f_get(WINDOW as i64 - 1)?,
             Some(goals) => {
@@ -121,14 +121,14 @@ impl PreparedBatches {
 /// Divides windows with these numbers of pedestrians into parts with similar numbers, and at least `least` pedestrians
 /// on average.
 fn parts(sizes: &[usize], least: usize) -> Vec<Range<usize>> {
-    let all: usize = sizes.iter().sum();
-    let count = (all / least).max(1);
+    let pedestrians: usize = sizes.iter().sum();
+    let count = (pedestrians / least).max(1);
     let mut parts = Vec::new();
     let (mut start, mut before, mut reached) = (0, 0, 0);
     for (index, size) in sizes.iter().enumerate() {
         before += size;
         // How many of equal parts end before or with this window.
-        let ended = before * count / all.max(1);
+        let ended = before * count / pedestrians.max(1);
         if ended > reached {
             parts.push(start..index + 1);
             (start, reached) = (index + 1, ended);
@@ -170,9 +170,9 @@ mod tests {
         let dataset = Dataset::simulated(1);
         let windows = dataset.recordings()[0].windows(WindowRule::Complete);
         let (device, kind) = (Device::Cpu, Kind::Double);
-        let all: Vec<usize> = (0..windows.len()).collect();
+        let indices: Vec<usize> = (0..windows.len()).collect();
         let prepared = PreparedBatches::new((windows, None), 1, 10.0, None, (device, kind));
-        let [exact] = prepared.batch(0, &all).unwrap() else {
+        let [exact] = prepared.batch(0, &indices).unwrap() else {
             panic!("one part")
         };
         tch::manual_seed(7);
@@ -184,11 +184,11 @@ mod tests {
         // Every pedestrian, frame and axis has its own error, and those of some pedestrians are small. The mean square
         // of a uniform deviation is a third of the square of the largest.
         let squares = observed.square();
-        let all = squares.mean(Kind::Double).double_value(&[]).sqrt();
-        assert!((all - 0.05 / 3_f64.sqrt()).abs() < 0.004, "{all}");
+        let overall = squares.mean(Kind::Double).double_value(&[]).sqrt();
+        assert!((overall - 0.05 / 3_f64.sqrt()).abs() < 0.004, "{overall}");
         assert!(observed.abs().min().double_value(&[]) > 0.0);
-        let each = squares.mean_dim([0i64, 2].as_slice(), false, Kind::Double).sqrt();
-        let (least, most) = (each.min().double_value(&[]), each.max().double_value(&[]));
+        let deviations = squares.mean_dim([0i64, 2].as_slice(), false, Kind::Double).sqrt();
+        let (least, most) = (deviations.min().double_value(&[]), deviations.max().double_value(&[]));
         assert!(least < 0.01 && most > 0.04 && most < 0.1, "{least} to {most}");
     }
 }

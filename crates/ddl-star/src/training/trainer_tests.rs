@@ -73,10 +73,10 @@ fn the_gradients_of_parts_add_up_to_that_of_the_batch() {
         let (loss, gradient) = trainer.gradient(0, &draw).unwrap();
         (loss.double_value(&[]), gradient.to_kind(Kind::Double))
     };
-    let ((loss, gradient), (known_loss, known)) = (gradient(Kind::Float), gradient(Kind::Double));
-    assert!((loss - known_loss).abs() < 1e-5 * known_loss, "{loss} {known_loss}");
+    let ((loss, gradient), (whole_loss, whole)) = (gradient(Kind::Float), gradient(Kind::Double));
+    assert!((loss - whole_loss).abs() < 1e-5 * whole_loss, "{loss} {whole_loss}");
     let largest = |tensor: Tensor| tensor.abs().max().double_value(&[]);
-    let (error, size) = (largest(gradient - &known), largest(known));
+    let (error, size) = (largest(gradient - &whole), largest(whole));
     assert!(error < 1e-5 * size, "{error} of {size}");
 }
 
@@ -131,8 +131,8 @@ fn the_interval_of_reading_losses_changes_nothing() {
             let read = done % 4 == 0 || done == steps;
             assert_eq!(other.loss.is_some(), read, "step {done} of {steps}");
             if let Some(mean) = other.loss {
-                let known = losses.iter().sum::<f64>() / losses.len() as f64;
-                assert!((mean - known).abs() < 1e-12, "{mean} {known}");
+                let expected = losses.iter().sum::<f64>() / losses.len() as f64;
+                assert!((mean - expected).abs() < 1e-12, "{mean} {expected}");
                 losses.clear();
             }
             let of_epoch = |report: &StepReport| report.finished_epoch.as_ref().map(|e| e.loss);
@@ -145,9 +145,9 @@ fn the_interval_of_reading_losses_changes_nothing() {
 #[test]
 fn a_bad_step_is_reported_later_and_later_steps_do_not_count() {
     for kind in [Kind::Float, Kind::Double] {
-        let mut known = trainer(kind, 1);
+        let mut undisturbed = trainer(kind, 1);
         for _ in 0..2 {
-            known.step().unwrap();
+            undisturbed.step().unwrap();
         }
         let mut trainer = trainer(kind, 5);
         trainer.step().unwrap();
@@ -164,15 +164,15 @@ fn a_bad_step_is_reported_later_and_later_steps_do_not_count() {
         let window = trainer.batches.window(first);
         let named = format!("{}@{}", window.recording(), window.start_frame());
         assert!(error.to_string().contains(&named), "{error}");
-        assert_eq!(state(&trainer), state(&known));
-        assert_eq!(trainer.steps(), known.steps());
-        assert!((trainer.progress.loss_sum - known.progress.loss_sum).abs() < 1e-15);
+        assert_eq!(state(&trainer), state(&undisturbed));
+        assert_eq!(trainer.steps(), undisturbed.steps());
+        assert!((trainer.progress.loss_sum - undisturbed.progress.loss_sum).abs() < 1e-15);
 
         // New draws make the step finite.
         trainer.draws = None;
         trainer.read_every = 1;
-        assert_eq!(trainer.step().unwrap().loss, known.step().unwrap().loss);
-        assert_eq!(state(&trainer), state(&known));
+        assert_eq!(trainer.step().unwrap().loss, undisturbed.step().unwrap().loss);
+        assert_eq!(state(&trainer), state(&undisturbed));
     }
 }
 
