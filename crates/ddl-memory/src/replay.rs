@@ -71,7 +71,8 @@ impl SceneMemory {
     }
 
     /// The window with at most `count` remembered tracks per pedestrian; their own running tracks are left out.
-    fn recalling(&self, window: Window, count: usize) -> Window {
+    #[must_use]
+    pub fn recalling(&self, window: Window, count: usize) -> Window {
         let recall = |i: usize| match window.observed(i).first_chunk() {
             Some(observed) => self.recall(observed, Some(window.pedestrians()[i]), count),
             None => Vec::new(),

@@ -40,7 +40,7 @@ impl Parameters {
     }
 
     /// Names, shapes and places.
-    pub(crate) fn layout(&self) -> &Arc<Layout> {
+    pub fn layout(&self) -> &Arc<Layout> {
         &self.layout
     }
 

@@ -114,7 +114,7 @@ mod tests {
 
     #[test]
     fn a_library_of_impossible_tracks_is_refused() {
-        assert_eq!(read(|_| ()).unwrap().len(), 2);
+        assert_eq!(read(|_| ()).unwrap().tracks().len(), 2);
         for (number, part) in [(f64::NAN, "position 3 is (NaN"), (f64::INFINITY, "must be finite")] {
             let error = read(|numbers| numbers[6] = number).unwrap_err().to_string();
             assert!(error.contains("experts.safetensors"), "{error}");
