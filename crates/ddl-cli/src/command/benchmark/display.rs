@@ -69,7 +69,7 @@ impl DisplayState {
             *done = fraction.clamp(0.0, 1.0);
         }
         let done = self.tasks.values().sum::<f64>() / self.tasks.len().max(1) as f64;
-        let message = format!("{} of {} tasks; {id}: {message}", self.ended, self.tasks.len());
+        let message = format!("steps; {} of {} tasks; {id}: {message}", self.ended, self.tasks.len());
         self.progress.tell((done * STEPS as f64) as u64, STEPS, &message);
     }
 }
