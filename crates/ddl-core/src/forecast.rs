@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::error::ForecastShapeError;
 use crate::position::{HORIZON, Position};
-use crate::region::RegionTable;
+use crate::region_table::RegionTable;
 
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///

@@ -7,6 +7,7 @@ pub mod motion;
 mod pedestrian;
 mod position;
 mod region;
+mod region_table;
 mod representative;
 mod window;
 
@@ -18,6 +19,7 @@ pub use position::{
     FRAME_LIMIT, FRAME_STEP_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance, is_finite, is_frame,
     is_frame_step,
 };
-pub use region::{AdaptiveRegions, Disc, RegionTable, TrackedQuantiles};
+pub use region::{AdaptiveRegions, TrackedQuantiles};
+pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};
 pub use window::{CompletionCounts, RememberedTrack, Window};

@@ -23,10 +23,10 @@ impl Dataset {
     /// If a file is missing or its content is wrong (the message names file, line and field). Also for
     /// [`Convention::Simulated`] and [`Convention::Own`], which have no files of fixed names.
     pub fn load(convention: Convention, folder: &Path) -> Result<Self, DataError> {
-        let format = convention.format().ok_or(DataError::NoFiles(convention))?;
+        let format = convention.format().ok_or(DataError::NoFiles(convention.name()))?;
         let mut recordings = Vec::new();
         for planned in &convention.plan().recordings {
-            let file = planned.file.as_deref().ok_or(DataError::NoFiles(convention))?;
+            let file = planned.file.as_deref().ok_or(DataError::NoFiles(convention.name()))?;
             let recording = read_recording(&folder.join(file), format)?
                 .with_name(planned.name.as_str())
                 .with_frame_step(planned.frame_step)
@@ -115,7 +115,7 @@ impl Dataset {
             .iter()
             .find(|r| r.name() == name)
             .ok_or_else(|| DataError::UnknownRecording {
-                convention: self.convention,
+                convention: self.convention.name(),
                 name: name.to_owned(),
                 known: self.recordings.iter().map(|r| r.name().to_owned()).collect(),
             })
@@ -142,7 +142,7 @@ impl Dataset {
     /// If there is no such fold; the message lists the available ones.
     pub fn fold(&self, name: &str) -> Result<Fold<'_>, DataError> {
         let unknown = || DataError::UnknownFold {
-            convention: self.convention,
+            convention: self.convention.name(),
             name: name.to_owned(),
             known: self.fold_names().into_iter().map(str::to_owned).collect(),
         };

@@ -85,6 +85,7 @@ mod scene_name;
 pub mod simulate;
 mod summary;
 mod unknown_name;
+mod windows;
 
 pub use atomic_file::{remove_temporary_files, write_atomically};
 pub use augment::Rotation;

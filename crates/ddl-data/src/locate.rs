@@ -49,7 +49,7 @@ fn roots(explicit: Option<&Path>, variable: Option<&Path>, here: &Path) -> Vec<P
 
 fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, DataError> {
     if convention.format().is_none() {
-        return Err(DataError::NoFiles(convention));
+        return Err(DataError::NoFiles(convention.name()));
     }
     let mut searched = Vec::new();
     for root in roots {
@@ -65,7 +65,11 @@ fn locate_among(convention: Convention, roots: Vec<PathBuf>) -> Result<PathBuf, 
             }
         }
     }
-    Err(DataError::NotFound { convention, searched })
+    Err(DataError::NotFound {
+        convention: convention.name(),
+        searched,
+        variable: DATASETS_VARIABLE,
+    })
 }
 
 #[cfg(test)]
@@ -105,7 +109,7 @@ mod tests {
         );
         assert!(matches!(
             locate(Convention::Simulated, None),
-            Err(DataError::NoFiles(Convention::Simulated))
+            Err(DataError::NoFiles("simulated"))
         ));
     }
 

@@ -4,8 +4,7 @@ use ddl_core::{FRAME_LIMIT, FRAME_STEP_LIMIT, TIME_STEP};
 use thiserror::Error;
 
 use crate::error::RecordingError;
-use crate::observation::Observation;
-use crate::observation::between;
+use crate::observation::{Observation, between};
 use crate::recording::Recording;
 
 /// Largest relative deviation of a step from 0.4 s, smaller than the variation of walking speeds.

@@ -14,6 +14,7 @@
 
 pub mod baseline;
 pub mod category;
+mod category_scores;
 mod conditions;
 mod error;
 pub mod external;
@@ -27,7 +28,8 @@ mod scene;
 mod scores;
 pub mod significance;
 
-pub use category::{Category, CategoryScores, MotionKind};
+pub use category::{Category, MotionKind};
+pub use category_scores::CategoryScores;
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
 pub use error::{EvaluationError, MeasureError, WindowProblem};
 pub use metric::stability::StabilityScores;

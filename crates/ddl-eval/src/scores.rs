@@ -4,7 +4,7 @@ use ddl_core::{Forecast, Window};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::category::CategoryScores;
+use crate::category_scores::CategoryScores;
 use crate::error::{EvaluationError, WindowProblem};
 use crate::metric::amd::amv;
 use crate::metric::displacement::{DisplacementErrors, joint_ade, joint_fde};

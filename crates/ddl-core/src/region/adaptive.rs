@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use super::tracked::{Outcomes, TrackedQuantiles};
 use crate::forecast::Forecast;
 use crate::pedestrian::PedestrianId;
 use crate::position::{HORIZON, OBSERVED, Position};
+use crate::region::tracked::{Outcomes, TrackedQuantiles};
 use crate::window::Window;
 
 /// Adapts the regions of the forecasts of one place so that they keep their coverage. It takes every forecast, in order
@@ -159,7 +159,7 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
-    use crate::region::RegionTable;
+    use crate::region_table::RegionTable;
 
     /// The positions of all pedestrians, frame by frame.
     type Tracks = Vec<Vec<Position>>;

@@ -22,8 +22,8 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::{LevelQuantiles, RegionTable};
 use crate::position::HORIZON;
+use crate::region_table::{LevelQuantiles, RegionTable};
 
 /// Step size of a shift. Chosen with [`LARGEST_WEIGHT`] on recordings of other places (`docs/regions.md`).
 const STEP: f64 = 0.06;

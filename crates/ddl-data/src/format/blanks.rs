@@ -1,10 +1,11 @@
 //! Text with one observation per line, its columns separated by tabs or blanks: `social-gan`, and the `obsmat` of the
 //! ETH recordings.
 
-use super::field::{self, PedestrianField};
-use super::place::FilePlace;
-use super::rows::{FIELDS, TrackRow};
-use crate::error::{FormatError, FormatProblem};
+use crate::error::FormatError;
+use crate::format::field::{self, PedestrianField};
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
+use crate::format::rows::{FIELDS, TrackRow};
 
 const OBSMAT: &str = "frame, pedestrian, x, z, y, v_x, v_z, v_y";
 

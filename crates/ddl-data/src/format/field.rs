@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use ddl_core::{FRAME_LIMIT, PedestrianName, is_frame};
 
-use crate::error::FormatProblem;
+use crate::format::problem::FormatProblem;
 use crate::observation::COORDINATE_LIMIT;
 
 /// Longest piece of a file that an error message quotes, in characters.

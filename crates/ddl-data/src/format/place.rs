@@ -1,6 +1,7 @@
 //! Position of a field within a file.
 
-use crate::error::{FormatError, FormatProblem};
+use crate::error::FormatError;
+use crate::format::problem::FormatProblem;
 
 /// A place within a file, both counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

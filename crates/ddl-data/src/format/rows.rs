@@ -4,10 +4,11 @@ use std::collections::BTreeMap;
 
 use ddl_core::{PedestrianId, PedestrianNames, Position};
 
-use super::field::{self, PedestrianField};
-use super::numbering::Numbering;
-use super::place::FilePlace;
-use crate::error::{DataError, FormatError, FormatProblem};
+use crate::error::{DataError, FormatError};
+use crate::format::field::{self, PedestrianField};
+use crate::format::numbering::Numbering;
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
 use crate::observation::Observation;
 use crate::recording::Recording;
 use crate::scene_name::SceneName;

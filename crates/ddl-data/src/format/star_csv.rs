@@ -1,9 +1,10 @@
 //! The `star` CSV format: four long parallel lines.
 
-use super::field::{self, PedestrianField};
-use super::place::FilePlace;
-use super::rows::TrackRow;
-use crate::error::{FormatError, FormatProblem};
+use crate::error::FormatError;
+use crate::format::field::{self, PedestrianField};
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
+use crate::format::rows::TrackRow;
 
 const LINES: usize = 4;
 const NAMES: &str = "frame, pedestrian, y, x";

@@ -9,14 +9,15 @@ use std::time::{Duration, Instant};
 
 use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position};
 
-use super::field::PedestrianField;
-use super::kind::Format;
-use super::numbering::Numbering;
-use super::place::FilePlace;
-use super::rows::TrackRow;
-use super::table::TrackColumns;
-use super::{blanks, trajnet};
-use crate::error::{DataError, FormatError, FormatProblem};
+use crate::error::{DataError, FormatError};
+use crate::format::field::PedestrianField;
+use crate::format::kind::Format;
+use crate::format::numbering::Numbering;
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
+use crate::format::rows::TrackRow;
+use crate::format::table::TrackColumns;
+use crate::format::{blanks, trajnet};
 use crate::scene_name::SceneName;
 
 const LONGEST_LINE: usize = 1 << 16;

@@ -2,10 +2,11 @@
 
 use csv::{ErrorKind, StringRecord};
 
-use super::field;
-use super::place::FilePlace;
-use super::rows::{FIELDS, TrackRow};
-use crate::error::{FormatError, FormatProblem};
+use crate::error::FormatError;
+use crate::format::field;
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
+use crate::format::rows::{FIELDS, TrackRow};
 use crate::scene_name::SceneName;
 
 /// Number of unknown columns that an error names.

@@ -8,10 +8,11 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
-use super::field::{self, PedestrianField};
-use super::place::FilePlace;
-use super::rows::TrackRow;
-use crate::error::{FormatError, FormatProblem};
+use crate::error::FormatError;
+use crate::format::field::{self, PedestrianField};
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
+use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.

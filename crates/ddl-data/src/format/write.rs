@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use ddl_core::PedestrianName;
 use serde::Serialize;
 
-use super::kind::Format;
 use crate::error::DataError;
+use crate::format::kind::Format;
 use crate::observation::Observation;
 use crate::recording::Recording;
 

@@ -5,7 +5,8 @@ use std::fmt;
 use ddl_core::{OBSERVED, WINDOW, Window, distance};
 use serde::{Deserialize, Serialize};
 
-use super::{interaction::Interaction, kalman::expected_end};
+use crate::category::interaction::Interaction;
+use crate::category::kalman::expected_end;
 
 /// A static trajectory ends nearer to its start than this, metres.
 const STATIC: f64 = 1.0;

@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
 
-use super::error::{ExternalError, ExternalProblem};
-use super::hint::Unknown;
-use super::lines::{Wrong, in_field, whole_line};
-use super::pedestrian_key::{PedestrianKey, frames_ahead, in_short, last_observed};
+use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::hint::Unknown;
+use crate::external::lines::{Wrong, in_field, whole_line};
+use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, in_short, last_observed};
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PedestrianForecast {

@@ -1,6 +1,6 @@
 //! Forecasts that match no pedestrian, and their likely reason.
 
-use super::pedestrian_key::{PedestrianKey, named};
+use crate::external::pedestrian_key::{PedestrianKey, named};
 
 pub(super) const NAMED: usize = 3;
 

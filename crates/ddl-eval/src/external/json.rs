@@ -7,8 +7,8 @@ use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use serde_json::{Number, Value};
 use serde_path_to_error::{Path, Segment};
 
-use super::error::ExternalProblem;
-use super::lines::{self, Wrong, in_field, quoted, whole_line};
+use crate::external::error::ExternalProblem;
+use crate::external::lines::{self, Wrong, in_field, quoted, whole_line};
 
 /// Words for numbers that are not valid JSON, but that several programs write.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];

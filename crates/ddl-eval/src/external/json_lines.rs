@@ -5,11 +5,11 @@ use std::io::BufRead;
 use ddl_core::{HORIZON, PedestrianName, Position};
 use serde::{Deserialize, Deserializer};
 
-use super::error::{ExternalError, ExternalProblem};
-use super::expected::{ExpectedForecasts, PedestrianForecast};
-use super::json::{self, Whole};
-use super::lines::{Lines, Wrong, in_field, within_bounds};
-use super::pedestrian_key::PedestrianKey;
+use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
+use crate::external::json::{self, Whole};
+use crate::external::lines::{Lines, Wrong, in_field, within_bounds};
+use crate::external::pedestrian_key::PedestrianKey;
 use crate::protocol::Protocol;
 
 /// Fields of other names are ignored.

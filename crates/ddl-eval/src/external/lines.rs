@@ -5,7 +5,7 @@ use std::io::{BufRead, Read as _};
 use ddl_core::Position;
 use ddl_data::COORDINATE_LIMIT;
 
-use super::error::{ExternalError, ExternalProblem};
+use crate::external::error::{ExternalError, ExternalProblem};
 
 /// Longest line, bytes: twenty times the length of 20 hypotheses with certificates.
 const LIMIT: usize = 4 << 20;

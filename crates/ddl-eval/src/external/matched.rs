@@ -5,11 +5,11 @@ use std::fmt::Write as _;
 use ddl_core::{Forecast, HORIZON, Position, Window};
 use sha2::{Digest as _, Sha256};
 
-use super::error::{ExternalError, ExternalProblem};
-use super::expected::{ExpectedForecasts, Slot};
-use super::hint::NAMED;
-use super::lines::{whole_line, wrong};
-use super::pedestrian_key::{last_observed, named};
+use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::expected::{ExpectedForecasts, Slot};
+use crate::external::hint::NAMED;
+use crate::external::lines::{whole_line, wrong};
+use crate::external::pedestrian_key::{last_observed, named};
 
 /// What to do if a file and the windows have different pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

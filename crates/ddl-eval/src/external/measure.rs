@@ -2,10 +2,10 @@
 
 use ddl_core::{OBSERVED, Position, distance};
 
-use super::error::ExternalError;
-use super::matched::Matched;
 use crate::baseline;
 use crate::conditions::{Conditions, ResultRow};
+use crate::external::error::ExternalError;
+use crate::external::matched::Matched;
 use crate::protocol::Protocol;
 
 /// Distance (m) above that of any step of 0.4 s. If half of the forecasts start farther from their pedestrians, the

@@ -3,7 +3,7 @@
 
 use ddl_core::{HORIZON, OBSERVED, PedestrianName, Window};
 
-use super::error::ExternalProblem;
+use crate::external::error::ExternalProblem;
 use crate::protocol::Protocol;
 
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -4,11 +4,11 @@ use std::io::BufRead;
 
 use ddl_core::{HORIZON, PedestrianName, Position};
 
-use super::error::{ExternalError, ExternalProblem};
-use super::expected::{ExpectedForecasts, PedestrianForecast};
-use super::lines::{self, Lines, Wrong, in_field, quoted, whole_line, within_bounds};
-use super::pedestrian_key::{HypothesisNumbering, PedestrianKey, in_short};
-use super::table_rows::{AtLine, Fields, TableRows};
+use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
+use crate::external::lines::{self, Lines, Wrong, in_field, quoted, whole_line, within_bounds};
+use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, in_short};
+use crate::external::table_rows::{AtLine, Fields, TableRows};
 use crate::protocol::Protocol;
 
 const REQUIRED: [&str; 5] = ["observed_until", "pedestrian", "frame", "x", "y"];

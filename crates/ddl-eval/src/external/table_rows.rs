@@ -4,8 +4,8 @@ use std::io::BufRead;
 
 use csv_core::{ReadRecordResult, Reader};
 
-use super::error::{ExternalError, ExternalProblem};
-use super::lines::{Lines, Wrong, whole_line};
+use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::lines::{Lines, Wrong, whole_line};
 
 pub(super) type AtLine<T> = (usize, T);
 

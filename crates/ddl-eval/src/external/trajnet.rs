@@ -10,11 +10,11 @@ use std::io::BufRead;
 use ddl_core::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use serde::Deserialize;
 
-use super::error::{ExternalError, ExternalProblem};
-use super::expected::{ExpectedForecasts, PedestrianForecast};
-use super::json::{self, Whole};
-use super::lines::{Lines, Wrong, in_field, whole_line, within_bounds};
-use super::pedestrian_key::{HypothesisNumbering, PedestrianKey, frames_ahead, in_short};
+use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
+use crate::external::json::{self, Whole};
+use crate::external::lines::{Lines, Wrong, in_field, whole_line, within_bounds};
+use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, frames_ahead, in_short};
 use crate::protocol::Protocol;
 
 /// Lines and fields of other names are ignored.

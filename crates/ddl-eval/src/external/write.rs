@@ -5,9 +5,9 @@ use std::io::Write;
 use ddl_core::{Forecast, PedestrianName, Position, Window};
 use serde::Serialize;
 
-use super::error::ExternalError;
-use super::pedestrian_key::last_observed;
 use crate::error::{EvaluationError, WindowProblem};
+use crate::external::error::ExternalError;
+use crate::external::pedestrian_key::last_observed;
 
 #[derive(Serialize)]
 struct WrittenPedestrian<'a> {

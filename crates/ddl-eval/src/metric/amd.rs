@@ -23,10 +23,8 @@
 
 use ddl_core::HORIZON;
 
-use super::{
-    gaussian::{Covariance, Moments},
-    kde::MIN_DEVIATION,
-};
+use crate::metric::gaussian::{Covariance, Moments};
+use crate::metric::kde::MIN_DEVIATION;
 use crate::scene::Scene;
 
 /// The distribution of one pedestrian's positions against the truth, mean over the frames.

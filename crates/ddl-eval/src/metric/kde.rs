@@ -28,7 +28,7 @@
 
 use ddl_core::Position;
 
-use super::gaussian::{Moments, PrincipalAxes};
+use crate::metric::gaussian::{Moments, PrincipalAxes};
 use crate::scene::Scene;
 
 /// Lower bound of log densities, nats, so that one large error does not dominate the mean.

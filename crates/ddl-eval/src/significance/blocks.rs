@@ -6,10 +6,10 @@ use ddl_core::{Forecast, Window};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::BlockMetric;
 use crate::error::EvaluationError;
 use crate::metric::displacement::DisplacementErrors;
 use crate::scene::Scene;
+use crate::significance::BlockMetric;
 
 /// Length of a block in steps of 0.4 s: 20 s. A window belongs to the block in which it starts.
 pub const BLOCK_STEPS: i64 = 50;

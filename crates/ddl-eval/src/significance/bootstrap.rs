@@ -3,7 +3,7 @@
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use super::{BlockErrors, BlockMetric};
+use crate::significance::{BlockErrors, BlockMetric};
 
 /// Resamples drawn for an interval, and sign changes for a test.
 pub const RESAMPLES: usize = 10_000;

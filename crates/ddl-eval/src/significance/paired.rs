@@ -2,10 +2,8 @@
 
 use rand::RngExt as _;
 
-use super::{
-    BlockErrors, BlockMetric, Interval,
-    bootstrap::{PartialSum, RESAMPLES, generator, interval, mean},
-};
+use crate::significance::bootstrap::{PartialSum, RESAMPLES, generator, interval, mean};
+use crate::significance::{BlockErrors, BlockMetric, Interval};
 
 /// Difference of the errors of two forecasters, window by window.
 #[derive(Debug, Clone, Copy, PartialEq)]

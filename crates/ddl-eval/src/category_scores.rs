@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Category;
+use crate::category::Category;
 use crate::pedestrian_scores::PedestrianScores;
 
 /// The metrics of one category on the test windows of one fold: means over its pedestrians.

@@ -7,6 +7,7 @@ mod field;
 mod kind;
 mod numbering;
 mod place;
+mod problem;
 mod rows;
 mod star_csv;
 mod stream;
@@ -20,9 +21,10 @@ pub use kind::Format;
 pub use stream::{Frame, FrameReader};
 pub use write::write_recording;
 
-use crate::error::{DataError, FormatProblem};
+use crate::error::DataError;
+use crate::format::place::FilePlace;
+use crate::format::problem::FormatProblem;
 use crate::recording::Recording;
-use place::FilePlace;
 
 /// Reads one file of tracks. The recording is named after the file, without its extension.
 ///

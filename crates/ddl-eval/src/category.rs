@@ -5,7 +5,6 @@
 mod interaction;
 mod kalman;
 mod motion_kind;
-mod scores;
 mod trajectory_type;
 
 use std::fmt;
@@ -15,7 +14,6 @@ use serde::{Deserialize, Serialize};
 
 pub use interaction::Interaction;
 pub use motion_kind::MotionKind;
-pub use scores::CategoryScores;
 pub use trajectory_type::TrajectoryType;
 
 /// A category of pedestrians.

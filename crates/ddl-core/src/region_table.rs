@@ -1,0 +1,136 @@
+//! Tables of the quantiles from which a forecast makes its regions (see `region.rs`).
+
+use serde::{Deserialize, Serialize};
+
+use crate::position::{HORIZON, Position};
+
+/// Quantiles of scores, for levels and steps.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "LevelQuantiles", into = "LevelQuantiles")]
+pub struct RegionTable(pub(crate) LevelQuantiles);
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LevelQuantiles {
+    /// Ascending, in (0, 1).
+    pub(crate) levels: Vec<f64>,
+    /// `[levels][12]`.
+    pub(crate) quantiles: Vec<[f64; HORIZON]>,
+}
+
+impl TryFrom<LevelQuantiles> for RegionTable {
+    type Error = &'static str;
+
+    fn try_from(columns: LevelQuantiles) -> Result<Self, Self::Error> {
+        let inside = |level: &f64| *level > 0.0 && *level < 1.0;
+        let is_valid = !columns.levels.is_empty()
+            && columns.levels.len() == columns.quantiles.len()
+            && columns.levels.iter().all(inside)
+            && columns.levels.is_sorted_by(|a, b| a < b)
+            && columns.quantiles.as_flattened().iter().all(|q| q.is_finite());
+        if is_valid {
+            Ok(Self(columns))
+        } else {
+            Err("a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles")
+        }
+    }
+}
+
+impl From<RegionTable> for LevelQuantiles {
+    fn from(table: RegionTable) -> Self {
+        table.0
+    }
+}
+
+/// A disc of a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Disc {
+    /// Metres.
+    pub centre: Position,
+    /// Metres.
+    pub radius: f64,
+}
+
+impl Disc {
+    /// Whether the position (m) is in the disc or on its edge.
+    pub fn contains(&self, at: Position) -> bool {
+        let [x, y] = [0, 1].map(|axis| at[axis] - self.centre[axis]);
+        x * x + y * y <= self.radius * self.radius
+    }
+}
+
+impl RegionTable {
+    /// The table from scores of true positions: for each level and step the split-conformal quantile of the scores.
+    /// With n scores, the levels can be up to n / (n + 1).
+    ///
+    /// # Shapes
+    /// `scores` `[pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
+    pub fn of(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Self> {
+        let of_step = |t: usize| {
+            let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
+            step.sort_by(f64::total_cmp);
+            step
+        };
+        let steps: Vec<Vec<f64>> = (0..HORIZON).map(of_step).collect();
+        let of_level = |&level: &f64| {
+            let rank = (level * (scores.len() + 1) as f64).ceil() as usize;
+            let place = rank.checked_sub(1).filter(|&place| place < scores.len())?;
+            Some(std::array::from_fn(|t| steps[t][place]))
+        };
+        let columns = LevelQuantiles {
+            levels: levels.to_vec(),
+            quantiles: levels.iter().map(of_level).collect::<Option<_>>()?,
+        };
+        columns.try_into().ok()
+    }
+
+    /// The lowest and the highest level with quantiles.
+    pub fn range(&self) -> [f64; 2] {
+        let levels = &self.0.levels;
+        [levels[0], levels[levels.len() - 1]]
+    }
+
+    /// The quantile of a level, `t` + 1 steps ahead, linear between the levels; `None` beyond the [range](Self::range).
+    pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
+        let LevelQuantiles { levels, quantiles } = &self.0;
+        let [lowest, highest] = self.range();
+        if !(lowest..=highest).contains(&level) {
+            return None;
+        }
+        let after = levels.partition_point(|&l| l < level);
+        let before = after.saturating_sub(1);
+        let [low, high] = [before, after].map(|at| quantiles[at][t]);
+        let width = levels[after] - levels[before];
+        let share = if width > 0.0 {
+            (level - levels[before]) / width
+        } else {
+            0.0
+        };
+        Some(low + share * (high - low))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_by_hand() {
+        let scores: Vec<[f64; HORIZON]> = (1..=99).map(|s| [f64::from(s); HORIZON]).collect();
+        let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
+        for (level, expected) in [(0.5, 50.0), (0.9, 90.0), (0.7, 70.0)] {
+            let quantile = table.quantile(level, 3).unwrap();
+            assert!((quantile - expected).abs() < 1e-12);
+        }
+        for beyond in [0.2, 0.99, f64::NAN] {
+            assert_eq!(table.quantile(beyond, 3), None);
+        }
+        // 99 scores are enough for the level 0.99.
+        assert!(RegionTable::of(&scores, &[0.99]).is_some());
+        assert_eq!(RegionTable::of(&scores[..98], &[0.99]), None);
+        let empty: Result<RegionTable, _> = serde_json::from_str(r#"{"levels": [], "quantiles": []}"#);
+        assert!(empty.is_err());
+        assert_eq!(RegionTable::of(&[], &[0.5]), None);
+        assert_eq!(RegionTable::of(&scores, &[0.9, 0.5]), None);
+    }
+}
