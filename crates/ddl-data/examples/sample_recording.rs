@@ -5,16 +5,15 @@
 //! ```
 #![expect(clippy::print_stdout, reason = "what it is for")]
 
-use ddl_data::PedestrianId;
-use ddl_data::simulate::CrowdScene;
+use ddl_data::{DataError, Dataset, PedestrianId};
 
-const SCENE: CrowdScene = CrowdScene::Plaza;
 const SEED: u64 = 1;
 /// Steps of 0.4 s that are kept.
 const STEPS: std::ops::Range<i64> = 205..259;
 
-fn main() {
-    let crowd = SCENE.simulate(SEED).recording;
+fn main() -> Result<(), DataError> {
+    let dataset = Dataset::simulated(SEED);
+    let crowd = dataset.recording("plaza")?;
     let kept = crowd.observations().iter().filter_map(|seen| {
         let step = seen.frame / crowd.frame_step();
         STEPS.contains(&step).then_some((step - STEPS.start, seen))
@@ -30,4 +29,5 @@ fn main() {
         let [x, y] = seen.position;
         println!("{step},{},{x:.2},{y:.2}", number + 1);
     }
+    Ok(())
 }

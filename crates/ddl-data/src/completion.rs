@@ -1,14 +1,8 @@
 //! Completion of observations that begin late or have gaps.
 
 use ddl_core::{CompletionCounts, OBSERVED, Position, is_finite};
-use thiserror::Error;
 
 use crate::observation::between;
-
-/// Longest gap that may be filled, in frames.
-const LONGEST_GAP: usize = 2;
-/// A single position does not show where a pedestrian is going.
-const LEAST_SEEN: usize = 2;
 
 /// Which of the 8 observed positions may be filled in, for pedestrians that were not observed at all 8 steps.
 ///
@@ -32,30 +26,13 @@ impl Completion {
     /// Forecasts pedestrians seen at least twice, and fills gaps of up to 2 frames: the default of `ddl` and of the
     /// Python package. A [`LiveTracks`](crate::LiveTracks) without a completion fills in nothing.
     pub const DEFAULT: Self = Self {
-        least_seen: LEAST_SEEN,
-        longest_gap: LONGEST_GAP,
+        // A single position does not show where a pedestrian is going.
+        least_seen: 2,
+        longest_gap: 2,
     };
 
-    /// Completes pedestrians that were seen at `least_seen` or more of the 8 steps, with gaps of up to `longest_gap`
-    /// frames.
-    ///
-    /// # Errors
-    /// [`CompletionError`] if `least_seen` is outside 2..=8, or `longest_gap` outside 0..=2.
-    pub fn new(least_seen: usize, longest_gap: usize) -> Result<Self, CompletionError> {
-        if !(LEAST_SEEN..=OBSERVED).contains(&least_seen) {
-            return Err(CompletionError::LeastSeen { found: least_seen });
-        }
-        if longest_gap > LONGEST_GAP {
-            return Err(CompletionError::LongestGap { found: longest_gap });
-        }
-        Ok(Self {
-            least_seen,
-            longest_gap,
-        })
-    }
-
     /// Length of the longest gap that is filled, in frames.
-    pub fn longest_gap(self) -> usize {
+    pub(crate) fn longest_gap(self) -> usize {
         self.longest_gap
     }
 
@@ -106,15 +83,4 @@ impl Completion {
         let finite = positions.iter().all(|&position| is_finite(position));
         finite.then_some((positions, CompletionCounts { padded, filled }))
     }
-}
-
-/// Invalid parameters of a [`Completion`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
-pub enum CompletionError {
-    #[error("a forecast needs 2 to 8 positions that were seen, not {found}")]
-    LeastSeen { found: usize },
-    #[error("gaps of up to 2 frames can be filled, not of {found}")]
-    LongestGap { found: usize },
 }

@@ -19,7 +19,7 @@ pub enum Convention {
     /// ETH/UCY as Social-GAN and most other papers use it: eth has a step of 10 raw frames, so that its "0.4 s" are
     /// 0.667 s.
     SocialGan,
-    /// Simulated crowds ([`simulate`](crate::simulate)), for machines without the recordings.
+    /// Simulated crowds ([`Dataset::simulated`](crate::Dataset::simulated)), for machines without the recordings.
     Simulated,
     /// The user's own recordings ([`Dataset::own`](crate::Dataset::own)).
     Own,

@@ -26,20 +26,6 @@ pub struct TrainingSplit {
     pub validation: Vec<Window>,
 }
 
-/// Share of each training recording that Social-GAN's folders keep for validation.
-const SOCIAL_GAN_VALIDATION: f64 = 0.2;
-
-/// Windows of the three folders that Social-GAN publishes for a fold.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SocialGanSplit {
-    /// Windows of the files `train/*_train.txt`.
-    pub training: Vec<Window>,
-    /// Windows of the files `val/*_val.txt`.
-    pub validation: Vec<Window>,
-    /// Windows of the files `test/*.txt`.
-    pub test: Vec<Window>,
-}
-
 impl<'a> Fold<'a> {
     /// Name of the fold that leaves no recording out ([`Dataset::whole`](crate::Dataset::whole)).
     pub const NO_HELD_OUT: &'static str = "none";
@@ -168,21 +154,5 @@ impl<'a> Fold<'a> {
         let set_apart = self.set_apart.iter().flat_map(|r| r.windows(rule));
         split.validation.extend(set_apart);
         split
-    }
-
-    /// Training, validation and test windows of the Social-GAN convention: the same windows as in its published folders
-    /// `train`, `val` and `test`. Each training recording is cut after its first floor(0.8 n) of n annotated frames
-    /// ([`Recording::parts`]). `min_pedestrians` is 2 in the original code, 1 in much later work. Recordings [set
-    /// apart](Self::with_validation_recordings) are used for validation as a whole, which the published folders do not
-    /// do.
-    #[must_use]
-    pub fn social_gan_split(&self, min_pedestrians: usize) -> SocialGanSplit {
-        let rule = WindowRule::SocialGan { min_pedestrians };
-        let TrainingSplit { training, validation } = self.training_split(rule, SOCIAL_GAN_VALIDATION);
-        SocialGanSplit {
-            training,
-            validation,
-            test: self.test_windows(rule),
-        }
     }
 }

@@ -61,8 +61,8 @@
 //! | `Complete` | every pedestrian with all 20 steps, from every annotated frame |
 //! | `SocialGan` | 20 annotated frames in a row, with a minimum number of pedestrians |
 //!
-//! [`Fold::training_split`] keeps the last part of each training recording for validation.
-//! [`Fold::social_gan_split`] reproduces the published folders `train`, `val` and `test` of Social-GAN, row by row.
+//! [`Fold::training_split`] keeps the last part of each training recording for validation. With the fraction 0.2 the
+//! windows are those of the published folders `train` and `val` of Social-GAN.
 
 mod atomic_file;
 mod augment;
@@ -71,7 +71,7 @@ mod convention;
 mod dataset;
 mod error;
 mod fold;
-pub mod format;
+mod format;
 mod homography;
 mod live;
 mod locate;
@@ -82,14 +82,14 @@ mod rate;
 mod recording;
 mod rule;
 mod scene_name;
-pub mod simulate;
+mod simulate;
 mod summary;
 mod unknown_name;
 mod windows;
 
 pub use atomic_file::{remove_temporary_files, write_atomically};
 pub use augment::Rotation;
-pub use completion::{Completion, CompletionError};
+pub use completion::Completion;
 pub use convention::Convention;
 pub use dataset::Dataset;
 pub use ddl_core::{
@@ -97,12 +97,12 @@ pub use ddl_core::{
     TIME_STEP, WINDOW, Window, WindowError,
 };
 pub use error::{DataError, FormatError, RecordingError};
-pub use fold::{Fold, SocialGanSplit, TrainingSplit};
+pub use fold::{Fold, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
 pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
 pub use locate::{DATASETS_VARIABLE, locate};
-pub use neighbours::{NEIGHBOUR_HALF_WIDTH, Neighbours, SpatialIndex};
+pub use neighbours::{Neighbours, SpatialIndex};
 pub use observation::{COORDINATE_LIMIT, Observation};
 pub use plausibility::{Fastest, PlausibilityWarning};
 pub use rate::{RateError, ResampledRecording, whole_frame_step};

@@ -4,9 +4,6 @@ use ddl_core::Position;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 
-/// Half the side of the box in which STAR and DDL look for neighbours (m).
-pub const NEIGHBOUR_HALF_WIDTH: f64 = 10.0;
-
 /// A spatial index of places (m). The time of a query grows with the number of results, not with the number of places.
 #[derive(Debug, Clone)]
 pub struct SpatialIndex {

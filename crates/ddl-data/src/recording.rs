@@ -231,17 +231,6 @@ impl Recording {
             .collect()
     }
 
-    /// Splits the recording by time: the first floor((1 - f) n) of its n annotated frames, and the rest. A part without
-    /// frames is `None`.
-    ///
-    /// `fraction` is the share f of the second part, clamped to [0, 1], NaN taken as 0. With f = 0.2 the parts are the
-    /// files `_train` and `_val` of the Social-GAN convention.
-    #[must_use]
-    pub fn parts(&self, fraction: f64) -> (Option<Self>, Option<Self>) {
-        let cut = self.cut_index(fraction);
-        (self.part(0..cut), self.part(cut..self.frames.len()))
-    }
-
     /// Index of the annotated frame at which the last share of the recording begins.
     pub(crate) fn cut_index(&self, fraction: f64) -> usize {
         let fraction = if fraction.is_nan() {
@@ -252,25 +241,6 @@ impl Recording {
         #[expect(clippy::cast_sign_loss, reason = "a share of a count is not negative")]
         let cut = ((1.0 - fraction) * self.frames.len() as f64).floor() as usize;
         cut.min(self.frames.len())
-    }
-
-    fn part(&self, frames: Range<usize>) -> Option<Self> {
-        if frames.is_empty() {
-            return None;
-        }
-        let first = self.starts[frames.start];
-        Some(Self {
-            name: self.shared_name(),
-            frame_step: self.frame_step,
-            observations: self.observations[first..self.starts[frames.end]].to_vec(),
-            starts: self.starts[frames.start..=frames.end]
-                .iter()
-                .map(|start| start - first)
-                .collect(),
-            frames: self.frames[frames].to_vec(),
-            rate: self.rate,
-            names: self.names.clone(),
-        })
     }
 
     /// The positions of each pedestrian after an observed window, up to [`HORIZON`](crate::HORIZON) of them, ending

@@ -7,11 +7,6 @@
 //! sampling interval 0.4 s.
 //!
 //! Accuracy measured on a simulated crowd does not transfer to real pedestrians.
-//!
-//! ```
-//! let crowd = ddl_data::simulate::CrowdScene::Plaza.simulate(7);
-//! assert!(crowd.recording.pedestrians().len() > 50 && !crowd.groups.is_empty());
-//! ```
 
 mod engine;
 mod force;
@@ -22,25 +17,24 @@ mod population;
 mod scene;
 mod vector;
 
+#[cfg(test)]
+mod tests;
+
+use ddl_core::PedestrianId;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
-pub use obstacle::{Pillar, Wall};
-pub use scene::CrowdScene;
-
 use crate::recording::Recording;
-use ddl_core::PedestrianId;
-use engine::FRAME_STEP;
-use layout::SceneLayout;
+use crate::simulate::engine::FRAME_STEP;
+use crate::simulate::layout::SceneLayout;
+pub(crate) use crate::simulate::scene::CrowdScene;
 
 /// Recorded steps of a scene: three minutes.
 const STEPS: i64 = 450;
 
 impl CrowdScene {
     /// Simulates three minutes of the scene. The same seed gives the same bytes.
-    #[must_use]
-    #[expect(clippy::missing_panics_doc, reason = "the comment shows that no seed panics")]
-    pub fn simulate(self, seed: u64) -> Crowd {
+    pub(crate) fn simulate(self, seed: u64) -> Crowd {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self as u64);
         let layout = SceneLayout::of(self);
@@ -49,25 +43,15 @@ impl CrowdScene {
         // there are many arrivals in three minutes.
         let recording = Recording::new(self.name(), FRAME_STEP, trace.observations)
             .expect("a simulation yields unique, finite observations");
-        let SceneLayout { walls, pillars, .. } = layout;
-        Crowd {
-            recording,
-            walls,
-            pillars,
-            groups: trace.groups,
-        }
+        let groups = trace.groups;
+        Crowd { recording, groups }
     }
 }
 
-/// A simulated recording with its ground truth: walls and groups.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Crowd {
-    /// The positions of all pedestrians.
-    pub recording: Recording,
-    /// The scene's walls.
-    pub walls: Vec<Wall>,
-    /// The scene's pillars.
-    pub pillars: Vec<Pillar>,
-    /// Groups of two or more pedestrians that entered together and stay together.
-    pub groups: Vec<Vec<PedestrianId>>,
+/// A simulated recording with its groups.
+pub(crate) struct Crowd {
+    pub(crate) recording: Recording,
+    /// Two or more pedestrians that entered together and stay together.
+    #[cfg_attr(not(test), expect(dead_code, reason = "the tests check that groups stay together"))]
+    pub(crate) groups: Vec<Vec<PedestrianId>>,
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::{EvaluationError, MeasureError};
 use crate::protocol::Protocol;
-use crate::scene::indices_in_full;
+use crate::scored_window::indices_in_full;
 use crate::scores::Scores;
 use crate::significance::{BlockErrors, block_errors};
 

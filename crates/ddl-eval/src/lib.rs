@@ -24,7 +24,7 @@ pub mod leak;
 pub mod metric;
 mod pedestrian_scores;
 mod protocol;
-mod scene;
+mod scored_window;
 mod scores;
 pub mod significance;
 
@@ -34,5 +34,5 @@ pub use conditions::{Conditions, RecordingErrors, ResultRow};
 pub use error::{EvaluationError, MeasureError, WindowProblem};
 pub use metric::stability::StabilityScores;
 pub use protocol::Protocol;
-pub use scene::Scene;
+pub use scored_window::ScoredWindow;
 pub use scores::Scores;

@@ -7,7 +7,7 @@ use crate::metric::displacement::{DisplacementErrors, expected, goal_fde};
 use crate::metric::diversity::Diversity;
 use crate::metric::kde::kde_nll;
 use crate::metric::region::{RegionScores, weight_log_loss};
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// Thresholds of the miss rate: 0.5 m, and those of other works; metres.
 const MISS_DISTANCES: [f64; 3] = [0.5, 1.0, 2.0];
@@ -39,7 +39,7 @@ pub(crate) struct PedestrianScores {
 }
 
 impl PedestrianScores {
-    pub(crate) fn of(scene: &Scene<'_>, errors: &DisplacementErrors) -> Vec<Self> {
+    pub(crate) fn of(scene: &ScoredWindow<'_>, errors: &DisplacementErrors) -> Vec<Self> {
         let forecast = scene.forecast();
         let collides_forecast = collides(&collision::representative_tracks(scene), PEDESTRIAN_RADIUS);
         let true_futures_collide = collision::true_futures_collide(scene, PEDESTRIAN_RADIUS);

@@ -11,7 +11,7 @@ use crate::metric::displacement::{DisplacementErrors, joint_ade, joint_fde};
 use crate::metric::gaussian::Covariance;
 use crate::metric::stability::{self, RolloutStability, StabilityScores};
 use crate::pedestrian_scores::PedestrianScores;
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// The metrics of one forecaster on the test windows of one fold.
 ///
@@ -121,7 +121,7 @@ impl Scores {
             .zip(forecasts)
             .map(|((window, full_window), forecast)| {
                 check_alike(window, forecast, first)?;
-                let scene = Scene::new(window, forecast)?.among(full_window)?;
+                let scene = ScoredWindow::new(window, forecast)?.among(full_window)?;
                 Ok(SceneScores::of(&scene))
             })
             .collect::<Result<_, EvaluationError>>()?;
@@ -229,7 +229,7 @@ struct SceneScores {
 }
 
 impl SceneScores {
-    fn of(scene: &Scene<'_>) -> Self {
+    fn of(scene: &ScoredWindow<'_>) -> Self {
         let errors = DisplacementErrors::of(scene);
         let pedestrians = scene.pedestrians() as f64;
         Self {

@@ -11,8 +11,8 @@ mod blocks;
 mod bootstrap;
 mod paired;
 
-pub use blocks::{BLOCK_STEPS, BlockErrors, block_errors};
-pub use bootstrap::{Interval, MIN_BLOCKS, RESAMPLES, mean_interval};
+pub use blocks::{BlockErrors, block_errors};
+pub use bootstrap::{Interval, mean_interval};
 pub use paired::{DifferentWindowsError, PairedDifference, paired_difference};
 
 /// The error of a block that is compared.

@@ -10,7 +10,7 @@ use ddl::eval::metric::collision::{closest_approach, collides};
 use ddl::eval::metric::displacement::DisplacementErrors;
 use ddl::eval::metric::diversity::Diversity;
 use ddl::eval::metric::kde::kde_nll as kde_of;
-use ddl::eval::{Scene, Scores};
+use ddl::eval::{ScoredWindow, Scores};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -46,10 +46,10 @@ fn window(
 fn of_scene<T>(
     truth: &PyReadonlyArray3<'_, f64>,
     forecast: &Forecast,
-    measure: impl FnOnce(&Scene<'_>) -> PyResult<T>,
+    measure: impl FnOnce(&ScoredWindow<'_>) -> PyResult<T>,
 ) -> PyResult<T> {
     let window = window(0, truth, None)?;
-    let scene = Scene::new(&window, forecast).map_err(of_any)?;
+    let scene = ScoredWindow::new(&window, forecast).map_err(of_any)?;
     measure(&scene)
 }
 
@@ -117,7 +117,7 @@ pub(crate) fn spread_between(py: Python<'_>, paths: Paths<'_>) -> PyResult<(Py<P
         .collect();
     let ids = (0..truth.len() as i64).map(PedestrianId).collect();
     let window = Window::new("scene", 0, 1, ids, truth).map_err(of_any)?;
-    let scene = Scene::new(&window, &forecast).map_err(of_any)?;
+    let scene = ScoredWindow::new(&window, &forecast).map_err(of_any)?;
     let n = forecast.pedestrians();
     let diversity: Vec<Diversity> = several((0..n).map(|i| Diversity::of(&scene, i)))?;
     let paths = diversity.iter().map(|diversity| diversity.path).collect();

@@ -7,7 +7,7 @@ use ddl_data::{HORIZON, Position, Window};
 use ddl_eval::category::{Interaction, MotionKind};
 use ddl_eval::metric::collision::closest_approach;
 use ddl_eval::metric::displacement::DisplacementErrors;
-use ddl_eval::{EvaluationError, Scene};
+use ddl_eval::{EvaluationError, ScoredWindow};
 
 use crate::snapshot::{ForecastSnapshot, Highlight, HighlightKind};
 
@@ -62,7 +62,7 @@ struct GalleryCase {
 fn picks(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<(usize, Highlight)>, EvaluationError> {
     let mut cases: BTreeMap<HighlightKind, Vec<GalleryCase>> = BTreeMap::new();
     for (index, (window, forecast)) in windows.iter().zip(forecasts).enumerate() {
-        let scene = Scene::new(window, forecast)?;
+        let scene = ScoredWindow::new(window, forecast)?;
         let errors = DisplacementErrors::of(&scene);
         for i in 0..window.len() {
             for (show, pedestrians) in shows(&scene, i) {
@@ -91,7 +91,7 @@ fn median(show: HighlightKind, mut cases: Vec<GalleryCase>) -> (usize, Highlight
     (case.window, Highlight::new(show, case.pedestrians, rule))
 }
 
-fn shows(scene: &Scene<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)> {
+fn shows(scene: &ScoredWindow<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)> {
     let window = scene.window();
     let mut shows = Vec::new();
     if converges(scene, i) {
@@ -116,7 +116,7 @@ fn shows(scene: &Scene<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)> {
     shows
 }
 
-fn converges(scene: &Scene<'_>, i: usize) -> bool {
+fn converges(scene: &ScoredWindow<'_>, i: usize) -> bool {
     let k = scene.forecast().representative(i);
     let end = scene.forecast().hypothesis(i, k)[HORIZON - 1];
     distance(scene.last_observed(i), end) >= GONE

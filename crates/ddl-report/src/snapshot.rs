@@ -5,7 +5,7 @@ use std::fmt;
 use ddl_core::{Forecast, average_displacement, medoid};
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_eval::metric::stability::RolloutStability;
-use ddl_eval::{EvaluationError, Scene, WindowProblem};
+use ddl_eval::{EvaluationError, ScoredWindow, WindowProblem};
 use serde::{Deserialize, Serialize};
 
 /// Steps in a metre, or in a weight of 1, to which numbers are rounded.
@@ -152,7 +152,7 @@ impl ForecastSnapshot {
         window: &Window,
         forecast: &Forecast,
     ) -> Result<Self, EvaluationError> {
-        let scene = Scene::new(window, forecast)?;
+        let scene = ScoredWindow::new(window, forecast)?;
         let truths: Vec<&[Position]> = (0..window.len()).map(|i| scene.truth(i)).collect();
         Ok(Self::of((fold.into(), forecaster.into()), window, forecast, &truths))
     }

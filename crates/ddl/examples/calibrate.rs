@@ -9,7 +9,7 @@
 #![expect(clippy::print_stdout, reason = "a program that prints a table")]
 
 use ddl::data::{HORIZON, Window, WindowRule};
-use ddl::eval::Scene;
+use ddl::eval::ScoredWindow;
 use ddl::{BuiltinModel, Calibration, Ddl, DeviceChoice, Forecast, Forecaster as _, Protocol, RegionTable};
 use std::error::Error;
 use std::path::Path;
@@ -107,7 +107,7 @@ fn balanced(places: &[&TrueScores]) -> TrueScores {
 fn true_scores(windows: &[Window], forecasts: &[Forecast]) -> Result<TrueScores, Box<dyn Error>> {
     let mut scores_of_all = TrueScores::new();
     for (window, forecast) in windows.iter().zip(forecasts) {
-        let scene = Scene::new(window, forecast)?;
+        let scene = ScoredWindow::new(window, forecast)?;
         for i in 0..window.len() {
             let mut scores = [0.0; HORIZON];
             for (t, (score, &position)) in scores.iter_mut().zip(scene.truth(i)).enumerate() {

@@ -88,7 +88,7 @@ pub(super) struct Outcomes {
 impl TrackedQuantiles {
     /// The table with shifts of 0.
     #[must_use]
-    pub fn new(start: Arc<RegionTable>) -> Self {
+    pub(super) fn new(start: Arc<RegionTable>) -> Self {
         Self {
             shifts: vec![[0.0; HORIZON]; start.0.levels.len()],
             now: Arc::clone(&start),
@@ -97,7 +97,7 @@ impl TrackedQuantiles {
     }
 
     /// The current quantiles.
-    pub fn table(&self) -> &Arc<RegionTable> {
+    pub(super) fn table(&self) -> &Arc<RegionTable> {
         &self.now
     }
 

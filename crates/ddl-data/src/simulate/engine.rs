@@ -4,12 +4,12 @@ use ddl_core::{PedestrianId, Position, TIME_STEP};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::force::{self, BODY, WalkingMotion};
-use super::layout::{Leg, SceneLayout};
-use super::pedestrian::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
-use super::population::{self, Party};
-use super::vector::{add, norm, scale, sub, unit};
 use crate::observation::Observation;
+use crate::simulate::force::{self, BODY, WalkingMotion};
+use crate::simulate::layout::{Leg, SceneLayout};
+use crate::simulate::pedestrian::{ARRIVED, DT, SUBSTEPS, SimulatedPedestrian};
+use crate::simulate::population::{self, Party};
+use crate::simulate::vector::{add, norm, scale, sub, unit};
 
 /// Raw frames in one step of 0.4 s, as in most real recordings.
 pub(super) const FRAME_STEP: i64 = 10;

@@ -2,8 +2,8 @@
 
 use ddl_core::Position;
 
-use super::obstacle::{Pillar, Wall};
-use super::vector::{add, cross, dot, left, norm, scale, sub, unit};
+use crate::simulate::obstacle::{Pillar, Wall};
+use crate::simulate::vector::{add, cross, dot, left, norm, scale, sub, unit};
 
 /// Radius of a body (m).
 pub(super) const BODY: f64 = 0.2;

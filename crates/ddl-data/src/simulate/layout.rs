@@ -2,9 +2,9 @@
 
 use ddl_core::Position;
 
-use super::obstacle::{Pillar, Wall};
-use super::scene::CrowdScene;
-use super::vector::{dot, left, lerp, norm, scale, sub, unit};
+use crate::simulate::obstacle::{Pillar, Wall};
+use crate::simulate::scene::CrowdScene;
+use crate::simulate::vector::{dot, left, lerp, norm, scale, sub, unit};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GateLine {

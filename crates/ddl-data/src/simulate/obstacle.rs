@@ -2,36 +2,36 @@
 
 use ddl_core::Position;
 
-use super::vector::{add, cross, dot, norm, scale, sub, unit};
+#[cfg(test)]
+use crate::simulate::vector::cross;
+use crate::simulate::vector::{add, dot, norm, scale, sub, unit};
 
 /// A straight wall between two points, without thickness.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Wall {
+pub(crate) struct Wall {
     /// One end (m).
-    pub from: Position,
+    pub(crate) from: Position,
     /// The other end (m).
-    pub to: Position,
+    pub(crate) to: Position,
 }
 
 /// A round obstacle: a pillar, a tree, a fountain.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pillar {
+pub(crate) struct Pillar {
     /// Its centre (m).
-    pub centre: Position,
+    pub(crate) centre: Position,
     /// Its radius (m).
-    pub radius: f64,
+    pub(crate) radius: f64,
 }
 
 impl Wall {
     /// A wall between two points (m).
-    #[must_use]
-    pub const fn new(from: Position, to: Position) -> Self {
+    pub(crate) const fn new(from: Position, to: Position) -> Self {
         Self { from, to }
     }
 
     /// The point of the wall nearest to `p` (m).
-    #[must_use]
-    pub fn nearest(&self, p: Position) -> Position {
+    pub(crate) fn nearest(&self, p: Position) -> Position {
         let along = sub(self.to, self.from);
         let length_squared = dot(along, along);
         if length_squared == 0.0 {
@@ -42,8 +42,8 @@ impl Wall {
     }
 
     /// Whether the straight line from `a` to `b` (m) crosses the wall.
-    #[must_use]
-    pub fn blocks(&self, a: Position, b: Position) -> bool {
+    #[cfg(test)]
+    pub(crate) fn blocks(&self, a: Position, b: Position) -> bool {
         let (way, wall) = (sub(b, a), sub(self.to, self.from));
         let side = |p| cross(wall, sub(p, self.from));
         let other = |p| cross(way, sub(p, a));
@@ -58,8 +58,7 @@ impl Wall {
 
 impl Pillar {
     /// A pillar with its centre and radius (m).
-    #[must_use]
-    pub const fn new(centre: Position, radius: f64) -> Self {
+    pub(crate) const fn new(centre: Position, radius: f64) -> Self {
         Self { centre, radius }
     }
 

@@ -2,9 +2,9 @@
 
 use ddl_core::{PedestrianId, Position, TIME_STEP};
 
-use super::force::WalkingMotion;
-use super::layout::Leg;
-use super::vector::{add, dot, norm, scale, sub, unit};
+use crate::simulate::force::WalkingMotion;
+use crate::simulate::layout::Leg;
+use crate::simulate::vector::{add, dot, norm, scale, sub, unit};
 
 /// Integration steps per step of 0.4 s.
 pub(super) const SUBSTEPS: i64 = 8;

@@ -5,8 +5,8 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, Exp, Normal};
 
-use super::layout::{GateLine, Leg, SceneLayout};
-use super::vector::{norm, sub};
+use crate::simulate::layout::{GateLine, Leg, SceneLayout};
+use crate::simulate::vector::{norm, sub};
 
 /// Mean and standard deviation of the desired speed of a lone pedestrian (m/s): Helbing and Molnár 1995.
 const DESIRED_SPEED: (f64, f64) = (1.34, 0.26);

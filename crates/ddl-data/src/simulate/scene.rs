@@ -1,10 +1,8 @@
 //! The five simulated scenes.
 
-use std::fmt;
-
 /// A simulated scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum CrowdScene {
+pub(crate) enum CrowdScene {
     /// A walled way with two pillars, used in both directions.
     Corridor,
     /// Two ways that cross at right angles.
@@ -19,7 +17,7 @@ pub enum CrowdScene {
 
 impl CrowdScene {
     /// Every scene.
-    pub const ALL: [Self; 5] = [
+    pub(crate) const ALL: [Self; 5] = [
         Self::Corridor,
         Self::Crossing,
         Self::Plaza,
@@ -28,7 +26,7 @@ impl CrowdScene {
     ];
 
     /// The scene's name, also used for its recording and its fold.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Corridor => "corridor",
             Self::Crossing => "crossing",
@@ -36,11 +34,5 @@ impl CrowdScene {
             Self::Bottleneck => "bottleneck",
             Self::Doorway => "doorway",
         }
-    }
-}
-
-impl fmt::Display for CrowdScene {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
     }
 }

@@ -10,7 +10,6 @@ mod names;
 mod rate;
 mod readers;
 mod recordings;
-mod simulated_crowd;
 mod summary;
 mod window_counts;
 mod windows;

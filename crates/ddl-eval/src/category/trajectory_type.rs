@@ -41,7 +41,7 @@ impl TrajectoryType {
     pub const ALL: [Self; 4] = [Self::Static, Self::Linear, Self::Interacting, Self::NonInteracting];
 
     /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
-    pub fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
+    pub(crate) fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {
         let end = window.end(i)?;
         let track = window.track(i);
         debug_assert_eq!(track.len(), WINDOW);

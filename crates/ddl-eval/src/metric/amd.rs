@@ -25,7 +25,7 @@ use ddl_core::HORIZON;
 
 use crate::metric::gaussian::{Covariance, Moments};
 use crate::metric::kde::MIN_DEVIATION;
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// The distribution of one pedestrian's positions against the truth, mean over the frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +38,7 @@ pub struct DistributionErrors {
 
 impl DistributionErrors {
     /// The errors of pedestrian `i`; `None` for forecasts of one hypothesis.
-    pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
+    pub fn of(scene: &ScoredWindow<'_>, i: usize) -> Option<Self> {
         if scene.hypotheses() < 2 {
             return None;
         }
@@ -68,6 +68,6 @@ impl DistributionErrors {
 }
 
 /// AMV of a mean covariance: its largest eigenvalue, square metres.
-pub fn amv(mean_covariance: Covariance) -> f64 {
+pub(crate) fn amv(mean_covariance: Covariance) -> f64 {
     mean_covariance.principal_axes().variances[0]
 }

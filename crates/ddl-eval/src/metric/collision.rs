@@ -20,10 +20,10 @@
 
 use ddl_core::Position;
 
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// Radius of a pedestrian, metres. Two collide when their centres are closer than twice this.
-pub const PEDESTRIAN_RADIUS: f64 = 0.2;
+pub(crate) const PEDESTRIAN_RADIUS: f64 = 0.2;
 
 /// The least distance of two pedestrians that move straight between frames, metres.
 ///
@@ -67,7 +67,7 @@ pub fn collides(tracks: &[&[Position]], radius: f64) -> Vec<bool> {
 }
 
 /// The [representative](ddl_core::Forecast::representative) forecast of each pedestrian, metres.
-pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
+pub(crate) fn representative_tracks<'a>(scene: &ScoredWindow<'a>) -> Vec<&'a [Position]> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
         .map(|i| forecast.hypothesis(i, forecast.representative(i)))
@@ -75,7 +75,7 @@ pub fn representative_tracks<'a>(scene: &Scene<'a>) -> Vec<&'a [Position]> {
 }
 
 /// Whether the true future of each pedestrian collides with that of another one, forecast or not; `[N]`.
-pub fn true_futures_collide(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
+pub(crate) fn true_futures_collide(scene: &ScoredWindow<'_>, radius: f64) -> Vec<bool> {
     let full_window = scene.full_window();
     let tracks: Vec<&[Position]> = (0..full_window.len()).map(|j| full_window.future(j)).collect();
     let hit = collides(&tracks, radius);
@@ -83,7 +83,7 @@ pub fn true_futures_collide(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
 }
 
 /// Whether the representative forecast of each pedestrian collides with the true future of another; `[N]`.
-pub fn collides_with_true_futures(scene: &Scene<'_>, radius: f64) -> Vec<bool> {
+pub(crate) fn collides_with_true_futures(scene: &ScoredWindow<'_>, radius: f64) -> Vec<bool> {
     let (forecast, full_window) = (scene.forecast(), scene.full_window());
     let runs_into_another = |i: usize| {
         let track = forecast.hypothesis(i, forecast.representative(i));

@@ -25,13 +25,13 @@
 
 use ddl_core::{Forecast, Position, average_displacement, distance};
 
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// FDE: the distance of the last forecast position from the last true one, metres.
 ///
 /// # Panics
 /// When the two differ in length or are empty.
-pub fn final_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
+pub(crate) fn final_displacement(forecast: &[Position], truth: &[Position]) -> f64 {
     assert_eq!(forecast.len(), truth.len(), "lengths of forecast and truth");
     distance(forecast[forecast.len() - 1], truth[truth.len() - 1])
 }
@@ -46,7 +46,7 @@ pub struct DisplacementErrors {
 
 impl DisplacementErrors {
     /// Measures a scene.
-    pub fn of(scene: &Scene<'_>) -> Self {
+    pub fn of(scene: &ScoredWindow<'_>) -> Self {
         let hypotheses = scene.hypotheses();
         let table = |error: fn(&[Position], &[Position]) -> f64| {
             (0..scene.pedestrians())
@@ -92,12 +92,12 @@ impl DisplacementErrors {
     }
 
     /// FDE of the hypothesis of pedestrian `i` with the smallest ADE (of equal ones, the first), metres.
-    pub fn fde_at_min_ade(&self, i: usize) -> f64 {
+    pub(crate) fn fde_at_min_ade(&self, i: usize) -> f64 {
         self.fde(i)[least(self.ade(i))]
     }
 
     /// ADE of the hypothesis of pedestrian `i` with the smallest FDE (of equal ones, the first), metres.
-    pub fn ade_at_min_fde(&self, i: usize) -> f64 {
+    pub(crate) fn ade_at_min_fde(&self, i: usize) -> f64 {
         self.ade(i)[least(self.fde(i))]
     }
 }
@@ -110,18 +110,18 @@ fn least(errors: &[f64]) -> usize {
 ///
 /// # Panics
 /// When `i` is out of range or there are more errors than hypotheses.
-pub fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
+pub(crate) fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
     let weighted = errors.iter().enumerate();
     weighted.map(|(k, error)| forecast.weight(i, k) * error).sum()
 }
 
 /// JADE of a scene, metres.
-pub fn joint_ade(errors: &DisplacementErrors) -> f64 {
+pub(crate) fn joint_ade(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::ade)
 }
 
 /// JFDE of a scene, metres; its hypothesis may differ from that of [`joint_ade`].
-pub fn joint_fde(errors: &DisplacementErrors) -> f64 {
+pub(crate) fn joint_fde(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::fde)
 }
 
@@ -133,7 +133,7 @@ fn least_scene_mean(errors: &DisplacementErrors, of: fn(&DisplacementErrors, usi
 }
 
 /// Distance of the nearest goal of pedestrian `i` from the true endpoint, metres; `None` without goals.
-pub fn goal_fde(scene: &Scene<'_>, i: usize) -> Option<f64> {
+pub(crate) fn goal_fde(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
     let end = scene.window().end(i)?;
     (0..scene.hypotheses())
         .map(|k| scene.forecast().goal(i, k).map(|goal| distance(goal, end)))

@@ -10,7 +10,7 @@
 //! # References
 //! Yuan and Kitani, "`DLow`: Diversifying Latent Flows for Diverse Human Motion Prediction", ECCV 2020 (APD).
 
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// Mean distances between the hypotheses of one pedestrian.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,7 +23,7 @@ pub struct Diversity {
 
 impl Diversity {
     /// The diversity of pedestrian `i`; `None` for forecasts of one hypothesis.
-    pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
+    pub fn of(scene: &ScoredWindow<'_>, i: usize) -> Option<Self> {
         let (forecast, k) = (scene.forecast(), scene.hypotheses());
         if k < 2 {
             return None;

@@ -23,7 +23,7 @@ pub struct Covariance {
 impl Covariance {
     /// Every entry times `factor` (no unit).
     #[must_use]
-    pub fn scaled(self, factor: f64) -> Self {
+    pub(crate) fn scaled(self, factor: f64) -> Self {
         Self {
             xx: factor * self.xx,
             xy: factor * self.xy,
@@ -33,7 +33,7 @@ impl Covariance {
 
     /// The sum of both covariances.
     #[must_use]
-    pub fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self {
             xx: self.xx + other.xx,
             xy: self.xy + other.xy,
@@ -42,7 +42,7 @@ impl Covariance {
     }
 
     /// Eigenvalues, the larger first, and the unit eigenvector of the larger one.
-    pub fn principal_axes(self) -> PrincipalAxes {
+    pub(crate) fn principal_axes(self) -> PrincipalAxes {
         let (mean, half) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
         let radius = half.hypot(self.xy);
         let (sin, cos) = (0.5 * self.xy.atan2(half)).sin_cos();
@@ -55,7 +55,7 @@ impl Covariance {
 
 /// A covariance along its own axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PrincipalAxes {
+pub(crate) struct PrincipalAxes {
     /// The eigenvalues, the larger first, square metres.
     pub variances: [f64; 2],
     /// Unit eigenvector of the larger one.
@@ -65,7 +65,7 @@ pub struct PrincipalAxes {
 impl PrincipalAxes {
     /// The same axes, with eigenvalues below `least` (square metres) raised to it, so that an inverse exists.
     #[must_use]
-    pub fn with_least_eigenvalues(self, least: f64) -> Self {
+    pub(crate) fn with_least_eigenvalues(self, least: f64) -> Self {
         Self {
             variances: self.variances.map(|variance| variance.max(least)),
             ..self
@@ -73,7 +73,7 @@ impl PrincipalAxes {
     }
 
     /// The matrix that has these axes.
-    pub fn covariance(self) -> Covariance {
+    pub(crate) fn covariance(self) -> Covariance {
         let ([large, small], [cos, sin]) = (self.variances, self.axis);
         Covariance {
             xx: large * cos * cos + small * sin * sin,
@@ -83,21 +83,21 @@ impl PrincipalAxes {
     }
 
     /// `d^T C^-1 d`: the squared Mahalanobis length of a difference of positions; no unit.
-    pub fn mahalanobis_squared(self, d: Position) -> f64 {
+    pub(crate) fn mahalanobis_squared(self, d: Position) -> f64 {
         let [cos, sin] = self.axis;
         let (along, across) = (cos * d[0] + sin * d[1], cos * d[1] - sin * d[0]);
         along * along / self.variances[0] + across * across / self.variances[1]
     }
 
     /// `ln det C`, with C in square metres.
-    pub fn ln_determinant(self) -> f64 {
+    pub(crate) fn ln_determinant(self) -> f64 {
         self.variances[0].ln() + self.variances[1].ln()
     }
 }
 
 /// Mean and covariance of weighted points.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Moments {
+pub(crate) struct Moments {
     /// The mean, metres.
     pub mean: Position,
     /// The covariance, square metres.
@@ -109,7 +109,7 @@ impl Moments {
     ///
     /// # Panics
     /// When the numbers of weights and points differ.
-    pub fn of(points: &[Position], weights: &[f64]) -> Self {
+    pub(crate) fn of(points: &[Position], weights: &[f64]) -> Self {
         assert_eq!(points.len(), weights.len(), "one weight a point");
         let weighted = || points.iter().zip(weights);
         let mean = weighted().fold([0.0, 0.0], |m, (p, w)| [m[0] + w * p[0], m[1] + w * p[1]]);

@@ -29,12 +29,12 @@
 use ddl_core::Position;
 
 use crate::metric::gaussian::{Moments, PrincipalAxes};
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// Lower bound of log densities, nats, so that one large error does not dominate the mean.
-pub const MIN_LOG_DENSITY: f64 = -20.0;
+pub(crate) const MIN_LOG_DENSITY: f64 = -20.0;
 /// Least deviation of a distribution of positions along any direction, metres.
-pub const MIN_DEVIATION: f64 = 0.01;
+pub(crate) const MIN_DEVIATION: f64 = 0.01;
 
 /// `ln f(at)` of the kernel density of weighted points, nats for a density per square metre; not clipped.
 ///
@@ -44,7 +44,7 @@ pub const MIN_DEVIATION: f64 = 0.01;
 /// # Numerics
 /// The sum of exponentials is taken relative to its largest term. If all weight is on one point, the covariance is 0/0
 /// and is set to 0.
-pub fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
+pub(crate) fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();
     // 1 - sum of squares, without cancellation when one weight is nearly 1.
@@ -71,7 +71,7 @@ fn mixture_log_density((points, weights): (&[Position], &[f64]), bandwidth: Prin
 }
 
 /// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None` for one hypothesis.
-pub fn kde_nll(scene: &Scene<'_>, i: usize) -> Option<f64> {
+pub fn kde_nll(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
     if scene.hypotheses() < 2 {
         return None;
     }

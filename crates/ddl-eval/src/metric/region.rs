@@ -3,7 +3,7 @@
 use ddl_core::{Disc, HORIZON};
 
 use crate::metric::displacement::final_displacement;
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// Probabilities of the regions that are measured.
 pub const LEVELS: [f64; 2] = [0.5, 0.9];
@@ -15,7 +15,7 @@ const CELLS: usize = 24;
 
 /// Coverage and size for one pedestrian, for each of the [`LEVELS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct RegionScores {
+pub(crate) struct RegionScores {
     /// Share of the 12 true positions inside their regions, in [0, 1].
     pub coverage: [f64; LEVELS.len()],
     /// Radius of a disc with the area of the region at the last step, metres.
@@ -24,7 +24,7 @@ pub struct RegionScores {
 
 impl RegionScores {
     /// The scores of pedestrian `i`; `None` for forecasts without regions.
-    pub fn of(scene: &Scene<'_>, i: usize) -> Option<Self> {
+    pub(crate) fn of(scene: &ScoredWindow<'_>, i: usize) -> Option<Self> {
         let forecast = scene.forecast();
         forecast.regions()?;
         let region = |t: usize, level: f64| forecast.region(i, t, level).unwrap_or_default();
@@ -41,7 +41,7 @@ impl RegionScores {
 
 /// -ln of the weight of the hypothesis whose goal is nearest to the true endpoint (without goals: whose last position
 /// is nearest), nats. `None` for forecasts of one hypothesis. For equal weights it is ln K.
-pub fn weight_log_loss(scene: &Scene<'_>, i: usize) -> Option<f64> {
+pub fn weight_log_loss(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);
     let off = |k: usize| match (forecast.goal(i, k), truth.last()) {
@@ -101,11 +101,11 @@ mod tests {
         let bare = Forecast::new(1, 2, walks, vec![0.8, 0.2], None).unwrap();
         let scores = [vec![[1.5; HORIZON]; 10], vec![[3.0; HORIZON]; 9]].concat();
         let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
-        let scene = Scene::new(&window, &bare).unwrap();
+        let scene = ScoredWindow::new(&window, &bare).unwrap();
         assert_relative_eq!(weight_log_loss(&scene, 0).unwrap(), -(0.2_f64.ln()), epsilon = 1e-12);
         assert_eq!(RegionScores::of(&scene, 0), None);
         let forecast = bare.with_std_dev(vec![0.5; HORIZON], table.into()).unwrap();
-        let scene = Scene::new(&window, &forecast).unwrap();
+        let scene = ScoredWindow::new(&window, &forecast).unwrap();
         let scores = RegionScores::of(&scene, 0).unwrap();
         assert_relative_eq!(scores.coverage[0], 0.0);
         assert_relative_eq!(scores.coverage[1], 1.0);

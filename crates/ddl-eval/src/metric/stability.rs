@@ -19,10 +19,10 @@ use ddl_core::{Position, distance};
 use serde::{Deserialize, Serialize};
 
 use crate::metric::displacement::{minus, turn};
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 
 /// Distance (metres) within which a pedestrian is at the goal, and length below which a step has no direction.
-pub const GOAL_TOLERANCE: f64 = 1e-3;
+pub(crate) const GOAL_TOLERANCE: f64 = 1e-3;
 
 /// Behaviour of one rollout towards its goal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,7 +80,7 @@ pub struct StabilityScores {
 
 impl StabilityScores {
     /// The means of rollouts; `None` without rollouts.
-    pub fn mean(rollouts: &[RolloutStability]) -> Option<Self> {
+    pub(crate) fn mean(rollouts: &[RolloutStability]) -> Option<Self> {
         if rollouts.is_empty() {
             return None;
         }
@@ -100,7 +100,7 @@ impl StabilityScores {
 }
 
 /// Checks every hypothesis of every pedestrian; empty when the forecast has no goals.
-pub fn rollouts(scene: &Scene<'_>) -> Vec<RolloutStability> {
+pub(crate) fn rollouts(scene: &ScoredWindow<'_>) -> Vec<RolloutStability> {
     let forecast = scene.forecast();
     (0..scene.pedestrians())
         .flat_map(|i| (0..scene.hypotheses()).map(move |k| (i, k)))

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::EvaluationError;
 use crate::metric::displacement::DisplacementErrors;
-use crate::scene::Scene;
+use crate::scored_window::ScoredWindow;
 use crate::significance::BlockMetric;
 
 /// Length of a block in steps of 0.4 s: 20 s. A window belongs to the block in which it starts.
-pub const BLOCK_STEPS: i64 = 50;
+pub(crate) const BLOCK_STEPS: i64 = 50;
 
 /// The errors of all windows of a recording that start within the same 20 s.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -54,7 +54,7 @@ pub fn block_errors(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<Bl
         .par_iter()
         .zip(forecasts)
         .map(|(window, forecast)| {
-            let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
+            let errors = DisplacementErrors::of(&ScoredWindow::new(window, forecast)?);
             let sum = |of: fn(&DisplacementErrors, usize) -> f64| (0..window.len()).map(|i| of(&errors, i)).sum();
             Ok([sum(DisplacementErrors::min_ade), sum(DisplacementErrors::min_fde)])
         })

@@ -6,10 +6,10 @@ use rand_chacha::ChaCha8Rng;
 use crate::significance::{BlockErrors, BlockMetric};
 
 /// Resamples drawn for an interval, and sign changes for a test.
-pub const RESAMPLES: usize = 10_000;
+pub(crate) const RESAMPLES: usize = 10_000;
 
 /// Fewest blocks of a fold: fewer blocks give no reliable spread.
-pub const MIN_BLOCKS: usize = 10;
+pub(crate) const MIN_BLOCKS: usize = 10;
 
 /// Seed of the resamples: the same in every report, so that reports are reproducible bit by bit.
 const SEED: u64 = 0;

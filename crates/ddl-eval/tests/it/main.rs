@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a helper that fails is a test that fails")]
 
-mod distribution;
 mod external;
 mod generated;
 mod hand_example;

@@ -6,7 +6,7 @@ use crate::goals::remembering::Remembering;
 use crate::windows::split::Split;
 use crate::windows::test_set::TestSet;
 use ddl_data::{Dataset, Position, Window};
-use ddl_eval::metric::calibration::Calibration;
+use ddl_eval::metric::reliability::Reliability;
 use ddl_goal::GoalSet;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -27,8 +27,8 @@ pub struct GoalEvaluation {
     pub all: GoalErrors,
     /// Errors of each recording.
     pub recordings: BTreeMap<String, GoalErrors>,
-    /// Calibration of the probabilities of the goals.
-    pub calibration: Option<Calibration>,
+    /// Reliability of the probabilities of the goals.
+    pub calibration: Option<Reliability>,
     /// Wall-clock seconds that the estimation took.
     pub seconds: f64,
 }
@@ -132,7 +132,7 @@ pub fn evaluate_goals(
         windows: words,
         clusters: model.clusters(),
         all: errors(None),
-        calibration: Calibration::of(likelihoods),
+        calibration: Reliability::of(likelihoods),
         recordings,
         seconds,
     };

@@ -11,7 +11,7 @@ use crate::training::best_epoch::is_over;
 use crate::training::starting_weights::StartingWeights;
 use crate::windows::test_set::TestSet;
 use ddl_data::{Fold, Window};
-use ddl_eval::{Scene, metric::displacement::DisplacementErrors};
+use ddl_eval::{ScoredWindow, metric::displacement::DisplacementErrors};
 use ddl_network::weights::Weights;
 use ddl_network::{EpochReport, ForecastWindows};
 
@@ -55,7 +55,7 @@ impl EarlyStopping {
         let forecasts = shaped::towards(network, self.seed, windows, goals, PathIntegrator::Stable(None))?;
         let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in windows.iter().zip(&forecasts) {
-            let errors = DisplacementErrors::of(&Scene::new(window, forecast)?);
+            let errors = DisplacementErrors::of(&ScoredWindow::new(window, forecast)?);
             sum += (0..window.len()).map(|i| errors.min_ade(i)).sum::<f64>();
             pedestrians += window.len();
         }

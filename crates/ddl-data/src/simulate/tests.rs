@@ -1,13 +1,14 @@
 //! Simulated crowds are realistic: plausible speeds, no pedestrian in a wall, groups that stay together.
 
-use ddl_data::simulate::{Crowd, CrowdScene};
-use ddl_data::{Convention, Dataset, PedestrianId, Position, Recording, TIME_STEP};
+use ddl_core::{PedestrianId, Position, TIME_STEP, distance};
+
+use crate::convention::Convention;
+use crate::dataset::Dataset;
+use crate::recording::Recording;
+use crate::simulate::layout::SceneLayout;
+use crate::simulate::{Crowd, CrowdScene};
 
 const SEED: u64 = 1;
-
-fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
 
 /// Successive positions of every pedestrian (m), 0.4 s apart.
 fn tracks(crowd: &Crowd) -> Vec<Vec<Position>> {
@@ -56,13 +57,13 @@ fn speeds_are_plausible() {
         let speeds = speeds(&scene.simulate(SEED));
         let walking: Vec<_> = speeds.iter().copied().filter(|&v| v > 0.4).collect();
         let mean = walking.iter().sum::<f64>() / walking.len() as f64;
-        assert!((1.0..1.4).contains(&mean), "{scene}: mean of pedestrians {mean} m/s");
+        assert!((1.0..1.4).contains(&mean), "{scene:?}: mean of pedestrians {mean} m/s");
         let fastest = speeds.iter().copied().fold(0.0, f64::max);
-        assert!(fastest < 2.7, "{scene}: {fastest} m/s");
+        assert!(fastest < 2.7, "{scene:?}: {fastest} m/s");
         let standing = share(speeds.iter().filter(|&&v| v < 0.2).count(), speeds.len());
         assert!(
             (0.005..0.3).contains(&standing),
-            "{scene}: {standing} of all steps stand still"
+            "{scene:?}: {standing} of all steps stand still"
         );
     }
 }
@@ -71,19 +72,20 @@ fn speeds_are_plausible() {
 fn no_pedestrian_crosses_an_obstacle_or_is_stuck() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
+        let layout = SceneLayout::of(scene);
         for track in tracks(&crowd) {
             for pair in track.windows(2) {
-                let blocked = crowd.walls.iter().any(|wall| wall.blocks(pair[0], pair[1]));
-                assert!(!blocked, "{scene}: {pair:?}");
+                let blocked = layout.walls.iter().any(|wall| wall.blocks(pair[0], pair[1]));
+                assert!(!blocked, "{scene:?}: {pair:?}");
             }
             for &place in &track {
-                let mut pillars = crowd.pillars.iter();
+                let mut pillars = layout.pillars.iter();
                 let inside = pillars.any(|p| distance(p.centre, place) < p.radius);
-                assert!(!inside, "{scene}: {place:?}");
+                assert!(!inside, "{scene:?}: {place:?}");
             }
             // A pedestrian walks at most 30 m and rests once. One that takes longer than two minutes is stuck.
             let seconds = track.len() as f64 * TIME_STEP;
-            assert!(seconds < 120.0, "{scene}: {seconds} s");
+            assert!(seconds < 120.0, "{scene:?}: {seconds} s");
         }
     }
 }
@@ -97,13 +99,16 @@ fn bodies_hardly_overlap() {
             for (i, (_, a)) in pedestrians.iter().enumerate() {
                 let gaps = pedestrians[..i].iter().map(|(_, b)| distance(*a, *b));
                 for gap in gaps {
-                    assert!(gap > 0.3, "{scene}: two centres {gap} m apart");
+                    assert!(gap > 0.3, "{scene:?}: two centres {gap} m apart");
                     pairs += 1;
                     close += usize::from(gap < 0.38);
                 }
             }
         }
-        assert!(share(close, pairs) < 1e-3, "{scene}: {close} of {pairs} pairs overlap");
+        assert!(
+            share(close, pairs) < 1e-3,
+            "{scene:?}: {close} of {pairs} pairs overlap"
+        );
     }
 }
 
@@ -114,14 +119,14 @@ fn pedestrians_enter_continuously_and_are_numbered_in_order() {
         let (mut entered, mut last) = (Vec::new(), 0);
         for pedestrians in scenes(&crowd) {
             let newest = pedestrians.iter().map(|(id, _)| id.0).max().unwrap_or(last);
-            assert!(pedestrians.iter().all(|(id, _)| id.0 >= 1), "{scene}");
+            assert!(pedestrians.iter().all(|(id, _)| id.0 >= 1), "{scene:?}");
             entered.push(newest.max(last) - last);
             last = newest.max(last);
         }
         for part in entered.chunks(entered.len().div_ceil(4)) {
             let new: i64 = part.iter().sum();
             let share = new as f64 / last as f64;
-            assert!((0.1..0.4).contains(&share), "{scene}: {share} of {last}");
+            assert!((0.1..0.4).contains(&share), "{scene:?}: {share} of {last}");
         }
     }
 }
@@ -130,7 +135,7 @@ fn pedestrians_enter_continuously_and_are_numbered_in_order() {
 fn groups_stay_together() {
     for scene in CrowdScene::ALL {
         let crowd = scene.simulate(SEED);
-        assert!(crowd.groups.len() > 10, "{scene}");
+        assert!(crowd.groups.len() > 10, "{scene:?}");
         let mut gaps = Vec::new();
         for pedestrians in scenes(&crowd) {
             for group in &crowd.groups {
@@ -147,7 +152,7 @@ fn groups_stay_together() {
         let near = share(gaps.iter().filter(|&&gap| gap < 2.5).count(), gaps.len());
         assert!(
             near > 0.95,
-            "{scene}: within 2.5 m of each other in {near} of all steps"
+            "{scene:?}: within 2.5 m of each other in {near} of all steps"
         );
     }
 }

@@ -1,11 +1,10 @@
 //! Densities and Mahalanobis distances computed with scipy and numpy: `tests/reference/distribution.py`.
 use approx::assert_relative_eq;
-use ddl_data::Position;
-use ddl_eval::metric::{
-    gaussian::Moments,
-    kde::{MIN_DEVIATION, log_density},
-};
+use ddl_core::Position;
 use serde::Deserialize;
+
+use crate::metric::gaussian::Moments;
+use crate::metric::kde::{MIN_DEVIATION, log_density};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -24,7 +23,7 @@ struct Case {
 
 #[test]
 fn densities_and_distances_in_deviations_agree_with_scipy_and_numpy() {
-    let text = include_str!("../reference/distribution.json");
+    let text = include_str!("../../tests/reference/distribution.json");
     let Reference { cases } = serde_json::from_str(text).unwrap();
     assert_eq!(cases.len(), 21);
     let agree = |found: f64, expected: f64| {

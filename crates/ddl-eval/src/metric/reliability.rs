@@ -1,4 +1,4 @@
-//! Calibration of probabilities: among goals of probability p, the share p should be nearest to the true endpoint.
+//! Reliability of probabilities: among goals of probability p, the share p should be nearest to the true endpoint.
 //!
 //! ```text
 //! log loss = -1/N sum_i ln w_{i, k*(i)}      nats, k*(i) the hypothesis nearest the truth
@@ -15,7 +15,7 @@ const SMALLEST: f64 = 1e-6;
 
 /// Reliability of the probabilities of many sets of hypotheses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Calibration {
+pub struct Reliability {
     /// Mean of -ln of the probability (at least 1e-6) given to the nearest hypothesis, nats.
     pub log_loss: f64,
     /// Log loss of equal probabilities: ln K, averaged over the sets.
@@ -23,12 +23,12 @@ pub struct Calibration {
     /// Mean over the bins of |predicted - observed|, weighted by their size.
     pub expected_error: f64,
     /// Bins by ascending probability; fewer than ten with few hypotheses.
-    pub bins: Vec<CalibrationBin>,
+    pub bins: Vec<ReliabilityBin>,
 }
 
 /// Hypotheses of about the same probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CalibrationBin {
+pub struct ReliabilityBin {
     /// Mean probability of the hypotheses.
     pub predicted: f64,
     /// Share of the hypotheses that were nearest to the truth.
@@ -37,7 +37,7 @@ pub struct CalibrationBin {
     pub count: usize,
 }
 
-impl Calibration {
+impl Reliability {
     /// From sets of probabilities, each with the index of the hypothesis nearest to the truth.
     ///
     /// `None` without sets.
@@ -59,14 +59,14 @@ impl Calibration {
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let bin = |members: &[(f64, bool)]| {
             let size = members.len() as f64;
-            CalibrationBin {
+            ReliabilityBin {
                 predicted: members.iter().map(|(w, _)| w).sum::<f64>() / size,
                 observed: members.iter().filter(|(_, nearest)| *nearest).count() as f64 / size,
                 count: members.len(),
             }
         };
         let bins: Vec<_> = all.chunks(all.len().div_ceil(BINS)).map(bin).collect();
-        let off = |bin: &CalibrationBin| (bin.predicted - bin.observed).abs() * bin.count as f64;
+        let off = |bin: &ReliabilityBin| (bin.predicted - bin.observed).abs() * bin.count as f64;
         Some(Self {
             log_loss: loss / count as f64,
             uniform_log_loss: uniform / count as f64,
@@ -86,7 +86,7 @@ mod tests {
     fn probabilities_come_true_or_not() {
         let of = |weights: &[f64; 2], second: usize| {
             let sets = (0..400).map(|i| (&weights[..], usize::from(i % second == 0)));
-            Calibration::of(sets).unwrap()
+            Reliability::of(sets).unwrap()
         };
         let sound = of(&[0.75, 0.25], 4);
         let entropy = -(0.75 * 0.75_f64.ln() + 0.25 * 0.25_f64.ln());
@@ -98,6 +98,6 @@ mod tests {
         assert_relative_eq!(overconfident.expected_error, 0.5, epsilon = 1e-12);
         let log_loss = -0.5 * SMALLEST.ln();
         assert_relative_eq!(overconfident.log_loss, log_loss, epsilon = 1e-12);
-        assert_eq!(Calibration::of([]), None);
+        assert_eq!(Reliability::of([]), None);
     }
 }

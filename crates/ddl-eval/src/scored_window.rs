@@ -6,13 +6,13 @@ use crate::error::{EvaluationError, WindowProblem};
 
 /// A window with a true future and the forecast of its pedestrians, among all pedestrians of the scene.
 #[derive(Debug, Clone, Copy)]
-pub struct Scene<'a> {
+pub struct ScoredWindow<'a> {
     window: &'a Window,
     forecast: &'a Forecast,
     full_window: &'a Window,
 }
 
-impl<'a> Scene<'a> {
+impl<'a> ScoredWindow<'a> {
     /// Pairs a window with its forecast.
     ///
     /// # Errors
@@ -56,12 +56,12 @@ impl<'a> Scene<'a> {
     }
 
     /// The window with all pedestrians, forecast or not.
-    pub fn full_window(&self) -> &'a Window {
+    pub(crate) fn full_window(&self) -> &'a Window {
         self.full_window
     }
 
     /// Index of pedestrian `i` in [`full_window`](Self::full_window).
-    pub fn index_in_full(&self, i: usize) -> usize {
+    pub(crate) fn index_in_full(&self, i: usize) -> usize {
         // `among` has checked that the full window includes them; in the window itself the index is the same.
         index_of(self.full_window, self.window.pedestrians()[i]).unwrap_or(i)
     }
@@ -92,14 +92,14 @@ impl<'a> Scene<'a> {
     }
 
     /// The weights of pedestrian `i`, divided by their sum; `[K]`.
-    pub fn weights(&self, i: usize) -> Vec<f64> {
+    pub(crate) fn weights(&self, i: usize) -> Vec<f64> {
         let weights = (0..self.hypotheses()).map(|k| self.forecast.weight(i, k));
         let sum: f64 = weights.clone().sum();
         weights.map(|weight| weight / sum).collect()
     }
 
     /// Positions of the hypotheses of pedestrian `i` at forecast frame `t`, counted from 0; `[K]`, metres.
-    pub fn hypotheses_at(&self, i: usize, t: usize) -> Vec<Position> {
+    pub(crate) fn hypotheses_at(&self, i: usize, t: usize) -> Vec<Position> {
         (0..self.hypotheses())
             .map(|k| self.forecast.hypothesis(i, k)[t])
             .collect()
