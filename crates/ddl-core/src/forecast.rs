@@ -242,8 +242,8 @@ impl Forecast {
     /// The forecasts of the given pedestrians, at least one, in the given order; an index out of range panics.
     #[must_use]
     pub fn of_pedestrians(&self, pedestrians: &[usize]) -> Self {
-        fn rows<T: Copy>(all: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
-            let row = |&i: &usize| &all[i * per_pedestrian..(i + 1) * per_pedestrian];
+        fn rows<T: Copy>(values: &[T], per_pedestrian: usize, pedestrians: &[usize]) -> Vec<T> {
+            let row = |&i: &usize| &values[i * per_pedestrian..(i + 1) * per_pedestrian];
             pedestrians.iter().flat_map(row).copied().collect()
         }
         let k = self.hypotheses;
@@ -252,13 +252,16 @@ impl Forecast {
             hypotheses: k,
             positions: rows(&self.positions, k * HORIZON, pedestrians),
             weights: rows(&self.weights, k, pedestrians),
-            goals: self.goals.as_ref().map(|all| rows(all, k, pedestrians)),
-            certified: self.certified.as_ref().map(|all| rows(all, k, pedestrians)),
+            goals: self.goals.as_ref().map(|goals| rows(goals, k, pedestrians)),
+            certified: self.certified.as_ref().map(|certified| rows(certified, k, pedestrians)),
             spread: self
                 .spread
                 .as_ref()
-                .map(|(all, regions)| (rows(all, HORIZON, pedestrians), Arc::clone(regions))),
-            familiarity: self.familiarity.as_ref().map(|all| rows(all, 1, pedestrians)),
+                .map(|(spread, regions)| (rows(spread, HORIZON, pedestrians), Arc::clone(regions))),
+            familiarity: self
+                .familiarity
+                .as_ref()
+                .map(|familiarity| rows(familiarity, 1, pedestrians)),
         }
     }
 
@@ -300,10 +303,10 @@ fn check_range(
     // False for NaN.
     match numbers.iter().position(|&x| !(x > 0.0 && x <= most)) {
         None => Ok(()),
-        Some(at) => Err(ForecastShapeError::OutOfRange {
+        Some(index) => Err(ForecastShapeError::OutOfRange {
             field,
-            pedestrian: at / per_pedestrian,
-            value: numbers[at],
+            pedestrian: index / per_pedestrian,
+            value: numbers[index],
         }),
     }
 }
@@ -316,8 +319,8 @@ fn check_finite(
 ) -> Result<(), ForecastShapeError> {
     match positions.iter().position(|p| !p.iter().all(|c| c.is_finite())) {
         None => Ok(()),
-        Some(at) => {
-            let pair = at / per_pair;
+        Some(index) => {
+            let pair = index / per_pair;
             let (pedestrian, hypothesis) = (pair / hypotheses, pair % hypotheses);
             Err(ForecastShapeError::NotFinite {
                 field,

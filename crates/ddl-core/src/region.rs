@@ -28,17 +28,17 @@ pub use tracked::TrackedQuantiles;
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [standard deviation](Self::std_dev).
-    pub fn region_score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
-        self.score_among(i, t, at, &self.log_weights(i))
+    pub fn region_score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
+        self.score_among(i, t, position, &self.log_weights(i))
     }
 
     /// As [`region_score`](Self::region_score), from the precomputed [`log_weights`](Self::log_weights) of the
     /// pedestrian.
-    fn score_among(&self, i: usize, t: usize, at: Position, log_weights: &[f64]) -> Option<f64> {
+    fn score_among(&self, i: usize, t: usize, position: Position, log_weights: &[f64]) -> Option<f64> {
         let std_dev = self.std_dev(i, t)?;
         let of_hypothesis = |(k, log_weight): (usize, &f64)| {
             let p = self.hypothesis(i, k)[t];
-            let off = [0, 1].map(|axis| (at[axis] - p[axis]) / std_dev);
+            let off = [0, 1].map(|axis| (position[axis] - p[axis]) / std_dev);
             0.5 * (off[0] * off[0] + off[1] * off[1]) - log_weight
         };
         let scores = log_weights.iter().enumerate().map(of_hypothesis);
@@ -105,7 +105,7 @@ mod tests {
             let any = bare.clone().with_std_dev(spread.clone(), table(&[[1.0; HORIZON]; 40])).unwrap();
             let scores: Vec<[f64; HORIZON]> = truths
                 .iter()
-                .map(|&at| std::array::from_fn(|t| any.region_score(0, t, at).unwrap()))
+                .map(|&truth| std::array::from_fn(|t| any.region_score(0, t, truth).unwrap()))
                 .collect();
             let forecast = bare.with_std_dev(spread, table(&scores)).unwrap();
             let region = forecast.region(0, 5, level).unwrap();

@@ -53,8 +53,8 @@ pub struct Disc {
 
 impl Disc {
     /// Whether the position (m) is in the disc or on its edge.
-    pub fn contains(&self, at: Position) -> bool {
-        let [x, y] = [0, 1].map(|axis| at[axis] - self.centre[axis]);
+    pub fn contains(&self, position: Position) -> bool {
+        let [x, y] = [0, 1].map(|axis| position[axis] - self.centre[axis]);
         x * x + y * y <= self.radius * self.radius
     }
 }
@@ -99,7 +99,7 @@ impl RegionTable {
         }
         let after = levels.partition_point(|&l| l < level);
         let before = after.saturating_sub(1);
-        let [low, high] = [before, after].map(|at| quantiles[at][t]);
+        let [low, high] = [before, after].map(|row| quantiles[row][t]);
         let width = levels[after] - levels[before];
         let share = if width > 0.0 {
             (level - levels[before]) / width

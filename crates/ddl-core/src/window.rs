@@ -310,15 +310,15 @@ impl Window {
     /// The window restricted to some of its pedestrians; `None` if none remain.
     #[must_use]
     pub fn filter_pedestrians(&self, mut keep: impl FnMut(usize) -> bool) -> Option<Window> {
-        let kept: Vec<usize> = (0..self.len()).filter(|&i| keep(i)).collect();
-        if kept.is_empty() {
+        let indices: Vec<usize> = (0..self.len()).filter(|&i| keep(i)).collect();
+        if indices.is_empty() {
             return None;
         }
-        let pedestrians = kept.iter().map(|&i| self.pedestrians[i]).collect();
-        let positions = kept.iter().flat_map(|&i| self.track(i)).copied().collect();
+        let pedestrians = indices.iter().map(|&i| self.pedestrians[i]).collect();
+        let positions = indices.iter().flat_map(|&i| self.track(i)).copied().collect();
         let window = self.of_same(self.frames.clone(), pedestrians, positions);
-        let window = window.with_completion_counts(kept.iter().map(|&i| self.completion_counts(i)).collect());
-        Some(window.with_remembered(|i| self.remembered(kept[i]).to_vec()))
+        let window = window.with_completion_counts(indices.iter().map(|&i| self.completion_counts(i)).collect());
+        Some(window.with_remembered(|i| self.remembered(indices[i]).to_vec()))
     }
 
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from 0, position (m).

@@ -14,15 +14,15 @@ const STEPS: std::ops::Range<i64> = 205..259;
 fn main() -> Result<(), DataError> {
     let dataset = Dataset::simulated(SEED);
     let crowd = dataset.recording("plaza")?;
-    let kept = crowd.observations().iter().filter_map(|seen| {
+    let rows = crowd.observations().iter().filter_map(|seen| {
         let step = seen.frame / crowd.frame_step();
         STEPS.contains(&step).then_some((step - STEPS.start, seen))
     });
     let mut pedestrians: Vec<PedestrianId> = Vec::new();
     println!("frame,pedestrian,x,y");
-    for (step, seen) in kept {
-        let known = pedestrians.iter().position(|&id| id == seen.pedestrian);
-        let number = known.unwrap_or_else(|| {
+    for (step, seen) in rows {
+        let index = pedestrians.iter().position(|&id| id == seen.pedestrian);
+        let number = index.unwrap_or_else(|| {
             pedestrians.push(seen.pedestrian);
             pedestrians.len() - 1
         });

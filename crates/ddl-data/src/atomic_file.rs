@@ -48,16 +48,16 @@ mod tests {
     #[test]
     fn only_unfinished_files_are_removed() {
         let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        std::fs::create_dir(at("deep")).unwrap();
+        let path = |name: &str| folder.path().join(name);
+        std::fs::create_dir(path("deep")).unwrap();
         for name in [".writing-a1", "whole.json", "deep/.writing-b2"] {
-            std::fs::write(at(name), "half").unwrap();
+            std::fs::write(path(name), "half").unwrap();
         }
-        write_atomically(&at("whole.json"), b"new").unwrap();
+        write_atomically(&path("whole.json"), b"new").unwrap();
         remove_temporary_files(folder.path());
-        assert!(!at(".writing-a1").exists());
-        assert_eq!(std::fs::read(at("whole.json")).unwrap(), b"new");
+        assert!(!path(".writing-a1").exists());
+        assert_eq!(std::fs::read(path("whole.json")).unwrap(), b"new");
         // Files in sub-folders may belong to another process.
-        assert!(at("deep/.writing-b2").is_file());
+        assert!(path("deep/.writing-b2").is_file());
     }
 }

@@ -46,7 +46,7 @@ impl Completion {
         let mut earlier = seen.rev();
         let (until, last) = earlier.next()?;
         let mut positions = [last; OBSERVED];
-        let (mut found, mut filled) = (1, 0);
+        let (mut reached, mut filled) = (1, 0);
         // The observation at this frame, or else the first one after it.
         let mut after = (until, last);
         let mut before = earlier.next();
@@ -67,14 +67,14 @@ impl Completion {
                 filled += 1;
                 between(before, after, frame)
             };
-            found += 1;
+            reached += 1;
         }
-        if found - filled < self.least_seen {
+        if reached - filled < self.least_seen {
             return None;
         }
-        let padded = OBSERVED - found;
+        let padded = OBSERVED - reached;
         let first = positions[padded];
-        let steps = (found - 1) as f64;
+        let steps = (reached - 1) as f64;
         for (place, position) in positions[..padded].iter_mut().enumerate() {
             let back = (padded - place) as f64 / steps;
             *position = [0, 1].map(|axis| first[axis] - back * (last[axis] - first[axis]));

@@ -76,8 +76,8 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
         Format::StarCsv => star_csv::parse(text, origin),
         Format::SocialGan => blanks::parse(text, origin, blanks::social_gan),
         Format::Table => table::parse(text, origin),
-        Format::TrajNet => trajnet::parse(text, origin).map(|(rows, told)| {
-            rate = told.frames_a_second;
+        Format::TrajNet => trajnet::parse(text, origin).map(|(rows, stated)| {
+            rate = stated.frames_a_second;
             rows
         }),
         Format::Obsmat => blanks::parse(text, origin, blanks::obsmat),

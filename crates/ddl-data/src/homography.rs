@@ -97,7 +97,7 @@ impl std::str::FromStr for Homography {
     /// Nine numbers, three per line, separated by blanks or commas.
     fn from_str(text: &str) -> Result<Self, HomographyError> {
         let mut rows = [[0.0; SIZE]; SIZE];
-        let mut found = 0;
+        let mut count = 0;
         for (index, line) in text.lines().enumerate() {
             let fields: Vec<&str> = line
                 .split([' ', '\t', ','])
@@ -110,17 +110,17 @@ impl std::str::FromStr for Homography {
                 line: index + 1,
                 found: line.chars().take(60).collect(),
             };
-            let row = rows.get_mut(found).ok_or_else(wrong)?;
+            let row = rows.get_mut(count).ok_or_else(wrong)?;
             if fields.len() != SIZE {
                 return Err(wrong());
             }
             for (entry, field) in row.iter_mut().zip(fields) {
                 *entry = field.trim().parse().map_err(|_| wrong())?;
             }
-            found += 1;
+            count += 1;
         }
-        if found < SIZE {
-            return Err(HomographyError::Rows { found });
+        if count < SIZE {
+            return Err(HomographyError::Rows { found: count });
         }
         Self::new(rows)
     }

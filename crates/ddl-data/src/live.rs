@@ -160,8 +160,8 @@ impl LiveTracks {
             while let Some(absent) = earlier.next_if(|pedestrian| pedestrian.id < id) {
                 pedestrians.extend(self.remembered(absent, frame));
             }
-            let known = earlier.next_if(|pedestrian| pedestrian.id == id);
-            let mut pedestrian = known
+            let before = earlier.next_if(|pedestrian| pedestrian.id == id);
+            let mut pedestrian = before
                 .and_then(|pedestrian| self.remembered_before(pedestrian, frame))
                 .unwrap_or_else(|| LivePedestrian::unseen(id));
             pedestrian.seen.push_back((frame, position));

@@ -120,9 +120,9 @@ mod tests {
         let member = workspace.join("crates/member");
         std::fs::create_dir_all(&member).unwrap();
         std::fs::write(workspace.join("Cargo.lock"), "").unwrap();
-        let found = roots(None, None, &member);
-        assert_eq!(found.len(), 3, "the folders above the workspace are not searched");
-        assert_eq!(found[2], workspace.join(DEFAULT_FOLDER));
+        let folders = roots(None, None, &member);
+        assert_eq!(folders.len(), 3, "the folders above the workspace are not searched");
+        assert_eq!(folders[2], workspace.join(DEFAULT_FOLDER));
         let relative = roots(None, Some(Path::new("../data")), &member);
         assert_eq!(relative[2], workspace.join("../data"));
         let variable = roots(None, Some(Path::new("/data")), &member);

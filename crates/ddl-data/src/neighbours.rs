@@ -37,8 +37,8 @@ impl SpatialIndex {
     pub fn within_box(&self, centre: Position, half_width_m: f64) -> impl Iterator<Item = usize> {
         self.around(centre, half_width_m)
             .filter(move |place| {
-                let at = place.geom();
-                (0..2).all(|axis| (at[axis] - centre[axis]).abs() <= half_width_m)
+                let position = place.geom();
+                (0..2).all(|axis| (position[axis] - centre[axis]).abs() <= half_width_m)
             })
             .map(|place| place.data as usize)
     }
@@ -46,15 +46,15 @@ impl SpatialIndex {
     /// Indices of the `count` places nearest to `centre`, except the place `own`: nearest first, ties by index. All
     /// other places if there are fewer.
     #[must_use]
-    pub fn nearest_others(&self, own: usize, centre: Position, count: usize) -> Vec<usize> {
-        let distance = |at: &Position| (at[0] - centre[0]).hypot(at[1] - centre[1]);
+    pub fn nearest_others(&self, excluded: usize, centre: Position, count: usize) -> Vec<usize> {
+        let distance = |position: &Position| (position[0] - centre[0]).hypot(position[1] - centre[1]);
         let nearest = self.tree.nearest_neighbor_iter(centre).take(count + 1);
         // The tree compares squared distances, whose rounding may change the order, so its result only bounds the
         // search.
         let reach = nearest.map(|place| distance(place.geom())).fold(0.0, f64::max);
         let others = self.around(centre, reach);
         let others = others.map(|place| (distance(place.geom()), place.data as usize));
-        let mut others: Vec<(f64, usize)> = others.filter(|&(_, other)| other != own).collect();
+        let mut others: Vec<(f64, usize)> = others.filter(|&(_, other)| other != excluded).collect();
         others.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         others.truncate(count);
         others.into_iter().map(|(_, other)| other).collect()

@@ -141,8 +141,8 @@ impl Recording {
     }
 }
 
-fn fits(found: f64, wanted: f64, tolerance: f64) -> bool {
-    (found - wanted).abs() <= tolerance * wanted
+fn fits(value: f64, wanted: f64, tolerance: f64) -> bool {
+    (value - wanted).abs() <= tolerance * wanted
 }
 
 /// A recording that cannot be converted to steps of 0.4 s.

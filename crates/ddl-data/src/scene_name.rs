@@ -79,8 +79,11 @@ mod tests {
             assert!(SceneName::new(text).is_err(), "{text:?}");
         }
         assert!(SceneName::new(&"é".repeat(32)).is_ok());
-        let told = SceneName::new("a\u{1b}b").unwrap_err().to_string();
-        assert!(!told.contains('\u{1b}') && told.contains("a\\u{1b}b"), "{told}");
+        let message = SceneName::new("a\u{1b}b").unwrap_err().to_string();
+        assert!(
+            !message.contains('\u{1b}') && message.contains("a\\u{1b}b"),
+            "{message}"
+        );
     }
 
     proptest! {

@@ -21,13 +21,13 @@ impl UnknownName {
     /// If no member has this name.
     pub fn find<T: Copy>(
         word: &str,
-        all: &[T],
+        members: &[T],
         name: fn(T) -> &'static str,
         kind: &'static str,
         expected: &'static str,
     ) -> Result<T, Self> {
-        let found = all.iter().copied().find(|&one| name(one) == word);
-        found.ok_or_else(|| Self {
+        let member = members.iter().copied().find(|&one| name(one) == word);
+        member.ok_or_else(|| Self {
             kind,
             found: word.to_owned(),
             expected,

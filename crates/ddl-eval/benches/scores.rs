@@ -92,11 +92,11 @@ fn adapt(criterion: &mut Criterion) {
         .into_iter()
         .map(|f| f.with_std_dev(spread(), Arc::clone(&table)).expect("a spread"))
         .collect();
-    let (mut regions, mut at) = (AdaptiveRegions::default(), 0);
+    let (mut regions, mut index) = (AdaptiveRegions::default(), 0);
     criterion.bench_function("regions of 25 pedestrians follow a frame", |b| {
         let next = || {
-            at = (at + 1) % FRAMES;
-            (&windows[at], forecasts[at].clone())
+            index = (index + 1) % FRAMES;
+            (&windows[index], forecasts[index].clone())
         };
         let follow = |(window, forecast)| regions.adapt(window, forecast);
         b.iter_batched(next, follow, BatchSize::SmallInput);

@@ -46,8 +46,8 @@ impl CategoryScores {
 
     fn mean(category: Category, members: &[&PedestrianScores]) -> Self {
         let n = members.len() as f64;
-        let mean = |of: fn(&PedestrianScores) -> f64| members.iter().map(|w| of(w)).sum::<f64>() / n;
-        let share = |of: fn(&PedestrianScores) -> bool| members.iter().filter(|w| of(w)).count() as f64 / n;
+        let mean = |metric: fn(&PedestrianScores) -> f64| members.iter().map(|w| metric(w)).sum::<f64>() / n;
+        let share = |holds: fn(&PedestrianScores) -> bool| members.iter().filter(|w| holds(w)).count() as f64 / n;
         Self {
             category,
             pedestrians: members.len(),

@@ -117,11 +117,11 @@ impl ResultRow {
         let mut forecasts = conditions.protocol.forecast(forecaster, full_windows)?;
         for (forecast, (window, full_window)) in forecasts.iter_mut().zip(windows.iter().zip(full_windows)) {
             // Mismatches are reported by the scoring.
-            if let Some(kept) = indices_in_full(window, full_window)
-                && kept.len() < forecast.pedestrians()
+            if let Some(indices) = indices_in_full(window, full_window)
+                && indices.len() < forecast.pedestrians()
                 && forecast.pedestrians() == full_window.len()
             {
-                *forecast = forecast.of_pedestrians(&kept);
+                *forecast = forecast.of_pedestrians(&indices);
             }
         }
         Ok(Self::score_among(conditions, windows, full_windows, &forecasts)?)

@@ -17,9 +17,9 @@ pub(crate) fn of_tracks(tracks: Vec<Vec<Position>>) -> Window {
 }
 
 /// Pedestrians of constant velocity: first position, and metres per frame.
-pub(crate) fn walking(all: &[(Position, Position)], frames: usize) -> Window {
+pub(crate) fn walking(motions: &[(Position, Position)], frames: usize) -> Window {
     let track = |&(start, step): &(Position, Position)| (0..frames).map(|t| at(start, step, t as f64)).collect();
-    of_tracks(all.iter().map(track).collect())
+    of_tracks(motions.iter().map(track).collect())
 }
 
 pub(crate) fn walk(start: Position, step: Position) -> Vec<Position> {

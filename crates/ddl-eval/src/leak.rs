@@ -18,22 +18,22 @@ pub fn find(forecaster: &(impl Forecaster + ?Sized), window: &Window) -> Result<
     let reference = bits(&forecaster.forecast(&window.without_future())?);
     let leaks =
         |changed: &Window| -> Result<bool, ForecastError> { Ok(bits(&forecaster.forecast(changed)?) != reference) };
-    let found = |change: String| Ok(Some(Leak { change }));
+    let leak = |change: String| Ok(Some(Leak { change }));
     if !window.has_future() {
         return Ok(None);
     }
     if leaks(window)? {
-        return found("the future was shown at all".to_owned());
+        return leak("the future was shown at all".to_owned());
     }
     let everything = window.map_positions(|_, frame, p| if frame < OBSERVED { p } else { moved(p) });
     if leaks(&everything)? {
-        return found("every future position was moved".to_owned());
+        return leak("every future position was moved".to_owned());
     }
     for pedestrian in 0..window.len() {
         for frame in OBSERVED..WINDOW {
             let one = window.map_positions(|i, t, p| if (i, t) == (pedestrian, frame) { moved(p) } else { p });
             if leaks(&one)? {
-                return found(format!("pedestrian {pedestrian} was moved at frame {}", frame + 1));
+                return leak(format!("pedestrian {pedestrian} was moved at frame {}", frame + 1));
             }
         }
     }

@@ -131,19 +131,19 @@ impl Scores {
     fn mean(scenes: &[SceneScores], first: &Forecast) -> Self {
         let pedestrians: usize = scenes.iter().map(|s| s.pedestrians.len()).sum();
         let total = pedestrians as f64;
-        let over_scenes = |of: fn(&SceneScores) -> f64| scenes.iter().map(of).sum::<f64>() / total;
-        let mean = |of: fn(&PedestrianScores) -> f64| {
-            let sum = |s: &SceneScores| s.pedestrians.iter().map(of).sum::<f64>();
+        let over_scenes = |metric: fn(&SceneScores) -> f64| scenes.iter().map(metric).sum::<f64>() / total;
+        let mean = |metric: fn(&PedestrianScores) -> f64| {
+            let sum = |s: &SceneScores| s.pedestrians.iter().map(metric).sum::<f64>();
             scenes.iter().map(sum).sum::<f64>() / total
         };
-        let share = |of: fn(&PedestrianScores) -> bool| {
-            let all = scenes.iter().flat_map(|s| &s.pedestrians);
-            all.filter(|pedestrian| of(pedestrian)).count() as f64 / total
+        let share = |holds: fn(&PedestrianScores) -> bool| {
+            let scored = scenes.iter().flat_map(|s| &s.pedestrians);
+            scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
         // All pedestrians have the same number of hypotheses, so either all or none have a distribution.
         let several = first.hypotheses() > 1;
-        let of_several = |of: fn(&PedestrianScores) -> Option<f64>| {
-            let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(of).sum::<f64>();
+        let of_several = |metric: fn(&PedestrianScores) -> Option<f64>| {
+            let sum = |s: &SceneScores| s.pedestrians.iter().filter_map(metric).sum::<f64>();
             several.then(|| scenes.iter().map(sum).sum::<f64>() / total)
         };
         let rollouts: Vec<RolloutStability> = scenes.iter().flat_map(|s| s.rollouts.iter().copied()).collect();
@@ -186,11 +186,11 @@ impl Scores {
 fn of_all<const N: usize>(
     scenes: &[SceneScores],
     total: f64,
-    of: impl Fn(&PedestrianScores) -> Option<[f64; N]>,
+    metric: impl Fn(&PedestrianScores) -> Option<[f64; N]>,
 ) -> Option<[f64; N]> {
     let mut pedestrians = scenes.iter().flat_map(|s| &s.pedestrians);
     let sum = pedestrians.try_fold([0.0; N], |sum, pedestrian| {
-        let more = of(pedestrian)?;
+        let more = metric(pedestrian)?;
         Some(std::array::from_fn(|n| sum[n] + more[n]))
     })?;
     Some(sum.map(|sum| sum / total))

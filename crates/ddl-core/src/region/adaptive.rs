@@ -143,10 +143,10 @@ impl Pending {
     }
 
     /// As [`Forecast::region_score`].
-    fn score(&self, i: usize, t: usize, at: Position) -> Option<f64> {
+    fn score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
         let k = self.forecast.hypotheses();
         let log_weights = &self.log_weights[i * k..][..k];
-        self.forecast.score_among(i, t, at, log_weights)
+        self.forecast.score_among(i, t, position, log_weights)
     }
 }
 
@@ -169,12 +169,12 @@ mod tests {
     fn tracks() -> impl Strategy<Value = Tracks> {
         let step = vec([-0.8..0.8f64, -0.8..0.8f64], PEOPLE);
         vec(step, 40..60).prop_map(|steps| {
-            let mut at = vec![[0.0; 2]; PEOPLE];
+            let mut positions = vec![[0.0; 2]; PEOPLE];
             let moved = steps.into_iter().map(|steps| {
-                for (at, step) in at.iter_mut().zip(steps) {
-                    *at = [at[0] + step[0], at[1] + step[1]];
+                for (position, step) in positions.iter_mut().zip(steps) {
+                    *position = [position[0] + step[0], position[1] + step[1]];
                 }
-                at.clone()
+                positions.clone()
             });
             moved.collect()
         })
@@ -234,8 +234,8 @@ mod tests {
                 *at = other;
             }
             let after = adapted(&mut AdaptiveRegions::default(), &forecasts(&changed, ORDER));
-            let known = from - 7;
-            prop_assert_eq!(&before[..known], &after[..known]);
+            let unchanged = from - 7;
+            prop_assert_eq!(&before[..unchanged], &after[..unchanged]);
         }
 
         #[test]

@@ -179,8 +179,8 @@ mod tests {
             };
             tracked.learn(&[outcomes], share);
             for (level, expected) in [0.5, 0.9].into_iter().zip(expected) {
-                let found = tracked.table().quantile(level, 0).unwrap();
-                assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+                let quantile = tracked.table().quantile(level, 0).unwrap();
+                assert!((quantile - expected).abs() < 1e-12, "{quantile} {expected}");
                 let untouched = tracked.table().quantile(level, 1);
                 assert_eq!(untouched, tracked.start.quantile(level, 1));
             }
@@ -249,8 +249,8 @@ mod tests {
                 let step = at % HORIZON;
                 let table = Arc::clone(tracked.table());
                 tracked.learn(&[Outcomes { step, table, scores: vec![*score; 9] }], 1.0);
-                let of = |level| tracked.table().quantile(level, step).unwrap();
-                let [low, middle, high] = [0.2, 0.5, 0.9].map(of);
+                let quantile = |level| tracked.table().quantile(level, step).unwrap();
+                let [low, middle, high] = [0.2, 0.5, 0.9].map(quantile);
                 prop_assert!(low > 0.0 && low <= middle && middle <= high && high <= 256.1);
                 let again: TrackedQuantiles =
                     serde_json::from_str(&serde_json::to_string(&tracked).unwrap()).unwrap();

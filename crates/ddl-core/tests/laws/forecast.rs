@@ -2,8 +2,8 @@
 
 use ddl_core::{Forecast, ForecastShapeError, HORIZON, Position};
 
-fn constant(at: &[Position]) -> Vec<Position> {
-    at.iter().flat_map(|&p| [p; HORIZON]).collect()
+fn constant(positions: &[Position]) -> Vec<Position> {
+    positions.iter().flat_map(|&p| [p; HORIZON]).collect()
 }
 
 #[test]
@@ -39,19 +39,19 @@ fn layout_is_pedestrian_hypothesis_frame_and_the_heavier_of_two_stays() {
     assert_eq!(forecast.goal(0, 1), Some([0.0, 2.0]));
     assert_eq!((forecast.most_likely(0), forecast.most_likely(1)), (1, 0));
     assert_eq!(forecast.single().certified(1, 0), None);
-    for found in [0, 3, 5] {
-        let refused = forecast.clone().with_certified(vec![true; found]);
+    for length in [0, 3, 5] {
+        let refused = forecast.clone().with_certified(vec![true; length]);
         let complaint = refused.unwrap_err().to_string();
         let expected = "`certified` must hold 4 entries (pedestrian, hypothesis), found";
-        assert_eq!(complaint, format!("{expected} {found}"));
+        assert_eq!(complaint, format!("{expected} {length}"));
     }
     let verdicts = vec![true, false, true, false];
     let single = forecast.with_certified(verdicts).unwrap().single();
     assert_eq!((single.pedestrians(), single.hypotheses()), (2, 1));
     assert_eq!(single.hypothesis(0, 0), &[[0.0, 2.0]; HORIZON]);
     assert_eq!(single.goal(1, 0), Some([0.0, 3.0]));
-    let kept = (single.certified(0, 0), single.certified(1, 0));
-    assert_eq!(kept, (Some(false), Some(true)));
+    let certificates = (single.certified(0, 0), single.certified(1, 0));
+    assert_eq!(certificates, (Some(false), Some(true)));
     assert_eq!(single.single(), single);
     let without = Forecast::with_equal_weights(1, 2, constant(&ends[..2])).unwrap();
     assert!(!without.single().has_goals());

@@ -34,8 +34,8 @@ fn of_four_straight_walks() {
     let ends = [[0.0, 0.0], [4.0, 0.0], [5.0, 0.0], [7.0, 0.0]];
     let forecast = to_ends(&ends, &[0.3, 0.25, 0.25, 0.2]);
     for (k, by_hand) in [3.65, 2.05, 2.15, 3.35].into_iter().enumerate() {
-        let found = expected_ade(&forecast, 0, k);
-        assert!((found - by_hand * 6.5 / 12.0).abs() < 1e-12, "{k}: {found}");
+        let error = expected_ade(&forecast, 0, k);
+        assert!((error - by_hand * 6.5 / 12.0).abs() < 1e-12, "{k}: {error}");
     }
     assert_eq!(forecast.most_likely(0), 0);
     assert_eq!(forecast.representative(0), 1);
@@ -85,9 +85,9 @@ proptest! {
     #[test]
     fn nothing_is_better_under_its_own_weights(forecast in forecasts()) {
         let representative = forecast.representative(0);
-        let found = expected_ade(&forecast, 0, representative);
+        let error = expected_ade(&forecast, 0, representative);
         for k in 0..forecast.hypotheses() {
-            prop_assert!(found <= expected_ade(&forecast, 0, k) + 1e-8, "{representative}, {k}");
+            prop_assert!(error <= expected_ade(&forecast, 0, k) + 1e-8, "{representative}, {k}");
         }
     }
 }

@@ -73,9 +73,9 @@ fn remembered_tracks_stay_with_their_pedestrian() {
         .with_remembered(|i| (0..i).map(|_| remembered(i)).collect());
     assert_eq!(remembering.remembered(2), [remembered(2); 2]);
     assert_eq!(remembering.without_future().remembered(2), [remembered(2); 2]);
-    let kept = remembering.filter_pedestrians(|i| i != 1).unwrap();
-    assert_eq!(kept.remembered(0), []);
-    assert_eq!(kept.remembered(1), [remembered(2); 2]);
+    let two = remembering.filter_pedestrians(|i| i != 1).unwrap();
+    assert_eq!(two.remembered(0), []);
+    assert_eq!(two.remembered(1), [remembered(2); 2]);
     // Reversal drops it, because it would lie in the future.
     assert_eq!(remembering.reversed(), window.reversed());
     assert_eq!(remembering.with_remembered(|_| Vec::new()), window);

@@ -41,13 +41,13 @@ pub(super) fn social_gan(text: &str, line: usize, origin: &str) -> Result<TrackR
 
 pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
     let [frame, pedestrian, x, z, y, v_x, v_z, v_y] = fields(text, line, origin, OBSMAT)?;
-    let at = |field: usize| FilePlace::field(line, field);
+    let place = |field: usize| FilePlace::field(line, field);
     let row = TrackRow::of(line, origin, [(1, frame), (2, pedestrian), (3, x), (5, y)])?;
     // Pedestrians are floats in this format, never words.
-    let number = at(2).read(origin, field::integer(pedestrian, "pedestrian"))?;
+    let number = place(2).read(origin, field::integer(pedestrian, "pedestrian"))?;
     // Height and velocities are not used. Checking that they are numbers confirms the order of the columns.
     for (field, name, text) in [(4, "z", z), (6, "v_x", v_x), (7, "v_z", v_z), (8, "v_y", v_y)] {
-        at(field).read(origin, field::number(text, name))?;
+        place(field).read(origin, field::number(text, name))?;
     }
     Ok(TrackRow {
         pedestrian: PedestrianField::Number(number, None),

@@ -55,11 +55,11 @@ mod tests {
             let mut numbering = Numbering::remembering(5);
             let mut last = FRAME_LIMIT - 1;
             for word in &words {
-                let known = numbering.numbers.get(word.as_str()).copied();
+                let number_before = numbering.numbers.get(word.as_str()).copied();
                 let (PedestrianId(number), kept) = numbering.number(word);
                 prop_assert_eq!(&*kept, word.as_str());
-                last += i64::from(known.is_none());
-                prop_assert_eq!(number, known.unwrap_or(last));
+                last += i64::from(number_before.is_none());
+                prop_assert_eq!(number, number_before.unwrap_or(last));
                 prop_assert!(numbering.words.len() <= 5 && numbering.numbers.len() <= 5);
             }
         }

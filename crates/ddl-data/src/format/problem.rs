@@ -120,8 +120,7 @@ pub(super) enum FormatProblem {
 }
 
 fn of(scene: Option<&SceneName>) -> String {
-    let of = |scene| format!(" of scene {scene}");
-    scene.map(of).unwrap_or_default()
+    scene.map(|scene| format!(" of scene {scene}")).unwrap_or_default()
 }
 
 /// Names a frame for the message about too many pedestrians.

@@ -34,14 +34,14 @@ impl TrackRow {
         origin: &str,
         [(f, frame), (p, pedestrian), (i, x), (j, y)]: [(usize, &str); 4],
     ) -> Result<Self, FormatError> {
-        let at = |field: usize| FilePlace::field(line, field);
+        let place = |field: usize| FilePlace::field(line, field);
         Ok(Self {
             scene: None,
-            frame: at(f).read(origin, field::integer(frame, "frame"))?,
-            pedestrian: at(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
+            frame: place(f).read(origin, field::integer(frame, "frame"))?,
+            pedestrian: place(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
             position: [
-                at(i).read(origin, field::coordinate(x, "x"))?,
-                at(j).read(origin, field::coordinate(y, "y"))?,
+                place(i).read(origin, field::coordinate(x, "x"))?,
+                place(j).read(origin, field::coordinate(y, "y"))?,
             ],
             place: FilePlace::line(line),
         })

@@ -294,8 +294,8 @@ impl<R: BufRead> FrameReader<R> {
         let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
         let (line, limit) = (self.lines, LARGEST_CROWD);
         let scene = self.scenes.entry(name.clone()).or_insert_with(Scene::unseen);
-        let known = scene.current.as_ref();
-        if let Some(&first_line) = known.and_then(|known| known.lines.get(&pedestrian)) {
+        let growing = scene.current.as_ref();
+        if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
             let word = word.map(|word| PedestrianName::Word(word.to_string()));
             let problem = FormatProblem::Duplicate {
                 pedestrian: Box::new(word.unwrap_or(pedestrian.into())),

@@ -101,11 +101,11 @@ impl TrackColumns {
             }
         }
         if let Some(&(first, _)) = unknown.first() {
-            let each = unknown
+            let messages = unknown
                 .iter()
                 .take(UNKNOWN_NAMED)
                 .map(|(_, words)| format!("unknown column {words}"));
-            return Err(wrong(Some(first), each.collect::<Vec<_>>().join("; ")));
+            return Err(wrong(Some(first), messages.collect::<Vec<_>>().join("; ")));
         }
         let mut columns = [0; 4];
         for ((column, place), name) in columns.iter_mut().zip(places).zip(COLUMNS) {
@@ -135,7 +135,7 @@ impl TrackColumns {
 }
 
 fn advice(name: &str, header: &StringRecord) -> String {
-    let known = |column: &str| header.iter().any(|name| name.eq_ignore_ascii_case(column));
+    let is_named = |column: &str| header.iter().any(|name| name.eq_ignore_ascii_case(column));
     let letters = name.chars().filter(char::is_ascii_alphanumeric);
     let plain = letters.collect::<String>().to_ascii_lowercase();
     let meant = match plain.as_str() {
@@ -145,7 +145,7 @@ fn advice(name: &str, header: &StringRecord) -> String {
         "observeduntil" => {
             return "this is a table of forecasts; give the tracks that they were made from".to_owned();
         }
-        "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if !known(SCENE) => {
+        "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if !is_named(SCENE) => {
             return "for `ddl forecast -` rename it scene, for anything else leave it out".to_owned();
         }
         "frameid" | "framenumber" | "frameno" | "framenr" | "frameindex" => Some("frame"),
@@ -153,7 +153,7 @@ fn advice(name: &str, header: &StringRecord) -> String {
         "posy" | "ypos" | "positiony" | "ym" | "py" | "centery" | "worldy" => Some("y"),
         _ => None,
     };
-    let missing: Vec<&str> = COLUMNS.into_iter().filter(|column| !known(column)).collect();
+    let missing: Vec<&str> = COLUMNS.into_iter().filter(|column| !is_named(column)).collect();
     if let Some(meant) = meant.filter(|meant| missing.contains(meant)) {
         return format!("rename it to {meant}");
     }

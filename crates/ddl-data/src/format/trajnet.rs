@@ -65,11 +65,11 @@ pub(super) struct Rate {
 impl Rate {
     #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
-        let Some(told) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
+        let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
             return Ok(());
         };
-        let rate = told.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
-        let found = || field::quoted(&told.to_string());
+        let rate = fps.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
+        let found = || field::quoted(&fps.to_string());
         let rate = rate.ok_or_else(|| FormatProblem::Rate { found: found() })?;
         match self.frames_a_second {
             None => (self.line, self.frames_a_second) = (line, Some(rate)),

@@ -30,10 +30,10 @@ struct TrackFields {
 /// # Errors
 /// [`DataError::Own`] where pedestrians are words: only [`Format::Table`] and [`Format::TrajNet`] can name them.
 pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>, DataError> {
-    let all = recording.observations();
+    let observations = recording.observations();
     let name = |seen: &Observation| recording.names().of(seen.pedestrian);
     if !matches!(format, Format::Table | Format::TrajNet) {
-        let word = all
+        let word = observations
             .iter()
             .map(name)
             .find(|name| matches!(name, PedestrianName::Word(_)));
@@ -48,24 +48,24 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
     }
     let mut text = String::new();
     match format {
-        Format::StarCsv => text += &star_csv(all),
-        Format::SocialGan => lines(&mut text, all, |seen| {
+        Format::StarCsv => text += &star_csv(observations),
+        Format::SocialGan => lines(&mut text, observations, |seen| {
             let [x, y] = seen.position;
             format!("{}\t{}\t{x:?}\t{y:?}", seen.frame, seen.pedestrian)
         }),
-        Format::Obsmat => lines(&mut text, all, |seen| {
+        Format::Obsmat => lines(&mut text, observations, |seen| {
             let [x, y] = seen.position;
             format!("{} {} {x:?} 0 {y:?} 0 0 0", seen.frame, seen.pedestrian)
         }),
         Format::Table => {
             text += "frame,pedestrian,x,y\n";
-            lines(&mut text, all, |seen| {
+            lines(&mut text, observations, |seen| {
                 let [x, y] = seen.position;
                 format!("{},{},{x:?},{y:?}", seen.frame, csv_field(&name(seen)))
             });
         }
         Format::TrajNet => {
-            for seen in all {
+            for seen in observations {
                 let [x, y] = seen.position;
                 let track = TrackFields {
                     f: seen.frame,
@@ -84,17 +84,17 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
     Ok(text.into_bytes())
 }
 
-fn lines(text: &mut String, all: &[Observation], line: impl Fn(&Observation) -> String) {
-    for seen in all {
+fn lines(text: &mut String, observations: &[Observation], line: impl Fn(&Observation) -> String) {
+    for seen in observations {
         // Writing to a string cannot fail.
         let _ = writeln!(text, "{}", line(seen));
     }
 }
 
 /// Four lines: frames, pedestrians, y and x.
-fn star_csv(all: &[Observation]) -> String {
+fn star_csv(observations: &[Observation]) -> String {
     let line = |field: fn(&Observation) -> String| {
-        let fields: Vec<String> = all.iter().map(field).collect();
+        let fields: Vec<String> = observations.iter().map(field).collect();
         fields.join(",") + "\n"
     };
     line(|seen| seen.frame.to_string())

@@ -127,8 +127,8 @@ mod tests {
                 position: [n[from], n[from + 1]],
                 velocity: [n[from + 2], n[from + 3]],
             };
-            let found = stranger(moving(0), moving(4), n[8]);
-            assert!(norm(sub(found, [n[9], n[10]])) < 1e-8, "{case}: {found:?}");
+            let force = stranger(moving(0), moving(4), n[8]);
+            assert!(norm(sub(force, [n[9], n[10]])) < 1e-8, "{case}: {force:?}");
         }
     }
 }

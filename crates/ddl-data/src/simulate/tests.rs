@@ -28,14 +28,14 @@ fn speeds(crowd: &Crowd) -> Vec<f64> {
     tracks(crowd).iter().flat_map(steps).collect()
 }
 
-fn share(count: usize, of: usize) -> f64 {
-    count as f64 / of as f64
+fn share(count: usize, total: usize) -> f64 {
+    count as f64 / total as f64
 }
 
 fn scenes(crowd: &Crowd) -> impl Iterator<Item = Vec<(PedestrianId, Position)>> + '_ {
     let recording = &crowd.recording;
-    let at = |&frame| recording.at(frame).iter().map(|o| (o.pedestrian, o.position)).collect();
-    recording.frames().iter().map(at)
+    let positions = |&frame| recording.at(frame).iter().map(|o| (o.pedestrian, o.position)).collect();
+    recording.frames().iter().map(positions)
 }
 
 #[test]

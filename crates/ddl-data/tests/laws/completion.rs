@@ -65,16 +65,16 @@ fn by_search(
     if seen < least_seen {
         return None;
     }
-    let (found, last) = (places.len(), places[0]);
-    let first = places[found - 1];
-    for back in 1..=OBSERVED - found {
-        let share = back as f64 / (found - 1) as f64;
+    let (reached, last) = (places.len(), places[0]);
+    let first = places[reached - 1];
+    for back in 1..=OBSERVED - reached {
+        let share = back as f64 / (reached - 1) as f64;
         places.push([0, 1].map(|axis| first[axis] - share * (last[axis] - first[axis])));
     }
     places.reverse();
     let counts = CompletionCounts {
-        padded: OBSERVED - found,
-        filled: found - seen,
+        padded: OBSERVED - reached,
+        filled: reached - seen,
     };
     Some((places.try_into().unwrap(), counts))
 }
@@ -108,11 +108,11 @@ proptest! {
                 })
                 .collect();
             let window = windows.next_if(|window| window.frames()[OBSERVED - 1] == frame);
-            let found: Vec<_> = window.map_or(Vec::new(), |window| {
+            let actual: Vec<_> = window.map_or(Vec::new(), |window| {
                 let ids = window.pedestrians().iter().enumerate();
                 ids.map(|(i, &id)| (id, bits(window.observed(i)), window.completion_counts(i))).collect()
             });
-            prop_assert_eq!(found, expected, "frame {}", frame);
+            prop_assert_eq!(actual, expected, "frame {}", frame);
         }
         prop_assert!(windows.next().is_none());
     }

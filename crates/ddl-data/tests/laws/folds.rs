@@ -14,34 +14,34 @@ fn key(window: &Window) -> (String, i64) {
 fn check_splits(dataset: &Dataset) {
     for fold in dataset.folds() {
         for rule in [WindowRule::Complete, WindowRule::SocialGan { min_pedestrians: 1 }] {
-            let all: BTreeSet<_> = fold.training_windows(rule).iter().map(key).collect();
+            let whole: BTreeSet<_> = fold.training_windows(rule).iter().map(key).collect();
             for fraction in [0.2, 0.5] {
                 let split = fold.training_split(rule, fraction);
                 assert!(!split.training.is_empty() && !split.validation.is_empty());
                 for recording in fold.training_recordings() {
-                    let of = |w: &&Window| w.recording() == recording.name();
-                    let frames = split.training.iter().filter(of).flat_map(Window::frames);
+                    let is_of_recording = |w: &&Window| w.recording() == recording.name();
+                    let frames = split.training.iter().filter(is_of_recording).flat_map(Window::frames);
                     let last = frames.max();
-                    let frames = split.validation.iter().filter(of).flat_map(Window::frames);
+                    let frames = split.validation.iter().filter(is_of_recording).flat_map(Window::frames);
                     let first = frames.min();
                     if let (Some(last), Some(first)) = (last, first) {
                         assert!(last < first, "{}: {last} and {first}", recording.name());
                     }
                 }
                 let parts = split.training.iter().chain(&split.validation);
-                assert!(parts.clone().all(|w| all.contains(&key(w))));
+                assert!(parts.clone().all(|w| whole.contains(&key(w))));
                 let count = split.training.len() + split.validation.len();
                 assert_eq!(parts.map(key).collect::<BTreeSet<_>>().len(), count);
             }
-            let all = fold.training_windows(rule);
+            let whole = fold.training_windows(rule);
             for nothing in [0.0, -1.0, f64::NAN] {
                 let split = fold.training_split(rule, nothing);
                 assert!(split.validation.is_empty());
-                assert_eq!(split.training, all);
+                assert_eq!(split.training, whole);
             }
             let split = fold.training_split(rule, 7.0);
             assert!(split.training.is_empty());
-            assert_eq!(split.validation, all);
+            assert_eq!(split.validation, whole);
         }
     }
 }
@@ -107,7 +107,7 @@ fn the_social_gan_split_is_that_of_the_published_files() {
             // As its authors do: from two recordings, cut where the published files are cut.
             for recording in fold.training_recordings() {
                 let mut parts = PUBLISHED_PARTS.iter();
-                let (.., cut) = parts.find(|of| of.0 == recording.name()).unwrap();
+                let (.., cut) = parts.find(|part| part.0 == recording.name()).unwrap();
                 let rows = recording.observations().iter().copied();
                 let (before, after): (Vec<_>, Vec<_>) = rows.partition(|o| o.frame < *cut);
                 for (rows, windows) in [(before, &mut training), (after, &mut validation)] {
@@ -151,17 +151,17 @@ fn a_memory_of_the_place_holds_only_other_training_recordings() {
         };
         for fold in dataset.folds() {
             let training = names(fold.training_recordings());
-            let (mut all, mut of_test) = (0, BTreeSet::new());
+            let (mut count, mut of_test) = (0, BTreeSet::new());
             for recording in dataset.recordings() {
                 let name = recording.name();
                 let others = names(&fold.training_recordings_of_place(name));
                 assert!(others.is_subset(&training) && !others.contains(name), "{name}");
-                all += others.len();
+                count += others.len();
                 if !training.contains(name) {
                     of_test.extend(others);
                 }
             }
-            assert!(all > 0);
+            assert!(count > 0);
             let expected: &[&str] = match fold.name() {
                 "univ" => &["uni_examples"],
                 "zara1" => &["zara02", "zara03"],

@@ -21,8 +21,8 @@ type Seen = Vec<(i64, Vec<(PedestrianId, Position)>)>;
 
 fn of_whole(recording: &Recording) -> Seen {
     let pedestrians = |frame: &i64| {
-        let at = recording.at(*frame).iter();
-        (*frame, at.map(|seen| (seen.pedestrian, seen.position)).collect())
+        let rows = recording.at(*frame).iter();
+        (*frame, rows.map(|seen| (seen.pedestrian, seen.position)).collect())
     };
     recording.frames().iter().map(pedestrians).collect()
 }
@@ -247,8 +247,8 @@ fn what_is_wrong_with_scenes_is_named() {
     }
     let file = b"frame,pedestrian,x,y,scene\n0,1,2,3,a\n";
     let refused = parse_recording(file, "t.csv", Format::Table).unwrap_err();
-    let told = "t.csv, line 2: a file holds one recording, but this one names scenes";
-    assert!(refused.to_string().starts_with(told), "{refused}");
+    let message = "t.csv, line 2: a file holds one recording, but this one names scenes";
+    assert!(refused.to_string().starts_with(message), "{refused}");
 }
 
 #[test]

@@ -28,9 +28,9 @@ fn errors_change_nothing() {
             assert_eq!(tracks, before);
         }
     }
-    for found in [0, -1, (1 << 31) + 1] {
-        let error = LiveTracks::with_frame_step(found);
-        assert_eq!(error, Err(LiveError::FrameStep { found }));
+    for step in [0, -1, (1 << 31) + 1] {
+        let error = LiveTracks::with_frame_step(step);
+        assert_eq!(error, Err(LiveError::FrameStep { found: step }));
     }
 }
 
@@ -46,8 +46,8 @@ fn pedestrians_that_left_are_forgotten() {
             let present = (0..10).map(|k| (frame - k) / 10 * 10 + k);
             let pedestrians = present.map(|id| (PedestrianId(id), [frame as f64, id as f64]));
             windows += usize::from(tracks.push(frame, pedestrians).unwrap().is_some());
-            let known = tracks.len();
-            assert!((10..=most).contains(&known), "frame {frame}: {known}");
+            let count = tracks.len();
+            assert!((10..=most).contains(&count), "frame {frame}: {count}");
         }
         assert!(windows > 39_000, "{windows}");
         assert_eq!(tracks.push(40_000, []), Ok(None));

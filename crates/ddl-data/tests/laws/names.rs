@@ -21,8 +21,8 @@ fn pedestrians_may_be_words() {
         let text = head.to_owned() + &rows.collect::<String>();
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         let window = &recording.observed_windows()[0];
-        let found: Vec<String> = (0..4).map(|i| window.name(i).to_string()).collect();
-        assert_eq!(found, names, "{format}");
+        let read_names: Vec<String> = (0..4).map(|i| window.name(i).to_string()).collect();
+        assert_eq!(read_names, names, "{format}");
         assert!((0..4).all(|i| window.named(&window.name(i)) == Some(i)));
         let completed = &recording.completed_windows(Completion::DEFAULT)[1];
         assert_eq!(completed.name(3), PedestrianName::Word("1e3".to_owned()));
@@ -30,19 +30,19 @@ fn pedestrians_may_be_words() {
         let twice = text.clone() + text.lines().last().unwrap();
         let read = parse_recording(twice.as_bytes(), "f", format);
         if format != Format::TrajNet {
-            let told = read.unwrap_err().to_string();
-            assert!(told.contains("pedestrian 1e3 is in frame 7 already"), "{told}");
+            let message = read.unwrap_err().to_string();
+            assert!(message.contains("pedestrian 1e3 is in frame 7 already"), "{message}");
         }
         // The stream reader returns the same names.
         let mut frames = FrameReader::new(text.as_bytes(), "tracker");
         let mut read = 0;
         while let Some(frame) = frames.next_frame().unwrap() {
-            let found: Vec<String> = frame
+            let frame_names: Vec<String> = frame
                 .pedestrians
                 .iter()
                 .map(|(id, _)| frame.names.of(*id).to_string())
                 .collect();
-            assert_eq!(found, names, "{format}");
+            assert_eq!(frame_names, names, "{format}");
             read += 1;
         }
         assert_eq!(read, 8);

@@ -167,15 +167,15 @@ fn scenes_of_trajnet_state_the_frame_rate() {
 #[test]
 fn scenes_that_disagree_about_the_rate_are_named() {
     let scenes = "{\"scene\": {\"id\": 0, \"fps\": 2.5}}\n\n{\"scene\": {\"id\": 1, \"fps\": 25}}\n";
-    let told = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
+    let message = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
     assert!(
-        told.starts_with("f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"),
-        "{told}"
+        message.starts_with("f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"),
+        "{message}"
     );
     for fps in ["0", "-2.5", "\"fast\"", "[2.5]"] {
         let scenes = format!("{{\"scene\": {{\"id\": 0, \"fps\": {fps}}}}}\n");
-        let told = complaint(trajnet_at_2_fps(&scenes), Format::TrajNet);
+        let message = complaint(trajnet_at_2_fps(&scenes), Format::TrajNet);
         let expected = format!("f, line 1: scene.fps must be a number above 0, the frames in a second, found {fps}");
-        assert_eq!(told, expected);
+        assert_eq!(message, expected);
     }
 }

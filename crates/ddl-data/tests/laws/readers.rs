@@ -144,9 +144,9 @@ fn every_mistake_of_a_trajnet_file_is_named_with_its_place() {
 "#;
     check(Format::TrajNet, cases);
     let row = |y| format!(r#"{{"track": {{"f": 0, "p": 1, "x": 2, "y": {y}}}}}"#);
-    let found = complaint(format!("{}\n{}\n", row("3"), row("3.5")), Format::TrajNet);
+    let message = complaint(format!("{}\n{}\n", row("3"), row("3.5")), Format::TrajNet);
     let expected = "f, line 2: pedestrian 1 is in frame 0 at [2.0, 3.5], but on line 1 at [2.0, 3.0]";
-    assert!(found.starts_with(expected), "{found}");
+    assert!(message.starts_with(expected), "{message}");
 }
 
 #[test]
@@ -185,12 +185,12 @@ fn the_most_common_difference_is_the_step() {
 #[test]
 fn binary_files_are_refused() {
     for format in Format::ALL {
-        let told = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
-        assert!(told.starts_with("f, line 2: the text is not UTF-8"), "{told}");
+        let message = complaint(b"0 1 0 0\n1 1 \xff 0\n", format);
+        assert!(message.starts_with("f, line 2: the text is not UTF-8"), "{message}");
     }
     for bytes in [&b"\x1f\x8b\x08\x00"[..], b"PK\x03\x04\x14"] {
-        let told = complaint(bytes, Format::Table);
-        assert!(told.contains("is compressed"), "{told}");
+        let message = complaint(bytes, Format::Table);
+        assert!(message.contains("is compressed"), "{message}");
     }
 }
 

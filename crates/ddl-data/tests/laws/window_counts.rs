@@ -6,8 +6,8 @@ use serde_json::{Map, Value};
 use crate::recordings;
 
 fn reference(part: &str) -> Map<String, Value> {
-    let all: Value = serde_json::from_str(include_str!("reference/window_counts.json")).unwrap();
-    all[part].as_object().unwrap().clone()
+    let counts: Value = serde_json::from_str(include_str!("reference/window_counts.json")).unwrap();
+    counts[part].as_object().unwrap().clone()
 }
 
 fn count(windows: &[Window]) -> [i64; 2] {
@@ -23,13 +23,13 @@ fn each_star_recording_has_the_windows_of_the_reference() {
     let Some(dataset) = recordings::load(Convention::Star) else {
         return;
     };
-    let all = reference("recordings");
-    assert_eq!(all.len(), dataset.recordings().len());
-    for (name, counts) in &all {
+    let counts = reference("recordings");
+    assert_eq!(counts.len(), dataset.recordings().len());
+    for (name, counts) in &counts {
         let recording = dataset.recording(name).unwrap();
         let frames = recording.frames();
-        let found = [frames.len() as i64, frames[0]];
-        assert_eq!(found, expected(counts, ["frames", "first_frame"]), "{name}");
+        let actual = [frames.len() as i64, frames[0]];
+        assert_eq!(actual, expected(counts, ["frames", "first_frame"]), "{name}");
         for (rule, names) in [
             (
                 WindowRule::Published,
@@ -40,8 +40,8 @@ fn each_star_recording_has_the_windows_of_the_reference() {
                 ["complete_windows", "complete_pedestrian_windows"],
             ),
         ] {
-            let found = count(&recording.windows(rule));
-            assert_eq!(found, expected(counts, names), "{name}, {rule}");
+            let actual = count(&recording.windows(rule));
+            assert_eq!(actual, expected(counts, names), "{name}, {rule}");
         }
     }
 }
@@ -51,9 +51,9 @@ fn each_star_fold_has_the_windows_of_the_reference() {
     let Some(dataset) = recordings::load(Convention::Star) else {
         return;
     };
-    let all = reference("folds");
-    assert_eq!(all.len(), dataset.fold_names().len());
-    for (name, counts) in &all {
+    let counts = reference("folds");
+    assert_eq!(counts.len(), dataset.fold_names().len());
+    for (name, counts) in &counts {
         let fold = dataset.fold(name).unwrap();
         for (part, recordings) in [
             ("test_recordings", fold.test_recordings()),
@@ -89,14 +89,14 @@ fn each_social_gan_fold_has_the_windows_of_the_reference() {
     let Some(dataset) = recordings::load(Convention::SocialGan) else {
         return;
     };
-    let all = reference("social_gan_test_windows_and_pedestrians");
+    let counts = reference("social_gan_test_windows_and_pedestrians");
     for (part, min_pedestrians) in [("min_1_pedestrian", 1), ("min_2_pedestrians", 2)] {
         let rule = WindowRule::SocialGan { min_pedestrians };
         let folds = dataset.folds().into_iter();
-        let found: Map<String, Value> = folds
+        let actual: Map<String, Value> = folds
             .map(|fold| (fold.name().to_owned(), count(&fold.test_windows(rule)).to_vec().into()))
             .collect();
-        assert_eq!(Value::from(found), all[part], "{part}");
+        assert_eq!(Value::from(actual), counts[part], "{part}");
     }
 }
 
@@ -111,7 +111,7 @@ fn coordinates_are_read_the_right_way_round() {
             return;
         };
         let eth = dataset.recording("eth").unwrap().observations()[0];
-        let found = (eth.frame, eth.pedestrian.0, eth.position);
-        assert_eq!(found, (780, 1, position), "{convention}");
+        let actual = (eth.frame, eth.pedestrian.0, eth.position);
+        assert_eq!(actual, (780, 1, position), "{convention}");
     }
 }

@@ -77,11 +77,11 @@ proptest! {
         let complete = recording.windows(WindowRule::Complete);
         for window in recording.windows(WindowRule::Published) {
             let whole = complete.iter().find(|w| w.start_frame() == window.start_frame()).unwrap();
-            let kept: Vec<_> = (0..whole.len())
+            let pedestrians: Vec<_> = (0..whole.len())
                 .filter(|&i| !whole.track(i).contains(&[0.0, 0.0]))
                 .map(|i| whole.pedestrians()[i])
                 .collect();
-            prop_assert_eq!(window.pedestrians(), &kept[..]);
+            prop_assert_eq!(window.pedestrians(), &pedestrians[..]);
             prop_assert!(recording.frames().contains(&(window.start_frame() + 20 * 6)));
         }
     }

@@ -99,9 +99,9 @@ mod tests {
                 track.push([track[t][0] + step[0], track[t][1] + step[1]]);
             }
             let window = of_tracks(vec![track]);
-            let found = forecaster.forecast(&window).unwrap().hypothesis(0, 0)[11];
-            assert_relative_eq!(found[0], expected[0], epsilon = 1e-9);
-            assert_relative_eq!(found[1], expected[1], epsilon = 1e-9);
+            let end = forecaster.forecast(&window).unwrap().hypothesis(0, 0)[11];
+            assert_relative_eq!(end[0], expected[0], epsilon = 1e-9);
+            assert_relative_eq!(end[1], expected[1], epsilon = 1e-9);
         }
     }
 }

@@ -121,10 +121,10 @@ mod tests {
 
     #[test]
     fn the_last_step_goes_on_or_the_mean_one() {
-        let at = |rule: ConstantVelocity, t| rule.forecast(&turning()).unwrap().hypothesis(0, 0)[t];
-        assert_eq!(at(ConstantVelocity::last_step(), 0), [6.0, 4.0]);
-        assert_eq!(at(ConstantVelocity::last_step(), 11), [6.0, 26.0]);
-        let mean = at(ConstantVelocity::mean_observed(), 6);
+        let position = |rule: ConstantVelocity, t| rule.forecast(&turning()).unwrap().hypothesis(0, 0)[t];
+        assert_eq!(position(ConstantVelocity::last_step(), 0), [6.0, 4.0]);
+        assert_eq!(position(ConstantVelocity::last_step(), 11), [6.0, 26.0]);
+        let mean = position(ConstantVelocity::mean_observed(), 6);
         assert_relative_eq!(mean[0], 12.0, epsilon = 1e-12);
         assert_relative_eq!(mean[1], 4.0, epsilon = 1e-12);
     }

@@ -174,8 +174,8 @@ mod tests {
     use crate::fixture::walking;
     use ddl_core::distance;
 
-    fn pedestrians(all: &[(Position, Position)]) -> Window {
-        walking(all, 8)
+    fn pedestrians(motions: &[(Position, Position)]) -> Window {
+        walking(motions, 8)
     }
 
     /// The repulsion is the gradient of the potential, here by differences of 1e-6 m.

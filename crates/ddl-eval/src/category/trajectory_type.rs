@@ -82,24 +82,24 @@ mod tests {
 
     /// 0.5 m per frame along x, and `aside` per frame along y after the eighth.
     fn turning(aside: f64) -> Vec<Position> {
-        let at = |t: i32| [0.5 * f64::from(t), aside * f64::from((t - 7).max(0))];
-        (0..20).map(at).collect()
+        let position = |t: i32| [0.5 * f64::from(t), aside * f64::from((t - 7).max(0))];
+        (0..20).map(position).collect()
     }
 
     #[test]
     fn each_type_by_hand() {
-        let of = |tracks| TrajectoryType::with_interactions(&of_tracks(tracks), 0).unwrap().0;
+        let kind = |tracks| TrajectoryType::with_interactions(&of_tracks(tracks), 0).unwrap().0;
         // 19 steps of 5 cm are 0.95 m, of 6 cm 1.14 m.
         let slow = |step: f64| (0..20).map(|t| [step * f64::from(t), 0.0]).collect();
-        assert_eq!(of(vec![slow(0.05)]), Static);
-        assert_eq!(of(vec![slow(0.06)]), Linear);
+        assert_eq!(kind(vec![slow(0.05)]), Static);
+        assert_eq!(kind(vec![slow(0.06)]), Linear);
         // 12 steps aside of 4 cm are 0.48 m, of 5 cm 0.6 m.
-        assert_eq!(of(vec![turning(0.04)]), Linear);
-        assert_eq!(of(vec![turning(0.05)]), NonInteracting);
+        assert_eq!(kind(vec![turning(0.04)]), Linear);
+        assert_eq!(kind(vec![turning(0.05)]), NonInteracting);
         // A trajectory that returns to its start is static, however long it is.
         let back = (0..20)
             .map(|t: i32| [0.5 * f64::from(10 - (t - 10).abs()), 0.0])
             .collect();
-        assert_eq!(of(vec![back]), Static);
+        assert_eq!(kind(vec![back]), Static);
     }
 }

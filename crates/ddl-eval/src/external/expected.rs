@@ -124,11 +124,11 @@ impl<'a> ExpectedForecasts<'a> {
         self.check(&forecast, line)?;
         let recording = self.recording(who.recording.as_deref())?;
         let window = recording.and_then(|r| self.window(r, who.observed_until));
-        let found = window.and_then(|window| {
+        let place = window.and_then(|window| {
             let pedestrian = self.windows[window].named(&who.pedestrian)?;
             Some((window, pedestrian))
         });
-        let Some((window, pedestrian)) = found else {
+        let Some((window, pedestrian)) = place else {
             self.remember_unknown(who, recording);
             return Ok(());
         };
@@ -177,7 +177,7 @@ impl<'a> ExpectedForecasts<'a> {
     }
 
     fn remember_unknown(&mut self, who: &PedestrianKey, recording: Option<usize>) {
-        let known = recording.map(|r| self.recordings[r]);
+        let recording_name = recording.map(|r| self.recordings[r]);
         let in_window = |until: i64| {
             let window = recording.and_then(|r| self.window(r, until));
             window.is_some_and(|w| self.windows[w].named(&who.pedestrian).is_some())
@@ -185,7 +185,8 @@ impl<'a> ExpectedForecasts<'a> {
         let step = self.windows.first().map_or(1, Window::frame_step);
         let as_first_frame = in_window(who.observed_until.saturating_add(step * (OBSERVED as i64 - 1)));
         let as_next_frame = in_window(who.observed_until.saturating_sub(step));
-        self.unknown.remember(who, known, as_first_frame, as_next_frame);
+        self.unknown
+            .remember(who, recording_name, as_first_frame, as_next_frame);
     }
 }
 

@@ -32,7 +32,7 @@ impl Unknown {
         }
         if let (None, Some(name)) = (recording, name)
             && self.recordings.len() < NAMED
-            && !self.recordings.iter().any(|known| known == name)
+            && !self.recordings.iter().any(|other| other == name)
         {
             self.recordings.push(name.to_owned());
         }

@@ -77,11 +77,11 @@ fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
 }
 
 fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
-    let (mut found, mut name, mut depth) = (value, "", 0);
+    let (mut wrong_value, mut name, mut depth) = (value, "", 0);
     for segment in path {
         match segment {
-            Segment::Map { key } => (found, name, depth) = (found.get(key)?, key, 0),
-            Segment::Seq { index } => (found, depth) = (found.get(index)?, depth + 1),
+            Segment::Map { key } => (wrong_value, name, depth) = (wrong_value.get(key)?, key, 0),
+            Segment::Seq { index } => (wrong_value, depth) = (wrong_value.get(index)?, depth + 1),
             _ => return None,
         }
     }
@@ -95,14 +95,14 @@ fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
         ("hypotheses", 1) | ("scene" | "track", 0) => "an object",
         ("positions", 1) | ("goal", 0) => "[x, y] in metres",
         _ => {
-            let found = match found {
+            let found = match wrong_value {
                 Value::Null => "null, NaN or infinity".to_owned(),
-                found => quoted(&found.to_string()),
+                wrong_value => quoted(&wrong_value.to_string()),
             };
             return Some(ExternalProblem::NotFinite { found });
         }
     };
-    let found = quoted(&found.to_string());
+    let found = quoted(&wrong_value.to_string());
     Some(ExternalProblem::Kind { expected, found })
 }
 
@@ -110,9 +110,9 @@ fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
 fn without_no_numbers(text: &str) -> Cow<'_, str> {
     let mut replaced = String::new();
     let (mut quoted, mut escaped, mut done) = (false, false, 0);
-    let mut at = 0;
-    while at < text.len() {
-        let byte = text.as_bytes()[at];
+    let mut index = 0;
+    while index < text.len() {
+        let byte = text.as_bytes()[index];
         if quoted {
             quoted = byte != b'"' || escaped;
             escaped = byte == b'\\' && !escaped;
@@ -120,15 +120,15 @@ fn without_no_numbers(text: &str) -> Cow<'_, str> {
             quoted = true;
         } else if let Some(word) = NO_NUMBERS
             .iter()
-            .find(|word| text.as_bytes()[at..].starts_with(word.as_bytes()))
+            .find(|word| text.as_bytes()[index..].starts_with(word.as_bytes()))
         {
-            replaced += &text[done..at];
+            replaced += &text[done..index];
             replaced += "null";
-            at += word.len();
-            done = at;
+            index += word.len();
+            done = index;
             continue;
         }
-        at += 1;
+        index += 1;
     }
     if done == 0 {
         return Cow::Borrowed(text);

@@ -92,14 +92,14 @@ impl Matched {
 
 impl ExpectedForecasts<'_> {
     pub(super) fn matched(self, coverage: Coverage) -> Result<Matched, ExternalError> {
-        let all: usize = self.windows.iter().map(Window::len).sum();
-        let found = self.slots.iter().flatten().flatten().count();
+        let pedestrians: usize = self.windows.iter().map(Window::len).sum();
+        let forecast_count = self.slots.iter().flatten().flatten().count();
         if self.forecasts == 0 {
             return Err(self.wrong(1, ExternalProblem::Empty));
         }
         let refused = match coverage {
             Coverage::Whole => self.unknown.count > 0,
-            Coverage::Intersection => found == 0,
+            Coverage::Intersection => forecast_count == 0,
         };
         if refused {
             let frames = self.windows.iter().map(last_observed);
@@ -113,10 +113,10 @@ impl ExpectedForecasts<'_> {
                 first: self.unknown.first,
             });
         }
-        if coverage == Coverage::Whole && found < all {
+        if coverage == Coverage::Whole && forecast_count < pedestrians {
             return Err(ExternalError::Missing {
-                missing: all - found,
-                pedestrians: all,
+                missing: pedestrians - forecast_count,
+                pedestrians,
                 first: self.first_missing(),
                 origin: self.origin,
             });
@@ -127,14 +127,14 @@ impl ExpectedForecasts<'_> {
             full_windows: Vec::with_capacity(self.windows.len()),
             forecasts: Vec::with_capacity(self.windows.len()),
             file: self.origin.clone(),
-            pedestrians: all,
+            pedestrians,
         };
         for (window, slots) in self.windows.iter().zip(self.slots) {
-            let Some(kept) = window.filter_pedestrians(|i| slots[i].is_some()) else {
+            let Some(reduced) = window.filter_pedestrians(|i| slots[i].is_some()) else {
                 continue;
             };
             let slots: Vec<Slot> = slots.into_iter().flatten().collect();
-            matched.windows.push(kept);
+            matched.windows.push(reduced);
             matched.full_windows.push(window.clone());
             let forecast = forecast(slots).map_err(|source| ExternalError::Shape {
                 origin: self.origin.clone(),
@@ -191,11 +191,11 @@ fn forecast(slots: Vec<Slot>) -> Result<Forecast, ddl_core::ForecastShapeError> 
         let pedestrian = slot.forecast;
         positions.extend(pedestrian.positions);
         match pedestrian.weights {
-            Some(own) => weights.extend(own),
+            Some(given) => weights.extend(given),
             None => weights.extend(std::iter::repeat_n(1.0 / hypotheses as f64, hypotheses)),
         }
-        if let Some(own) = pedestrian.goals {
-            goals.get_or_insert_default().extend(own);
+        if let Some(given) = pedestrian.goals {
+            goals.get_or_insert_default().extend(given);
         }
     }
     Forecast::new(pedestrians, hypotheses, positions, weights, goals)

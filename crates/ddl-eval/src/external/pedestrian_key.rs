@@ -41,11 +41,11 @@ pub(super) fn last_observed(window: &Window) -> i64 {
 pub(super) fn frames_ahead(window: &Window) -> [Vec<i64>; 2] {
     let (last, step) = (last_observed(window), window.frame_step());
     let regular: Vec<i64> = (1..=HORIZON as i64).map(|t| last + t * step).collect();
-    let own = match &window.frames()[OBSERVED..] {
+    let annotated = match &window.frames()[OBSERVED..] {
         [] => regular.clone(),
         frames => frames.to_vec(),
     };
-    [own, regular]
+    [annotated, regular]
 }
 
 pub(super) fn in_short(frames: &[i64]) -> String {
@@ -80,10 +80,10 @@ impl HypothesisNumbering {
             Some(first) => format!("{} as before", range(first, first + last)),
             None => format!("{} or {}", range(0, last), range(1, 1 + last)),
         };
-        let found: Vec<String> = sorted.iter().map(i64::to_string).collect();
+        let numbers: Vec<String> = sorted.iter().map(i64::to_string).collect();
         Err(ExternalProblem::Numbers {
             pedestrian: pedestrian.to_owned(),
-            numbers: format!("{}, expected {expected}", found.join(", ")),
+            numbers: format!("{}, expected {expected}", numbers.join(", ")),
         })
     }
 }

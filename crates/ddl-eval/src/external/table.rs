@@ -148,7 +148,7 @@ impl PedestrianRows {
     fn add(&mut self, row: &TablePosition, line: usize) -> Result<(), Wrong> {
         let hypothesis = row.hypothesis;
         if self.hypotheses.last().is_none_or(|last| last.hypothesis != hypothesis) {
-            if self.hypotheses.iter().any(|known| known.hypothesis == hypothesis) {
+            if self.hypotheses.iter().any(|other| other.hypothesis == hypothesis) {
                 let problem = ExternalProblem::Scattered { hypothesis };
                 return Err(in_field("hypothesis", problem));
             }

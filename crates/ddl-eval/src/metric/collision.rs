@@ -87,8 +87,8 @@ pub(crate) fn collides_with_true_futures(scene: &ScoredWindow<'_>, radius: f64) 
     let (forecast, full_window) = (scene.forecast(), scene.full_window());
     let runs_into_another = |i: usize| {
         let track = forecast.hypothesis(i, forecast.representative(i));
-        let own = scene.index_in_full(i);
-        (0..full_window.len()).any(|j| j != own && closest_approach(track, full_window.future(j)) < 2.0 * radius)
+        let index = scene.index_in_full(i);
+        (0..full_window.len()).any(|j| j != index && closest_approach(track, full_window.future(j)) < 2.0 * radius)
     };
     (0..scene.pedestrians()).map(runs_into_another).collect()
 }
@@ -99,11 +99,11 @@ mod tests {
 
     #[test]
     fn each_is_told_alone_and_touching_is_no_collision() {
-        let at = |x: f64| [[x, 0.0]; 2];
-        let (a, b, c, d) = (at(0.0), at(0.3), at(0.6), at(1.1));
+        let standing = |x: f64| [[x, 0.0]; 2];
+        let (a, b, c, d) = (standing(0.0), standing(0.3), standing(0.6), standing(1.1));
         let hit = collides(&[&a, &b, &c, &d], PEDESTRIAN_RADIUS);
         assert_eq!(hit, [true, true, true, false]);
-        assert_eq!(collides(&[&a, &at(0.4)], PEDESTRIAN_RADIUS), [false; 2]);
+        assert_eq!(collides(&[&a, &standing(0.4)], PEDESTRIAN_RADIUS), [false; 2]);
         assert_eq!(collides(&[&a], PEDESTRIAN_RADIUS), [false]);
     }
 }

@@ -125,10 +125,10 @@ pub(crate) fn joint_fde(errors: &DisplacementErrors) -> f64 {
     least_scene_mean(errors, DisplacementErrors::fde)
 }
 
-fn least_scene_mean(errors: &DisplacementErrors, of: fn(&DisplacementErrors, usize) -> &[f64]) -> f64 {
+fn least_scene_mean(errors: &DisplacementErrors, metric: fn(&DisplacementErrors, usize) -> &[f64]) -> f64 {
     let n = errors.pedestrians();
     (0..errors.hypotheses())
-        .map(|k| (0..n).map(|i| of(errors, i)[k]).sum::<f64>() / n as f64)
+        .map(|k| (0..n).map(|i| metric(errors, i)[k]).sum::<f64>() / n as f64)
         .fold(f64::INFINITY, f64::min)
 }
 

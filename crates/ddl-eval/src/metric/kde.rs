@@ -44,7 +44,7 @@ pub(crate) const MIN_DEVIATION: f64 = 0.01;
 /// # Numerics
 /// The sum of exponentials is taken relative to its largest term. If all weight is on one point, the covariance is 0/0
 /// and is set to 0.
-pub(crate) fn log_density(points: &[Position], weights: &[f64], at: Position) -> f64 {
+pub(crate) fn log_density(points: &[Position], weights: &[f64], position: Position) -> f64 {
     let moments = Moments::of(points, weights);
     let concentration: f64 = weights.iter().map(|w| w * w).sum();
     // 1 - sum of squares, without cancellation when one weight is nearly 1.
@@ -56,11 +56,11 @@ pub(crate) fn log_density(points: &[Position], weights: &[f64], at: Position) ->
         .scaled(factor)
         .principal_axes()
         .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
-    mixture_log_density((points, weights), bandwidth, at)
+    mixture_log_density((points, weights), bandwidth, position)
 }
 
-fn mixture_log_density((points, weights): (&[Position], &[f64]), bandwidth: PrincipalAxes, at: Position) -> f64 {
-    let exponent = |p: &Position| -0.5 * bandwidth.mahalanobis_squared([at[0] - p[0], at[1] - p[1]]);
+fn mixture_log_density((points, weights): (&[Position], &[f64]), bandwidth: PrincipalAxes, position: Position) -> f64 {
+    let exponent = |p: &Position| -0.5 * bandwidth.mahalanobis_squared([position[0] - p[0], position[1] - p[1]]);
     let terms = || points.iter().zip(weights).filter(|(_, w)| **w > 0.0);
     let largest = terms().map(|(p, _)| exponent(p)).fold(f64::NEG_INFINITY, f64::max);
     if largest == f64::NEG_INFINITY {
@@ -80,17 +80,17 @@ pub fn kde_nll(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
     let sum: f64 = truth
         .iter()
         .enumerate()
-        .map(|(t, &at)| {
+        .map(|(t, &truth_position)| {
             let positions = scene.hypotheses_at(i, t);
             let density = match scene.forecast().std_dev(i, t) {
-                None => log_density(&positions, &weights, at),
+                None => log_density(&positions, &weights, truth_position),
                 Some(spread) => {
                     let variances = [spread * spread; 2];
                     let round = PrincipalAxes {
                         variances,
                         axis: [1.0, 0.0],
                     };
-                    mixture_log_density((&positions, &weights), round, at)
+                    mixture_log_density((&positions, &weights), round, truth_position)
                 }
             };
             density.max(MIN_LOG_DENSITY)
@@ -108,8 +108,8 @@ mod tests {
         let (points, weights) = ([[0.0, 0.0], [5.0, 5.0]], [1.0, 0.0]);
         let top = -(std::f64::consts::TAU * 1e-4).ln();
         for (y, expected) in [(0.0, top), (0.02, top - 2.0)] {
-            let found = log_density(&points, &weights, [0.0, y]);
-            assert!((found - expected).abs() < 1e-12, "{found}");
+            let density = log_density(&points, &weights, [0.0, y]);
+            assert!((density - expected).abs() < 1e-12, "{density}");
         }
     }
 }

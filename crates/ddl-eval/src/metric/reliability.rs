@@ -45,18 +45,18 @@ impl Reliability {
     /// # Panics
     /// When an index is out of range.
     pub fn of<'a>(sets: impl IntoIterator<Item = (&'a [f64], usize)>) -> Option<Self> {
-        let mut all: Vec<(f64, bool)> = Vec::new();
+        let mut hypotheses: Vec<(f64, bool)> = Vec::new();
         let (mut count, mut loss, mut uniform) = (0_usize, 0.0, 0.0);
         for (weights, nearest) in sets {
             count += 1;
             loss -= weights[nearest].max(SMALLEST).ln();
             uniform += (weights.len() as f64).ln();
-            all.extend(weights.iter().enumerate().map(|(k, &w)| (w, k == nearest)));
+            hypotheses.extend(weights.iter().enumerate().map(|(k, &w)| (w, k == nearest)));
         }
         if count == 0 {
             return None;
         }
-        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        hypotheses.sort_by(|a, b| a.0.total_cmp(&b.0));
         let bin = |members: &[(f64, bool)]| {
             let size = members.len() as f64;
             ReliabilityBin {
@@ -65,12 +65,12 @@ impl Reliability {
                 count: members.len(),
             }
         };
-        let bins: Vec<_> = all.chunks(all.len().div_ceil(BINS)).map(bin).collect();
+        let bins: Vec<_> = hypotheses.chunks(hypotheses.len().div_ceil(BINS)).map(bin).collect();
         let off = |bin: &ReliabilityBin| (bin.predicted - bin.observed).abs() * bin.count as f64;
         Some(Self {
             log_loss: loss / count as f64,
             uniform_log_loss: uniform / count as f64,
-            expected_error: bins.iter().map(off).sum::<f64>() / all.len() as f64,
+            expected_error: bins.iter().map(off).sum::<f64>() / hypotheses.len() as f64,
             bins,
         })
     }
@@ -84,17 +84,17 @@ mod tests {
 
     #[test]
     fn probabilities_come_true_or_not() {
-        let of = |weights: &[f64; 2], second: usize| {
+        let reliability = |weights: &[f64; 2], second: usize| {
             let sets = (0..400).map(|i| (&weights[..], usize::from(i % second == 0)));
             Reliability::of(sets).unwrap()
         };
-        let sound = of(&[0.75, 0.25], 4);
+        let sound = reliability(&[0.75, 0.25], 4);
         let entropy = -(0.75 * 0.75_f64.ln() + 0.25 * 0.25_f64.ln());
         assert_relative_eq!(sound.log_loss, entropy, epsilon = 1e-12);
         assert_relative_eq!(sound.uniform_log_loss, 2.0_f64.ln(), epsilon = 1e-12);
         assert!(sound.expected_error < 0.01);
         assert_eq!(sound.bins.len(), 10);
-        let overconfident = of(&[1.0, 0.0], 2);
+        let overconfident = reliability(&[1.0, 0.0], 2);
         assert_relative_eq!(overconfident.expected_error, 0.5, epsilon = 1e-12);
         let log_loss = -0.5 * SMALLEST.ln();
         assert_relative_eq!(overconfident.log_loss, log_loss, epsilon = 1e-12);

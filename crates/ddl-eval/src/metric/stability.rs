@@ -85,8 +85,8 @@ impl StabilityScores {
             return None;
         }
         let n = rollouts.len() as f64;
-        let mean = |of: fn(&RolloutStability) -> f64| rollouts.iter().map(of).sum::<f64>() / n;
-        let share = |of: fn(&RolloutStability) -> bool| rollouts.iter().filter(|&r| of(r)).count() as f64 / n;
+        let mean = |metric: fn(&RolloutStability) -> f64| rollouts.iter().map(metric).sum::<f64>() / n;
+        let share = |holds: fn(&RolloutStability) -> bool| rollouts.iter().filter(|&r| holds(r)).count() as f64 / n;
         let all_have_one = rollouts.iter().all(|r| r.certified.is_some());
         Some(Self {
             rollouts: rollouts.len(),

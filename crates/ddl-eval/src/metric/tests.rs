@@ -26,12 +26,12 @@ fn densities_and_distances_in_deviations_agree_with_scipy_and_numpy() {
     let text = include_str!("../../tests/reference/distribution.json");
     let Reference { cases } = serde_json::from_str(text).unwrap();
     assert_eq!(cases.len(), 21);
-    let agree = |found: f64, expected: f64| {
-        assert_relative_eq!(found, expected, epsilon = 1e-10, max_relative = 1e-10);
+    let agree = |actual: f64, expected: f64| {
+        assert_relative_eq!(actual, expected, epsilon = 1e-10, max_relative = 1e-10);
     };
     for case in cases {
-        let found = log_density(&case.points, &case.weights, case.at);
-        agree(found, case.log_density);
+        let actual = log_density(&case.points, &case.weights, case.at);
+        agree(actual, case.log_density);
         let moments = Moments::of(&case.points, &case.weights);
         let axes = moments.covariance.principal_axes();
         let axes = axes.with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);

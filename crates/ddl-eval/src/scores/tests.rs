@@ -9,7 +9,7 @@ fn means_are_over_pedestrians() {
     let windows = [window(&[still], &[still]), window(&far, &[still; 3])];
     let forecasts = [
         forecast(1, &[walk([1.0, 0.0], still)]),
-        forecast(3, &far.map(|at| walk(at, still))),
+        forecast(3, &far.map(|end| walk(end, still))),
     ];
     let scores = Scores::evaluate(&windows, &forecasts).unwrap();
     assert_eq!((scores.pedestrians, scores.windows), (4, 2));

@@ -55,7 +55,8 @@ pub fn block_errors(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<Bl
         .zip(forecasts)
         .map(|(window, forecast)| {
             let errors = DisplacementErrors::of(&ScoredWindow::new(window, forecast)?);
-            let sum = |of: fn(&DisplacementErrors, usize) -> f64| (0..window.len()).map(|i| of(&errors, i)).sum();
+            let sum =
+                |metric: fn(&DisplacementErrors, usize) -> f64| (0..window.len()).map(|i| metric(&errors, i)).sum();
             Ok([sum(DisplacementErrors::min_ade), sum(DisplacementErrors::min_fde)])
         })
         .collect::<Result<_, EvaluationError>>()?;
@@ -102,8 +103,8 @@ mod tests {
 
     use super::*;
 
-    fn standing(recording: &str, start: i64, at: Position) -> Window {
-        let (id, track) = (vec![PedestrianId(1)], vec![vec![at; 20]]);
+    fn standing(recording: &str, start: i64, position: Position) -> Window {
+        let (id, track) = (vec![PedestrianId(1)], vec![vec![position; 20]]);
         Window::new(recording, start, 10, id, track).unwrap()
     }
 

@@ -37,7 +37,7 @@ fn hypothesis(i: usize, k: usize, s: f64) -> Position {
 }
 
 fn scores() -> Scores {
-    let tracks = TRUTH.map(|at| (0..20).map(|t| at(f64::from(t - 7))).collect());
+    let tracks = TRUTH.map(|path| (0..20).map(|t| path(f64::from(t - 7))).collect());
     let ids = (0..3).map(PedestrianId).collect();
     let window = Window::new("made up", 0, 10, ids, tracks.into()).unwrap();
     let pairs = || (0..3).flat_map(|i| (0..2).map(move |k| (i, k)));
@@ -55,9 +55,12 @@ fn scores() -> Scores {
     Scores::evaluate(&[window], &[forecast]).unwrap()
 }
 
-fn check(what: &str, found: impl Into<Option<f64>>, expected: f64) {
-    let found = found.into().unwrap();
-    assert!((found - expected).abs() < 1e-12, "{what}: {found}, by hand {expected}");
+fn check(what: &str, actual: impl Into<Option<f64>>, expected: f64) {
+    let actual = actual.into().unwrap();
+    assert!(
+        (actual - expected).abs() < 1e-12,
+        "{what}: {actual}, by hand {expected}"
+    );
 }
 
 #[test]
@@ -105,7 +108,7 @@ fn misses_and_collisions() {
 fn goals_and_stability() {
     let s = scores();
     check("goal FDE", s.goal_fde, (0.4 + 0.5 + 0.0) / 3.0);
-    let found = s.stability.unwrap();
+    let stability = s.stability.unwrap();
     let degrees = |y: f64, x: f64| (y / x).atan().to_degrees();
     let turns = [
         // The first step is (0.74, 0.32), the goal is at (6.24, 0.32); from then on straight to it.
@@ -118,15 +121,15 @@ fn goals_and_stability() {
         // (0.78, -0.96), the goal at (-6, 0).
         180.0 - degrees(0.96, 0.78),
     ];
-    assert_eq!(found.rollouts, 6);
+    assert_eq!(stability.rollouts, 6);
     // Both of A, and the second of B, which is at its goal after one step.
-    check("Phi falls", found.decreasing, 0.5);
+    check("Phi falls", stability.decreasing, 0.5);
     // Two steps of sqrt(0.56^2 + 0.08^2) = sqrt(0.32); B's first: 3 m and the 0.5 m behind it.
     let to_goal = (2.0 * 0.32_f64.sqrt() + 3.5) / 6.0;
-    check("to goal", found.end_distance, to_goal);
-    check("turn", found.largest_turn, turns.iter().sum::<f64>() / 6.0);
-    check("reversing", found.reversing, 0.5);
-    check("certified", found.certified, 4.0 / 6.0);
+    check("to goal", stability.end_distance, to_goal);
+    check("turn", stability.largest_turn, turns.iter().sum::<f64>() / 6.0);
+    check("reversing", stability.reversing, 0.5);
+    check("certified", stability.certified, 4.0 / 6.0);
 }
 
 #[test]
@@ -162,11 +165,11 @@ fn categories() {
         (Category::Type(TrajectoryType::Static), 1, standing),
         (Category::Type(TrajectoryType::Linear), 2, walking),
     ];
-    let found = scores().categories;
-    assert_eq!(found.len(), by_hand.len());
-    for (c, (category, pedestrians, by_hand)) in found.iter().zip(by_hand) {
+    let categories = scores().categories;
+    assert_eq!(categories.len(), by_hand.len());
+    for (c, (category, pedestrians, by_hand)) in categories.iter().zip(by_hand) {
         assert_eq!((c.category, c.pedestrians), (category, pedestrians));
-        let found = [
+        let categories = [
             c.min_ade,
             c.min_fde,
             c.fde_at_min_ade,
@@ -175,8 +178,8 @@ fn categories() {
             c.most_likely_fde,
             c.collision_rate,
         ];
-        for (found, by_hand) in found.into_iter().zip(by_hand) {
-            check(&category.to_string(), found, by_hand);
+        for (actual, by_hand) in categories.into_iter().zip(by_hand) {
+            check(&category.to_string(), actual, by_hand);
         }
     }
 }

@@ -24,24 +24,24 @@ fn scores(window: &Window, forecast: &Forecast) -> Scores {
 
 /// All numbers except angles: lengths, shares and densities, which do not change under motions of the plane.
 fn invariants(scores: &Scores) -> Vec<f64> {
-    fn numbers(value: Value, found: &mut Vec<f64>) {
+    fn numbers(value: Value, numbers_so_far: &mut Vec<f64>) {
         match value {
-            Value::Number(number) => found.extend(number.as_f64()),
+            Value::Number(number) => numbers_so_far.extend(number.as_f64()),
             Value::Array(all) => {
                 for value in all {
-                    numbers(value, found);
+                    numbers(value, numbers_so_far);
                 }
             }
             Value::Object(fields) => {
                 let lengths = fields.into_iter().filter(|(name, _)| name != "largest_turn");
-                lengths.for_each(|(_, value)| numbers(value, found));
+                lengths.for_each(|(_, value)| numbers(value, numbers_so_far));
             }
             _ => {}
         }
     }
-    let mut found = Vec::new();
-    numbers(serde_json::to_value(scores).unwrap(), &mut found);
-    found
+    let mut numbers_of_scores = Vec::new();
+    numbers(serde_json::to_value(scores).unwrap(), &mut numbers_of_scores);
+    numbers_of_scores
 }
 
 /// Agreement up to rounding, which a narrow distribution magnifies.
@@ -55,9 +55,13 @@ fn rebuilt(forecast: &Forecast, order: &[usize], by: impl Fn(Position) -> Positi
     let (n, k) = (forecast.pedestrians(), order.len());
     let pairs = || (0..n).flat_map(|i| order.iter().map(move |&h| (i, h)));
     let path = |(i, h)| forecast.hypothesis(i, h).iter().map(|p| by(*p));
-    let all = k == forecast.hypotheses();
+    let takes_every = k == forecast.hypotheses();
     let weight = |(i, h)| {
-        if all { forecast.weight(i, h) } else { 1.0 / k as f64 }
+        if takes_every {
+            forecast.weight(i, h)
+        } else {
+            1.0 / k as f64
+        }
     };
     let goals = pairs().map(|(i, h)| forecast.goal(i, h).map(&by)).collect();
     let positions = pairs().flat_map(path).collect();
@@ -103,18 +107,18 @@ proptest! {
 
     #[test]
     fn more_hypotheses_never_hurt((window, forecast) in any_scene()) {
-        let all = scores(&window, &forecast);
+        let whole = scores(&window, &forecast);
         for k in 1..=forecast.hypotheses() {
             let fewer = scores(&window, &rebuilt(&forecast, &in_order(&forecast)[..k], |p| p));
-            prop_assert!(all.min_ade <= fewer.min_ade && all.min_fde <= fewer.min_fde);
-            prop_assert!(all.joint_ade <= fewer.joint_ade && all.joint_fde <= fewer.joint_fde);
-            prop_assert!(all.miss_rate <= fewer.miss_rate);
-            prop_assert!(all.miss_rate_1m <= fewer.miss_rate_1m);
-            prop_assert!(all.miss_rate_2m <= fewer.miss_rate_2m);
-            for (all, fewer) in all.categories.iter().zip(&fewer.categories) {
-                prop_assert_eq!(all.category, fewer.category);
-                prop_assert!(all.min_ade <= fewer.min_ade && all.min_fde <= fewer.min_fde);
-                prop_assert!(all.miss_rate <= fewer.miss_rate);
+            prop_assert!(whole.min_ade <= fewer.min_ade && whole.min_fde <= fewer.min_fde);
+            prop_assert!(whole.joint_ade <= fewer.joint_ade && whole.joint_fde <= fewer.joint_fde);
+            prop_assert!(whole.miss_rate <= fewer.miss_rate);
+            prop_assert!(whole.miss_rate_1m <= fewer.miss_rate_1m);
+            prop_assert!(whole.miss_rate_2m <= fewer.miss_rate_2m);
+            for (whole, fewer) in whole.categories.iter().zip(&fewer.categories) {
+                prop_assert_eq!(whole.category, fewer.category);
+                prop_assert!(whole.min_ade <= fewer.min_ade && whole.min_fde <= fewer.min_fde);
+                prop_assert!(whole.miss_rate <= fewer.miss_rate);
             }
         }
     }
@@ -157,8 +161,8 @@ proptest! {
             &window.map_positions(|_, _, p| motion(p)),
             &rebuilt(&forecast, &in_order(&forecast), motion),
         );
-        let (found, expected) = (invariants(&after), invariants(&before));
-        prop_assert!(all_agree(&found, &expected), "{found:?} {expected:?}");
+        let (actual, expected) = (invariants(&after), invariants(&before));
+        prop_assert!(all_agree(&actual, &expected), "{actual:?} {expected:?}");
         let turn = |s: &Scores| s.stability.unwrap().largest_turn;
         prop_assert!((turn(&before) - turn(&after)).abs() < 1e-5);
     }
@@ -209,9 +213,9 @@ proptest! {
     ) {
         let mut order = in_order(&forecast);
         order.sort_by_key(|&k| keys[k]);
-        let found = invariants(&scores(&window, &rebuilt(&forecast, &order, |p| p)));
+        let actual = invariants(&scores(&window, &rebuilt(&forecast, &order, |p| p)));
         let expected = invariants(&scores(&window, &forecast));
-        prop_assert!(all_agree(&found, &expected), "{found:?} {expected:?}");
+        prop_assert!(all_agree(&actual, &expected), "{actual:?} {expected:?}");
     }
 
     #[test]
@@ -229,12 +233,12 @@ proptest! {
             prop_assert!(s.amv.unwrap() >= 1e-4 - 1e-12 && s.amd.unwrap() >= 0.0);
         }
         // Each pedestrian has one motion kind and one type; sub-kinds are of type III.
-        let of = |wanted: fn(&Category) -> bool| -> usize {
+        let count_where = |wanted: fn(&Category) -> bool| -> usize {
             let members = s.categories.iter().filter(|c| wanted(&c.category));
             members.map(|c| c.pedestrians).sum()
         };
-        prop_assert_eq!(of(|c| matches!(c, Category::Motion(_))), s.pedestrians);
-        prop_assert_eq!(of(|c| matches!(c, Category::Type(_))), s.pedestrians);
+        prop_assert_eq!(count_where(|c| matches!(c, Category::Motion(_))), s.pedestrians);
+        prop_assert_eq!(count_where(|c| matches!(c, Category::Type(_))), s.pedestrians);
         // So the means of the types, weighted by their pedestrians, are the totals.
         let types = s.categories.iter().filter(|c| matches!(c.category, Category::Type(_)));
         let mean = types.map(|c| c.min_ade * c.pedestrians as f64).sum::<f64>();

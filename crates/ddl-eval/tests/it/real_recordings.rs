@@ -8,8 +8,8 @@ use ddl_eval::{Category, Conditions, Protocol, ResultRow, leak};
 
 /// The recordings of the `star` convention; without them the test is skipped, except in CI.
 fn recordings() -> Option<Dataset> {
-    let found = locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
-    match found {
+    let dataset = locate(Convention::Star, None).and_then(|folder| Dataset::load(Convention::Star, &folder));
+    match dataset {
         Ok(dataset) => Some(dataset),
         Err(why) => {
             assert!(std::env::var_os("CI").is_none(), "CI needs the recordings: {why}");
@@ -42,11 +42,11 @@ fn pedestrians_are_of_the_types_counted_independently() {
         let types = TrajectoryType::ALL.map(Category::Type);
         let interactions = Interaction::ALL.map(Category::Interaction);
         let count = |category| {
-            let of = categories.iter().find(|c| c.category == category);
-            of.map_or(0, |c| c.pedestrians)
+            let scores_of_category = categories.iter().find(|c| c.category == category);
+            scores_of_category.map_or(0, |c| c.pedestrians)
         };
-        let found: Vec<usize> = types.into_iter().chain(interactions).map(count).collect();
-        assert_eq!(found, expected, "{fold}");
+        let actual: Vec<usize> = types.into_iter().chain(interactions).map(count).collect();
+        assert_eq!(actual, expected, "{fold}");
     }
 }
 

@@ -53,9 +53,9 @@ pub(crate) fn complaint(text: &str, format: ExternalFormat) -> String {
 }
 
 pub(crate) fn expected() -> Vec<Forecast> {
-    let one = |at: &[f64]| {
-        let positions = at.iter().flat_map(|&x| still(x, 0.0)).collect();
-        Forecast::with_equal_weights(at.len(), 1, positions).unwrap()
+    let one = |position: &[f64]| {
+        let positions = position.iter().flat_map(|&x| still(x, 0.0)).collect();
+        Forecast::with_equal_weights(position.len(), 1, positions).unwrap()
     };
     vec![one(&[1.0, 2.0]), one(&[3.0])]
 }

@@ -95,8 +95,8 @@ fn pedestrians_may_have_words_for_names() {
         assert_eq!(matched.unwrap().forecasts, [both], "{format}");
     }
     let one = line(70, 1, &hypothesis(1.0)).replace(":1,\"hyp", ":\"007\",\"hyp");
-    let told = of(&windows, &one, Coverage::Whole).unwrap_err().to_string();
-    assert!(told.contains("observed until 70 pedestrian 7f3e-aa41"));
+    let message = of(&windows, &one, Coverage::Whole).unwrap_err().to_string();
+    assert!(message.contains("observed until 70 pedestrian 7f3e-aa41"));
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn extensions_name_the_format_in_capitals_too() {
 /// 1 walks east and meets 2, which walks west and has no forecast; 3 is far away. The social force model avoids 2.
 #[test]
 fn baselines_see_whom_nobody_forecast() {
-    let track = |at: fn(f64) -> [f64; 2]| (0..20).map(|t| at(f64::from(t))).collect::<Vec<_>>();
+    let track = |path: fn(f64) -> [f64; 2]| (0..20).map(|t| path(f64::from(t))).collect::<Vec<_>>();
     let tracks = vec![
         track(|t| [0.5 * t, -0.5 * (t - 15.0).max(0.0)]),
         track(|t| [15.0 - 0.5 * t, 0.125]),
@@ -292,8 +292,10 @@ fn the_recording_may_be_left_out_only_where_there_is_one() {
 /// scored.
 #[test]
 fn forecasts_that_begin_elsewhere_are_refused_with_a_likely_reason() {
-    let at = |[x, y]: [f64; 2]| format!("{{\"positions\":{:?}}}", still(x, y));
-    let file = |first, second, third| line(70, 3, &at(first)) + &line(70, 5, &at(second)) + &line(80, 5, &at(third));
+    let hypothesis = |[x, y]: [f64; 2]| format!("{{\"positions\":{:?}}}", still(x, y));
+    let file = |first, second, third| {
+        line(70, 3, &hypothesis(first)) + &line(70, 5, &hypothesis(second)) + &line(80, 5, &hypothesis(third))
+    };
     // The pedestrians were last seen at (3.5, 0), (3.5, 2) and (3.5, 2.5).
     let swapped = file([0.2, 9.5], [2.0, 9.5], [2.5, 9.5]);
     let mut far = windows();

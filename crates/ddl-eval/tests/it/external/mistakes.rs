@@ -62,8 +62,8 @@ after the last observed one are 80, 90 to 190
     let both = first.clone() + &line(70, 5, &hypothesis(2.0));
     check_all(format, edits, |parts| {
         // The common start of both lines is replaced in the second, unless it is only a brace.
-        let at = if parts[0] == "{" { 0 } else { first.len() };
-        both[..at].to_owned() + &edited(&both[at..], parts[0], parts[1])
+        let start = if parts[0] == "{" { 0 } else { first.len() };
+        both[..start].to_owned() + &edited(&both[start..], parts[0], parts[1])
     });
     let twice = hypothesis(1.0) + "," + &hypothesis(2.0);
     check(
@@ -135,24 +135,24 @@ expected 0 to 1 or 1 to 2
 3/0/1 5/1/1 => 14, hypothesis: the hypotheses of `yard` observed until 70 pedestrian 5 have the numbers 1, expected 0 \
 as before
 ";
-    let of = |sequence: &str| {
+    let text_of = |sequence: &str| {
         let part = |part: &str| {
             let numbers: Vec<f64> = part.split('/').map(|n| n.parse().unwrap()).collect();
             rows("yard", 70, numbers[0] as i64, numbers[1] as i64, numbers[2], 1.0)
         };
         HEADER.to_owned() + &sequence.split(' ').map(part).collect::<String>()
     };
-    check_all(format, sequences, |parts| of(parts[0]));
+    check_all(format, sequences, |parts| text_of(parts[0]));
     let many: Vec<String> = (0..1000).map(|k| format!("5/{k}/0.001")).collect();
     let expected = "242, hypothesis: more than 20 hypotheses of `yard` observed until 70 pedestrian 5";
-    check(format, &of(&many.join(" ")), expected);
+    check(format, &text_of(&many.join(" ")), expected);
 }
 
 #[test]
 fn every_mistake_of_trajnet_is_named_with_its_place() {
     let format = ExternalFormat::TrajNet;
-    let own = tracks(0, 3, 0, 70, 1.0);
-    let good = scene(0, 3, 0) + &own;
+    let observed = tracks(0, 3, 0, 70, 1.0);
+    let good = scene(0, 3, 0) + &observed;
     check(format, &scene(0, 3, 0), "1: the file holds no forecast");
     let edits = r#"
 "scene_id": 0 => "x2": 0 => 2, track.scene_id: is missing
@@ -176,7 +176,7 @@ the numbers 1, expected 0 as before
 S0/3/0 T0/3/0/70/1 T0/5/0/70/1 S1/3/10 T1/5/0/80/2 S2/4/0 T2/5/0/70/2 => 40: pedestrian 5 is a neighbour in two \
 scenes that forecast it differently (line 14)
 ";
-    let of = |sequence: &str| {
+    let text_of = |sequence: &str| {
         let part = |part: &str| {
             let (kind, numbers) = part.split_at(1);
             let n: Vec<i64> = numbers.split('/').map(|n| n.parse().unwrap()).collect();
@@ -187,8 +187,8 @@ scenes that forecast it differently (line 14)
         };
         sequence.split(' ').map(part).collect::<String>()
     };
-    check_all(format, sequences, |parts| of(parts[0]));
-    let one_more = good + &own.lines().next().unwrap().replace("190", "200");
+    check_all(format, sequences, |parts| text_of(parts[0]));
+    let one_more = good + &observed.lines().next().unwrap().replace("190", "200");
     check(format, &one_more, "14, prediction_number 0: 13 positions");
     let many = (0..1000).fold(scene(0, 3, 0), |text, k| text + &tracks(0, 3, k, 70, 1.0));
     let expected = "242, track.prediction_number: more than 20 hypotheses of observed until 70 pedestrian 3";
