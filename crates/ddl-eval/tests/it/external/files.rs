@@ -101,7 +101,7 @@ pub(crate) fn tracks(scene: i64, pedestrian: i64, prediction: i64, until: i64, x
     })
 }
 
-/// ScoredWindow 0 forecasts 3 and its neighbours 5 and 9, which is in no window; in scene 1 pedestrian 5 is primary.
+/// Scene 0 forecasts 3 and its neighbours 5 and 9, which is in no window; in scene 1 pedestrian 5 is primary.
 pub(crate) fn ndjson() -> String {
     scene(0, 3, 0)
         + "{\"track\": {\"f\": 0, \"p\": 3, \"x\": 0.0, \"y\": 0.0}}\n"
