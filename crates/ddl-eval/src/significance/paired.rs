@@ -11,7 +11,7 @@ pub struct PairedDifference {
     /// First minus second, mean over the folds, m, with its 95 % interval over resampled blocks. Negative: the first is
     /// better.
     pub difference: Interval,
-    /// Probability that chance alone makes a difference as large: the share of [`RESAMPLES`] random sign changes of the
+    /// Probability that chance alone makes a difference as large: the share of 10,000 random sign changes of the
     /// blocks' differences, two-sided, with the observed one included.
     pub p_value: f64,
 }
@@ -30,7 +30,7 @@ pub struct DifferentWindowsError {
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
 /// The null hypothesis of the test: both signs of the difference of a block are equally likely. `None` without folds,
-/// or with a fold of fewer than [`MIN_BLOCKS`](super::MIN_BLOCKS) blocks.
+/// or with a fold of fewer than 10 blocks.
 ///
 /// # Errors
 /// The blocks of the two differ in number, recording or pedestrians.
