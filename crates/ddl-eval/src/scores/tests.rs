@@ -1,3 +1,5 @@
+//! Scores of whole test sets, by hand, and what is refused.
+
 use approx::assert_relative_eq;
 
 use super::*;
