@@ -6,9 +6,11 @@ mod bounded_motion;
 mod cameras;
 mod errors;
 mod evaluate;
+mod every_command;
 mod examples;
 #[cfg(unix)]
 mod faults;
+mod finished_benchmark;
 mod forecast;
 mod golden_forecasts;
 mod guarantee_on_real_people;
@@ -20,11 +22,9 @@ mod leak;
 mod leak_in_reports;
 mod live;
 mod live_memory;
-mod manners;
 mod other_program;
 mod own_recordings;
 mod packed;
-mod packed_benchmark;
 mod regions;
 mod tracks_as_they_come;
 

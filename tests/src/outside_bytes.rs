@@ -18,69 +18,99 @@ mod values;
 use arbitrary::Unstructured;
 use proptest::prelude::*;
 use proptest::sample::select;
-use proptest::test_runner::TestRunner;
-use std::path::Path;
+use proptest::test_runner::{TestRng, TestRunner};
+use std::panic::{catch_unwind, resume_unwind};
+use std::path::{Path, PathBuf};
 
-/// The test function of a reader, with the name of its fuzz target and of its seeds.
-pub type Reader = (&'static str, fn(&[u8]));
+/// The inputs that the edits of a plain test start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Seeds {
+    /// The files of the reader's folder in `tests/fuzz/corpus`.
+    Corpus,
+    /// None: the test function edits a valid file itself.
+    None,
+}
+
+/// The test function of a reader, with the name of its fuzz target.
+#[derive(Debug, Clone, Copy)]
+pub struct Reader {
+    name: &'static str,
+    seeds: Seeds,
+    read: fn(&[u8]),
+}
+
+impl Reader {
+    const fn with_seeds(name: &'static str, read: fn(&[u8])) -> Self {
+        Self {
+            name,
+            seeds: Seeds::Corpus,
+            read,
+        }
+    }
+
+    const fn of_valid_file(name: &'static str, read: fn(&[u8])) -> Self {
+        Self {
+            name,
+            seeds: Seeds::None,
+            read,
+        }
+    }
+}
 
 /// The readers that need no libtorch.
 pub const READERS: [Reader; 21] = [
-    ("table", tracks::table),
-    ("star_csv", tracks::star_csv),
-    ("social_gan", tracks::social_gan),
-    ("trajnet", tracks::trajnet),
-    ("obsmat", tracks::obsmat),
-    ("own_tracks", own_tracks::read),
-    ("stream", stream::read),
-    ("live_tracks", live_tracks::read),
-    ("homography", values::homography),
-    ("foreign_json_lines", external::json_lines),
-    ("foreign_table", external::table),
-    ("foreign_trajnet", external::trajnet),
-    ("report", values::report),
-    ("moments", values::moments),
-    ("goal_library", values::goal_library),
-    ("scene_memory", scene_memory::read),
-    ("packed_model", model_files::packed_model),
-    ("run_config", model_files::run_config),
-    ("metrics", model_files::metrics),
-    ("weights", model_files::weights),
-    ("experts", model_files::experts),
+    Reader::with_seeds("table", tracks::table),
+    Reader::with_seeds("star_csv", tracks::star_csv),
+    Reader::with_seeds("social_gan", tracks::social_gan),
+    Reader::with_seeds("trajnet", tracks::trajnet),
+    Reader::with_seeds("obsmat", tracks::obsmat),
+    Reader::with_seeds("own_tracks", own_tracks::read),
+    Reader::with_seeds("stream", stream::read),
+    Reader::with_seeds("live_tracks", live_tracks::read),
+    Reader::with_seeds("homography", values::homography),
+    Reader::with_seeds("foreign_json_lines", external::json_lines),
+    Reader::with_seeds("foreign_table", external::table),
+    Reader::with_seeds("foreign_trajnet", external::trajnet),
+    Reader::with_seeds("report", values::report),
+    Reader::with_seeds("moments", values::moments),
+    Reader::with_seeds("goal_library", values::goal_library),
+    Reader::of_valid_file("scene_memory", scene_memory::read),
+    Reader::of_valid_file("packed_model", model_files::packed_model),
+    Reader::with_seeds("run_config", model_files::run_config),
+    Reader::with_seeds("metrics", model_files::metrics),
+    Reader::of_valid_file("weights", model_files::weights),
+    Reader::of_valid_file("experts", model_files::experts),
 ];
 
 /// The readers that need libtorch.
 #[cfg(feature = "torch")]
-pub const TORCH_READERS: [Reader; 1] = [("training_state", training_state::read)];
+pub const TORCH_READERS: [Reader; 1] = [Reader::of_valid_file("training_state", training_state::read)];
 
 /// Edited inputs of each reader in a plain test, unless `PROPTEST_CASES` is set.
 const CASES: u32 = 1000;
 /// Truncations that are read of each seed.
-const TRUNCATIONS: usize = 32;
+const TRUNCATIONS: usize = 256;
 
 /// Passes the bytes to the reader of this name.
 pub fn read(name: &str, bytes: &[u8]) {
     #[cfg(not(feature = "torch"))]
     const TORCH_READERS: [Reader; 0] = [];
     let mut readers = READERS.iter().chain(&TORCH_READERS);
-    let reader = readers.find(|reader| reader.0 == name);
-    reader.unwrap_or_else(|| panic!("no reader {name}")).1(bytes);
+    let reader = readers.find(|reader| reader.name == name);
+    (reader.unwrap_or_else(|| panic!("no reader {name}")).read)(bytes);
 }
 
-/// Passes every seed of a reader to it, with truncations and random edits. A reader that edits a valid file itself has
-/// no seeds.
-pub fn check((name, read): Reader) {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(name);
-    let entries = std::fs::read_dir(folder).into_iter().flatten();
-    let mut seeds: Vec<Vec<u8>> = entries
-        .map(|entry| std::fs::read(entry.expect("the folder can be listed").path()).expect("a seed can be read"))
-        .collect();
-    seeds.push(Vec::new());
-    for seed in &seeds {
-        read(seed);
+/// Passes every seed of a reader to it, with truncations and random edits, the same ones in every run.
+pub fn check(reader: Reader) {
+    let seeds = seeds(reader);
+    for (path, seed) in &seeds {
         let stride = seed.len().div_ceil(TRUNCATIONS).max(1);
-        for length in (0..seed.len()).step_by(stride) {
-            read(&seed[..length]);
+        for length in (0..seed.len()).step_by(stride).chain([seed.len()]) {
+            let outcome = catch_unwind(|| (reader.read)(&seed[..length]));
+            outcome.unwrap_or_else(|panic| {
+                eprintln!("{}: the first {length} bytes of {}", reader.name, path.display());
+                resume_unwind(panic)
+            });
         }
     }
     let config = ProptestConfig {
@@ -88,14 +118,35 @@ pub fn check((name, read): Reader) {
         failure_persistence: None,
         ..ProptestConfig::default()
     };
+    let random = TestRng::deterministic_rng(config.rng_algorithm);
     let edited = (select(seeds), prop::collection::vec(any::<u8>(), 1..24));
-    let failed = TestRunner::new(config).run(&edited, |(seed, choices)| {
+    let outcome = TestRunner::new_with_rng(config, random).run(&edited, |((_, seed), choices)| {
         if seed.is_empty() {
-            read(&choices);
+            (reader.read)(&choices);
         } else {
-            read(&edits::edited(&mut Unstructured::new(&choices), &seed));
+            (reader.read)(&edits::edited(&mut Unstructured::new(&choices), &seed));
         }
         Ok(())
     });
-    failed.unwrap_or_else(|error| panic!("{name}: {error}"));
+    outcome.unwrap_or_else(|error| panic!("{}: {error}", reader.name));
+}
+
+/// The seeds of a reader with their files, and no bytes.
+fn seeds(reader: Reader) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut seeds = vec![(PathBuf::from("no file"), Vec::new())];
+    if reader.seeds == Seeds::Corpus {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("fuzz/corpus")
+            .join(reader.name);
+        let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+        for entry in entries {
+            let path = entry.expect("the folder can be listed").path();
+            let seed = std::fs::read(&path).expect("a seed can be read");
+            seeds.push((path, seed));
+        }
+        assert!(seeds.len() > 1, "{} holds no seed", folder.display());
+    }
+    // The order of a folder differs between machines.
+    seeds.sort();
+    seeds
 }

@@ -46,8 +46,8 @@ fn measure(criterion: &mut Criterion, name: &str, mut run: impl FnMut() -> Durat
         });
     });
     times.sort_unstable();
-    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
-    let [median, most, worst] = [0.5, 0.99, 1.0].map(at);
+    let quantile = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+    let [median, most, worst] = [0.5, 0.99, 1.0].map(quantile);
     eprintln!("{name}: median {median:?}, 99th percentile {most:?}, maximum {worst:?}\n");
 }
 

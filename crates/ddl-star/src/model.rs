@@ -29,6 +29,7 @@ pub(crate) use network::Layers;
 pub use network::TorchNetwork;
 pub(crate) use numbers::{numbers, tensor};
 pub use parameters::Parameters;
+pub(crate) use rollout::ForecastSteps;
 pub(crate) use tensor_backend::{KernelPass, Pass};
 
 #[cfg(test)]

@@ -133,13 +133,13 @@ fn a_custom_backbone_is_trained_and_forecasts_without_libtorch() {
     let before = forecasts(&untrained).unwrap();
     let plain = untrained.with_weights(weights).unwrap();
     let ours = forecasts(&plain).unwrap();
-    let apart = |ours: &[WindowRollout], known: &[WindowRollout]| {
+    let apart = |ours: &[WindowRollout], reference: &[WindowRollout]| {
         let positions = |rollouts: &[WindowRollout]| -> Vec<[f64; 2]> {
             rollouts.iter().flat_map(|r| r.positions.clone()).collect()
         };
-        let (ours, known) = (positions(ours), positions(known));
-        assert_eq!(ours.len(), known.len());
-        let pairs = ours.into_iter().zip(known);
+        let (ours, reference) = (positions(ours), positions(reference));
+        assert_eq!(ours.len(), reference.len());
+        let pairs = ours.into_iter().zip(reference);
         pairs
             .map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]))
             .max_by(f64::total_cmp)

@@ -107,8 +107,8 @@ fn trained(steps: u64) -> TorchProposals {
     while !trainer.is_finished() {
         trainer.step().unwrap();
     }
-    let all = steps + MEMORY_STEPS;
-    assert_eq!(trainer.steps(), (all, all));
+    let total_steps = steps + MEMORY_STEPS;
+    assert_eq!(trainer.steps(), (total_steps, total_steps));
     trainer.into_network().unwrap()
 }
 
@@ -154,7 +154,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
         let plain = ProposalNetwork::new(config.clone(), 1).unwrap();
         plain.with_weights(weights.unwrap()).unwrap()
     };
-    let views: Vec<_> = examples.iter().map(|of| of.view.clone()).collect();
+    let views: Vec<_> = examples.iter().map(|example| example.view.clone()).collect();
     // The first endpoints are from the observation only, the others from the memory branch.
     let error = |network: &ProposalNetwork, which: std::ops::Range<usize>| {
         let proposed = network.propose(&views).unwrap();
@@ -164,8 +164,8 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
             let off = ends.map(|end| (end[0] - x).hypot(end[1] - y));
             off.sum::<f64>() / which.len() as f64
         };
-        let all = proposed.iter().zip(&examples).map(off).sum::<f64>();
-        all / examples.len() as f64
+        let sum = proposed.iter().zip(&examples).map(off).sum::<f64>();
+        sum / examples.len() as f64
     };
     let trained = with_memory(150);
     let (alone, remembering) = (error(&trained, 0..2), error(&trained, 2..4));
@@ -194,16 +194,16 @@ fn kernels_propose_the_endpoints_of_libtorch() {
         let weights = torch.parameters().to_weights().unwrap();
         let plain = ProposalNetwork::new(small(), 1).unwrap();
         let plain = plain.with_weights(weights).unwrap();
-        let (ours, known) = (plain.propose(&views).unwrap(), torch.propose(&views).unwrap());
-        assert_eq!((ours.len(), known.len()), (views.len(), views.len()));
-        for (i, (ours, known)) in ours.iter().zip(&known).enumerate() {
+        let (ours, reference) = (plain.propose(&views).unwrap(), torch.propose(&views).unwrap());
+        assert_eq!((ours.len(), reference.len()), (views.len(), views.len()));
+        for (i, (ours, reference)) in ours.iter().zip(&reference).enumerate() {
             let numbers =
                 |proposed: &ProposedEndpoints| [proposed.endpoints.as_flattened(), &proposed.weights].concat();
-            let (ours, known) = (numbers(ours), numbers(known));
+            let (ours, reference) = (numbers(ours), numbers(reference));
             let numbers = if views[i].remembered.is_empty() { 36 } else { 72 };
-            assert_eq!((ours.len(), known.len()), (numbers, numbers));
-            for (ours, known) in ours.into_iter().zip(known) {
-                assert!((ours - known).abs() < 1e-5, "view {i}: {ours} {known}");
+            assert_eq!((ours.len(), reference.len()), (numbers, numbers));
+            for (ours, reference) in ours.into_iter().zip(reference) {
+                assert!((ours - reference).abs() < 1e-5, "view {i}: {ours} {reference}");
             }
         }
     }

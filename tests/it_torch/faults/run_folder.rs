@@ -29,6 +29,7 @@ fn training_resumes_when_there_is_room() {
         assert_eq!(half_written(place.path()), Vec::<String>::new(), "{size} KiB");
         failed += 1;
     }
+    eprintln!("disk full while training: stopped {failed} times, at up to {parts} sizes");
     assert!(failed > 2, "{failed}");
     disk.resize(MOST_KIBIBYTES);
     assert_same(&undisturbed().0, &finish(&place));

@@ -1,6 +1,9 @@
 //! The files of a model: a run's `config.json`, `metrics.jsonl` and safetensors files, and the packed model. Their
 //! networks are the smallest possible ones, because only the reading is tested.
 
+#[cfg(test)]
+mod forged;
+
 use super::edits::edited;
 use super::valid_file::{ValidFile, names_file, with_file};
 use crate::{drawn_model, safetensors_file};
@@ -12,6 +15,7 @@ use ddl_data::{PedestrianId, Window};
 use serde_json::Value;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
+use std::path::Path;
 use tempfile::TempDir;
 
 /// The configuration of a run with the smallest networks, whose goals are proposed.
@@ -133,19 +137,22 @@ pub(super) fn experts(choices: &[u8]) {
     });
 }
 
+/// Writes the smallest packed model.
+fn packed_example(path: &Path) {
+    let run = tempfile::tempdir().expect("a folder can be made");
+    let walk = |y: f64| (0..20).map(|t| [0.5 * f64::from(t), y]).collect();
+    let ids = [1, 2].map(PedestrianId).to_vec();
+    let window = Window::new("yard", 0, 10, ids, vec![walk(0.0), walk(1.0)]);
+    drawn_model::write(smallest_config(), &[window.expect("a window")], run.path());
+    let model = Ddl::load(run.path(), DeviceChoice::Cpu).expect("the run is complete");
+    model.pack(path).expect("a model can be packed");
+}
+
 /// Edits of a packed model. The first byte chooses whether the networks are created as well, which takes most of the
 /// time: in one of four cases.
 pub(super) fn packed_model(choices: &[u8]) {
     thread_local! {
-        static VALID: ValidFile<()> = ValidFile::new("packed.safetensors", with_digest, |path| {
-            let run = tempfile::tempdir().expect("a folder can be made");
-            let walk = |y: f64| (0..20).map(|t| [0.5 * f64::from(t), y]).collect();
-            let ids = [1, 2].map(PedestrianId).to_vec();
-            let window = Window::new("yard", 0, 10, ids, vec![walk(0.0), walk(1.0)]);
-            drawn_model::write(smallest_config(), &[window.expect("a window")], run.path());
-            let model = Ddl::load(run.path(), DeviceChoice::Cpu).expect("the run is complete");
-            model.pack(path).expect("a model can be packed");
-        });
+        static VALID: ValidFile<()> = ValidFile::new("packed.safetensors", with_digest, packed_example);
     }
     let Some((&first, choices)) = choices.split_first() else {
         return;

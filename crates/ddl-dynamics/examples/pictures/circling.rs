@@ -59,8 +59,8 @@ pub(crate) fn draw() -> Result<String, DynamicsError> {
             let away = position - goal;
             let far = (0.11 - away.norm()).max(0.06);
             let aside = Rotation2::new(-0.6) * away.normalize() * far;
-            let at = NEAR.path(&[position + aside])[0];
-            sheet.text(at, "middle", EULER, &step.to_string());
+            let label = NEAR.path(&[position + aside])[0];
+            sheet.text(label, "middle", EULER, &step.to_string());
         }
     });
     let heading = "log10 of the distance in m (\u{2212}18: on the goal)";

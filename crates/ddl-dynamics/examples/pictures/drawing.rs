@@ -53,8 +53,8 @@ impl Sheet {
         self.circles(points, 3.4, &format!("fill='{STABLE}'"));
     }
 
-    pub(crate) fn goal(&mut self, at: Pixel, radius: f64) {
-        self.circles(&[at], radius, &format!("stroke='{GOAL}' stroke-width='3'"));
+    pub(crate) fn goal(&mut self, centre: Pixel, radius: f64) {
+        self.circles(&[centre], radius, &format!("stroke='{GOAL}' stroke-width='3'"));
     }
 
     pub(crate) fn finish(self) -> String {

@@ -117,11 +117,11 @@ fn a_deserialised_certificate_is_checked() {
 fn positions_and_metrics_must_belong_together() {
     let attractor = Attractor::new(Vector2::new(0.0, 0.0)).unwrap();
     let metric = CholeskyMetric::planar(1.0, 0.0, 1.0, 1e-8).unwrap();
-    let at = Vector2::new(1.0, 0.0);
+    let position = Vector2::new(1.0, 0.0);
     let certify = |path: &[Vector2<f64>], metrics: &[CholeskyMetric<f64, 2>]| {
         LyapunovCertificate::new(path, metrics, &attractor, 0.4).unwrap_err()
     };
-    for (path, metrics) in [(&[at, at][..], &[metric; 2][..]), (&[], &[])] {
+    for (path, metrics) in [(&[position, position][..], &[metric; 2][..]), (&[], &[])] {
         let (positions, metrics_given) = (path.len(), metrics.len());
         let mismatch = DynamicsError::LengthMismatch {
             positions,
@@ -129,7 +129,7 @@ fn positions_and_metrics_must_belong_together() {
         };
         assert_eq!(certify(path, metrics), mismatch);
     }
-    let broken = certify(&[at, Vector2::new(f64::NAN, 0.0)], &[metric]).to_string();
+    let broken = certify(&[position, Vector2::new(f64::NAN, 0.0)], &[metric]).to_string();
     assert!(broken.starts_with("step 1 of the rollout failed"), "{broken}");
 }
 

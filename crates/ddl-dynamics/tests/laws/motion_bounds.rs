@@ -28,12 +28,12 @@ type Within<T> = (
     LyapunovCertificate<T>,
 );
 
-fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, own, absolute): BoundsDraw) -> Option<Within<T>> {
+fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, velocity, absolute): BoundsDraw) -> Option<Within<T>> {
     let (start, attractor, dt) = (scene.start::<T, 2>(), scene.attractor(), T::rounded(dt));
     let arriving = attractor.distance(&start) / (dt * T::rounded(METRICS as f64));
     let top_speed = (arriving * T::rounded(spare)).max(T::rounded(1e-3));
-    let own = Vector2::from(own).map(T::rounded) * top_speed;
-    let bounds = MotionBounds::new(top_speed, own, T::rounded(share))?;
+    let velocity = Vector2::from(velocity).map(T::rounded) * top_speed;
+    let bounds = MotionBounds::new(top_speed, velocity, T::rounded(share))?;
     let bounds = if absolute { bounds.absolute() } else { bounds };
     let schedule = ArrivingSchedule::new(scene.metrics(), attractor, bounds, dt).unwrap();
     let flow = NaturalGradientFlow::new(attractor, schedule);
@@ -165,7 +165,7 @@ fn shaped_by_hand() {
     let g = MotionBounds::<f64>::momentum(first);
     assert!((g - 0.75 * (-0.2_f64).exp()).abs() < 1e-15);
     let (half, arriving) = (Vector2::new(1.0, 0.5 / g), Vector2::new(1.0, 0.0));
-    let within = |own, share| MotionBounds::new(2.15, own, share).unwrap();
+    let within = |velocity, share| MotionBounds::new(2.15, velocity, share).unwrap();
     for (bounds, [a, c], expected) in [
         (within(half, 1.0).absolute(), [3.0_f64, 0.2], [2.0, 0.0, 0.25]),
         (within(half, 0.0).absolute(), [3.0, 0.2], [1.0, 0.5, 1.5]),
@@ -176,8 +176,8 @@ fn shaped_by_hand() {
     ] {
         let metric = CholeskyMetric::planar(a, 0.0, c, 1e-12).unwrap();
         let shaped = formed(&bounds.shape(&metric, &Vector2::new(4.8, 0.0), first));
-        for (found, expected) in [shaped.m11, shaped.m12, shaped.m22].iter().zip(expected) {
-            assert!((found - expected).abs() < 2e-12, "{shaped}");
+        for (entry, expected) in [shaped.m11, shaped.m12, shaped.m22].iter().zip(expected) {
+            assert!((entry - expected).abs() < 2e-12, "{shaped}");
         }
     }
 }

@@ -58,8 +58,8 @@ fn as_good_as_scikit_learn() {
         let theirs: f64 = set.inertia_of_seeds.iter().sum();
         assert!(ours <= theirs * 1.02, "{name}: {ours} against {theirs} of {seeds}");
         // The best of all: ten runs of ten restarts in scikit-learn, one of a hundred here.
-        let (found, best) = (inertia(100, 0), set.inertia);
-        assert!(found <= best * 1.02, "{name}: {found} against {best}");
+        let (reached, best) = (inertia(100, 0), set.inertia);
+        assert!(reached <= best * 1.02, "{name}: {reached} against {best}");
     }
 }
 
@@ -98,10 +98,10 @@ proptest! {
         prop_assert_eq!(clustering.labels.len(), points.len());
         prop_assert_eq!(clustering.sizes().iter().sum::<usize>(), points.len());
         for (&point, &label) in points.iter().zip(&clustering.labels) {
-            let own = squared_distance(clustering.centres[label], point);
+            let to_centre = squared_distance(clustering.centres[label], point);
             let nearest =
                 clustering.centres.iter().map(|&c| squared_distance(c, point)).fold(f64::MAX, f64::min);
-            prop_assert_eq!(own, nearest);
+            prop_assert_eq!(to_centre, nearest);
         }
         let inertia = recomputed_inertia(&clustering, &points);
         prop_assert!((clustering.inertia - inertia).abs() <= 1e-9 * (1.0 + inertia));
@@ -123,8 +123,8 @@ proptest! {
         let sizes = clustering.sizes();
         for (k, centre) in clustering.centres.iter().enumerate().filter(|&(k, _)| sizes[k] > 0) {
             for d in 0..2 {
-                let own = points.iter().zip(&clustering.labels).filter(|&(_, &label)| label == k);
-                let mean = own.map(|(point, _)| point[d]).sum::<f64>() / sizes[k] as f64;
+                let members = points.iter().zip(&clustering.labels).filter(|&(_, &label)| label == k);
+                let mean = members.map(|(point, _)| point[d]).sum::<f64>() / sizes[k] as f64;
                 prop_assert!((centre[d] - mean).abs() < 1e-9);
             }
         }

@@ -57,8 +57,8 @@ fn distances_weights_and_endpoints_agree_with_the_definition() {
         assert_eq!(set.experts().len(), pedestrian.analogues.len());
         for (k, analogue) in pedestrian.analogues.iter().enumerate() {
             let expert = set.experts()[k];
-            let found = (expert.index, expert.mirrored);
-            assert_eq!(found, (analogue.index, analogue.mirrored));
+            let chosen = (expert.index, expert.mirrored);
+            assert_eq!(chosen, (analogue.index, analogue.mirrored));
             // The estimator compares in `f32`.
             assert!((expert.distance - analogue.distance).abs() < 1e-7);
             assert!((set.weights()[k] - analogue.weight).abs() < 1e-5);

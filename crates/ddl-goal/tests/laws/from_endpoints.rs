@@ -63,20 +63,20 @@ fn ends_of_no_weight_do_not_count_and_few_ends_repeat() {
 
 #[test]
 fn invalid_endpoints_are_reported() {
-    let of =
+    let error_of =
         |ends: &[[f64; 2]], weights: &[f64], clusters| match GoalSet::from_endpoints(&frame(), ends, weights, clusters)
         {
             Err(error @ GoalError::Ends { .. }) => error.to_string(),
             other => panic!("{other:?}"),
         };
     let end = [[1.0, 1.0]];
-    assert!(of(&[], &[], 3).contains("0 endpoints"));
-    assert!(of(&end, &[0.5, 0.5], 3).contains("1 endpoints with 2 weights"));
-    assert!(of(&end, &[1.0], 0).contains("0 goals"));
-    assert!(of(&end, &[0.0], 3).contains("not all 0"));
-    assert!(of(&[end[0], end[0]], &[-1.0, 2.0], 3).contains("not negative"));
-    assert!(of(&end, &[f64::NAN], 3).contains("NaN"));
-    assert!(of(&end, &[f64::INFINITY], 3).contains("inf"));
-    assert!(of(&[[f64::NAN, 0.0]], &[1.0], 3).contains("endpoint 0"));
-    assert!(of(&[[1e300, 0.0]], &[1.0], 3).contains("endpoint 0"));
+    assert!(error_of(&[], &[], 3).contains("0 endpoints"));
+    assert!(error_of(&end, &[0.5, 0.5], 3).contains("1 endpoints with 2 weights"));
+    assert!(error_of(&end, &[1.0], 0).contains("0 goals"));
+    assert!(error_of(&end, &[0.0], 3).contains("not all 0"));
+    assert!(error_of(&[end[0], end[0]], &[-1.0, 2.0], 3).contains("not negative"));
+    assert!(error_of(&end, &[f64::NAN], 3).contains("NaN"));
+    assert!(error_of(&end, &[f64::INFINITY], 3).contains("inf"));
+    assert!(error_of(&[[f64::NAN, 0.0]], &[1.0], 3).contains("endpoint 0"));
+    assert!(error_of(&[[1e300, 0.0]], &[1.0], 3).contains("endpoint 0"));
 }

@@ -60,6 +60,7 @@ proptest! {
         prop_assert!(distance(frame.to_world(frame.to_frame(point)), point) < 1e-12 * 1e3);
         prop_assert!(distance(frame.to_frame(frame.to_world(point)), point) < 1e-12 * 1e3);
         let [cos, sin] = heading(&frame);
+        // A difference of positions up to 10 m from the origin, each rounded to 1e-15 m.
         prop_assert!((cos.hypot(sin) - 1.0).abs() < 1e-12);
         prop_assert_eq!(frame.to_frame(frame.origin()), [0.0, 0.0]);
     }

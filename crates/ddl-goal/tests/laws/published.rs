@@ -26,9 +26,9 @@ struct PublishedPedestrian {
 
 /// The recordings, or `None` (with the reason printed) where they may be absent.
 fn recordings() -> Option<Dataset> {
-    let found = dataset().inspect_err(|error| println!("not compared: {error}"));
-    assert!(found.is_ok() || std::env::var_os("CI").is_none());
-    found.ok()
+    let dataset_read = dataset().inspect_err(|error| println!("not compared: {error}"));
+    assert!(dataset_read.is_ok() || std::env::var_os("CI").is_none());
+    dataset_read.ok()
 }
 
 fn windows(dataset: &Dataset, recording: &str, rule: WindowRule) -> StarWindows {
@@ -137,10 +137,10 @@ fn the_heading_frame_transfers_between_streets() {
         errors.sum::<f64>() / pedestrians.len() as f64
     };
     let world = mean_error(GoalEstimatorParams::published().query(QuerySpan::Observed));
-    let own = mean_error(GoalEstimatorParams::default());
+    let heading = mean_error(GoalEstimatorParams::default());
     println!(
-        "{} pedestrians: {own:.4} m, {world:.4} m in the frame of the world",
+        "{} pedestrians: {heading:.4} m, {world:.4} m in the frame of the world",
         pedestrians.len()
     );
-    assert!(own < 0.85 * world, "{own} m, {world} m");
+    assert!(heading < 0.85 * world, "{heading} m, {world} m");
 }

@@ -13,11 +13,11 @@ pub(crate) fn dataset() -> Result<Dataset, DataError> {
 pub(crate) type StarWindows = BTreeMap<(i64, i64), Vec<[f64; 2]>>;
 
 pub(crate) fn tracks_of<'a>(windows: impl IntoIterator<Item = &'a Window>) -> StarWindows {
-    let each = |window: &'a Window| {
+    let tracks = |window: &'a Window| {
         let pedestrians = window.pedestrians().iter().enumerate();
         pedestrians.map(|(i, id)| ((window.start_frame(), id.0), window.track(i).to_vec()))
     };
-    windows.into_iter().flat_map(each).collect()
+    windows.into_iter().flat_map(tracks).collect()
 }
 
 /// Distance from the true endpoint to the nearest goal (m).

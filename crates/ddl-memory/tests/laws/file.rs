@@ -107,10 +107,10 @@ fn damaged_files_are_refused() {
             assert!(read(&path, &signed(&whole[HEAD..length])).is_err());
         }
     }
-    for at in 0..whole.len() {
+    for place in 0..whole.len() {
         let mut bytes = whole.clone();
-        bytes[at] ^= 1 << (at % 8);
-        assert!(read(&path, &bytes).is_err(), "byte {at}");
+        bytes[place] ^= 1 << (place % 8);
+        assert!(read(&path, &bytes).is_err(), "byte {place}");
     }
     let longer = [&whole[HEAD..], b"0"].concat();
     let error = read(&path, &signed(&longer)).unwrap_err();

@@ -46,11 +46,11 @@ fn distance(a: &[Position], b: &[Position]) -> f64 {
         + squared(between(velocity(a, 0), velocity(b, 0)), 0.6)
 }
 
-/// The smallest distance of each pedestrian except `own`, in order, below the limit.
-fn reference(frames: &Frames, observed: &[Position; OBSERVED], own: Option<PedestrianId>) -> Vec<f64> {
+/// The smallest distance of each pedestrian except `pedestrian`, in order, below the limit.
+fn reference(frames: &Frames, observed: &[Position; OBSERVED], pedestrian: Option<PedestrianId>) -> Vec<f64> {
     let others = segments(frames)
         .into_iter()
-        .filter(|(id, runs, _)| !(*runs && Some(*id) == own));
+        .filter(|(id, runs, _)| !(*runs && Some(*id) == pedestrian));
     let nearest = others.map(|(_, _, segments)| {
         let distances = segments.iter().map(|segment| distance(segment, observed));
         distances.fold(f64::INFINITY, f64::min)
@@ -126,18 +126,18 @@ proptest! {
 #[test]
 fn only_the_running_track_is_left_out() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
-    let at = |t: i64| [0.5 * t as f64, 0.0];
+    let position = |t: i64| [0.5 * t as f64, 0.0];
     for (first, ids) in [(0, [4, 3].as_slice()), (100, &[3, 1, 2])] {
         for t in 0..22 {
-            let pedestrians = ids.iter().map(|&id| (PedestrianId(id), at(t)));
+            let pedestrians = ids.iter().map(|&id| (PedestrianId(id), position(t)));
             memory.observe(first + t, pedestrians).unwrap();
         }
     }
-    let observed: [Position; OBSERVED] = std::array::from_fn(|t| at(t as i64 + 1));
+    let observed: [Position; OBSERVED] = std::array::from_fn(|t| position(t as i64 + 1));
     let recalled = memory.recall(&observed, Some(PedestrianId(3)), 12);
     assert_eq!(recalled.len(), 4);
     for example in &recalled {
-        assert_eq!(example.track, std::array::from_fn(|t| at(t as i64 + 1)));
+        assert_eq!(example.track, std::array::from_fn(|t| position(t as i64 + 1)));
     }
     assert_eq!(memory.recall(&observed, None, 12).len(), 5);
     assert!(memory.recall(&observed, None, 0).is_empty());
@@ -150,15 +150,15 @@ fn only_the_running_track_is_left_out() {
 fn a_jump_of_the_tracker_costs_no_precision() {
     for far in [40.0, 5e3, 9.9e6] {
         let mut memory = SceneMemory::new(1, 1_000).unwrap();
-        let at = |t: usize| [0.5 * t as f64 + if t < 23 { 0.0 } else { far }, 0.0];
+        let position = |t: usize| [0.5 * t as f64 + if t < 23 { 0.0 } else { far }, 0.0];
         for t in 0..60 {
-            memory.observe(t as i64, [(PedestrianId(1), at(t))]).unwrap();
+            memory.observe(t as i64, [(PedestrianId(1), position(t))]).unwrap();
         }
         assert_eq!(memory.segments(), 41);
         for first in (0..41).filter(|first| !(14..24).contains(first)) {
-            let observed = std::array::from_fn(|t| [at(first + t)[0] + 1e-3, 0.0]);
+            let observed = std::array::from_fn(|t| [position(first + t)[0] + 1e-3, 0.0]);
             let nearest = memory.recall(&observed, None, 1)[0];
-            assert_eq!(nearest.track, std::array::from_fn(|t| at(first + t)));
+            assert_eq!(nearest.track, std::array::from_fn(|t| position(first + t)));
             assert!(
                 (nearest.distance - 1e-6).abs() < 1e-7,
                 "{far} {first} {}",
@@ -215,14 +215,14 @@ fn frames_between_steps_give_no_segments() {
 #[test]
 fn tracks_are_the_positions_held() {
     let mut memory = SceneMemory::new(1, 1_000).unwrap();
-    let at = |t: i64| [0.5 * t as f64, 0.0];
+    let position = |t: i64| [0.5 * t as f64, 0.0];
     for t in 0..70 {
         let third = (t > 60).then_some((PedestrianId(3), [1.0; 2]));
         let second = (t < 25).then_some((PedestrianId(2), [0.5 * t as f64, 3.0]));
-        let first = (t != 47).then_some((PedestrianId(1), at(t)));
+        let first = (t != 47).then_some((PedestrianId(1), position(t)));
         memory.observe(t, [first, second, third].into_iter().flatten()).unwrap();
     }
     let tracks: Vec<Vec<Position>> = memory.tracks().collect();
-    let second: Vec<Position> = (0..25).map(|t| [at(t)[0], 3.0]).collect();
-    assert_eq!(tracks, [second, (0..70).filter(|t| *t != 47).map(at).collect()]);
+    let second: Vec<Position> = (0..25).map(|t| [position(t)[0], 3.0]).collect();
+    assert_eq!(tracks, [second, (0..70).filter(|t| *t != 47).map(position).collect()]);
 }

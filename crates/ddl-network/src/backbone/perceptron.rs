@@ -1,7 +1,7 @@
 //! A small perceptron. Its features depend on the goal offset and the observed motion, not on other pedestrians.
 
-use super::features::{Backbone, output_layer};
 use crate::StarConfig;
+use crate::backbone::features::{Backbone, output_layer};
 use crate::backend::{Backend, Memory};
 use crate::config::NetworkFrame;
 use crate::weights::{Layout, Linear};

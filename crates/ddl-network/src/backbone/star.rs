@@ -1,8 +1,8 @@
 //! STAR (Yu et al., ECCV 2020), one time step at a time. Only the output of the newest token is used, and earlier
 //! tokens never change. So each time step needs one query, and keys and values of earlier tokens are cached.
 
-use super::features::{Backbone, output_layer};
 use crate::StarConfig;
+use crate::backbone::features::{Backbone, output_layer};
 use crate::backend::{Backend, Memory};
 use crate::config::NetworkFrame;
 use crate::weights::{EncoderLayer, Layout, Linear, Sizes};

@@ -1,7 +1,7 @@
 //! The operations of a backbone, computed by the kernels of this crate on the CPU in `f32`.
 
-use super::operations::{Backend, Mode};
-use super::rows::{Rows, Tape};
+use crate::backend::operations::{Backend, Mode};
+use crate::backend::rows::{Rows, Tape};
 use crate::kernel::{self, Buffer, CachedKeyValues, Dropout, Dropouts, Scenes};
 use crate::weights::{EncoderLayer, Layout, Linear};
 use std::cell::{Cell, RefCell};

@@ -1,7 +1,7 @@
 //! Sizes of the part of the proposal network that attends to earlier pedestrians of the place.
 
-use super::range::{not_negative, positive, require};
 use crate::NetworkError;
+use crate::config::range::{not_negative, positive, require};
 use ddl_data::RememberedTrack;
 use serde::{Deserialize, Serialize};
 

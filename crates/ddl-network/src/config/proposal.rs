@@ -1,8 +1,8 @@
 //! Sizes of the proposal network, and settings of its training.
 
-use super::memory::{MemoryConfig, MemoryTraining};
-use super::range::{at_least_one, not_negative, positive, require};
 use crate::NetworkError;
+use crate::config::memory::{MemoryConfig, MemoryTraining};
+use crate::config::range::{at_least_one, not_negative, positive, require};
 use serde::{Deserialize, Serialize};
 
 /// Sizes of the proposal network.

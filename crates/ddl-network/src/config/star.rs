@@ -1,8 +1,8 @@
 //! Sizes and constants of the forecasting network.
 
-use super::range::{positive, require};
-use super::variant::{BackboneKind, Variant};
 use crate::NetworkError;
+use crate::config::range::{positive, require};
+use crate::config::variant::{BackboneKind, Variant};
 use serde::{Deserialize, Serialize};
 
 /// The coordinate frame of the network's input and output.

@@ -1,8 +1,8 @@
 //! Settings of the training.
 
-use super::range::{at_least_one, not_negative, positive, require};
-use super::variant::Variant;
 use crate::NetworkError;
+use crate::config::range::{at_least_one, not_negative, positive, require};
+use crate::config::variant::Variant;
 use crate::names::named;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Batches: windows that are forecast together.
 
-use super::rollout::{Noise, StepRule, WindowRollout};
 use crate::NetworkError;
+use crate::forecast::rollout::{Noise, StepRule, WindowRollout};
 use crate::seed::{Stage, stream};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;

@@ -8,8 +8,8 @@
 
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
-use super::numbers::Numbers;
-use super::one_step::{around, next};
+use crate::forecast::numbers::Numbers;
+use crate::forecast::one_step::{around, next};
 use ddl_dynamics::{MotionBounds, StepTime};
 use ddl_simd::{Kernel, LANES, Lanes, Simd};
 

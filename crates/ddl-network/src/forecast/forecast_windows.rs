@@ -1,7 +1,7 @@
 //! The interface of a forecasting network, independent of its implementation.
 
-use super::batch::{BatchRollout, ForecastBatch, batches};
-use super::rollout::{Noise, StepRule, WindowRollout};
+use crate::forecast::batch::{BatchRollout, ForecastBatch, batches};
+use crate::forecast::rollout::{Noise, StepRule, WindowRollout};
 use crate::weights::Weights;
 use crate::{NetworkError, StarConfig};
 use ddl_data::{Position, Window};

@@ -1,12 +1,12 @@
 //! The forecasting network on the CPU.
 
-use super::batch::{BatchRollout, ForecastBatch};
-use super::emission::NoiseSpread;
-use super::forecast_windows::ForecastWindows;
-use super::pass::{Pass, PassLayers};
 use crate::backbone::{Backbone, Perceptron, Star};
 use crate::backend::{KernelBackend, Kernels};
 use crate::config::BackboneKind;
+use crate::forecast::batch::{BatchRollout, ForecastBatch};
+use crate::forecast::emission::NoiseSpread;
+use crate::forecast::forecast_windows::ForecastWindows;
+use crate::forecast::pass::{Pass, PassLayers};
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Linear, Weights};
 use crate::{NetworkError, StarConfig};

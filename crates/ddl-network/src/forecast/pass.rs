@@ -1,11 +1,11 @@
 //! The rollout of one batch of windows, some hypotheses at a time.
 
-use super::batch::{BatchRollout, ForecastBatch};
-use super::emission::NoiseSpread;
-use super::rollout_state::{Observation, RolloutState};
 use crate::StarConfig;
 use crate::backbone::Backbone;
 use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
+use crate::forecast::batch::{BatchRollout, ForecastBatch};
+use crate::forecast::emission::NoiseSpread;
+use crate::forecast::rollout_state::{Observation, RolloutState};
 use crate::kernel::KeepBuffers;
 use crate::weights::Linear;
 use ddl_data::{HORIZON, OBSERVED};

@@ -1,16 +1,16 @@
 //! The state of a rollout: positions of a batch's pedestrians, the inputs of the network, and the step to the next
 //! positions.
 
-use super::batch::ForecastBatch;
-use super::bounded_steps::BoundedSteps;
-use super::motion_bounds::motion_bounds;
-use super::one_step::{around, next};
-use super::own_frame::{OwnFrame, length_unit};
-use super::rollout::StepRule;
-use super::visibility::visibility;
 use crate::StarConfig;
 use crate::backend::{Buffer, Rows, Scenes, VisibleScenes};
 use crate::config::NetworkFrame;
+use crate::forecast::batch::ForecastBatch;
+use crate::forecast::bounded_steps::BoundedSteps;
+use crate::forecast::motion_bounds::motion_bounds;
+use crate::forecast::one_step::{around, next};
+use crate::forecast::own_frame::{OwnFrame, length_unit};
+use crate::forecast::rollout::StepRule;
+use crate::forecast::visibility::visibility;
 use ddl_data::{OBSERVED, Position, Window};
 use ddl_dynamics::{MotionBounds, StepTime};
 use ddl_simd::Dispatch;

@@ -4,7 +4,7 @@ mod rows;
 #[cfg(test)]
 mod tests;
 
-use super::columns::{load, store};
+use crate::kernel::columns::{load, store};
 use ddl_simd::{DEPTH, LANES, Lanes, Simd};
 pub(super) use rows::Decisions;
 use rows::{Four, USUAL, means};

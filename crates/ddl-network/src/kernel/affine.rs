@@ -3,8 +3,8 @@
 #[cfg(test)]
 mod tests;
 
-use super::columns::{MatrixColumns, MatrixColumnsMut};
-use super::product::{BLOCK, End, Matrix, Start, add_transposed_product, multiply, sum_of_rows};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
+use crate::kernel::product::{BLOCK, End, Matrix, Start, add_transposed_product, multiply, sum_of_rows};
 use ddl_simd::{LANES, Lanes, Simd};
 
 /// y = W x + b. The weights are stored for the forward and for the backward pass.

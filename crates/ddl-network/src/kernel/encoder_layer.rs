@@ -7,10 +7,10 @@ mod layer;
 #[cfg(test)]
 mod tests;
 
-use super::buffer::Buffer;
-use super::scenes::Frames;
-use super::spatial_attention::Attended;
-use super::temporal_attention::{KeyValue, TemporalGradients};
+use crate::kernel::buffer::Buffer;
+use crate::kernel::scenes::Frames;
+use crate::kernel::spatial_attention::Attended;
+use crate::kernel::temporal_attention::{KeyValue, TemporalGradients};
 use forward_results::AttentionResults;
 pub(crate) use forward_results::{CachedKeyValues, ForwardResults};
 pub use layer::Sizes;

@@ -1,9 +1,9 @@
 //! An affine map as a separate kernel, for embeddings and the fusion of tokens.
 
-use super::affine::Affine;
-use super::buffer::Buffer;
-use super::columns::{MatrixColumns, MatrixColumnsMut};
-use super::threads::run_each;
+use crate::kernel::affine::Affine;
+use crate::kernel::buffer::Buffer;
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
+use crate::kernel::threads::run_each;
 use ddl_simd::{Dispatch, LANES, Simd, TiledKernel};
 
 /// Rows that are computed together. The constant number makes sums over rows independent of the threads.

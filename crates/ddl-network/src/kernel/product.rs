@@ -1,6 +1,6 @@
 //! Products of row-major matrices.
 
-use super::columns::{MatrixColumns, MatrixColumnsMut, load, store};
+use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use ddl_simd::{LANES, Lanes, Simd, Tile};
 
 /// Columns of a block.

@@ -8,11 +8,11 @@ mod queries;
 #[cfg(test)]
 mod tests;
 
-use super::buffer::Buffer;
-use super::dropout::Dropout;
-use super::heads::Heads;
-use super::scenes::Frames;
-use super::threads::run_buffered;
+use crate::kernel::buffer::Buffer;
+use crate::kernel::dropout::Dropout;
+use crate::kernel::heads::Heads;
+use crate::kernel::scenes::Frames;
+use crate::kernel::threads::run_buffered;
 use backward::SceneBackward;
 #[cfg(test)]
 use ddl_simd::InstructionSet;

@@ -6,8 +6,8 @@ mod sixteen_heads;
 #[cfg(test)]
 mod tests;
 
-use super::heads::Heads;
-use super::threads::run_buffered;
+use crate::kernel::heads::Heads;
+use crate::kernel::threads::run_buffered;
 use backward::TemporalBackward;
 use ddl_simd::Dispatch;
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! The tensors of the proposal network.
 
-use super::remembered::REMEMBERED_FEATURES;
-use super::seen::NEIGHBOUR_FEATURES;
 use crate::ProposalConfig;
+use crate::proposal::remembered::REMEMBERED_FEATURES;
+use crate::proposal::seen::NEIGHBOUR_FEATURES;
 use crate::weights::Layout;
 use ddl_data::OBSERVED;
 use std::ops::Range;

@@ -1,9 +1,9 @@
 //! One member of the ensemble on the CPU.
 
-use super::layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers};
-use super::remembered::RememberedRows;
-use super::seen::{OthersRows, SeenRows};
 use crate::kernel::{Buffer, LinearKernel, gelu};
+use crate::proposal::layers::{AttentionLayers, MemberAffine, ProposalLayers, ReadoutLayers};
+use crate::proposal::remembered::RememberedRows;
+use crate::proposal::seen::{OthersRows, SeenRows};
 use crate::weights::Weights;
 use crate::{MemoryConfig, ProposalConfig};
 

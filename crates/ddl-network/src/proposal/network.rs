@@ -1,10 +1,10 @@
 //! The ensemble on the CPU: small perceptrons with attention over the neighbours.
 
-use super::endpoints::{ENDPOINT_UNIT, PedestrianView, ProposeEndpoints, ProposedEndpoints};
-use super::layers::ProposalLayers;
-use super::member::{MemberKernels, Readings};
-use super::remembered::RememberedRows;
-use super::seen::SeenRows;
+use crate::proposal::endpoints::{ENDPOINT_UNIT, PedestrianView, ProposeEndpoints, ProposedEndpoints};
+use crate::proposal::layers::ProposalLayers;
+use crate::proposal::member::{MemberKernels, Readings};
+use crate::proposal::remembered::RememberedRows;
+use crate::proposal::seen::SeenRows;
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Weights};
 use crate::{NetworkError, ProposalConfig};

@@ -1,8 +1,8 @@
 //! Inputs of the memory branch from earlier pedestrians of the place.
 
-use super::endpoints::{ENDPOINT_UNIT, PedestrianView};
-use super::seen::{OthersRows, velocity};
 use crate::MemoryConfig;
+use crate::proposal::endpoints::{ENDPOINT_UNIT, PedestrianView};
+use crate::proposal::seen::{OthersRows, velocity};
 use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
 

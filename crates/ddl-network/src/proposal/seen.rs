@@ -1,7 +1,7 @@
 //! Inputs of the proposal network from the observation.
 
-use super::endpoints::PedestrianView;
 use crate::ProposalConfig;
+use crate::proposal::endpoints::PedestrianView;
 use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, Position};
 

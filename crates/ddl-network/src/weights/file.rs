@@ -1,10 +1,10 @@
 //! Safetensors files of weights and other tensors. Reading checks them; writing is atomic.
 
-use super::digest::{check_digest, tensors_digest};
-use super::layout::Layout;
-use super::learned::Weights;
-use super::origin::Origin;
 use crate::NetworkError;
+use crate::weights::digest::{check_digest, tensors_digest};
+use crate::weights::layout::Layout;
+use crate::weights::learned::Weights;
+use crate::weights::origin::Origin;
 use ddl_data::write_atomically;
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};

@@ -1,8 +1,8 @@
 //! Weights in half precision, the format of packed models. They are for forecasts only, not for further training.
 
-use super::layout::Layout;
-use super::learned::Weights;
 use crate::NetworkError;
+use crate::weights::layout::Layout;
+use crate::weights::learned::Weights;
 use half::f16;
 use std::sync::Arc;
 

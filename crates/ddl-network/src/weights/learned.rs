@@ -1,7 +1,7 @@
 //! The weights of a network with their names.
 
-use super::layout::{Layout, TensorLayout};
 use crate::NetworkError;
+use crate::weights::layout::{Layout, TensorLayout};
 use rand_chacha::ChaCha8Rng;
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The rows and columns of a report that a results page shows.
+//! The main tables of a benchmark, `summary.md`: the rows and columns of a report that count most.
 
 use ddl_data::Convention;
 use ddl_eval::{Protocol, ResultRow};

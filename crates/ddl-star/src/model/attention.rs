@@ -1,12 +1,12 @@
 //! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms that STAR needs.
 
-use super::neighbours::SeenNeighbours;
+use crate::model::neighbours::SeenNeighbours;
 use std::rc::Rc;
 use tch::Tensor;
 
 /// Attention of every pedestrian over its neighbours. Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or
 /// B -> `[B, P, width]`.
-pub(super) fn among_pedestrians(qkv: &Tensor, heads: i64, seen: &SeenNeighbours, dropout: f64) -> Tensor {
+pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &SeenNeighbours, dropout: f64) -> Tensor {
     // Scenes are packed into rows: see `Packing`.
     let (entries, width) = (qkv.size()[0], qkv.size()[2] / 3);
     let rows = seen.in_rows(qkv);
@@ -29,7 +29,7 @@ pub(super) fn among_pedestrians(qkv: &Tensor, heads: i64, seen: &SeenNeighbours,
 
 /// Attention of the newest token over itself and the cached tokens. Shapes: `newest` and each of `cache` `[B, P, 3 *
 /// width]` -> `[B, P, width]`.
-pub(super) fn over_cache(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> Tensor {
+pub(super) fn temporal_attention(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> Tensor {
     let (batch, pedestrians, width) = (newest.size()[0], newest.size()[1], newest.size()[2] / 3);
     let cached = cache.iter().map(|token| &**token);
     let tokens: Vec<&Tensor> = cached.chain([newest]).collect();

@@ -1,9 +1,9 @@
 //! The operations of a backbone on libtorch: on any device, in any precision, with automatic gradients.
 
-use super::attention::{among_pedestrians, over_cache};
-use super::neighbours::SeenNeighbours;
-use super::parameters::Parameters;
-use super::shared_weights::SharedWeights;
+use crate::model::attention;
+use crate::model::neighbours::SeenNeighbours;
+use crate::model::parameters::Parameters;
+use crate::model::shared_weights::SharedWeights;
 use ddl_network::backend::{Backend, Mode};
 use ddl_network::weights::{EncoderLayer, Linear};
 use std::rc::Rc;
@@ -112,13 +112,13 @@ impl Backend for TorchBackend {
             Mode::Evaluate => 0.0,
         };
         let qkv = self.affine(x, layer.tensor);
-        let mixed = among_pedestrians(&qkv, layer.sizes.heads as i64, seen, p);
+        let mixed = attention::spatial_attention(&qkv, layer.sizes.heads as i64, seen, p);
         self.after_attention(layer, x, &mixed)
     }
 
     fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Tensor>, cache: &[Rc<Tensor>]) -> Rc<Tensor> {
         let qkv = self.affine(newest, layer.tensor);
-        let mixed = over_cache(&qkv, layer.sizes.heads as i64, cache);
+        let mixed = attention::temporal_attention(&qkv, layer.sizes.heads as i64, cache);
         self.after_attention(layer, newest, &mixed)
     }
 

@@ -1,9 +1,9 @@
 //! Several windows concatenated into tensors.
 
-use super::neighbours::Neighbours;
-use super::numbers::tensor;
-use super::scene_means::SceneMeans;
 use crate::StarError;
+use crate::model::neighbours::Neighbours;
+use crate::model::numbers::tensor;
+use crate::model::scene_means::SceneMeans;
 use ddl_data::Window;
 use ddl_network::{NetworkError, visibility};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! The output layer and its noise.
 
-use super::tensor_backend::TensorBackend;
+use crate::model::tensor_backend::TensorBackend;
 use ddl_network::weights::Linear;
 use tch::Tensor;
 

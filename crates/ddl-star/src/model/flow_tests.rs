@@ -12,62 +12,64 @@ use tch::Kind;
 const SIGMA: f64 = 1e-8;
 const HORIZON: i64 = 12;
 
-/// Top speed, own velocity and share of bounded steps, and whether metrics are in m/s.
-type Bounds = (f64, [f64; 2], f64, bool);
+/// Bounds of the steps of one pedestrian.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
+    top_speed: f64,
+    velocity: [f64; 2],
+    share: f64,
+    absolute: bool,
+}
 
-/// A plain Euler step, or a step within bounds with the given remaining time.
-fn tensor_step(
-    p: &Tensor,
-    goal: &Tensor,
-    factor: &Tensor,
-    (dt, bounds): (f64, Option<(Bounds, StepTime<f64>)>),
-) -> Tensor {
-    let constants = FlowConstants {
+/// A plain Euler step of `dt` seconds, or a step within bounds with the given remaining time.
+#[derive(Debug, Clone, Copy)]
+enum Step {
+    Euler { dt: f64 },
+    Bounded(Bounds, StepTime<f64>),
+}
+
+fn tensor_step(p: &Tensor, goal: &Tensor, factor: &Tensor, step: Step) -> Tensor {
+    let constants = |time_step: f64| FlowConstants {
         sigma: SIGMA,
-        time_step: dt,
+        time_step,
     };
-    match bounds {
-        None => natural_gradient_step(p, goal, factor, constants),
-        Some(((top, own, share, absolute), time)) => {
+    match step {
+        Step::Euler { dt } => natural_gradient_step(p, goal, factor, constants(dt)),
+        Step::Bounded(bounds, time) => {
             let like = |numbers: &[f64]| Tensor::from_slice(numbers).to_kind(p.kind());
             let bounds = StepBounds {
-                top_speed: like(&[top]),
-                velocity: like(&own),
-                share: like(&[share]),
-                absolute,
+                top_speed: like(&[bounds.top_speed]),
+                velocity: like(&bounds.velocity),
+                share: like(&[bounds.share]),
+                absolute: bounds.absolute,
             };
-            bounded_step(p, goal, factor, constants, &bounds, time)
+            bounded_step(p, goal, factor, constants(time.dt), &bounds, time)
         }
     }
 }
 
-fn twin(p: [f64; 2], goal: [f64; 2], factor: [f64; 3], how: (f64, Option<(Bounds, StepTime<f64>)>)) -> [f64; 2] {
+fn twin(p: [f64; 2], goal: [f64; 2], factor: [f64; 3], step: Step) -> [f64; 2] {
     let [p, goal] = [p, goal].map(|place| Tensor::from_slice(&place));
-    let next = tensor_step(&p, &goal, &Tensor::from_slice(&factor), how);
+    let next = tensor_step(&p, &goal, &Tensor::from_slice(&factor), step);
     let next: Vec<f64> = Vec::try_from(next).unwrap();
     [next[0], next[1]]
 }
 
-fn oracle(
-    p: [f64; 2],
-    goal: [f64; 2],
-    [a, b, c]: [f64; 3],
-    (dt, bounds): (f64, Option<(Bounds, StepTime<f64>)>),
-) -> [f64; 2] {
+fn oracle(p: [f64; 2], goal: [f64; 2], [a, b, c]: [f64; 3], step: Step) -> [f64; 2] {
     let attractor = Attractor::new(Vector2::from(goal)).unwrap();
     let metric = CholeskyMetric::planar(a, b, c, SIGMA).unwrap();
     let start = Vector2::from(p);
-    let path = match bounds {
-        None => {
+    let path = match step {
+        Step::Euler { dt } => {
             let flow = NaturalGradientFlow::new(attractor, metric);
             rollout(&flow, &Euler, start, dt, 1)
         }
-        Some(((top, own, share, absolute), time)) => {
-            let bounds = MotionBounds::new(top, own.into(), share).unwrap();
-            let bounds = if absolute { bounds.absolute() } else { bounds };
+        Step::Bounded(drawn, time) => {
+            let bounds = MotionBounds::new(drawn.top_speed, drawn.velocity.into(), drawn.share).unwrap();
+            let bounds = if drawn.absolute { bounds.absolute() } else { bounds };
             let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
             let flow = NaturalGradientFlow::new(attractor, metric);
-            rollout(&flow, &StableEuler, start, dt, 1)
+            rollout(&flow, &StableEuler, start, time.dt, 1)
         }
     };
     path.unwrap()[1].into()
@@ -75,11 +77,17 @@ fn oracle(
 
 /// Random bounds of a pedestrian, and a step of its twelve.
 fn bounds(dt: f64) -> impl Strategy<Value = (Bounds, StepTime<f64>)> {
-    let own = prop::array::uniform2(-4.0..4.0);
-    let draw = (0.5..8.0, own, 0.0..=1.0, any::<bool>(), 0..12_usize);
-    draw.prop_map(move |(top, own, share, absolute, done)| {
+    let velocity = prop::array::uniform2(-4.0..4.0);
+    let draw = (0.5..8.0, velocity, 0.0..=1.0, any::<bool>(), 0..12_usize);
+    draw.prop_map(move |(top_speed, velocity, share, absolute, done)| {
+        let bounds = Bounds {
+            top_speed,
+            velocity,
+            share,
+            absolute,
+        };
         let left = 12 - done;
-        ((top, own, share, absolute), StepTime { done, left, dt })
+        (bounds, StepTime { done, left, dt })
     })
 }
 
@@ -130,8 +138,11 @@ fn gradients_of_a_chain(
     let mut path = Vec::new();
     for t in 0..HORIZON {
         let (done, left, dt) = (t as usize, (HORIZON - t) as usize, 0.4);
-        let bounds = bounds.map(|bounds| (bounds, StepTime { done, left, dt }));
-        positions = tensor_step(&positions, &goals, &factors.get(t), (dt, bounds));
+        let step = match bounds {
+            None => Step::Euler { dt },
+            Some(bounds) => Step::Bounded(bounds, StepTime { done, left, dt }),
+        };
+        positions = tensor_step(&positions, &goals, &factors.get(t), step);
         path.push(positions.shallow_clone());
     }
     // The offset gives the loss a gradient at the goals.
@@ -152,12 +163,12 @@ proptest! {
         (goal, p) in goal_and_pedestrian(),
         factor in prop::array::uniform3(-3.0..3.0),
         dt in 1e-3..10.0f64,
-        bounds in bounds(0.4),
+        (bounds, time) in bounds(0.4),
     ) {
-        for how in [(dt, None), (0.4, Some(bounds))] {
-            let (ours, theirs) = (twin(p, goal, factor, how), oracle(p, goal, factor, how));
+        for step in [Step::Euler { dt }, Step::Bounded(bounds, time)] {
+            let (ours, theirs) = (twin(p, goal, factor, step), oracle(p, goal, factor, step));
             let difference = (ours[0] - theirs[0]).hypot(ours[1] - theirs[1]);
-            prop_assert!(difference < 1e-6, "{how:?}: {ours:?} against {theirs:?}");
+            prop_assert!(difference < 1e-6, "{step:?}: {ours:?} against {theirs:?}");
         }
     }
 }
@@ -192,7 +203,12 @@ fn gradients_reach_back_to_the_first_step() {
     let [start, shape] = gradients_of_a_chain(
         &[([0.0, 0.0], [4.8, 0.0])],
         &factors,
-        Some((2.15, [1.0, 0.0], 1.0, false)),
+        Some(Bounds {
+            top_speed: 2.15,
+            velocity: [1.0, 0.0],
+            share: 1.0,
+            absolute: false,
+        }),
         Kind::Double,
     );
     assert!(are_numbers(&start) && are_numbers(&shape), "{start} {shape}");

@@ -1,13 +1,13 @@
 //! Forecasts of the network on libtorch, through the trait `ForecastWindows`.
 
-use super::backend::TorchBackend;
-use super::batch::WindowBatch;
-use super::emission::NoiseInput;
-use super::network::TorchNetwork;
-use super::numbers::{numbers, tensor};
-use super::rollout::Rollout;
-use super::tensor_backend::Pass;
 use crate::StarError;
+use crate::model::backend::TorchBackend;
+use crate::model::batch::WindowBatch;
+use crate::model::emission::NoiseInput;
+use crate::model::network::TorchNetwork;
+use crate::model::numbers::{numbers, tensor};
+use crate::model::rollout::{ForecastSteps, Rollout};
+use crate::model::tensor_backend::Pass;
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
@@ -48,7 +48,10 @@ impl TorchNetwork {
         };
         let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
         let pass = Pass::Torch(&torch);
-        let steps = (HORIZON, batch.rule);
+        let steps = ForecastSteps {
+            horizon: HORIZON,
+            rule: batch.rule,
+        };
         let Rollout { positions, factors } = self.layers().roll_out(&scenes, &goals, &noise, steps, pass);
         Ok(BatchRollout {
             hypotheses: positions.size()[1] as usize,

@@ -1,7 +1,7 @@
 //! A pedestrian's own frame: the first axis points from its last observed position to its goal; lengths are in its own
 //! [unit](ddl_network::length_unit).
 
-use super::own_motion;
+use crate::model::own_motion;
 use ddl_data::OBSERVED;
 use tch::Tensor;
 

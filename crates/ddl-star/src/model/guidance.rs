@@ -1,7 +1,7 @@
 //! Goals of the pedestrians of a batch, and the frame of the network's input and output.
 
-use super::flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
-use super::goal_frame::GoalFrame;
+use crate::model::flow::{FlowConstants, StepBounds, bounded_step, natural_gradient_step};
+use crate::model::goal_frame::GoalFrame;
 use ddl_dynamics::StepTime;
 use tch::Tensor;
 

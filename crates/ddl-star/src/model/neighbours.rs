@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use tch::{Device, Kind, Tensor};
 
-use super::packing::Packing;
+use crate::model::packing::Packing;
 use ddl_network::backend::Scenes;
 
 /// The neighbours in each frame of a batch: by scene for the kernels, in rows for libtorch.

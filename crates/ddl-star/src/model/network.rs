@@ -1,9 +1,9 @@
 //! The forecasting network on libtorch: for training, for CUDA, and as the reference of the kernels.
 
-use super::backend::TorchBackend;
-use super::parameters::Parameters;
 use crate::StarError;
 use crate::device::ComputeDevice;
+use crate::model::backend::TorchBackend;
+use crate::model::parameters::Parameters;
 use ddl_network::backbone::{Backbone, Perceptron, Star};
 use ddl_network::backend::{KernelBackend, Kernels};
 use ddl_network::seed::{Stage, stream};

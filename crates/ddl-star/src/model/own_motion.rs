@@ -57,11 +57,11 @@ mod tests {
             tremble in 0.0..1.0f64,
             scale in -6.0..6.0f64,
         ) {
-            let at = |(t, p): (usize, &[f64; 2])| {
+            let trembling = |(t, p): (usize, &[f64; 2])| {
                 let time = 0.4 * t as f64;
                 [vx * time + tremble * p[0], vy * time + tremble * p[1]]
             };
-            let track: Vec<Position> = track.iter().enumerate().map(at).collect();
+            let track: Vec<Position> = track.iter().enumerate().map(trembling).collect();
             let tensor = Tensor::from_slice(track.as_flattened()).reshape([8, 1, 2]);
             let top = top_speeds(&tensor, 0.4).double_value(&[0, 0, 0]);
             let velocity = [0, 1].map(|axis| velocities(&tensor, 0.4).double_value(&[0, 0, axis]));

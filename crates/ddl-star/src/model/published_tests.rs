@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use super::{NoiseInput, Pass, TorchBackend, TorchNetwork, WindowBatch};
 use crate::device::ComputeDevice;
+use crate::model::{ForecastSteps, NoiseInput, Pass, TorchBackend, TorchNetwork, WindowBatch};
 use crate::training::mean_squared_distance;
 use ddl_data::{PedestrianId, Window};
 use ddl_network::backend::Mode;
@@ -47,8 +47,8 @@ impl Reference {
                 let track = |i: usize| -> Vec<[f64; 2]> {
                     (0..20)
                         .map(|t| {
-                            let at = 2 * (t * pedestrians + i);
-                            [positions[at], positions[at + 1]]
+                            let start = 2 * (t * pedestrians + i);
+                            [positions[start], positions[start + 1]]
                         })
                         .collect()
                 };
@@ -151,9 +151,13 @@ fn agrees(kind: Kind, tolerance: f64) {
 
     let goal = reference.tensor("/estimated_goal", &[1, pedestrians, 2], kind);
     let _guard = tch::no_grad_guard();
+    let steps = ForecastSteps {
+        horizon: 12,
+        rule: StepRule::Euler,
+    };
     let rollout = network
         .layers()
-        .roll_out(&batch, &goal, &noise, (12, StepRule::Euler), Pass::Torch(&torch));
+        .roll_out(&batch, &goal, &noise, steps, Pass::Torch(&torch));
     let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));

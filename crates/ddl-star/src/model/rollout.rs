@@ -1,13 +1,13 @@
 //! From windows and goals to positions on tensors: teacher-forced for training, recurrent for forecasts.
 
-use super::batch::WindowBatch;
-use super::emission::{Emission, NoiseInput};
-use super::flow::{FlowConstants, StepBounds};
-use super::goal_frame::GoalFrame;
-use super::guidance::Guidance;
-use super::network::Layers;
-use super::own_motion;
-use super::tensor_backend::{Pass, TensorBackend};
+use crate::model::batch::WindowBatch;
+use crate::model::emission::{Emission, NoiseInput};
+use crate::model::flow::{FlowConstants, StepBounds};
+use crate::model::goal_frame::GoalFrame;
+use crate::model::guidance::Guidance;
+use crate::model::network::Layers;
+use crate::model::own_motion;
+use crate::model::tensor_backend::{Pass, TensorBackend};
 use ddl_data::OBSERVED;
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::Memory;
@@ -23,6 +23,19 @@ pub(crate) struct Rollout {
     /// `[horizon, H, P, 3]`: (a, b, c) of L = [[a, 0], [b, c]], in (m/s)^(1/2), of the step to each position; `None`
     /// for the variants without dynamics.
     pub(crate) factors: Option<Tensor>,
+}
+
+/// The steps of a forecast.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct ForecastSteps {
+    pub(crate) horizon: usize,
+    pub(crate) rule: StepRule,
+}
+
+/// A backend, and the backbone in its operations.
+struct BackbonePass<'a, B: TensorBackend> {
+    backend: &'a B,
+    backbone: &'a dyn Backbone<B>,
 }
 
 impl Layers {
@@ -41,8 +54,22 @@ impl Layers {
     ) -> Tensor {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Pass::Torch(backend) => self.teacher_forced_by(batch, goals, noise, (backend, &*self.on_tensors)),
-            Pass::Kernels(pass) => self.teacher_forced_by(batch, goals, noise, (&pass.backend, &*self.on_rows)),
+            Pass::Torch(backend) => {
+                let backbone = &*self.on_tensors;
+                self.teacher_forced_by(batch, goals, noise, &BackbonePass { backend, backbone })
+            }
+            Pass::Kernels(pass) => {
+                let backbone = &*self.on_rows;
+                self.teacher_forced_by(
+                    batch,
+                    goals,
+                    noise,
+                    &BackbonePass {
+                        backend: &pass.backend,
+                        backbone,
+                    },
+                )
+            }
         }
     }
 
@@ -51,8 +78,9 @@ impl Layers {
         batch: &WindowBatch,
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
-        (backend, backbone): (&B, &dyn Backbone<B>),
+        pass: &BackbonePass<'_, B>,
     ) -> Tensor {
+        let BackbonePass { backend, backbone } = *pass;
         let steps = batch.positions.size()[0] as usize - 1;
         let positions = batch.positions.narrow(0, 0, steps as i64);
         // The frames are known, so the backbone encodes all their scenes at once.
@@ -86,20 +114,34 @@ impl Layers {
     /// or H = number of noise vectors for a single goal (G = 1).
     ///
     /// # Shapes
-    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none; `steps` the horizon and the
-    /// integrator -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
     pub(crate) fn roll_out(
         &self,
         batch: &WindowBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        steps: (usize, StepRule),
+        steps: ForecastSteps,
         pass: Pass<'_>,
     ) -> Rollout {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Pass::Torch(backend) => self.roll_out_by(batch, goals, noise, steps, (backend, &*self.on_tensors)),
-            Pass::Kernels(pass) => self.roll_out_by(batch, goals, noise, steps, (&pass.backend, &*self.on_rows)),
+            Pass::Torch(backend) => {
+                let backbone = &*self.on_tensors;
+                self.roll_out_by(batch, goals, noise, steps, &BackbonePass { backend, backbone })
+            }
+            Pass::Kernels(pass) => {
+                let backbone = &*self.on_rows;
+                self.roll_out_by(
+                    batch,
+                    goals,
+                    noise,
+                    steps,
+                    &BackbonePass {
+                        backend: &pass.backend,
+                        backbone,
+                    },
+                )
+            }
         }
     }
 
@@ -108,9 +150,10 @@ impl Layers {
         batch: &WindowBatch,
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
-        (horizon, rule): (usize, StepRule),
-        (backend, backbone): (&B, &dyn Backbone<B>),
+        ForecastSteps { horizon, rule }: ForecastSteps,
+        pass: &BackbonePass<'_, B>,
     ) -> Rollout {
+        let BackbonePass { backend, backbone } = *pass;
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());
@@ -118,7 +161,7 @@ impl Layers {
         let shaped = self.config.variant.dynamics();
         let emission = Emission::new(backend, self.output, noise_weight, noise, shape, shaped);
         let guidance = self.guidance(batch, goals, rule);
-        let (mut features, mut memory) = observe(batch, &guidance, (backend, backbone));
+        let (mut features, mut memory) = observe(batch, &guidance, pass);
         if backend.entries(&features) < hypotheses as usize {
             features = backend.repeated(&features, hypotheses as usize);
             memory = memory.repeated(backend, hypotheses as usize);
@@ -194,7 +237,7 @@ impl Layers {
 fn observe<B: TensorBackend>(
     batch: &WindowBatch,
     guidance: &Guidance,
-    (backend, backbone): (&B, &dyn Backbone<B>),
+    BackbonePass { backend, backbone }: &BackbonePass<'_, B>,
 ) -> (B::Tokens, Memory<B>) {
     let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
     let centred = backend.given(&centre(batch, &observed));

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use tch::{Kind, TchError, Tensor};
 
-use super::parameters::Parameters;
+use crate::model::parameters::Parameters;
 
 /// One use: y = x W^T + b.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 //! A network is computed by one of them alone, from its inputs to its outputs. libtorch computes what follows, the path
 //! and its loss, and gives back the gradients of the outputs.
 
-use super::backend::TorchBackend;
-use super::batch::WindowBatch;
-use super::network::Layers;
+use crate::model::backend::TorchBackend;
+use crate::model::batch::WindowBatch;
+use crate::model::network::Layers;
 use ddl_network::StarConfig;
 use ddl_network::backend::{Backend, Buffer, KernelBackend, Kernels, Mode, Rows, VisibleScenes};
 use ddl_network::weights::Linear;

@@ -1,7 +1,7 @@
 //! Augmentations that keep a scene plausible. The windows of a fold overlap: without random changes, the network would
 //! memorise single pedestrians.
 
-use super::data::{RememberedViews, Views};
+use crate::proposal::data::{RememberedViews, Views};
 use ddl_network::ProposalTraining;
 use tch::{Kind, Tensor};
 
@@ -37,11 +37,11 @@ pub(crate) fn augment(views: &Views, future: &Tensor, training: &ProposalTrainin
         .to_kind(Kind::Float)
         .to_kind(options.0)
         .unsqueeze(-1);
-    let own = views.own.matmul(&matrix);
+    let transformed = views.own.matmul(&matrix);
     let inexactness = Tensor::rand([size[0], size[1], 1, 1], options) * training.jitter;
-    let own = &own + own.randn_like() * inexactness;
+    let own_tracks = &transformed + transformed.randn_like() * inexactness;
     let augmented = Views {
-        own,
+        own: own_tracks,
         neighbours,
         present: &views.present * seeing,
         remembered: remembering(&views.remembered, &matrix, training),

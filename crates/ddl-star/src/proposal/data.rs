@@ -73,9 +73,9 @@ impl Views {
         let (count, slots) = (views.len() as i64, config.neighbours);
         let track = (OBSERVED * 2) as i64;
         let remembered = RememberedViews::new(views.clone(), count, config, (kind, device))?;
-        let (mut own, mut neighbours, mut present) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut own_tracks, mut neighbours, mut present) = (Vec::new(), Vec::new(), Vec::new());
         for view in views {
-            own.extend_from_slice(view.own.as_flattened());
+            own_tracks.extend_from_slice(view.own.as_flattened());
             let taken = view.neighbours.len().min(slots);
             for neighbour in &view.neighbours[..taken] {
                 neighbours.extend_from_slice(neighbour.as_flattened());
@@ -86,7 +86,7 @@ impl Views {
         let tensor = |values: &[f64], shape: &[i64]| tensor(values, shape, (kind, device));
         let slots = slots as i64;
         Ok(Self {
-            own: tensor(&own, &[count, track / 2, 2])?,
+            own: tensor(&own_tracks, &[count, track / 2, 2])?,
             neighbours: tensor(&neighbours, &[count, slots, track / 2, 2])?,
             present: tensor(&present, &[count, slots])?,
             remembered,

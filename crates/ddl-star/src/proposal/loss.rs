@@ -1,7 +1,7 @@
 //! The loss: several of the nearest endpoints share it at first, only the nearest at the end (relaxed winner takes
 //! all).
 
-use super::network::Proposals;
+use crate::proposal::network::Proposals;
 use ddl_data::HORIZON;
 use ddl_network::proposal::WAYPOINTS;
 use tch::{Kind, Tensor};

@@ -1,9 +1,9 @@
 //! The network: an ensemble of small perceptrons with attention over the neighbours.
 
-use super::data::Views;
 use crate::StarError;
 use crate::device::ComputeDevice;
 use crate::model::{Parameters, numbers};
+use crate::proposal::data::Views;
 use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
 use ddl_network::proposal::{
@@ -273,19 +273,19 @@ impl TorchProposals {
     /// Shapes: -> `[M, B, G, 17]`.
     fn remembered_features(&self, views: &Views) -> Tensor {
         let tracks = &views.remembered.tracks;
-        let own = views.own.unsqueeze(2);
+        let observed = views.own.unsqueeze(2);
         let position = |track: &Tensor, step: usize| track.select(-2, step as i64);
-        let here = position(&own, OBSERVED - 1);
+        let here = position(&observed, OBSERVED - 1);
         let [now, halfway, end] =
             [OBSERVED - 1, OBSERVED + HORIZON / 2 - 1, WINDOW - 1].map(|step| position(tracks, step));
         let seconds = HORIZON as f64 * self.config.time_step;
-        let late = self.velocity(&own, OBSERVED - 1);
+        let late = self.velocity(&observed, OBSERVED - 1);
         let its_late = self.velocity(tracks, OBSERVED - 1);
         let its_early = self.velocity(tracks, RECENT_STEPS);
         let pairs = [
             &now - &here,
             &its_late - &late,
-            its_early - self.velocity(&own, RECENT_STEPS),
+            its_early - self.velocity(&observed, RECENT_STEPS),
             (&end - &now - &late * seconds) / ENDPOINT_UNIT,
             (&end - &here - &late * seconds) / ENDPOINT_UNIT,
             (&halfway - &now - &late * (seconds / 2.0)) / ENDPOINT_UNIT,

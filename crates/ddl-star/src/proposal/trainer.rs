@@ -1,12 +1,12 @@
 //! Training of the proposal network, one step at a time.
 
-use super::augment::augment;
-use super::data::{Views, rows_of};
-use super::loss::{LossWeights, winner_takes_all};
-use super::network::TorchProposals;
 use crate::StarError;
 use crate::device::OneThread;
 use crate::model::tensor;
+use crate::proposal::augment::augment;
+use crate::proposal::data::{Views, rows_of};
+use crate::proposal::loss::{LossWeights, winner_takes_all};
+use crate::proposal::network::TorchProposals;
 use crate::training::GENERATOR;
 use crate::training::checkpoint::{self, Extra};
 use crate::training::gate::FiniteGate;

@@ -1,8 +1,8 @@
 //! The state of an unfinished training in one file, checked when read and written atomically.
 
-use super::optimizer::Adam;
 use crate::StarError;
 use crate::model::Parameters;
+use crate::training::optimizer::Adam;
 use ddl_network::NetworkError;
 use ddl_network::weights::{Origin, StoredTensor, TensorData, find_tensor, read_tensors, write_tensors};
 use std::path::Path;

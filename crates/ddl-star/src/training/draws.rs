@@ -1,8 +1,8 @@
 //! The random draws of training steps: noise, rotations and seeds, for many steps at once.
 
-use super::schedule::Schedule;
 use crate::StarError;
 use crate::model::tensor;
+use crate::training::schedule::Schedule;
 use ddl_data::Rotation;
 use ddl_network::seed::{Stage, stream};
 use rand::{Rng as _, RngExt as _};

@@ -1,10 +1,10 @@
 //! The loss of a batch, and its gradient with respect to all learned numbers as one vector.
 
-use super::draws::StepDraw;
-use super::loss::{mean_distance, mean_squared_distance};
-use super::prepared::TrainingBatch;
 use crate::StarError;
-use crate::model::{KernelPass, Layers, NoiseInput, Pass, TorchBackend, TorchNetwork};
+use crate::model::{ForecastSteps, KernelPass, Layers, NoiseInput, Pass, TorchBackend, TorchNetwork};
+use crate::training::draws::StepDraw;
+use crate::training::loss::{mean_distance, mean_squared_distance};
+use crate::training::prepared::TrainingBatch;
 use ddl_data::{HORIZON, OBSERVED, WINDOW};
 use ddl_network::backend::{Kernels, Mode};
 use ddl_network::seed::{Stage, stream};
@@ -98,7 +98,11 @@ fn loss(
             Ok(mean_squared_distance(&forecast, &after(1)?))
         }
         Objective::Walk => {
-            let (goals, steps) = (goals.unsqueeze(0), (HORIZON, StepRule::Bounded));
+            let goals = goals.unsqueeze(0);
+            let steps = ForecastSteps {
+                horizon: HORIZON,
+                rule: StepRule::Bounded,
+            };
             let walk = layers.roll_out(scenes, &goals, &NoiseInput::Expected, steps, pass);
             Ok(mean_distance(&walk.positions.squeeze_dim(1), &after(OBSERVED)?))
         }

@@ -1,7 +1,7 @@
 //! Adam (Kingma and Ba 2015) with accessible state, so that it can be saved and restored.
 
-use super::gate::FiniteGate;
 use crate::model::Parameters;
+use crate::training::gate::FiniteGate;
 use tch::Tensor;
 
 const BETA_1: f64 = 0.9;

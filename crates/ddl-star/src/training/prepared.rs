@@ -154,13 +154,13 @@ mod tests {
             let parts = parts(&sizes, least);
             let whole: Vec<usize> = parts.iter().cloned().flatten().collect();
             prop_assert_eq!(whole, (0..sizes.len()).collect::<Vec<_>>());
-            let [all, largest] = [sizes.iter().sum::<usize>(), sizes.iter().copied().max().unwrap()];
-            let count = (all / least).max(1);
+            let [total, largest] = [sizes.iter().sum::<usize>(), sizes.iter().copied().max().unwrap()];
+            let count = (total / least).max(1);
             prop_assert!(parts.len() <= count);
             for part in parts {
                 prop_assert!(!part.is_empty());
                 let pedestrians: usize = sizes[part].iter().sum();
-                prop_assert!(pedestrians <= all / count + largest + 1, "{} of {}", pedestrians, all);
+                prop_assert!(pedestrians <= total / count + largest + 1, "{} of {}", pedestrians, total);
             }
         }
     }

@@ -1,15 +1,15 @@
 //! The training loop, one step at a time, so that the caller decides when to report, save and stop.
 
-use super::GENERATOR;
-use super::checkpoint::{self, Extra, TrainerProgress};
-use super::draws::{StepDraw, StepDraws};
-use super::gate::FiniteGate;
-use super::gradient;
-use super::optimizer::Adam;
-use super::prepared::{PreparedBatches, TrainingBatch};
-use super::schedule::Schedule;
 use crate::StarError;
 use crate::model::{TorchNetwork, numbers};
+use crate::training::GENERATOR;
+use crate::training::checkpoint::{self, Extra, TrainerProgress};
+use crate::training::draws::{StepDraw, StepDraws};
+use crate::training::gate::FiniteGate;
+use crate::training::gradient;
+use crate::training::optimizer::Adam;
+use crate::training::prepared::{PreparedBatches, TrainingBatch};
+use crate::training::schedule::Schedule;
 use ddl_data::{Position, Window};
 use ddl_network::backend::Kernels;
 use ddl_network::weights::{Origin, Weights};

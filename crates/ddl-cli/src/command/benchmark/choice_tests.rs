@@ -18,24 +18,26 @@ fn plan_of(words: &str) -> anyhow::Result<Plan> {
     parsed(words).plan_of(Convention::Star, None)
 }
 
+/// Folder, tasks and scored pedestrians of a plan, and how it trains.
+fn planned(words: &str) -> String {
+    let plan = plan_of(words).unwrap();
+    let out = usual_folder(&plan);
+    let out = out.strip_prefix("runs").unwrap();
+    let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
+    let (_, train) = train.split_at(9); // convention, fold, variant and seed
+    let end = train.iter().position(|word| word == "--out").unwrap();
+    let scored = plan.settings.test_pedestrians;
+    let scored = scored.map_or("all".to_owned(), |n| n.to_string());
+    format!(
+        "{} {} {scored}: {}",
+        out.display(),
+        plan.tasks.len(),
+        train[..end].join(" ")
+    )
+}
+
 #[test]
 fn the_recipe_and_the_folder_follow_the_protocols() {
-    let planned = |words: &str| {
-        let plan = plan_of(words).unwrap();
-        let out = usual_folder(&plan);
-        let out = out.strip_prefix("runs").unwrap();
-        let train = plan.train_arguments(&plan.tasks[0], Path::new(""), 1);
-        let (_, train) = train.split_at(9); // convention, fold, variant and seed
-        let end = train.iter().position(|word| word == "--out").unwrap();
-        let scored = plan.settings.test_pedestrians;
-        let scored = scored.map_or("all".to_owned(), |n| n.to_string());
-        format!(
-            "{} {} {scored}: {}",
-            out.display(),
-            plan.tasks.len(),
-            train[..end].join(" ")
-        )
-    };
     let published = "--protocol published,fair,single --profile";
     for (words, expected) in [
         (

@@ -6,8 +6,12 @@ use crate::command::{Reporting, baselines};
 use crate::output;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
+use anyhow::Context as _;
 use ddl::data::{Convention, Dataset, locate};
+use ddl::report::Summary;
 use ddl::{BaselineRequest, Protocol, Results};
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// The main tables of the headline window rule, as docs/results.md shows them.
@@ -31,13 +35,7 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
     let results = Results::of(title, &folders)?;
     results.save(out)?;
     let summary = results.report.summary(settings.convention);
-    if let Some(summary) = &summary {
-        let text = format!(
-            "minADE/minFDE in metres:\n\n{:#}\nMean over the folds, with 95 % intervals:\n\n{:#}",
-            summary.errors, summary.metrics
-        );
-        output::write_output(Some(&out.join(SUMMARY)), &text)?;
-    }
+    save_summary(summary.as_ref(), &out.join(SUMMARY))?;
     if reporting.telling.json {
         output::print(&(results.report.to_json()? + "\n"))?;
     } else if reporting.telling.progress != ProgressMode::Json {
@@ -48,17 +46,35 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
         };
         output::print(&format!("\n{}\n\n", text.trim_end()))?;
     }
-    for (what, name) in [
-        ("main tables", SUMMARY),
+    let main_tables = summary.map(|_| ("main tables", SUMMARY));
+    let others = [
         ("report", "report.md"),
         ("", "report.json"),
         ("for a paper", "report.tex"),
         ("page", "report.html"),
         ("figures", "figures"),
-    ] {
+    ];
+    for (what, name) in main_tables.into_iter().chain(others) {
         tell(format_args!("{what:12} {}", out.join(name).display()));
     }
     Ok(())
+}
+
+/// Writes the main tables; without any, as with the protocol `published` alone, removes those of an earlier report.
+fn save_summary(summary: Option<&Summary>, file: &Path) -> anyhow::Result<()> {
+    if let Some(summary) = summary {
+        let text = format!(
+            "minADE/minFDE in metres:\n\n{:#}\nMean over the folds, with 95 % intervals:\n\n{:#}",
+            summary.errors, summary.metrics
+        );
+        return output::write_output(Some(file), &text);
+    }
+    match fs::remove_file(file) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(error).with_context(|| format!("cannot remove {}, which is out of date", file.display()))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The baselines in the other recorded convention, if its recordings are there. These rows need no training, and show

@@ -1,6 +1,6 @@
 //! Comparison with the formula in double precision, and decisions of dropout.
 
-use super::{AddNorm, Decisions, Normal};
+use crate::kernel::add_norm::{AddNorm, Decisions, Normal};
 use crate::kernel::dropout::Dropout;
 use crate::kernel::tests::chance::Decided;
 use crate::kernel::tests::numbers::{Numbers, assert_close};

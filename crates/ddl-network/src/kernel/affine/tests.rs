@@ -1,6 +1,6 @@
 //! Comparison with the formula in double precision.
 
-use super::Affine;
+use crate::kernel::affine::Affine;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::tests::numbers::{Numbers, assert_close, wide};
 use ddl_simd::{Dispatch, InstructionSet, Simd, TiledKernel};

@@ -1,14 +1,14 @@
 //! The backward pass of a layer, a few rows at a time. Each piece of rows has separate sums for the gradients of the
 //! weights, which are then added in the order of the rows.
 
-use super::forward::ROWS;
-use super::forward_results::{ForwardResults, NormalisedRows};
-use super::layer::{Dropouts, EncoderKernel};
 use crate::kernel::add_norm::{AddNorm, Decisions};
 use crate::kernel::affine::Affine;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
+use crate::kernel::encoder_layer::forward::ROWS;
+use crate::kernel::encoder_layer::forward_results::{ForwardResults, NormalisedRows};
+use crate::kernel::encoder_layer::layer::{Dropouts, EncoderKernel};
 use crate::kernel::feed_forward::Gradients;
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};

@@ -1,12 +1,12 @@
 //! The forward pass of a layer, a few rows at a time.
 
-use super::forward_results::{AttentionResults, ForwardResults, NormalisedRows};
-use super::layer::{Dropouts, EncoderKernel};
 use crate::kernel::add_norm::{AddNorm, Decisions, Normal};
 use crate::kernel::affine::Affine;
 use crate::kernel::buffer::Buffer;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
+use crate::kernel::encoder_layer::forward_results::{AttentionResults, ForwardResults, NormalisedRows};
+use crate::kernel::encoder_layer::layer::{Dropouts, EncoderKernel};
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};
 

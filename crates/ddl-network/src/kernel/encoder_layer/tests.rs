@@ -1,8 +1,8 @@
 //! Properties of any layer. `ddl-star` compares it with the layer of libtorch.
 
-use super::{CachedKeyValues, Dropouts, EncoderKernel, Sizes};
 use crate::kernel::buffer::Buffer;
 use crate::kernel::dropout::Dropout;
+use crate::kernel::encoder_layer::{CachedKeyValues, Dropouts, EncoderKernel, Sizes};
 use crate::kernel::scenes::Scenes;
 use crate::kernel::tests::numbers::{Numbers, bits, lists};
 use ddl_simd::InstructionSet;

@@ -4,11 +4,11 @@
 
 use std::ops::DerefMut;
 
-use super::dropout::UnitDecisions;
-use super::layer::{FeedForward, ROWS_AT_ONCE};
 use crate::kernel::buffer::Buffer;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
 use crate::kernel::dropout::Dropout;
+use crate::kernel::feed_forward::dropout::UnitDecisions;
+use crate::kernel::feed_forward::layer::{FeedForward, ROWS_AT_ONCE};
 use crate::kernel::product::{BLOCK, End, Start, add_transposed_product, multiply, sum_of_rows};
 use crate::kernel::threads::run_each;
 use ddl_simd::{LANES, Simd, TiledKernel};

@@ -1,10 +1,10 @@
 //! The forward pass, parallel over tiles of rows.
 
-use super::dropout::UnitDecisions;
-use super::layer::{FeedForward, ROWS_AT_ONCE};
 use crate::kernel::buffer::Buffer;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
 use crate::kernel::dropout::Dropout;
+use crate::kernel::feed_forward::dropout::UnitDecisions;
+use crate::kernel::feed_forward::layer::{FeedForward, ROWS_AT_ONCE};
 use crate::kernel::product::{BLOCK, End, Start, multiply};
 use crate::kernel::threads::run_each;
 use ddl_simd::{Simd, TiledKernel};

@@ -1,8 +1,8 @@
 //! The feed-forward block with its weights in the layout of the kernels, and one block of its hidden units.
 
-use super::dropout::UnitDecisions;
 use crate::kernel::affine::Affine;
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut};
+use crate::kernel::feed_forward::dropout::UnitDecisions;
 use crate::kernel::product::{BLOCK, End, Start, multiply};
 #[cfg(test)]
 use ddl_simd::InstructionSet;

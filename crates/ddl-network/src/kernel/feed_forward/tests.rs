@@ -2,9 +2,9 @@
 
 mod exact;
 
-use super::FeedForward;
-use super::dropout::reference;
 use crate::kernel::Dropout;
+use crate::kernel::feed_forward::FeedForward;
+use crate::kernel::feed_forward::dropout::reference;
 use ddl_simd::InstructionSet;
 use exact::Case;
 use proptest::prelude::*;

@@ -4,8 +4,8 @@
 //! and drop factors `d_ij`: `dv_j = Σ_i d_ij w_ij g_i`, and the gradient of the score of (i, j) is `w_ij (d_ij g_i ·
 //! v_j − g_i · mixed_i)`. The powers are computed again from the scores, which is faster than to store and load them.
 
-use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
+use crate::kernel::spatial_attention::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
 

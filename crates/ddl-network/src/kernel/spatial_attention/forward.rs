@@ -1,8 +1,8 @@
 //! The forward pass: from queries, keys and values to mixed values.
 
-use super::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::heads::HeadPart;
 use crate::kernel::scenes::SeenKey;
+use crate::kernel::spatial_attention::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, Lanes, Simd};
 

@@ -1,8 +1,8 @@
 //! Shared parts of the forward and the backward kernel: a scene's rows in lanes, and buffers.
 
-use super::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
 use crate::kernel::scenes::SceneView;
+use crate::kernel::spatial_attention::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::threads::JobBuffers;
 use ddl_simd::{HalfQuad, LANES, Lanes, Quad, Simd, ZERO_QUAD};
 use std::cell::Cell;

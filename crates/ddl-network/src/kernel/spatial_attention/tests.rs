@@ -1,8 +1,8 @@
 //! Comparison with the formula in double precision.
 
-use super::SpatialAttention;
-use super::dropout::WeightDecisions;
-use super::queries::TWOS_AT_ONCE;
+use crate::kernel::spatial_attention::SpatialAttention;
+use crate::kernel::spatial_attention::dropout::WeightDecisions;
+use crate::kernel::spatial_attention::queries::TWOS_AT_ONCE;
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, lists, wide};
 use crate::kernel::{Dropout, Scenes};

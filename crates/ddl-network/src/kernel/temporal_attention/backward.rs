@@ -3,8 +3,10 @@
 //! With weights `w_e` and the gradient g of mixed values: `dv_e = w_e g`, and the gradient of score e is
 //! `w_e (g · v_e − Σ_f w_f g · v_f)`.
 
-use super::sixteen_heads::{KeyValue, KeyValueMut, SixteenHeads, TemporalBuffers, accumulate, dot, soften, weighted};
 use crate::kernel::heads::Heads;
+use crate::kernel::temporal_attention::sixteen_heads::{
+    KeyValue, KeyValueMut, SixteenHeads, TemporalBuffers, accumulate, dot, soften, weighted,
+};
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Lanes, Simd, ZERO_QUAD};
 

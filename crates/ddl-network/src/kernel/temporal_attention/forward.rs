@@ -1,7 +1,9 @@
 //! The forward pass: from queries, keys and values to mixed values.
 
-use super::sixteen_heads::{KeyValue, SixteenHeads, TemporalBuffers, accumulate, are_prefetched, soften, weighted};
 use crate::kernel::heads::Heads;
+use crate::kernel::temporal_attention::sixteen_heads::{
+    KeyValue, SixteenHeads, TemporalBuffers, accumulate, are_prefetched, soften, weighted,
+};
 use crate::kernel::threads::Buffered;
 use ddl_simd::{DEPTH, Kernel, LANES, Simd, ZERO_QUAD};
 

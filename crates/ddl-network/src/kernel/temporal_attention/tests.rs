@@ -1,6 +1,6 @@
 //! Comparison with the formula in double precision.
 
-use super::{KeyValue, KeyValueMut, TemporalAttention, TemporalGradients};
+use crate::kernel::temporal_attention::{KeyValue, KeyValueMut, TemporalAttention, TemporalGradients};
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
 use ddl_simd::InstructionSet;

@@ -1,4 +1,4 @@
-//! The short tables of a results page.
+//! The main tables of a benchmark.
 
 use ddl_data::Convention;
 use ddl_eval::Protocol;

@@ -1,6 +1,6 @@
 //! The decisions one by one, and tests of their randomness.
 
-use super::{Dropout, mixed};
+use crate::kernel::feed_forward::dropout::{Dropout, mixed};
 use crate::kernel::tests::chance::Decided;
 
 fn bits(seed: u64, row: usize, unit: usize) -> u32 {

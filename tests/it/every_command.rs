@@ -1,4 +1,4 @@
-//! Common behaviour of all commands: help, completions, manual pages, JSON output, quick start.
+//! What all commands have in common: help, completions, manual pages, JSON output, quick start.
 
 use ddl::Variant;
 use ddl_tests::own_tracks;

@@ -1,6 +1,7 @@
-//! `ddl pack --benchmark`: packs the models of a finished benchmark as built-in models.
+//! A finished benchmark: its report (`ddl benchmark --collect`), and its models as built-in ones (`ddl pack
+//! --benchmark`).
 
-use ddl::data::{Convention, WindowRule};
+use ddl::data::Convention;
 use ddl::eval::Conditions;
 use ddl::report::Report;
 use ddl::{BaselineRequest, Ddl, DeviceChoice, Protocol, Variant};
@@ -13,7 +14,7 @@ const FOLDS: [&str; 5] = ["eth", "hotel", "univ", "zara1", "zara2"];
 const PACK: &str = "pack --benchmark . --out models";
 
 /// A finished benchmark of these folds, with a drawn model as each run, and invented results.
-fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
+fn benchmark(profile: &str, convention: Convention, folds: &[&str]) -> Place {
     let place = Place::empty();
     let request = BaselineRequest {
         folds: vec![crowd::FOLD.into()],
@@ -26,12 +27,12 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
     let mut tasks = Vec::new();
     for (&fold, seed) in folds.iter().flat_map(|fold| [(fold, 2), (fold, 1)]) {
         let row = |forecaster: &str, min_ade| {
-            let rule = WindowRule::Published;
+            let rule = convention.headline_rule();
             let mut row = measured.clone();
             row.conditions = Conditions {
                 seed: Some(seed),
                 commit: "0123abc".to_owned(),
-                ..Conditions::new(Convention::Star, rule, Protocol::Fair, fold, forecaster)
+                ..Conditions::new(convention, rule, Protocol::Fair, fold, forecaster)
             };
             row.scores.min_ade = min_ade;
             row
@@ -49,7 +50,7 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
     let plan = json!({
         "format": 3,
         "settings": {
-            "profile": profile, "convention": convention, "data": null, "device": "cpu", "cargo_profile": "release",
+            "profile": profile, "convention": convention.to_string(), "data": null, "device": "cpu", "cargo_profile": "release",
             "epochs": 4, "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500,
             "protocols": ["fair", "single"],
             "recipe": {"name": "recommended", "optimiser": null},
@@ -62,7 +63,7 @@ fn benchmark(profile: &str, convention: &str, folds: &[&str]) -> Place {
 
 #[test]
 fn a_benchmark_is_packed_as_built_in_models() {
-    let place = benchmark("paper", "star", &FOLDS);
+    let place = benchmark("paper", Convention::Star, &FOLDS);
     for (option, seed) in [("", 1), (" --seed 2", 2)] {
         let said = place.ok(&format!("{PACK}{option}"));
         assert_eq!(said.matches(" weights\n").count(), 5, "{said}");
@@ -88,15 +89,52 @@ fn a_benchmark_is_packed_as_built_in_models() {
 }
 
 #[test]
+fn the_main_tables_hold_the_numbers_of_the_report() {
+    const COLLECT: &str = "benchmark --out . --collect";
+    let place = benchmark("smoke", Convention::Simulated, &[crowd::FOLD]);
+    let ids = [1, 2].map(|seed| format!("{}-full-{seed}", crowd::FOLD));
+    for id in &ids {
+        place.write(
+            &format!("{id}/finished.json"),
+            json!({"task": id, "seconds": 1.0}).to_string(),
+        );
+    }
+    let said = place.run(COLLECT).stderr;
+    let report: Value = json(&place.text("report.json"));
+    let rows = report["rows"].as_array().unwrap().iter();
+    let errors: Vec<f64> = rows
+        .filter(|row| row["forecaster"] == "DDL")
+        .map(|row| row["min_fde"].as_f64().unwrap())
+        .collect();
+    assert_eq!(errors.len(), ids.len(), "{report}");
+    let expected = format!("9.000/{:.3}", errors.iter().sum::<f64>() / errors.len() as f64);
+    let summary = place.text("summary.md");
+    assert!(summary.contains(&expected), "{expected}: {summary}");
+    assert!(said.contains("main tables"), "{said}");
+
+    // The protocol `published` has no main tables, and those of the report before are out of date.
+    for id in &ids {
+        let file = format!("{id}/run/report.json");
+        let (fair, published) = (r#""protocol":"fair""#, r#""protocol":"published""#);
+        let text = place.text(&file);
+        assert!(text.contains(fair), "{text}");
+        place.write(&file, text.replace(fair, published));
+    }
+    let said = place.run(COLLECT).stderr;
+    assert!(said.contains("report.md") && !said.contains("summary.md"), "{said}");
+    assert!(!place.at("summary.md").exists());
+}
+
+#[test]
 fn an_unfinished_benchmark_is_refused_and_nothing_replaced() {
     for (profile, convention, folds, words) in [
-        ("paper", "star", &FOLDS[..4], ["zara2", "all folds"]),
-        ("paper", "social-gan", &FOLDS[..1], ["social-gan", "star"]),
-        ("quick", "star", &FOLDS[..1], ["of profile quick", "paper"]),
+        ("paper", Convention::Star, &FOLDS[..4], ["zara2", "all folds"]),
+        ("paper", Convention::SocialGan, &FOLDS[..1], ["social-gan", "star"]),
+        ("quick", Convention::Star, &FOLDS[..1], ["of profile quick", "paper"]),
     ] {
         benchmark(profile, convention, folds).fails(PACK, &words);
     }
-    let place = benchmark("paper", "star", &FOLDS);
+    let place = benchmark("paper", Convention::Star, &FOLDS);
     // The other folds could be packed.
     place.write("univ-full-1/run/model.safetensors", "damaged");
     place.fails(PACK, &["univ-full-1"]);
