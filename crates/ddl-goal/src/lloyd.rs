@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use crate::points::{Points, squared_distance};
-use ddl_simd::{Dispatch, Register, RegisterKernel};
+use ddl_simd::{Dispatch, Kernel, Simd};
 
 #[derive(Debug)]
 pub(crate) struct Lloyd {
@@ -40,7 +40,7 @@ impl Lloyd {
 
     /// Assigns each point to its nearest centre, the first of equally near ones.
     fn assign(&mut self, points: &Points) {
-        Dispatch::detect().run_on_registers(Assign {
+        Dispatch::detect().run(Assign {
             points,
             centres: &self.centres,
             labels: &mut self.labels,
@@ -92,12 +92,10 @@ struct Assign<'a> {
     nearest: &'a mut [f64],
 }
 
-impl RegisterKernel for Assign<'_> {
-    type Output = ();
-
+impl Kernel for Assign<'_> {
     /// Plain loops, compiled for the instruction set; the result has the same bits for every instruction set.
     #[inline(always)]
-    fn run<R: Register>(self, _: R) {
+    fn run<S: Simd>(self, _: S) {
         self.labels.fill(0);
         self.nearest.fill(f64::INFINITY);
         for (k, &centre) in self.centres.iter().enumerate() {

@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
 use crate::motion::{COMPONENTS, SIGNED};
-use ddl_simd::{Dispatch, Register, RegisterKernel};
+use ddl_simd::{Dispatch, Kernel, Simd};
 
 /// Tracks compared at once, so that the loop over them is vectorised.
 const LANES: usize = 16;
@@ -49,10 +49,12 @@ impl MotionIndex {
         if wanted == 0 {
             return Vec::new();
         }
-        let mut keys = Dispatch::detect().run_on_registers(NearestMotions {
+        let mut keys = Vec::new();
+        Dispatch::detect().run(NearestMotions {
             blocks: &self.blocks,
             query,
             wanted,
+            keys: &mut keys,
         });
         keys.sort_unstable();
         keys.truncate(wanted);
@@ -65,14 +67,13 @@ struct NearestMotions<'a> {
     blocks: &'a [Block],
     query: &'a [f32; COMPONENTS],
     wanted: usize,
+    keys: &'a mut Vec<u64>,
 }
 
-impl RegisterKernel for NearestMotions<'_> {
-    type Output = Vec<u64>;
-
+impl Kernel for NearestMotions<'_> {
     /// Plain loops, compiled for the instruction set; the result has the same bits for every instruction set.
     #[inline(always)]
-    fn run<R: Register>(self, _: R) -> Vec<u64> {
+    fn run<S: Simd>(self, _: S) {
         // Room for the keys that one block adds before the nearest are selected.
         let mut keys = vec![0; 2 * (self.wanted + LANES)];
         let mut count = 0;
@@ -97,7 +98,7 @@ impl RegisterKernel for NearestMotions<'_> {
             }
         }
         keys.truncate(count);
-        keys
+        *self.keys = keys;
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::arrays::array;
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::softdtw::{Band, Cost, Neighbour, SearchError, SearchIndex as Index, SoftDtw};
+use ddl::softdtw::{Cost, Neighbour, SearchError, SearchIndex as Index, SoftDtw};
 use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -83,7 +83,7 @@ fn steps<'a, const D: usize>(
     Ok(Cow::Owned(widened.collect()))
 }
 
-fn distance(gamma: f64, cost: &str, band: Option<usize>) -> PyResult<SoftDtw> {
+fn distance(gamma: f64, cost: &str) -> PyResult<SoftDtw> {
     let cost = match cost {
         "squared_euclidean" => Cost::SquaredEuclidean,
         "euclidean" => Cost::Euclidean,
@@ -93,11 +93,7 @@ fn distance(gamma: f64, cost: &str, band: Option<usize>) -> PyResult<SoftDtw> {
             )));
         }
     };
-    let dtw = SoftDtw::new(gamma, cost).map_err(of_any)?;
-    Ok(match band {
-        None => dtw,
-        Some(radius) => dtw.with_band(Band::new(radius)),
-    })
+    SoftDtw::new(gamma, cost).map_err(of_any)
 }
 
 /// Limit of the cells of a gradient; at 24 bytes each, 12 GB.
@@ -120,8 +116,6 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 ///     Smoothing, in the unit of the cost; 0 is hard DTW.
 /// cost
 ///     "squared_euclidean" or "euclidean" distance of two steps.
-/// band
-///     Largest difference of the indices of matched steps; None for no limit.
 /// normalised
 ///     D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 ///
@@ -130,17 +124,16 @@ fn unlocked<T: Send>(py: Python<'_>, cells: usize, work: impl Send + FnOnce() ->
 /// ValueError
 ///     A sequence is empty or not finite, or the components differ.
 #[pyfunction]
-#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", band = None, normalised = false))]
+#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", normalised = false))]
 pub(crate) fn value(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     gamma: f64,
     cost: &str,
-    band: Option<usize>,
     normalised: bool,
 ) -> PyResult<f64> {
-    let dtw = distance(gamma, cost, band)?;
+    let dtw = distance(gamma, cost)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
     in_dimension!(components, D => {
@@ -156,17 +149,16 @@ pub(crate) fn value(
 
 /// Soft-DTW, and its gradient (n, components) with respect to `x`; see `value`.
 #[pyfunction]
-#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", band = None, normalised = false))]
+#[pyo3(signature = (x, y, gamma = 1.0, *, cost = "squared_euclidean", normalised = false))]
 pub(crate) fn value_and_gradient(
     py: Python<'_>,
     x: &Bound<'_, PyAny>,
     y: &Bound<'_, PyAny>,
     gamma: f64,
     cost: &str,
-    band: Option<usize>,
     normalised: bool,
 ) -> PyResult<(f64, Py<PyAny>)> {
-    let dtw = distance(gamma, cost, band)?;
+    let dtw = distance(gamma, cost)?;
     let (x, y) = (sequence(x, "x")?, sequence(y, "y")?);
     let components = x.shape()[1];
     in_dimension!(components, D => {
@@ -175,8 +167,8 @@ pub(crate) fn value_and_gradient(
         let (x, y) = (&*x, &*y);
         if x.len().saturating_mul(y.len()) > MOST_CELLS {
             return Err(PyValueError::new_err(format!(
-                "a gradient of {} x {} steps exceeds the memory limit ({MOST_CELLS} cells of 24 bytes); give a band, \
-                 or use fewer steps",
+                "a gradient of {} x {} steps exceeds the memory limit ({MOST_CELLS} cells of 24 bytes); use fewer \
+                 steps",
                 x.len(),
                 y.len()
             )));
@@ -254,15 +246,9 @@ pub(crate) struct SearchIndex {
 #[pymethods]
 impl SearchIndex {
     #[new]
-    #[pyo3(signature = (candidates, gamma = 1.0, *, cost = "squared_euclidean", band = None))]
-    fn new(
-        py: Python<'_>,
-        candidates: Vec<Bound<'_, PyAny>>,
-        gamma: f64,
-        cost: &str,
-        band: Option<usize>,
-    ) -> PyResult<Self> {
-        let dtw = distance(gamma, cost, band)?;
+    #[pyo3(signature = (candidates, gamma = 1.0, *, cost = "squared_euclidean"))]
+    fn new(py: Python<'_>, candidates: Vec<Bound<'_, PyAny>>, gamma: f64, cost: &str) -> PyResult<Self> {
+        let dtw = distance(gamma, cost)?;
         let arrays = sequences(&candidates, "candidates")?;
         let components = components_of(&arrays, "candidates")?;
         let index: Box<dyn Search> = in_dimension!(components, D => {

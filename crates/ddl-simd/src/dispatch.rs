@@ -1,53 +1,39 @@
-//! Detection of vector instructions at run time, and dispatch of kernels.
-
-#![expect(clippy::inline_always, reason = "compiled per instruction set")]
+//! The instruction sets of the processor, and running kernels with one.
 
 use std::fmt;
 
-use crate::portable::Portable;
-use crate::register::{Register, RegisterKernel};
+use fearless_simd::{Level, Simd as _};
+
 use crate::simd::Kernel;
-#[cfg(target_arch = "x86_64")]
-use crate::x86::{Avx2, Avx512};
 
 /// Instruction sets that kernels can run with.
 ///
 /// # Examples
 /// ```
 /// use ddl_simd::InstructionSet;
-/// let best = InstructionSet::detect();
-/// assert!(best.is_available() && InstructionSet::Portable.is_available());
-/// assert!(InstructionSet::available().contains(&best));
+/// assert_eq!(InstructionSet::available().last(), Some(&InstructionSet::detect()));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum InstructionSet {
-    /// The instructions that the program was compiled for: plain loops, on any machine.
+    /// The baseline of the target: SSE2 or NEON, otherwise plain loops.
     Portable,
     /// 256-bit vectors with fused multiplication (x86-64-v3).
     Avx2,
-    /// 512-bit vectors (AVX-512 F and DQ).
+    /// 512-bit vectors (AVX-512 of Ice Lake, Zen 4 and later).
     Avx512,
 }
 
 impl InstructionSet {
-    const ALL: [Self; 3] = [Self::Portable, Self::Avx2, Self::Avx512];
-
     /// The fastest one of this machine.
     pub fn detect() -> Self {
-        let available = Self::ALL.into_iter().rev().find(|set| set.is_available());
-        available.unwrap_or(Self::Portable)
+        Dispatch::detect().instruction_set()
     }
 
     /// All instruction sets of this machine, slowest first.
     pub fn available() -> Vec<Self> {
-        let all = Self::ALL.into_iter();
-        all.filter(|set| set.is_available()).collect()
-    }
-
-    /// Whether this machine has the instruction set.
-    pub fn is_available(self) -> bool {
-        Dispatch::new(self).is_some()
+        let sets = [Self::Portable, Self::Avx2, Self::Avx512].into_iter();
+        sets.filter(|&set| Dispatch::new(set).is_some()).collect()
     }
 }
 
@@ -63,90 +49,68 @@ impl fmt::Display for InstructionSet {
 
 /// An instruction set that the machine is known to have.
 #[derive(Clone, Copy, Debug)]
-pub struct Dispatch(Set);
-
-#[derive(Clone, Copy, Debug)]
-enum Set {
-    Portable(Portable),
-    #[cfg(target_arch = "x86_64")]
-    Avx2(Avx2),
-    #[cfg(target_arch = "x86_64")]
-    Avx512(Avx512),
-}
+pub struct Dispatch(Level);
 
 impl Dispatch {
     /// `None` if the machine lacks `set`.
     pub fn new(set: InstructionSet) -> Option<Self> {
-        let set = match set {
-            InstructionSet::Portable => Some(Set::Portable(Portable)),
+        let level = match set {
+            #[cfg(not(target_arch = "x86_64"))]
+            InstructionSet::Portable => Some(Level::baseline()),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx2 => Avx2::detect().map(Set::Avx2),
+            InstructionSet::Portable => Level::new().as_sse2().map(Level::Sse2),
             #[cfg(target_arch = "x86_64")]
-            InstructionSet::Avx512 => Avx512::detect().map(Set::Avx512),
+            InstructionSet::Avx2 => Level::new().as_avx2().map(Level::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            InstructionSet::Avx512 => Level::new().as_avx512().map(Level::Avx512),
             #[cfg(not(target_arch = "x86_64"))]
             InstructionSet::Avx2 | InstructionSet::Avx512 => None,
         };
-        set.map(Self)
+        level.map(Self)
     }
 
     /// The fastest one of this machine.
+    #[inline]
     pub fn detect() -> Self {
-        Self::new(InstructionSet::detect()).unwrap_or(Self(Set::Portable(Portable)))
+        Self(Level::new())
     }
 
     /// The instruction set.
     pub fn instruction_set(self) -> InstructionSet {
         match self.0 {
-            Set::Portable(_) => InstructionSet::Portable,
             #[cfg(target_arch = "x86_64")]
-            Set::Avx2(_) => InstructionSet::Avx2,
+            Level::Avx512(_) => InstructionSet::Avx512,
             #[cfg(target_arch = "x86_64")]
-            Set::Avx512(_) => InstructionSet::Avx512,
+            Level::Avx2(_) => InstructionSet::Avx2,
+            _ => InstructionSet::Portable,
         }
     }
 
-    /// [`Register::FUSED`] of the instruction set.
-    pub fn is_fused(self) -> bool {
-        self.run_on_registers(AskFused)
-    }
-
-    /// Runs `kernel` with the instruction set, sixteen numbers at a time.
+    /// Runs `kernel` with the instruction set.
     #[inline]
     pub fn run<K: Kernel>(self, kernel: K) {
-        self.run_on_registers(OnSixteen(kernel));
-    }
-
-    /// Runs `kernel` with the instruction set, one register at a time.
-    #[inline]
-    pub fn run_on_registers<K: RegisterKernel>(self, kernel: K) -> K::Output {
+        // The library's own dispatch would also compile a kernel for SSE4.2, which is no faster than SSE2 here.
+        #[cfg(target_arch = "x86_64")]
         match self.0 {
-            Set::Portable(register) => register.run(kernel),
-            #[cfg(target_arch = "x86_64")]
-            Set::Avx2(register) => register.run(kernel),
-            #[cfg(target_arch = "x86_64")]
-            Set::Avx512(register) => register.run(kernel),
+            Level::Avx512(simd) => simd.vectorize(
+                #[inline(always)]
+                || kernel.run(simd),
+            ),
+            Level::Avx2(simd) => simd.vectorize(
+                #[inline(always)]
+                || kernel.run(simd),
+            ),
+            level => {
+                let Some(simd) = level.as_sse2() else {
+                    unreachable!("every x86-64 processor has SSE2")
+                };
+                simd.vectorize(
+                    #[inline(always)]
+                    || kernel.run(simd),
+                );
+            }
         }
-    }
-}
-
-struct OnSixteen<K>(K);
-
-impl<K: Kernel> RegisterKernel for OnSixteen<K> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<R: Register>(self, register: R) {
-        self.0.run(register.sixteen());
-    }
-}
-
-struct AskFused;
-
-impl RegisterKernel for AskFused {
-    type Output = bool;
-
-    #[inline(always)]
-    fn run<R: Register>(self, _: R) -> bool {
-        R::FUSED
+        #[cfg(not(target_arch = "x86_64"))]
+        fearless_simd::dispatch!(self.0, simd => kernel.run(simd));
     }
 }

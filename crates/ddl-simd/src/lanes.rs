@@ -6,9 +6,6 @@ pub const LANES: usize = 16;
 /// Number of lanes in a half of a group.
 pub const HALF: usize = LANES / 2;
 
-/// Number of `f64` values in the space of [`LANES`] values of `f32`.
-pub const WIDE_LANES: usize = LANES / 2;
-
 /// Number of vectors in a [`Quad`].
 pub const DEPTH: usize = 4;
 

@@ -2,93 +2,241 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
+use fearless_simd::prelude::{Select as _, SimdBase, SimdCombine as _, SimdFloat as _, SimdMask as _, SimdSplit as _};
+use fearless_simd::{f32x4, f32x8, f32x16, mask32x16, u32x16};
+
+use crate::exp2::exp2_each;
 use crate::lanes::{DEPTH, HALF, HalfQuad, LANES, Quad};
+
+/// Sixteen numbers.
+pub type Floats<S> = f32x16<S>;
+/// Sixteen words of 32 bits.
+pub type Bits<S> = u32x16<S>;
+/// Four times sixteen numbers: a [`Quad`] in registers.
+pub type Vectors<S> = [Floats<S>; DEPTH];
+/// Accumulators of a product of matrices: `R` rows of `V` times sixteen numbers.
+pub type Tile<S, const R: usize, const V: usize> = [[Floats<S>; V]; R];
+
+/// Smallest exponent whose [`Simd::exp2`] is not 0. Products of such a power and a number of at least 2^−30 are normal;
+/// an operation on denormal numbers takes a hundred cycles.
+const VANISHING_FROM: f32 = -96.0;
 
 /// Arithmetic on sixteen numbers at a time, in one or more registers.
 ///
-/// A value that implements this trait proves that the machine has the instructions, so all methods are safe to call.
+/// A value that implements this trait proves that the machine has the instructions.
 ///
 /// # Numerics
-/// Every operation is rounded once to the nearest `f32`, except [`mul_add`](Self::mul_add), which portable code may
-/// round twice.
-pub trait Simd: Copy + Send + Sync {
-    /// Sixteen numbers.
-    type Floats: Copy;
-    /// Sixteen words of 32 bits.
-    type Bits: Copy;
-
+/// Every operation is rounded once to the nearest `f32`, except [`mul_add`](Self::mul_add), which the baseline of
+/// x86-64 rounds twice.
+pub trait Simd: fearless_simd::Simd {
     /// Runs `kernel` from within another kernel, with the [`Tile`] size that fits the registers.
-    fn run_tiled<K: TiledKernel>(self, kernel: K);
+    #[inline(always)]
+    fn run_tiled<K: TiledKernel>(self, kernel: K) {
+        match <Self::f32s as SimdBase<Self>>::LEN {
+            16 => kernel.run::<Self, 8, 2>(self),
+            8 => kernel.run::<Self, 4, 1>(self),
+            // The accumulators fill half of the sixteen registers of most machines.
+            _ => kernel.run::<Self, 2, 1>(self),
+        }
+    }
 
     /// `value` in every lane.
-    fn splat(self, value: f32) -> Self::Floats;
+    #[inline(always)]
+    fn splat(self, value: f32) -> Floats<Self> {
+        Floats::splat(self, value)
+    }
+
     /// The numbers of an array.
-    fn load(self, from: &[f32; LANES]) -> Self::Floats;
+    #[inline(always)]
+    fn load(self, from: &[f32; LANES]) -> Floats<Self> {
+        Floats::load_array_ref(self, from)
+    }
+
     /// Writes the numbers to an array.
-    fn store(self, value: Self::Floats, into: &mut [f32; LANES]);
+    #[inline(always)]
+    fn store(self, value: Floats<Self>, into: &mut [f32; LANES]) {
+        value.store_array(into);
+    }
+
     /// The numbers of two arrays in the lower and in the upper lanes.
-    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Self::Floats;
+    #[inline(always)]
+    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Floats<Self> {
+        f32x8::load_array_ref(self, low).combine(f32x8::load_array_ref(self, high))
+    }
+
     /// Writes the lower and the upper lanes to two arrays.
-    fn store_halves(self, value: Self::Floats, low: &mut [f32; HALF], high: &mut [f32; HALF]);
+    #[inline(always)]
+    fn store_halves(self, value: Floats<Self>, low: &mut [f32; HALF], high: &mut [f32; HALF]) {
+        let (lower, upper) = value.split();
+        lower.store_array(low);
+        upper.store_array(high);
+    }
+
     /// Asks the processor to load the cache line of this number soon. Does nothing where no instruction does that.
-    fn prefetch(self, number: &f32);
+    #[inline(always)]
+    fn prefetch(self, number: &f32) {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(sse2) = self.level().as_sse2() {
+            prefetch_line(sse2, number);
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = number;
+    }
+
     /// a + b.
-    fn add(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn add(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
+        a + b
+    }
+
     /// a − b.
-    fn sub(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn sub(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
+        a - b
+    }
+
     /// a b.
-    fn mul(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn mul(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
+        a * b
+    }
+
     /// a / b.
-    fn div(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn div(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
+        a / b
+    }
+
     /// √a.
-    fn sqrt(self, a: Self::Floats) -> Self::Floats;
-    /// The larger of each two numbers; `b` if one of them is NaN.
-    fn max(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// The smaller of each two numbers; `b` if one of them is NaN.
-    fn min(self, a: Self::Floats, b: Self::Floats) -> Self::Floats;
-    /// Bit l is set where a >= b in lane l.
-    fn at_least(self, a: Self::Floats, b: Self::Floats) -> u32;
-    /// `taken` where a >= b, `other` elsewhere.
-    fn where_at_least(self, a: Self::Floats, b: Self::Floats, taken: Self::Floats, other: Self::Floats)
-    -> Self::Floats;
+    #[inline(always)]
+    fn sqrt(self, a: Floats<Self>) -> Floats<Self> {
+        a.sqrt()
+    }
+
+    /// The larger of each two numbers; either of them if one is NaN.
+    #[inline(always)]
+    fn max(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
+        a.max(b)
+    }
+
+    /// The smaller of each two numbers; either of them if one is NaN.
+    #[inline(always)]
+    fn min(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
+        a.min(b)
+    }
+
     /// a b + c, rounded once or twice.
-    fn mul_add(self, a: Self::Floats, b: Self::Floats, c: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn mul_add(self, a: Floats<Self>, b: Floats<Self>, c: Floats<Self>) -> Floats<Self> {
+        a.mul_add(b, c)
+    }
+
+    /// Bit l is set where a >= b in lane l.
+    #[inline(always)]
+    fn at_least(self, a: Floats<Self>, b: Floats<Self>) -> u32 {
+        a.simd_ge(b).to_bitmask() as u32
+    }
+
+    /// `taken` where a >= b, `other` elsewhere.
+    #[inline(always)]
+    fn where_at_least(
+        self,
+        a: Floats<Self>,
+        b: Floats<Self>,
+        taken: Floats<Self>,
+        other: Floats<Self>,
+    ) -> Floats<Self> {
+        a.simd_ge(b).select(taken, other)
+    }
+
     /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).
-    fn zero_unless_positive(self, condition: Self::Floats, a: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn zero_unless_positive(self, condition: Floats<Self>, a: Floats<Self>) -> Floats<Self> {
+        condition.simd_le(0.0).select(self.splat(0.0), a)
+    }
+
     /// 2^`exponent` for exponents that are not positive; exactly 0 below −96 and for NaN.
     ///
     /// # Numerics
     /// The relative error is below 3e-7 down to −96, and the result is exactly 1 at 0.
-    fn exp2(self, exponent: Self::Floats) -> Self::Floats;
-    /// Lane 4 i + j of group k becomes lane 4 i + k of group j. The operation is its own inverse.
-    fn transpose(self, groups: Vectors<Self>) -> Vectors<Self>;
-    /// Lane 4 i + j of the result is lane 4 i + `FROM` / 0x55 of `a`; `FROM` is encoded as in the instructions.
-    fn spread<const FROM: i32>(self, a: Self::Floats) -> Self::Floats;
-    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j of `a` over k, (0 + 2) + (1 + 3).
-    fn sum_of_quarters(self, a: Self::Floats) -> Self::Floats;
+    #[inline(always)]
+    fn exp2(self, exponent: Floats<Self>) -> Floats<Self> {
+        let smallest = self.splat(VANISHING_FROM);
+        let [power] = exp2_each(
+            self,
+            [self.where_at_least(exponent, smallest, exponent, self.splat(-127.0))],
+        );
+        power
+    }
 
-    /// Lane l is `first` xor l.
-    fn count_from(self, first: u32) -> Self::Bits;
-    /// a xor b.
-    fn xor(self, a: Self::Bits, b: u32) -> Self::Bits;
-    /// a xor (a >> `N`).
-    fn xor_shift<const N: u32>(self, a: Self::Bits) -> Self::Bits;
-    /// a << `N`.
-    fn shift_left<const N: u32>(self, a: Self::Bits) -> Self::Bits;
-    /// The low 32 bits of the product.
-    fn mul_low(self, a: Self::Bits, b: u32) -> Self::Bits;
-    /// `a` where `bits` >= `least`, 0 elsewhere.
-    fn keep(self, a: Self::Floats, bits: Self::Bits, least: u32) -> Self::Floats;
+    /// Lane 4 i + j of group k becomes lane 4 i + k of group j. The operation is its own inverse.
+    #[inline(always)]
+    fn transpose(self, [a, b, c, d]: Vectors<Self>) -> Vectors<Self> {
+        let (a, b) = exchanged::<Self, 1, 3>(self, a, b);
+        let (c, d) = exchanged::<Self, 1, 3>(self, c, d);
+        let (a, c) = exchanged::<Self, 2, 2>(self, a, c);
+        let (b, d) = exchanged::<Self, 2, 2>(self, b, d);
+        [a, b, c, d]
+    }
 
     /// Lane 4 i + j of vector k is lane 4 i + k of `a`.
     #[inline(always)]
-    fn spread_each(self, a: Self::Floats) -> Vectors<Self> {
-        [
-            self.spread::<0x00>(a),
-            self.spread::<0x55>(a),
-            self.spread::<0xaa>(a),
-            self.spread::<0xff>(a),
-        ]
+    fn spread_each(self, a: Floats<Self>) -> Vectors<Self> {
+        let quarters = quarters(a);
+        let mut spread = [quarters; DEPTH];
+        for (i, quarter) in quarters.into_iter().enumerate() {
+            let (low, high) = (quarter.zip_low(quarter), quarter.zip_high(quarter));
+            spread[0][i] = low.zip_low(low);
+            spread[1][i] = low.zip_high(low);
+            spread[2][i] = high.zip_low(high);
+            spread[3][i] = high.zip_high(high);
+        }
+        let [a, b, c, d] = spread;
+        [combined(a), combined(b), combined(c), combined(d)]
+    }
+
+    /// Lane 4 i + j of the result is the sum of the lanes 4 k + j of `a` over k, (0 + 2) + (1 + 3).
+    #[inline(always)]
+    fn sum_of_quarters(self, a: Floats<Self>) -> Floats<Self> {
+        let (lower, upper) = a.split();
+        let (lower, upper) = (lower + upper).split();
+        combined([lower + upper; DEPTH])
+    }
+
+    /// Lane l is `first` xor l.
+    #[inline(always)]
+    fn count_from(self, first: u32) -> Bits<Self> {
+        Bits::load_array(self, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]) ^ first
+    }
+
+    /// a xor b.
+    #[inline(always)]
+    fn xor(self, a: Bits<Self>, b: u32) -> Bits<Self> {
+        a ^ b
+    }
+
+    /// a xor (a >> `N`).
+    #[inline(always)]
+    fn xor_shift<const N: u32>(self, a: Bits<Self>) -> Bits<Self> {
+        a ^ (a >> N)
+    }
+
+    /// a << `N`.
+    #[inline(always)]
+    fn shift_left<const N: u32>(self, a: Bits<Self>) -> Bits<Self> {
+        a << N
+    }
+
+    /// The low 32 bits of the product.
+    #[inline(always)]
+    fn mul_low(self, a: Bits<Self>, b: u32) -> Bits<Self> {
+        a * b
+    }
+
+    /// `a` where `bits` >= `least`, 0 elsewhere.
+    #[inline(always)]
+    fn keep(self, a: Floats<Self>, bits: Bits<Self>, least: u32) -> Floats<Self> {
+        bits.simd_ge(least).select(a, self.splat(0.0))
     }
 
     /// The vectors of a quad.
@@ -128,7 +276,7 @@ pub trait Simd: Copy + Send + Sync {
 
     /// Σ a b over four vectors, added to `start`.
     #[inline(always)]
-    fn dot(self, a: Vectors<Self>, b: Vectors<Self>, start: Self::Floats) -> Self::Floats {
+    fn dot(self, a: Vectors<Self>, b: Vectors<Self>, start: Floats<Self>) -> Floats<Self> {
         let mut sum = start;
         for d in 0..DEPTH {
             sum = self.mul_add(a[d], b[d], sum);
@@ -138,8 +286,7 @@ pub trait Simd: Copy + Send + Sync {
 
     /// `sum` + `weight` · `vectors`.
     #[inline(always)]
-    fn accumulate(self, sum: Vectors<Self>, weight: Self::Floats, vectors: Vectors<Self>) -> Vectors<Self> {
-        let mut sum = sum;
+    fn accumulate(self, mut sum: Vectors<Self>, weight: Floats<Self>, vectors: Vectors<Self>) -> Vectors<Self> {
         for d in 0..DEPTH {
             sum[d] = self.mul_add(weight, vectors[d], sum[d]);
         }
@@ -148,20 +295,50 @@ pub trait Simd: Copy + Send + Sync {
 
     /// `factor` · `vectors`.
     #[inline(always)]
-    fn scaled(self, vectors: Vectors<Self>, factor: Self::Floats) -> Vectors<Self> {
-        let mut result = vectors;
-        for d in 0..DEPTH {
-            result[d] = self.mul(vectors[d], factor);
+    fn scaled(self, mut vectors: Vectors<Self>, factor: Floats<Self>) -> Vectors<Self> {
+        for vector in &mut vectors {
+            *vector = self.mul(*vector, factor);
         }
-        result
+        vectors
     }
 }
 
-/// Four times sixteen numbers: a [`Quad`] in registers.
-pub type Vectors<S> = [<S as Simd>::Floats; DEPTH];
+impl<S: fearless_simd::Simd> Simd for S {}
 
-/// Accumulators of a product of matrices: `R` rows of `V` times sixteen numbers.
-pub type Tile<S, const R: usize, const V: usize> = [[<S as Simd>::Floats; V]; R];
+#[cfg(target_arch = "x86_64")]
+fearless_simd::kernel!(
+    #[inline(always)]
+    fn prefetch_line(_simd: Sse2, number: &f32) {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(number).cast());
+    }
+);
+
+/// Exchanges the lanes of `a` whose number has the bit `N` with the lanes of `b` that do not have it, within groups of
+/// four. `BACK` is 4 − `N`.
+#[inline(always)]
+fn exchanged<S: Simd, const N: usize, const BACK: usize>(
+    simd: S,
+    a: Floats<S>,
+    b: Floats<S>,
+) -> (Floats<S>, Floats<S>) {
+    let has_bit = mask32x16::from_bitmask(simd, if N == 1 { 0xaaaa } else { 0xcccc });
+    let (up, down) = (b.slide_within_blocks::<BACK>(b), a.slide_within_blocks::<N>(a));
+    (has_bit.select(up, a), has_bit.select(b, down))
+}
+
+/// The four groups of four lanes.
+#[inline(always)]
+fn quarters<S: Simd>(a: Floats<S>) -> [f32x4<S>; DEPTH] {
+    let (lower, upper) = a.split();
+    let ((a, b), (c, d)) = (lower.split(), upper.split());
+    [a, b, c, d]
+}
+
+#[inline(always)]
+fn combined<S: Simd>([a, b, c, d]: [f32x4<S>; DEPTH]) -> Floats<S> {
+    a.combine(b).combine(c.combine(d))
+}
 
 /// A computation that is compiled once for each instruction set.
 ///

@@ -1,6 +1,5 @@
-//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set). The
-//! windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of the
-//! benchmarks say which.
+//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set). The windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of
+//! the benchmarks say which.
 
 mod recordings;
 
@@ -16,8 +15,8 @@ fn dtw() -> SoftDtw {
 }
 
 fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
-    let at = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
-    (0..steps).map(|i| std::array::from_fn(|d| at(i, d))).collect()
+    let component = |i: usize, d: usize| (phase + 0.1 * i as f64 + d as f64).sin();
+    (0..steps).map(|i| std::array::from_fn(|d| component(i, d))).collect()
 }
 
 fn pair<const D: usize>(criterion: &mut Criterion, x: &[[f64; D]], y: &[[f64; D]]) {

@@ -19,7 +19,7 @@ const TEMPERATURE: f64 = 0.005;
 
 /// The motion of a synthetic pedestrian, and its speed (m/s).
 struct Pedestrian {
-    manner: &'static str,
+    motion: &'static str,
     speed: f64,
     /// Seconds until the pedestrian begins to turn or change its speed.
     onset: f64,
@@ -27,9 +27,9 @@ struct Pedestrian {
 
 impl Pedestrian {
     fn library() -> Vec<Self> {
-        let manners = ["straight on", "turns left", "turns right", "slows down"];
+        let motions = ["straight on", "turns left", "turns right", "slows down"];
         let pedestrian = |i: u32| Self {
-            manner: manners[i as usize % 4],
+            motion: motions[i as usize % 4],
             speed: 0.5 + 0.01 * f64::from(i / 4 % 125),
             onset: 0.4 * f64::from(i / 500),
         };
@@ -40,7 +40,7 @@ impl Pedestrian {
     fn velocities(&self) -> Vec<[f64; 2]> {
         let velocity = |step: u32| {
             let since = (0.4 * f64::from(step) - self.onset).max(0.0);
-            let (speed, angle) = match self.manner {
+            let (speed, angle) = match self.motion {
                 "turns left" => (self.speed, 0.5 * since),
                 "turns right" => (self.speed, -0.5 * since),
                 "slows down" => (self.speed * (-0.6 * since).exp(), 0.0),
@@ -56,7 +56,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let library = Pedestrian::library();
     let candidates: Vec<_> = library.iter().map(Pedestrian::velocities).collect();
     let query = Pedestrian {
-        manner: "turns left",
+        motion: "turns left",
         speed: 1.204,
         onset: 0.5,
     };
@@ -68,36 +68,39 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let smallest = nearest[0].distance;
     let likeness = |distance: f64| (-(distance - smallest) / TEMPERATURE).exp();
-    let sum: f64 = nearest.iter().map(|found| likeness(found.distance)).sum();
+    let sum: f64 = nearest.iter().map(|neighbour| likeness(neighbour.distance)).sum();
     println!(
         "query: {} after {:.1} s, at {:.2} m/s; the nearest of {} pedestrians ({}):",
-        query.manner,
+        query.motion,
         query.onset,
         query.speed,
         index.len(),
         index.instruction_set()
     );
     println!("pedestrian  distance  weight");
-    for found in &nearest {
-        let pedestrian = &library[found.index];
+    for neighbour in &nearest {
+        let pedestrian = &library[neighbour.index];
         println!(
             "{:>6}  {:>8.5}  {:>6.3}  {} after {:.1} s, at {:.2} m/s",
-            found.index,
-            found.distance,
-            likeness(found.distance) / sum,
-            pedestrian.manner,
+            neighbour.index,
+            neighbour.distance,
+            likeness(neighbour.distance) / sum,
+            pedestrian.motion,
             pedestrian.onset,
             pedestrian.speed,
         );
     }
 
     // The search is exact: evaluating every pair gives the same result.
-    let mut all: Vec<(f64, usize)> = Vec::new();
+    let mut distances: Vec<(f64, usize)> = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
-        all.push((dtw.normalised(&query.velocities(), candidate)?, i));
+        distances.push((dtw.normalised(&query.velocities(), candidate)?, i));
     }
-    all.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let same = nearest.iter().zip(&all).all(|(found, (_, i))| found.index == *i);
+    distances.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let same = nearest
+        .iter()
+        .zip(&distances)
+        .all(|(neighbour, (_, i))| neighbour.index == *i);
     println!("an exhaustive search {}", if same { "agrees" } else { "DISAGREES" });
     Ok(())
 }

@@ -40,10 +40,7 @@ pub enum SoftDtwError {
         component: usize,
         value: f64,
     },
-    #[error(
-        "the soft-DTW value or gradient leaves the range of the number type: scale the sequences (or gamma) down, or \
-         use f64"
-    )]
+    #[error("the soft-DTW value or gradient leaves the range of f64: scale the sequences (or gamma) down")]
     Overflow,
 }
 

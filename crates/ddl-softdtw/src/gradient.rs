@@ -1,9 +1,7 @@
 //! The gradient of soft-DTW: the expected alignment of each cell times the derivative of its cost.
 
 use crate::error::{SequenceRole, SoftDtwError};
-use crate::log_domain::Gradients;
-use crate::scalar::Scalar;
-use crate::value::{SoftDtw, check, finite, normalise, rounded};
+use crate::value::{SoftDtw, check, finite, normalise};
 
 impl SoftDtw {
     /// `D_γ(x, y)` and its gradient with respect to `x`.
@@ -12,47 +10,28 @@ impl SoftDtw {
     /// a warping path drawn with weight exp(−cost/γ) passes cell (i, j).
     ///
     /// # Shapes
-    /// `x`: n steps, `y`: m steps; the gradient has the shape of `x`. Memory: O(n m), with a band O(n · its width).
+    /// `x`: n steps, `y`: m steps; the gradient has the shape of `x`. Memory: O(n m).
     ///
     /// # Errors
-    /// As [`SoftDtw::value`]; also [`SoftDtwError::Overflow`] when a component of the gradient leaves the range of `T`.
+    /// As [`SoftDtw::value`]; also [`SoftDtwError::Overflow`] when a component of the gradient leaves the range of
+    /// `f64`.
     ///
     /// # Numerics
     /// All terms are positive, so nothing cancels. With the bound b on the error of the value ([`SoftDtw`]), E(i, j)
     /// has a relative error of at most 3 b / γ, if that is small. The value is that of [`SoftDtw::value`] to the last
     /// bit. γ = 0 gives the gradient along one best path (a subgradient). The Euclidean cost contributes 0 if
-    /// `x_i = y_j`.
+    /// `x_i = y_j`, or if they are closer than 1e-150.
     ///
     /// # References
     /// Cuturi & Blondel (2017), algorithm 2.
-    pub fn value_and_gradient<T: Scalar, const D: usize>(
+    pub fn value_and_gradient<const D: usize>(
         &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Result<(T, Vec<[T; D]>), SoftDtwError> {
+        x: &[[f64; D]],
+        y: &[[f64; D]],
+    ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
-        let (value, of_x, _) = self.gradients_unchecked(x, y);
-        Ok((rounded(value)?, narrowed(&of_x)?))
-    }
-
-    /// `D_γ(x, y)` with its gradients with respect to `x` and to `y`, at the cost of one gradient.
-    ///
-    /// # Shapes
-    /// The gradients have the shapes of `x` and of `y`.
-    ///
-    /// # Errors
-    /// As [`SoftDtw::value_and_gradient`].
-    #[expect(clippy::type_complexity, reason = "a value and two gradients")]
-    pub fn value_and_gradients<T: Scalar, const D: usize>(
-        &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Result<(T, Vec<[T; D]>, Vec<[T; D]>), SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
-        let (value, of_x, of_y) = self.gradients_unchecked(x, y);
-        Ok((rounded(value)?, narrowed(&of_x)?, narrowed(&of_y)?))
+        finite_gradient(self.grid(x, y).value_and_gradient())
     }
 
     /// The normalised value and its gradient with respect to `x` (see [`SoftDtw::normalised`]).
@@ -62,63 +41,43 @@ impl SoftDtw {
     ///
     /// # Errors
     /// As [`SoftDtw::value_and_gradient`].
-    pub fn normalised_and_gradient<T: Scalar, const D: usize>(
+    pub fn normalised_and_gradient<const D: usize>(
         &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
-    ) -> Result<(T, Vec<[T; D]>), SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
-        let (value, mut gradient, _) = self.gradients_unchecked(x, y);
-        let value = finite(value)?;
+        x: &[[f64; D]],
+        y: &[[f64; D]],
+    ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
+        let (value, mut gradient) = self.value_and_gradient(x, y)?;
         if self.gamma() == 0.0 {
             // D(x, x) is 0 for every x.
-            return Ok((rounded(value)?, narrowed(&gradient)?));
+            return Ok((value, gradient));
         }
-        let (self_x, own, _) = self.gradients_unchecked(x, x);
+        let (self_x, self_gradient) = self.grid(x, x).value_and_gradient();
         let value = normalise(value, self_x, self.self_value(y));
-        for (component, own) in gradient.as_flattened_mut().iter_mut().zip(own.as_flattened()) {
-            *component -= own;
+        for (component, of_self) in gradient.as_flattened_mut().iter_mut().zip(self_gradient.as_flattened()) {
+            *component -= of_self;
         }
-        Ok((rounded(value)?, narrowed(&gradient)?))
-    }
-
-    /// The value and both gradients of checked sequences; not finite if they exceed the range of `f64`.
-    fn gradients_unchecked<T: Scalar, const D: usize>(&self, x: &[[T; D]], y: &[[T; D]]) -> Gradients<D> {
-        let grid = self.grid(x, y);
-        let gradients = grid.gradients().unwrap_or_else(|| grid.log_domain_gradients());
-        let (value, of_rows, of_columns) = gradients;
-        if x.len() < y.len() {
-            (value, of_columns, of_rows)
-        } else {
-            (value, of_rows, of_columns)
-        }
+        finite_gradient((value, gradient))
     }
 
     /// [`SoftDtw::value_and_gradient`] by the textbook recursion in the log domain: slow, the reference for tests.
     #[doc(hidden)]
-    pub fn log_domain_gradient<T: Scalar, const D: usize>(
+    pub fn log_domain_gradient<const D: usize>(
         &self,
-        x: &[[T; D]],
-        y: &[[T; D]],
+        x: &[[f64; D]],
+        y: &[[f64; D]],
     ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
-        let (value, of_rows, of_columns) = self.grid(x, y).log_domain_gradients();
-        let gradient = if x.len() < y.len() { of_columns } else { of_rows };
-        Ok((finite(value)?, narrowed(&gradient)?))
+        finite_gradient(self.grid(x, y).log_domain_gradient())
     }
 }
 
-fn narrowed<T: Scalar, const D: usize>(gradient: &[[f64; D]]) -> Result<Vec<[T; D]>, SoftDtwError> {
-    let narrow = gradient.iter().map(|step| step.map(T::rounded));
-    let narrow: Vec<[T; D]> = narrow.collect();
-    if narrow
-        .as_flattened()
-        .iter()
-        .all(|component| component.widened().is_finite())
-    {
-        Ok(narrow)
+fn finite_gradient<const D: usize>(
+    (value, gradient): (f64, Vec<[f64; D]>),
+) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
+    finite(value)?;
+    if gradient.as_flattened().iter().all(|component| component.is_finite()) {
+        Ok((value, gradient))
     } else {
         Err(SoftDtwError::Overflow)
     }

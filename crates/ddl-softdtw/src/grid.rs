@@ -1,30 +1,45 @@
-//! The grid of all pairs of steps, cut into strips of a few rows.
-#![expect(
-    clippy::inline_always,
-    reason = "the lanes stay in registers only when what works on them is inlined"
-)]
+//! The grid of all pairs of steps, cut into strips of eight rows, and the choice of the recursion on it.
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use std::ops::RangeInclusive;
+use ddl_simd::Simd;
+use fearless_simd::f64x8;
+use fearless_simd::prelude::*;
 
-use crate::band::Band;
-use crate::cost::{Cost, Length, Metric as _, Squared};
-use crate::lanes::{Lanes, STRIP};
-use crate::scalar::{Scalar, widened};
+use crate::cost::Cost;
+
+/// Number of cells computed together: neighbours on an antidiagonal, one per row.
+pub(crate) const STRIP: usize = 8;
+/// One number per row of a strip.
+pub(crate) type Lanes = [f64; STRIP];
 
 /// For plain numbers: R is at most 2^`LARGEST`, and t at most `LARGEST`.
 const LARGEST: f64 = 1018.0;
 /// log2(1 + √2), rounded up.
 const PATHS: f64 = 1.271_553_303_2;
-/// 1018 − 17 − 128: see [`crate::wavefront`].
+/// 1018 − 17 − 128: see [`crate::forward`].
 const ROOM: f64 = 873.0;
+/// Exponents are exact integers while the whole parts of all t along a path sum to no more than this.
+const EXACT: f64 = 4_503_599_627_370_496.0; // 2^52
+/// Smallest γ and largest cost for which the square of the Euclidean cost is in the range of `f64`.
+const EUCLIDEAN_RANGE: (f64, f64) = (1e-100, 1e140);
 
 /// Two checked sequences and the parameters of their soft-DTW: row i is step i of one, column j step j of the other.
-pub(crate) struct Grid<'a, T, const D: usize> {
-    pub(crate) rows: &'a [[T; D]],
-    pub(crate) columns: &'a [[T; D]],
+pub(crate) struct Grid<'a, const D: usize> {
+    pub(crate) rows: &'a [[f64; D]],
+    pub(crate) columns: &'a [[f64; D]],
     pub(crate) gamma: f64,
     pub(crate) cost: Cost,
-    pub(crate) band: Option<Band>,
+}
+
+/// How the sums over paths are represented.
+#[derive(Clone, Copy)]
+pub(crate) enum Recursion {
+    /// As plain numbers, from R(0, 0) = 2^`start`.
+    Plain { start: f64 },
+    /// As numbers with a separate exponent.
+    Scaled,
+    /// As logarithms: for γ = 0 and extreme ratios of cost to γ.
+    LogDomain,
 }
 
 /// Consecutive rows that advance together, one per lane, each one column behind the row above it. In step d of the
@@ -32,59 +47,60 @@ pub(crate) struct Grid<'a, T, const D: usize> {
 pub(crate) struct Strip<const D: usize> {
     /// The rows' steps, component by component. Lanes above the first row repeat it.
     pub(crate) x: [Lanes; D],
-    /// First and last step in which some lane is at a column of the grid (and of the band).
+    /// First and last step in which some lane is at a column of the grid.
     pub(crate) start: usize,
     pub(crate) end: usize,
-    /// First and last step in which each lane is in the band; not used without a band.
-    pub(crate) first: Lanes,
-    pub(crate) last: Lanes,
     /// The lane of row 0, in the strip that holds it: every path starts there, in step `start`.
     pub(crate) corner: Option<usize>,
 }
 
-impl<T: Scalar, const D: usize> Grid<'_, T, D> {
-    pub(crate) fn band_columns(&self, row: usize) -> RangeInclusive<usize> {
-        let (n, m) = (self.rows.len(), self.columns.len());
-        self.band.map_or(0..=m - 1, |band| band.columns(row, n, m))
-    }
-
+impl<const D: usize> Grid<'_, D> {
     pub(crate) fn strips(&self) -> usize {
         self.rows.len().div_ceil(STRIP)
     }
 
-    /// Strip `index`. The first one may have fewer rows than lanes, so that the last row is always in the last lane.
+    /// Lanes of the first strip above the first row, so that the last row is always in the last lane.
+    pub(crate) fn spare_lanes(&self) -> usize {
+        self.strips() * STRIP - self.rows.len()
+    }
+
+    /// Strip `index`.
     #[inline(always)]
     pub(crate) fn strip(&self, index: usize) -> Strip<D> {
-        let (n, m) = (self.rows.len(), self.columns.len());
-        let spare = self.strips() * STRIP - n;
-        let top = if index == 0 { spare } else { 0 };
-        let row = |lane: usize| (index * STRIP + lane).saturating_sub(spare);
-        let mut strip = Strip {
-            x: [[0.0; STRIP]; D],
-            start: top,
-            end: m - 1 + STRIP - 1,
-            first: [f64::INFINITY; STRIP],
-            last: [0.0; STRIP],
-            corner: (index == 0).then_some(spare),
-        };
+        let spare = self.spare_lanes();
+        let mut x = [[0.0; STRIP]; D];
         for lane in 0..STRIP {
-            let step = widened(&self.rows[row(lane)]);
-            for (component, x) in strip.x.iter_mut().zip(step) {
-                component[lane] = x;
+            let step = &self.rows[(index * STRIP + lane).saturating_sub(spare)];
+            for (component, x) in x.iter_mut().zip(step) {
+                component[lane] = *x;
             }
         }
-        if self.band.is_some() {
-            for lane in top..STRIP {
-                let columns = self.band_columns(row(lane));
-                if lane == top {
-                    strip.start = columns.start() + lane;
-                }
-                strip.end = columns.end() + lane;
-                strip.first[lane] = (columns.start() + lane) as f64;
-                strip.last[lane] = strip.end as f64;
-            }
+        Strip {
+            x,
+            start: if index == 0 { spare } else { 0 },
+            end: self.columns.len() - 1 + STRIP - 1,
+            corner: (index == 0).then_some(spare),
         }
-        strip
+    }
+
+    /// The costs of the lanes of a strip, with fused products.
+    #[inline(always)]
+    pub(crate) fn costs<S: Simd>(&self, simd: S, differences: [f64x8<S>; D]) -> f64x8<S> {
+        // Even and odd components are summed separately, which halves the latency of a single chain.
+        let mut halves = [f64x8::splat(simd, 0.0); 2];
+        for k in 0..D {
+            let difference = differences[k];
+            halves[k % 2] = if k < 2 {
+                difference * difference
+            } else {
+                difference.mul_add_precise(difference, halves[k % 2])
+            };
+        }
+        let squared = if D > 1 { halves[0] + halves[1] } else { halves[0] };
+        match self.cost {
+            Cost::SquaredEuclidean => squared,
+            Cost::Euclidean => squared.sqrt(),
+        }
     }
 
     /// The factor from a cost to t: log2(e) / γ.
@@ -92,54 +108,51 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
         std::f64::consts::LOG2_E / self.gamma
     }
 
-    /// The exponent of R(0, 0) with which plain numbers can hold every R, if there is one ([`crate::wavefront`]).
-    pub(crate) fn plain_start(&self) -> Option<f64> {
+    /// The recursion whose range holds every R of this grid ([`crate::forward`]).
+    pub(crate) fn recursion(&self) -> Recursion {
         let (n, m) = (self.rows.len(), self.columns.len());
+        let cost = self.cost_bound();
+        let bound = cost * self.scale();
+        let exact = bound * (n + m) as f64 <= EXACT;
+        let squares = self.gamma >= EUCLIDEAN_RANGE.0 && cost <= EUCLIDEAN_RANGE.1;
+        if !exact || self.cost == Cost::Euclidean && !squares {
+            return Recursion::LogDomain;
+        }
         let paths = PATHS * (n + m + 2 * STRIP) as f64;
         let start = (LARGEST - paths).floor();
         let room = start - paths + ROOM;
-        let bound = self.cost_bound() * self.scale();
-        // A bound of all t is cheaper to compute than their sum along a path of n cells, and often sufficient.
-        let fits = bound <= LARGEST && (bound * n as f64 <= room || self.diagonal_cost() * self.scale() <= room);
-        fits.then_some(start)
+        // A bound of all t is cheaper to compute than their sum along a path, and often sufficient.
+        let fits =
+            bound <= LARGEST && (bound * n.max(m) as f64 <= room || self.cost_near_diagonal() * self.scale() <= room);
+        if fits {
+            Recursion::Plain { start }
+        } else {
+            Recursion::Scaled
+        }
     }
 
-    /// The cost of the path next to the diagonal, which is in every band. There are at least as many rows as columns.
-    fn diagonal_cost(&self) -> f64 {
-        let (steps, rise) = (self.rows.len() - 1, self.columns.len() - 1);
-        let (mut column, mut remainder) = (0, steps / 2);
-        let mut sum = 0.0;
-        for row in self.rows {
-            sum += self.cost_between(&widened(row), &widened(&self.columns[column]));
-            remainder += rise;
-            if remainder >= steps {
-                remainder -= steps;
-                column += 1;
-            }
-        }
-        sum
+    /// The cost of the path next to the diagonal.
+    fn cost_near_diagonal(&self) -> f64 {
+        let (last_row, last_column) = (self.rows.len() - 1, self.columns.len() - 1);
+        let cells = last_row.max(last_column).max(1);
+        let cost = |cell| {
+            let (row, column) = (cell * last_row / cells, cell * last_column / cells);
+            self.cost.between(&self.rows[row], &self.columns[column])
+        };
+        (0..=cells).map(cost).sum()
     }
 
     /// A bound of the cost of two steps: that of opposite corners of the box around all steps.
     fn cost_bound(&self) -> f64 {
-        let mut low = widened(&self.rows[0]);
+        let mut low = self.rows[0];
         let mut high = low;
         for step in self.rows.iter().chain(self.columns) {
-            let step = widened(step);
             for k in 0..D {
                 low[k] = if step[k] < low[k] { step[k] } else { low[k] };
                 high[k] = if step[k] > high[k] { step[k] } else { high[k] };
             }
         }
-        self.cost_between(&low, &high)
-    }
-
-    #[inline(always)]
-    fn cost_between(&self, a: &[f64; D], b: &[f64; D]) -> f64 {
-        match self.cost {
-            Cost::SquaredEuclidean => Squared.between(a, b),
-            Cost::Euclidean => Length.between(a, b),
-        }
+        self.cost.between(&low, &high)
     }
 }
 
@@ -154,29 +167,30 @@ impl<const D: usize> Slanted<D> {
     /// The steps of the columns; beyond the ends the first or the last step is repeated. Cells there are computed but
     /// not used, and do not overflow unless a cell of the grid does.
     #[inline(always)]
-    pub(crate) fn of<T: Scalar>(columns: &[[T; D]]) -> Self {
+    pub(crate) fn of(columns: &[[f64; D]]) -> Self {
         let last = columns.len() - 1;
         let mut blocks = vec![[[0.0; BLOCK + STRIP - 1]; D]; (last + STRIP - 1) / BLOCK + 1];
         for (b, block) in blocks.iter_mut().enumerate() {
             for (k, numbers) in block.iter_mut().enumerate() {
                 for (i, number) in numbers.iter_mut().enumerate() {
                     let column = ((b + 1) * BLOCK - 1).saturating_sub(i).min(last);
-                    *number = columns[column][k].widened();
+                    *number = columns[column][k];
                 }
             }
         }
         Self(blocks)
     }
 
-    /// The values for the lanes in step `d` of a strip, component by component: lane l is at column d − l.
+    /// The differences between the rows of a strip and the columns of its lanes in step `d`: lane l is at column d − l.
     #[inline(always)]
-    pub(crate) fn window(&self, d: usize) -> [&Lanes; D] {
+    pub(crate) fn differences<S: Simd>(&self, simd: S, x: &[Lanes; D], d: usize) -> [f64x8<S>; D] {
         let from = BLOCK - 1 - d % BLOCK;
         let block = &self.0[d / BLOCK];
-        let mut window = [&[0.0; STRIP]; D];
+        let mut differences = [f64x8::splat(simd, 0.0); D];
         for k in 0..D {
-            window[k] = block[k][from..from + STRIP].first_chunk().expect("of this length");
+            let y: &Lanes = block[k][from..from + STRIP].first_chunk().expect("of this length");
+            differences[k] = f64x8::load_array_ref(simd, &x[k]) - f64x8::load_array_ref(simd, y);
         }
-        window
+        differences
     }
 }

@@ -7,11 +7,10 @@
 //! underflows. All terms are positive, so nothing cancels. [`SoftDtw`] states a bound of the error, and
 //! `tests/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last bit.
 //!
-//! Eight rows advance together along antidiagonals in plain safe loops. The loops are compiled for each instruction
-//! set, and all give the same bits: products are fused everywhere, in software (slowly) on processors without the
-//! instruction. If costs are small and sequences short, R stays in the range of `f64` and needs no
-//! separate exponent; a bound of the costs decides this in advance. If costs exceed about 10¹⁵ γ, or if γ = 0, the
-//! recursion runs in the log domain.
+//! Eight rows advance together along antidiagonals. The loops are compiled for each instruction set, and all give the
+//! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs are
+//! small and sequences short, R stays in the range of `f64` and needs no separate exponent; a bound of the costs
+//! decides this in advance. If costs may exceed about 10¹⁵ γ, or if γ = 0, the recursion runs in the log domain.
 //!
 //! ## How the search stays exact and fast
 //!
@@ -23,15 +22,14 @@
 //! once. The `f64` values decide the set, its order and the returned distances. Ties are broken by the index of the
 //! candidate.
 //!
-//! The `f64` values are also computed in the exponential domain, to 4e-14 γ. A pair beyond its range (a value above
-//! 570 γ, or more than 180 steps) is evaluated in the log domain. Operations are rounded in the same order everywhere.
+//! The `f64` values are also computed in the exponential domain, to 3e-14 γ. A pair beyond its range (a value above
+//! 570 γ, or more than 180 steps) is evaluated alone. Operations are rounded in the same order everywhere.
 //! So the results, including the distances, have the same bits for every instruction set, every number of threads and
 //! every batch of queries. A candidate that equals the query is at distance 0.
 //!
-//! Some searches evaluate every candidate in `f64`, which is slower. These are searches with a band, with the Euclidean
-//! cost, with sequences of more than 32 steps, or with data so large that the bound is useless. The same holds if the
-//! n-th neighbour is farther than about 57 γ (47 γ without fused multiplication). For γ = 0 all values are computed in
-//! the log domain.
+//! Some searches evaluate every candidate in `f64`, which is slower. These are searches with the Euclidean cost,
+//! with sequences of more than 32 steps, or with data so large that the bound is useless. The same holds if the n-th
+//! neighbour is farther than about 57 γ. For γ = 0 all values are computed in the log domain.
 //!
 //! The kernels are written once and compiled for three instruction sets (`ddl-simd`): AVX-512, AVX2 with fused
 //! multiplication, and the baseline of the target. The instruction set is chosen when an index is built;
@@ -43,33 +41,27 @@
 //! `tests/recordings.rs`). Counted with callgrind, a pair of 7 / 8 steps takes 347 / 478 instructions with AVX2 and
 //! 1050 / 1330 with portable code; the compiled loop of AVX-512 has about 56 / 68.
 
-mod alignment;
-mod band;
+mod backward;
 mod blocks;
 mod cost;
-mod decision;
 mod error;
+mod exp2;
+mod forward;
 mod gradient;
 mod grid;
-mod lanes;
 mod log_domain;
 mod range;
 mod recursion;
 mod refine;
-mod scalar;
 mod search;
 mod select;
 mod sieve;
 mod softmin;
 mod value;
-mod wavefront;
 mod weight;
 
-pub use band::Band;
 pub use cost::Cost;
 pub use ddl_simd::InstructionSet;
-pub use decision::Neighbour;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
-pub use scalar::Scalar;
-pub use search::SearchIndex;
+pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

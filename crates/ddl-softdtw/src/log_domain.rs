@@ -1,104 +1,69 @@
 //! The textbook recursion in the log domain. It is used for γ = 0 and for extreme ratios of cost to γ, and is the
 //! reference for tests of the fast recursion.
 
-use crate::cost::{Cost, Length, Metric, Squared};
 use crate::grid::Grid;
-use crate::scalar::{Scalar, widened};
 use crate::softmin::{softmin, softmin_weights};
 
 /// Weights of the three ways into a cell: from (i−1, j−1), (i−1, j) and (i, j−1).
 type Ways = [f64; 3];
 
-/// Value, gradient with respect to the rows, gradient with respect to the columns.
-pub(crate) type Gradients<const D: usize> = (f64, Vec<[f64; D]>, Vec<[f64; D]>);
-
-impl<T: Scalar, const D: usize> Grid<'_, T, D> {
+impl<const D: usize> Grid<'_, D> {
     /// The value; infinite when it exceeds the range of `f64`.
     pub(crate) fn log_domain_value(&self) -> f64 {
-        match (self.cost, self.gamma > 0.0) {
-            (Cost::SquaredEuclidean, true) => self.rows(Squared, |a, b, c| softmin(a, b, c, self.gamma)),
-            (Cost::Euclidean, true) => self.rows(Length, |a, b, c| softmin(a, b, c, self.gamma)),
-            (Cost::SquaredEuclidean, false) => self.rows(Squared, minimum),
-            (Cost::Euclidean, false) => self.rows(Length, minimum),
+        if self.gamma > 0.0 {
+            self.last_cell(|a, b, c| softmin(a, b, c, self.gamma))
+        } else {
+            self.last_cell(minimum)
         }
     }
 
-    /// The value and its gradients; the gradients hold NaN or infinity if they exceed the range of `f64`.
-    pub(crate) fn log_domain_gradients(&self) -> Gradients<D> {
-        let mut ways = Vec::new();
-        match self.cost {
-            Cost::SquaredEuclidean => {
-                let value = self.rows(Squared, |a, b, c| self.softmin(a, b, c, &mut ways));
-                let (rows, columns) = self.back(Squared, &ways);
-                (value, rows, columns)
-            }
-            Cost::Euclidean => {
-                let value = self.rows(Length, |a, b, c| self.softmin(a, b, c, &mut ways));
-                let (rows, columns) = self.back(Length, &ways);
-                (value, rows, columns)
-            }
-        }
+    /// The value and its gradient with respect to the rows; the gradient holds NaN or infinity if it exceeds the range
+    /// of `f64`.
+    pub(crate) fn log_domain_gradient(&self) -> (f64, Vec<[f64; D]>) {
+        let mut ways: Vec<Ways> = Vec::with_capacity(self.rows.len() * self.columns.len());
+        let value = self.last_cell(|diagonal, up, left| {
+            let (smallest, weights) = softmin_weights([diagonal, up, left], self.gamma);
+            ways.push(weights);
+            smallest
+        });
+        (value, self.expected_slopes(&ways))
     }
 
-    fn softmin(&self, diagonal: f64, up: f64, left: f64, ways: &mut Vec<Ways>) -> f64 {
-        let (smallest, weights) = softmin_weights([diagonal, up, left], self.gamma);
-        ways.push(weights);
-        smallest
-    }
-
-    /// The recursion over all cells of the band, row by row. `smallest` receives the values of the three predecessors
-    /// of each cell.
-    fn rows(&self, metric: impl Metric, mut smallest: impl FnMut(f64, f64, f64) -> f64) -> f64 {
+    /// The recursion over all cells, row by row. `smallest` receives the values of the three predecessors of each cell.
+    fn last_cell(&self, mut smallest: impl FnMut(f64, f64, f64) -> f64) -> f64 {
         // One row is kept: before cell (i, j) is written, row[j] still holds r(i−1, j).
         let mut row = vec![f64::INFINITY; self.columns.len()];
-        for (i, x) in self.rows.iter().enumerate() {
-            let x = widened(x);
-            let range = self.band_columns(i);
-            let first = *range.start();
-            // r(i−1, first−1): outside the grid it is 0 above the first row and +inf below it.
-            let mut diagonal = match (i, first) {
-                (0, _) => 0.0,
-                (_, 0) => f64::INFINITY,
-                (_, first) => row[first - 1],
-            };
-            let mut left = f64::INFINITY;
-            for (cell, y) in row[range.clone()].iter_mut().zip(&self.columns[range]) {
+        let mut corner = 0.0;
+        for x in self.rows {
+            let (mut diagonal, mut left) = (corner, f64::INFINITY);
+            for (cell, y) in row.iter_mut().zip(self.columns) {
                 let up = *cell;
-                left = metric.between(&x, &widened(y)) + smallest(diagonal, up, left);
+                left = self.cost.between(x, y) + smallest(diagonal, up, left);
                 *cell = left;
                 diagonal = up;
             }
-            if first > 0 {
-                // This cell is not in the band of the row; it may still hold a value of the row above.
-                row[first - 1] = f64::INFINITY;
-            }
+            corner = f64::INFINITY;
         }
         row.last().copied().unwrap_or(f64::INFINITY)
     }
 
-    /// `Σ_j E(i, j) ∂δ(x_i, y_j)/∂x_i` for every i and the same for the columns, from the last row up.
-    fn back(&self, metric: impl Metric, ways: &[Ways]) -> (Vec<[f64; D]>, Vec<[f64; D]>) {
-        let mut of_rows = vec![[0.0; D]; self.rows.len()];
-        let mut of_columns = vec![[0.0; D]; self.columns.len()];
+    /// `Σ_j E(i, j) ∂δ(x_i, y_j)/∂x_i` for every row i, from the last one up.
+    fn expected_slopes(&self, ways: &[Ways]) -> Vec<[f64; D]> {
+        let width = self.columns.len();
+        let mut slopes = vec![[0.0; D]; self.rows.len()];
         // Entry j + 1 is the contribution of the row below to column j; entry 0 receives contributions to the left of
         // column 0.
-        let mut below = vec![0.0; self.columns.len() + 1];
-        below[self.columns.len()] = 1.0;
-        let mut end = ways.len();
+        let mut below = vec![0.0; width + 1];
+        below[width] = 1.0;
         for (i, x) in self.rows.iter().enumerate().rev() {
-            let range = self.band_columns(i);
-            let (first, last) = (*range.start(), *range.end());
-            let begin = end - (last + 1 - first);
-            let mut from_right = 0.0;
-            let mut to_diagonal = 0.0;
-            for j in range.rev() {
-                let [diagonal, up, left] = ways[begin + j - first];
+            let (mut from_right, mut to_diagonal) = (0.0, 0.0);
+            for (j, y) in self.columns.iter().enumerate().rev() {
+                let [diagonal, up, left] = ways[i * width + j];
                 let expected = below[j + 1] + from_right;
                 if expected > 0.0 {
-                    let slope = metric.slope(&widened(x), &widened(&self.columns[j]));
+                    let slope = self.cost.slope(x, y);
                     for k in 0..D {
-                        of_rows[i][k] += expected * slope[k];
-                        of_columns[j][k] -= expected * slope[k];
+                        slopes[i][k] += expected * slope[k];
                     }
                 }
                 // Column j of the row above receives the diagonal contribution of (i, j + 1) and the upward
@@ -107,10 +72,9 @@ impl<T: Scalar, const D: usize> Grid<'_, T, D> {
                 to_diagonal = expected * diagonal;
                 from_right = expected * left;
             }
-            below[first] = to_diagonal;
-            end = begin;
+            below[0] = to_diagonal;
         }
-        (of_rows, of_columns)
+        slopes
     }
 }
 

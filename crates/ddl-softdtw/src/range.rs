@@ -2,16 +2,21 @@
 //!
 //! All quantities are in log2 units: a score Z represents the soft-DTW value −γ ln 2 · log2(Z / start).
 
-use ddl_simd::{COST_LIMIT, COST_LIMIT_64, Dispatch, EXP2_ERROR, EXP2_ERROR_64};
+use crate::exp2::EXP2_ERROR;
 
-/// Added to a sum of predecessors in `f32` on machines without fused multiplication, and at least the floor of other
-/// machines. Its product with 2^−[`COST_LIMIT`] is a normal number.
-pub(crate) const FLOOR: f32 = 0.25;
-/// Added on machines with fused multiplication: 2^−100. A product that is added to it is not first rounded to a
-/// denormal number.
-pub(crate) const FUSED_FLOOR: f32 = f32::from_bits((127 - 100) << 23);
+/// Magnitude of the smallest exponent of a similarity in `f32`; smaller exponents are clamped, so that no power of two
+/// is denormal.
+pub(crate) const COST_LIMIT: f32 = 124.0;
+/// The same in `f64`.
+pub(crate) const COST_LIMIT_64: f64 = 900.0;
+/// Added to every product of a similarity and predecessors in `f32`: 2^−100. A fused product that is added to it is not
+/// first rounded to a denormal number.
+pub(crate) const FLOOR: f32 = f32::from_bits((127 - 100) << 23);
 /// Added to every sum of predecessors in `f64`: 2^−120. Its product with 2^−900 is a normal number.
-pub(crate) const WIDE_FLOOR: f64 = f64::from_bits((1023 - 120) << 52);
+pub(crate) const FLOOR_64: f64 = f64::from_bits((1023 - 120) << 52);
+
+/// Bound on the relative error of a power of two in `f32` ([`ddl_simd::exp2_each`]).
+const EXP2_ERROR_32: f64 = 3e-7;
 
 const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
 /// Largest margin (log2 units). With a larger one, the sieve would keep nearly every candidate.
@@ -29,7 +34,7 @@ struct Format {
     headroom: f64,
 }
 
-const NARROW: Format = Format {
+const F32: Format = Format {
     longest: 32,
     cost_limit: COST_LIMIT as f64,
     floor: FLOOR as f64,
@@ -37,10 +42,10 @@ const NARROW: Format = Format {
     headroom: 24.0,
 };
 
-const WIDE: Format = Format {
+const F64: Format = Format {
     longest: 180,
     cost_limit: COST_LIMIT_64,
-    floor: WIDE_FLOOR,
+    floor: FLOOR_64,
     top: 1020.0,
     headroom: 56.0,
 };
@@ -59,15 +64,13 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range in `f32` for lengths `n` and `m` with a [`floor`] of at most `floor`, or `None` when the sequences are
-    /// too long for it.
-    pub(crate) fn narrow(floor: f32, n: usize, m: usize) -> Option<Self> {
-        let floor = f64::from(floor);
-        Self::of(Format { floor, ..NARROW }, n, m)
+    /// The range in `f32` for lengths `n` and `m`, or `None` when the sequences are too long for it.
+    pub(crate) fn of_f32(n: usize, m: usize) -> Option<Self> {
+        Self::of(F32, n, m)
     }
 
-    pub(crate) fn wide(n: usize, m: usize) -> Option<Self> {
-        Self::of(WIDE, n, m)
+    pub(crate) fn of_f64(n: usize, m: usize) -> Option<Self> {
+        Self::of(F64, n, m)
     }
 
     fn of(format: Format, n: usize, m: usize) -> Option<Self> {
@@ -112,7 +115,7 @@ impl Range {
         let spread = path * dimension;
         let costs =
             4.0 * input * (spread * cost).sqrt() + 4.0 * input * input * spread + (dimension + 3.0) * UNIT * cost;
-        let cells = path * (EXP2_ERROR + 4.0 * UNIT) * std::f64::consts::LOG2_E;
+        let cells = path * (EXP2_ERROR_32 + 4.0 * UNIT) * std::f64::consts::LOG2_E;
         let tails = 2.0_f64.powf(-self.format.headroom) * 3.0;
         costs + cells + tails
     }
@@ -124,7 +127,7 @@ impl Range {
     pub(crate) fn margin_log2(&self, score_log2: f64, largest: f64, dim: usize) -> Option<f64> {
         // A candidate just inside the band has a slightly lower score than the n-th; one unit covers the difference.
         let score_log2 = score_log2 - 1.0;
-        let refined = wide_error_log2(self.longest_path, self.cost_log2(score_log2), dim);
+        let refined = error_log2_64(self.longest_path, self.cost_log2(score_log2), dim);
         let margin = 2.0 * (self.error_log2(score_log2, largest, dim) + refined);
         (margin <= WIDEST_MARGIN).then_some(margin)
     }
@@ -139,15 +142,10 @@ impl Range {
 /// contribute all but 2^−30 of the sum. Each squared difference is rounded twice; their sum, its root and its scaling
 /// are rounded D + 1 times; and the scale was rounded twice. Each cell adds the error of exp2 and four roundings, and
 /// the logarithm one rounding.
-pub(crate) fn wide_error_log2(path: f64, cost: f64, dimension: usize) -> f64 {
+pub(crate) fn error_log2_64(path: f64, cost: f64, dimension: usize) -> f64 {
     const UNIT: f64 = f64::EPSILON / 2.0;
     let costs = (dimension as f64 + 6.0) * UNIT * cost;
-    costs + (path * (EXP2_ERROR_64 + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
-}
-
-/// The number that an instruction set adds to a sum of predecessors in `f32`.
-pub(crate) fn floor(dispatch: Dispatch) -> f32 {
-    if dispatch.is_fused() { FUSED_FLOOR } else { FLOOR }
+    costs + (path * (EXP2_ERROR + 4.0 * UNIT) + 2.0 * UNIT) * std::f64::consts::LOG2_E
 }
 
 /// Number of warping paths through an n × m grid, and the sum of that number over all sub-grids that share its end.
@@ -170,7 +168,7 @@ fn delannoy(n: usize, m: usize) -> (f64, f64) {
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
-    use super::{FLOOR, FUSED_FLOOR, NARROW, Range, WIDE, delannoy};
+    use super::{F32, F64, Range, delannoy};
 
     #[test]
     fn paths_are_the_central_delannoy_numbers() {
@@ -182,23 +180,15 @@ mod tests {
     }
 
     #[test]
-    fn pedestrians_have_room_for_values_of_47_gamma_and_57_if_fused() {
-        let range = Range::narrow(FLOOR, 8, 8).expect("short");
-        let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
-        assert!(reach * std::f64::consts::LN_2 > 47.0, "{reach}");
-        assert!(Range::narrow(FLOOR, NARROW.longest + 1, 8).is_none());
-        let fused = Range::narrow(FUSED_FLOOR, 8, 8).expect("short");
-        let reach = f64::from(fused.start_log2()) - fused.smallest_accurate_log2();
-        assert!(reach * std::f64::consts::LN_2 > 57.0, "{reach}");
-    }
-
-    #[test]
-    fn in_f64_they_have_room_for_570_gamma_and_long_ones_for_100() {
-        for (steps, gammas) in [(8, 570.0), (WIDE.longest, 100.0)] {
-            let range = Range::wide(steps, steps).expect("short");
-            let reach = f64::from(range.start_log2()) - range.smallest_accurate_log2();
-            assert!(reach * std::f64::consts::LN_2 > gammas, "{reach}");
-        }
-        assert!(Range::wide(WIDE.longest + 1, 8).is_none());
+    fn pedestrians_have_room_for_values_of_57_gamma_and_in_f64_of_570() {
+        let reach = |range: Range| {
+            let log2 = f64::from(range.start_log2()) - range.smallest_accurate_log2();
+            log2 * std::f64::consts::LN_2
+        };
+        assert!(reach(Range::of_f32(8, 8).expect("short")) > 57.0);
+        assert!(reach(Range::of_f64(8, 8).expect("short")) > 570.0);
+        assert!(reach(Range::of_f64(F64.longest, F64.longest).expect("short")) > 100.0);
+        assert!(Range::of_f32(F32.longest + 1, 8).is_none());
+        assert!(Range::of_f64(F64.longest + 1, 8).is_none());
     }
 }

@@ -3,19 +3,28 @@
 //! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over
 //! all warping paths: no exponential and no logarithm in the recursion.
 //!
-//! Costs are clamped and a floor is added to every sum of three predecessors ([`Register::exp2`], [`cell`]), so that
-//! every product is a normal number. [`crate::range`] bounds the effect of both on small scores.
+//! Costs are clamped and a floor is added to every product, so that products with fused multiplication are normal
+//! numbers: denormal numbers would make the recursion ten times slower. [`crate::range`] bounds the effect of both on
+//! small scores.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use ddl_simd::Register;
+use ddl_simd::{Lanes, Simd, exp2_each};
+use fearless_simd::prelude::*;
 
 use crate::blocks::Step;
-use crate::range::{FLOOR, FUSED_FLOOR};
+use crate::range::{COST_LIMIT, FLOOR};
 
 /// Number of cells whose similarities are computed together if the compiler does not know the length of a sequence:
 /// enough independent operations to hide their latency.
 pub(crate) const GROUP: usize = 4;
+
+/// The lanes of a group that fill register `part`.
+#[inline(always)]
+pub(crate) fn load<S: Simd>(simd: S, lanes: &Lanes, part: usize) -> S::f32s {
+    let width = <S::f32s as SimdBase<S>>::LEN;
+    S::f32s::from_slice(simd, &lanes.0[part * width..][..width])
+}
 
 /// Scores of one part of a block: start · Σ over warping paths of 2^−cost, for each lane.
 ///
@@ -23,15 +32,15 @@ pub(crate) const GROUP: usize = 4;
 /// `query`: n steps; `block`: m steps; `row`: m registers of working memory, of any content. If the compiler knows m,
 /// the row stays in registers. Similarities are computed G at a time: m, or [`GROUP`].
 #[inline(always)]
-pub(crate) fn recursion<S: Register, const D: usize, const G: usize>(
+pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
     simd: S,
     query: &[[f32; D]],
     block: &[Step<D>],
     part: usize,
-    start: S::Floats,
-    row: &mut [S::Floats],
-) -> S::Floats {
-    let zero = simd.splat(0.0);
+    start: S::f32s,
+    row: &mut [S::f32s],
+) -> S::f32s {
+    let zero = S::f32s::splat(simd, 0.0);
     let steps = block.len();
     row.fill(zero);
     let mut corner = start;
@@ -45,7 +54,8 @@ pub(crate) fn recursion<S: Register, const D: usize, const G: usize>(
             for g in 0..G {
                 if first + g < steps {
                     let up = row[first + g];
-                    left = cell(simd, ks[g], diagonal, up, left);
+                    // K (diagonal + up + left). `left` is available last, so it is added last.
+                    left = ks[g].mul_add(left, ks[g].mul_add(diagonal + up, FLOOR));
                     row[first + g] = left;
                     diagonal = up;
                 }
@@ -59,43 +69,22 @@ pub(crate) fn recursion<S: Register, const D: usize, const G: usize>(
 
 /// 2^−|x − y|² of a query step x and up to G steps y from `first` on.
 #[inline(always)]
-fn similarities<S: Register, const D: usize, const G: usize>(
+fn similarities<S: Simd, const D: usize, const G: usize>(
     simd: S,
     step: &[f32; D],
     block: &[Step<D>],
     first: usize,
     part: usize,
-) -> [S::Floats; G] {
-    let mut exponents = [simd.splat(0.0); G];
+) -> [S::f32s; G] {
+    let mut exponents = [S::f32s::splat(simd, 0.0); G];
     for g in 0..G {
         if first + g < block.len() {
             for d in 0..D {
-                let y = simd.load(&block[first + g][d].0, part);
-                let difference = simd.sub(simd.splat(step[d]), y);
-                exponents[g] = simd.neg_mul_add(difference, difference, exponents[g]);
+                let difference = load(simd, &block[first + g][d], part) - step[d];
+                exponents[g] = (-difference).mul_add(difference, exponents[g]);
             }
         }
+        exponents[g] = exponents[g].max(-COST_LIMIT);
     }
-    simd.exp2_each(exponents)
-}
-
-/// K (diagonal + up + left), one cell of the recursion, for K of at least 2^−[`COST_LIMIT`](ddl_simd::COST_LIMIT). The
-/// floor is added to the sum, so that no product is denormal: denormal numbers would make the recursion ten times
-/// slower.
-#[inline(always)]
-pub(crate) fn cell<S: Register>(
-    simd: S,
-    k: S::Floats,
-    diagonal: S::Floats,
-    up: S::Floats,
-    left: S::Floats,
-) -> S::Floats {
-    // `left` is the result of the previous cell and available last, so it is added last.
-    let others = simd.add(diagonal, up);
-    if S::FUSED {
-        let others = simd.mul_add(k, others, simd.splat(FUSED_FLOOR));
-        simd.mul_add(k, left, others)
-    } else {
-        simd.mul(k, simd.add(simd.add(others, simd.splat(FLOOR)), left))
-    }
+    exp2_each(simd, exponents)
 }

@@ -1,16 +1,28 @@
 //! Exact search for the nearest candidates in the normalised soft-DTW distance.
 
+use ddl_simd::{Dispatch, InstructionSet};
 use rayon::prelude::*;
 
-use crate::decision::{Candidates, Neighbour, self_values};
+use crate::cost::Cost;
 use crate::error::{SearchError, SequenceRole, SoftDtwError};
-use crate::refine::PairValues;
+use crate::refine::{PairValue, PairValues};
 use crate::sieve::CandidateSieve;
-use crate::value::{SoftDtw, check, finite};
-use ddl_simd::{Dispatch, InstructionSet};
+use crate::value::{SoftDtw, check, finite, normalise};
 
 /// Number of queries that are compared with the candidates together.
 const TOGETHER: usize = 8;
+/// Number of candidates whose D(y, y) one task computes.
+const SELF_VALUES_TOGETHER: usize = 1024;
+
+/// A candidate found by a search.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbour {
+    /// Position of the candidate in the list the index was built from, from 0.
+    pub index: usize,
+    /// Normalised soft-DTW distance to the query, in the unit of the cost, evaluated in `f64`; exactly 0 for a
+    /// candidate that equals the query.
+    pub distance: f64,
+}
 
 /// Candidates prepared for repeated search; a step has `D` components.
 #[derive(Clone, Debug)]
@@ -63,7 +75,7 @@ impl<const D: usize> SearchIndex<D> {
             dispatch: Dispatch::detect(),
         };
         index.self_values = index.evaluate_self_values()?;
-        if dtw.suits_lanes() {
+        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
             index.sieve = CandidateSieve::build(dtw.gamma(), &candidates, &index.self_values);
         }
@@ -94,11 +106,6 @@ impl<const D: usize> SearchIndex<D> {
         self.len() == 0
     }
 
-    /// The distance of the search.
-    pub fn soft_dtw(&self) -> SoftDtw {
-        self.dtw
-    }
-
     /// The `n` candidates nearest to `query` (all of them when there are fewer), nearest first, ties by index.
     ///
     /// # Shapes
@@ -108,8 +115,8 @@ impl<const D: usize> SearchIndex<D> {
     /// [`SearchError::Query`] when the query is empty or not finite, or a distance to be returned leaves the range of
     /// `f64`.
     pub fn nearest(&self, query: &[[f64; D]], n: usize) -> Result<Vec<Neighbour>, SearchError> {
-        let mut found = self.search(&[query], n);
-        Ok(found.pop().unwrap_or(Ok(Vec::new()))?)
+        let mut neighbours = self.search(&[query], n);
+        Ok(neighbours.pop().unwrap_or(Ok(Vec::new()))?)
     }
 
     /// [`SearchIndex::nearest`] for many queries, in parallel on the current `rayon` pool. The result does not depend
@@ -126,11 +133,10 @@ impl<const D: usize> SearchIndex<D> {
             self.search(&queries, n)
         };
         // Collected first, because a parallel collect into a `Result` could return the error of any query.
-        let found: Vec<_> = queries.par_chunks(TOGETHER).flat_map(together).collect();
-        found
-            .into_iter()
-            .enumerate()
-            .map(|(index, found)| found.map_err(|source| SearchError::BatchQuery { index, source }))
+        let of_queries: Vec<_> = queries.par_chunks(TOGETHER).flat_map(together).collect();
+        let of_queries = of_queries.into_iter().enumerate();
+        of_queries
+            .map(|(index, neighbours)| neighbours.map_err(|source| SearchError::BatchQuery { index, source }))
             .collect()
     }
 
@@ -154,30 +160,68 @@ impl<const D: usize> SearchIndex<D> {
         queries.iter().zip(checked).map(answer).collect()
     }
 
-    fn rank(&self, query: &[[f64; D]], candidates: &[usize], wanted: usize) -> Result<Vec<Neighbour>, SoftDtwError> {
+    /// The `wanted` nearest of the candidates at `indices`, nearest first, ties by index.
+    fn rank(&self, query: &[[f64; D]], indices: &[usize], wanted: usize) -> Result<Vec<Neighbour>, SoftDtwError> {
         if wanted == 0 {
             return Ok(Vec::new());
         }
         let values = PairValues::new(self.dtw, self.dispatch);
         let self_query = values.all(&[(query, query)])[0];
-        let all = Candidates {
-            values,
-            sequence: |index| self.candidate(index),
-            self_values: &self.self_values,
+        let neighbour = |index: usize, value: f64| Neighbour {
+            index,
+            distance: normalise(value, self_query, self.self_values[index]),
         };
-        all.nearest(query, self_query, candidates, wanted)
+        let pairs: Vec<_> = indices.iter().map(|&index| (query, self.candidate(index))).collect();
+        let (mut neighbours, mut bounds) = (Vec::with_capacity(indices.len()), Vec::new());
+        for (&index, value) in indices.iter().zip(values.of(&pairs)) {
+            match value {
+                PairValue::Known(value) => neighbours.push(neighbour(index, value)),
+                PairValue::AtLeast(bound) => bounds.push(neighbour(index, bound)),
+            }
+        }
+        keep_nearest(&mut neighbours, wanted);
+        if let Some(last) = neighbours.get(wanted - 1) {
+            bounds.retain(|bound| bound.distance <= last.distance);
+        }
+        if !bounds.is_empty() {
+            let value = |index| self.dtw.value_unchecked(query, self.candidate(index));
+            neighbours.extend(bounds.iter().map(|bound| neighbour(bound.index, value(bound.index))));
+            keep_nearest(&mut neighbours, wanted);
+        }
+        for neighbour in &neighbours {
+            finite(neighbour.distance)?;
+        }
+        Ok(neighbours)
     }
 
+    /// D(y, y) of all candidates, computed like D(x, y), so that a candidate that equals the query has distance 0.
     fn evaluate_self_values(&self) -> Result<Vec<f64>, SearchError> {
         let values = PairValues::new(self.dtw, self.dispatch);
-        let evaluated = self_values(&values, self.len(), |index| self.candidate(index));
-        for (index, &value) in evaluated.iter().enumerate() {
+        let indices: Vec<usize> = (0..self.len()).collect();
+        let chunks = indices.par_chunks(SELF_VALUES_TOGETHER).flat_map(|indices| {
+            let pairs = indices
+                .iter()
+                .map(|&index| (self.candidate(index), self.candidate(index)));
+            values.all(&pairs.collect::<Vec<_>>())
+        });
+        let self_values: Vec<f64> = chunks.collect();
+        for (index, &value) in self_values.iter().enumerate() {
             finite(value).map_err(|source| SearchError::Candidate { index, source })?;
         }
-        Ok(evaluated)
+        Ok(self_values)
     }
 
     fn candidate(&self, index: usize) -> &[[f64; D]] {
         &self.steps[self.offsets[index]..self.offsets[index + 1]]
     }
+}
+
+/// Keeps only the `wanted` nearest (all if there are fewer), sorted, ties by index.
+fn keep_nearest(neighbours: &mut Vec<Neighbour>, wanted: usize) {
+    let order = |a: &Neighbour, b: &Neighbour| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index));
+    if wanted < neighbours.len() {
+        neighbours.select_nth_unstable_by(wanted, order);
+        neighbours.truncate(wanted);
+    }
+    neighbours.sort_unstable_by(order);
 }

@@ -4,11 +4,12 @@
 
 use std::ops;
 
-use ddl_simd::{Dispatch, LANES, Lanes, Register, RegisterKernel};
+use ddl_simd::{Dispatch, Kernel, LANES, Lanes, Simd};
+use fearless_simd::prelude::*;
 
 use crate::blocks::{BlockRun, Blocks, FREE, Step};
-use crate::range::{FLOOR, Range, floor};
-use crate::recursion::{GROUP, recursion};
+use crate::range::Range;
+use crate::recursion::{GROUP, load, recursion};
 use crate::select::Selection;
 
 /// Number of blocks that several queries process before the next blocks. They and the working memory fit the
@@ -35,7 +36,7 @@ impl<const D: usize> CandidateSieve<D> {
     /// The sieve of candidates of known D(y, y), or `None` if `f32` cannot hold them for any query.
     pub(crate) fn build(gamma: f64, candidates: &[&[[f64; D]]], self_values: &[f64]) -> Option<Self> {
         let blocks = Blocks::new(gamma, candidates);
-        let range = Range::narrow(FLOOR, 1, blocks.longest)?;
+        let range = Range::of_f32(1, blocks.longest)?;
         range.margin_log2(f64::from(range.start_log2()), blocks.largest, D)?;
         let half_to_log2 = blocks.narrowing.scale * blocks.narrowing.scale / 2.0;
         let weight = |&member: &usize| match self_values.get(member) {
@@ -65,10 +66,7 @@ impl<const D: usize> CandidateSieve<D> {
         queries: &[&[[f64; D]]],
         wanted: usize,
     ) -> Vec<Option<Vec<usize>>> {
-        let mut searches: Vec<Option<Search<D>>> = queries
-            .iter()
-            .map(|query| self.search(dispatch, query, wanted))
-            .collect();
+        let mut searches: Vec<Option<Search<D>>> = queries.iter().map(|query| self.search(query, wanted)).collect();
         for run in &self.blocks.runs {
             let mut first = run.blocks.start;
             while first < run.blocks.end {
@@ -92,8 +90,8 @@ impl<const D: usize> CandidateSieve<D> {
     }
 
     /// The state of a query before its first block, or `None` if its scores would not be accurate.
-    fn search(&self, dispatch: Dispatch, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
-        let range = Range::narrow(floor(dispatch), query.len(), self.blocks.longest)?;
+    fn search(&self, query: &[[f64; D]], wanted: usize) -> Option<Search<D>> {
+        let range = Range::of_f32(query.len(), self.blocks.longest)?;
         let narrowing = &self.blocks.narrowing;
         let largest = self.blocks.largest.max(narrowing.largest(query.iter()));
         let widest = range.margin_log2(range.smallest_accurate_log2(), largest, D)?;
@@ -107,7 +105,7 @@ impl<const D: usize> CandidateSieve<D> {
     }
 
     fn sweep(&self, dispatch: Dispatch, run: &BlockRun, blocks: ops::Range<usize>, search: &mut Search<D>) {
-        dispatch.run_on_registers(CandidateSweep {
+        dispatch.run(CandidateSweep {
             query: &search.steps,
             steps: run.steps,
             samples: self.blocks.samples(run, &blocks),
@@ -130,22 +128,20 @@ struct CandidateSweep<'a, const D: usize> {
     selection: &'a mut Selection,
 }
 
-impl<const D: usize> RegisterKernel for CandidateSweep<'_, D> {
-    type Output = ();
-
+impl<const D: usize> Kernel for CandidateSweep<'_, D> {
     #[inline(always)]
-    fn run<S: Register>(mut self, simd: S) {
+    fn run<S: Simd>(mut self, simd: S) {
         // The row stays in registers if the compiler knows its length, so the lengths of pedestrians are compiled
         // separately.
         match self.steps {
             // This many similarities, a row and the coefficients do not fit the few registers of the smallest
             // instruction sets.
-            7 if S::WIDTH < 8 => self.fixed::<S, 7, GROUP>(simd),
-            8 if S::WIDTH < 8 => self.fixed::<S, 8, GROUP>(simd),
+            7 if <S::f32s as SimdBase<S>>::LEN < 8 => self.fixed::<S, 7, GROUP>(simd),
+            8 if <S::f32s as SimdBase<S>>::LEN < 8 => self.fixed::<S, 8, GROUP>(simd),
             7 => self.fixed::<S, 7, 7>(simd),
             8 => self.fixed::<S, 8, 8>(simd),
             steps => {
-                let mut row = vec![simd.splat(0.0); steps];
+                let mut row = vec![S::f32s::splat(simd, 0.0); steps];
                 for (b, block) in self.samples.chunks_exact(steps).enumerate() {
                     self.block::<S, GROUP>(simd, b, block, &mut row);
                 }
@@ -156,24 +152,25 @@ impl<const D: usize> RegisterKernel for CandidateSweep<'_, D> {
 
 impl<const D: usize> CandidateSweep<'_, D> {
     #[inline(always)]
-    fn fixed<S: Register, const M: usize, const G: usize>(&mut self, simd: S) {
+    fn fixed<S: Simd, const M: usize, const G: usize>(&mut self, simd: S) {
         let (blocks, _) = self.samples.as_chunks::<M>();
         for (b, block) in blocks.iter().enumerate() {
-            self.block::<S, G>(simd, b, block, &mut [simd.splat(0.0); M]);
+            self.block::<S, G>(simd, b, block, &mut [S::f32s::splat(simd, 0.0); M]);
         }
     }
 
     /// Computes the scores of block `b`, and offers those that reach the threshold.
     #[inline(always)]
-    fn block<S: Register, const G: usize>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::Floats]) {
+    fn block<S: Simd, const G: usize>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::f32s]) {
+        let width = <S::f32s as SimdBase<S>>::LEN;
         let mut scores = [0.0; LANES];
-        let threshold = simd.splat(self.selection.threshold());
+        let threshold = self.selection.threshold();
         let mut mask = 0;
-        for part in 0..S::PARTS {
-            let start = simd.mul(simd.load(&self.weights[b].0, part), simd.splat(self.start));
+        for part in 0..LANES / width {
+            let start = load(simd, &self.weights[b], part) * self.start;
             let score = recursion::<S, D, G>(simd, self.query, block, part, start, row);
-            mask |= simd.at_least(score, threshold) << (part * S::WIDTH);
-            simd.store(score, &mut scores, part);
+            mask |= (score.simd_ge(threshold).to_bitmask() as u32) << (part * width);
+            score.store_slice(&mut scores[part * width..][..width]);
         }
         if mask != 0 {
             offer(self.selection, &scores, &self.members[b], mask);

@@ -22,10 +22,10 @@ fn windows(steps: usize) -> Option<Windows> {
 
 /// The sorted distances of all candidates, and the distance of each candidate.
 fn oracle(dtw: &SoftDtw, query: &Walk, candidates: &[Walk]) -> (Vec<f64>, Vec<f64>) {
-    let each: Vec<f64> = candidates.iter().map(|y| dtw.normalised(query, y).unwrap()).collect();
-    let mut sorted = each.clone();
+    let distances: Vec<f64> = candidates.iter().map(|y| dtw.normalised(query, y).unwrap()).collect();
+    let mut sorted = distances.clone();
     sorted.sort_by(f64::total_cmp);
-    (sorted, each)
+    (sorted, distances)
 }
 
 #[test]
@@ -51,17 +51,17 @@ fn the_hundred_nearest_are_those_of_the_oracle() {
                 .cloned(),
         );
         for query in &queries {
-            let found = index.nearest(query, 100).unwrap();
-            let (sorted, each) = oracle(&dtw, query, &windows.candidates);
-            for (neighbour, expected) in found.iter().zip(&sorted) {
-                worst = worst.max((neighbour.distance - each[neighbour.index]).abs());
+            let neighbours = index.nearest(query, 100).unwrap();
+            let (sorted, distances) = oracle(&dtw, query, &windows.candidates);
+            for (neighbour, expected) in neighbours.iter().zip(&sorted) {
+                worst = worst.max((neighbour.distance - distances[neighbour.index]).abs());
                 // Up to ties: the k-th distance is the k-th of the oracle.
                 assert!((neighbour.distance - expected).abs() < 1e-12);
             }
             let clear = sorted[99] - 1e-12;
-            for (index, &distance) in each.iter().enumerate() {
-                let kept = found.iter().any(|n| n.index == index);
-                assert!(kept || distance >= clear, "{index} at {distance} is missing");
+            for (index, &distance) in distances.iter().enumerate() {
+                let is_present = neighbours.iter().any(|n| n.index == index);
+                assert!(is_present || distance >= clear, "{index} at {distance} is missing");
             }
         }
         assert!(worst < 1e-12, "{worst:e}");

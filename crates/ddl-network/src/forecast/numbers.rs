@@ -2,14 +2,14 @@
 
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
-use ddl_simd::{LANES, Simd};
+use ddl_simd::{Floats, LANES, Simd};
 use std::ops::{Add, Div, Mul, Sub};
 
 /// Sixteen numbers. Every operation is rounded once, as that of an `f32`.
 #[derive(Clone, Copy)]
 pub(super) struct Numbers<S: Simd> {
     simd: S,
-    lanes: S::Floats,
+    lanes: Floats<S>,
 }
 
 macro_rules! operations {

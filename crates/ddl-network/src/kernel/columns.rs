@@ -1,6 +1,6 @@
 //! Columns of row-major matrices, and vectors of a row in registers.
 
-use ddl_simd::{LANES, Simd};
+use ddl_simd::{Floats, LANES, Simd};
 
 /// The first columns of a matrix, or all.
 #[derive(Clone, Copy, Debug)]
@@ -74,7 +74,7 @@ impl<'a> MatrixColumnsMut<'a> {
 
 /// Sixteen numbers of a row from `first`; numbers beyond its end are 0.
 #[inline(always)]
-pub(super) fn load<S: Simd>(simd: S, row: &[f32], first: usize) -> S::Floats {
+pub(super) fn load<S: Simd>(simd: S, row: &[f32], first: usize) -> Floats<S> {
     match row.get(first..first + LANES) {
         Some(whole) => simd.load(&whole.as_chunks().0[0]),
         None => simd.load(&end(row, first)),
@@ -83,7 +83,7 @@ pub(super) fn load<S: Simd>(simd: S, row: &[f32], first: usize) -> S::Floats {
 
 /// Writes sixteen numbers to a row from `first`; drops those beyond its end.
 #[inline(always)]
-pub(super) fn store<S: Simd>(simd: S, value: S::Floats, row: &mut [f32], first: usize) {
+pub(super) fn store<S: Simd>(simd: S, value: Floats<S>, row: &mut [f32], first: usize) {
     if let Some(whole) = row.get_mut(first..first + LANES) {
         simd.store(value, &mut whole.as_chunks_mut().0[0]);
     } else {

@@ -1,7 +1,7 @@
 //! Dropout (Srivastava et al. 2014). A decision is a function of the seed and of the number's index, not of the order
 //! of the work.
 
-use ddl_simd::Simd;
+use ddl_simd::{Bits, Simd};
 
 /// Sets each number to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
@@ -52,7 +52,7 @@ impl RowKey {
 
     /// 32 random bits for each of the sixteen numbers from `first`, a multiple of 16.
     #[inline(always)]
-    pub(super) fn bits<S: Simd>(self, simd: S, first: usize) -> S::Bits {
+    pub(super) fn bits<S: Simd>(self, simd: S, first: usize) -> Bits<S> {
         let [a, b] = self.0;
         // The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with the row's second word in the
         // middle.

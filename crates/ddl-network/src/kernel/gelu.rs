@@ -1,6 +1,6 @@
 //! The activation of the proposal network: x Φ(x), with Φ the normal distribution (Hendrycks and Gimpel 2016).
 
-use ddl_simd::{Dispatch, Kernel, LANES, Simd};
+use ddl_simd::{Dispatch, Floats, Kernel, LANES, Simd};
 
 /// erfc(z) = t (a₁ + t (a₂ + …)) exp(−z²) for z ≥ 0, t = 1 / (1 + p z), within 1.5e-7 (Abramowitz and Stegun 7.1.26).
 const P: f32 = 0.327_591_1;
@@ -32,7 +32,7 @@ impl Kernel for Gelu<'_> {
 
 /// max(x, 0) − |x| erfc(|x| / √2) / 2.
 #[inline(always)]
-fn of_lanes<S: Simd>(simd: S, x: S::Floats) -> S::Floats {
+fn of_lanes<S: Simd>(simd: S, x: Floats<S>) -> Floats<S> {
     let zero = simd.splat(0.0);
     let size = simd.max(x, simd.sub(zero, x));
     let z = simd.mul(size, simd.splat(std::f32::consts::FRAC_1_SQRT_2));

@@ -116,7 +116,6 @@ def value(
     gamma: float = 1.0,
     *,
     cost: str = "squared_euclidean",
-    band: int | None = None,
     normalised: bool = False,
 ) -> float:
     """Soft-DTW of two sequences.
@@ -129,8 +128,6 @@ def value(
         Smoothing, in the unit of the cost; 0 is hard DTW.
     cost
         ``"squared_euclidean"`` or ``"euclidean"`` distance of two steps.
-    band
-        Largest difference of the indices of matched steps; None for no limit.
     normalised
         D(x, y) - (D(x, x) + D(y, y)) / 2, which is 0 for x = y.
 
@@ -146,7 +143,6 @@ def value_and_gradient(
     gamma: float = 1.0,
     *,
     cost: str = "squared_euclidean",
-    band: int | None = None,
     normalised: bool = False,
 ) -> tuple[float, Floats]:
     """Soft-DTW, and its gradient (n, components) with respect to ``x``; see :func:`value`."""
@@ -159,8 +155,7 @@ class SearchIndex:
         gamma: float = 1.0,
         *,
         cost: str = "squared_euclidean",
-        band: int | None = None,
-    ) -> SearchIndex: ...
+        ) -> SearchIndex: ...
     def __len__(self) -> int: ...
     def nearest(self, queries: Sequence[ArrayLike], n: int) -> tuple[Integers, Floats]: ...
 

@@ -33,8 +33,8 @@ class SearchIndex:
     ----------
     candidates
         Sequences of any lengths, with the same number of components.
-    gamma, cost, band
-        As for :func:`value`. With a band, or the cost ``"euclidean"``, a search compares all pairs, which takes longer.
+    gamma, cost
+        As for :func:`value`. With the cost ``"euclidean"`` a search compares all pairs, which takes longer.
 
     Examples
     --------
@@ -52,9 +52,8 @@ class SearchIndex:
         gamma: float = 1.0,
         *,
         cost: str = "squared_euclidean",
-        band: int | None = None,
     ) -> None:
-        self._core = _core.SearchIndex(list(candidates), gamma, cost=cost, band=band)
+        self._core = _core.SearchIndex(list(candidates), gamma, cost=cost)
 
     def __len__(self) -> int:
         return len(self._core)

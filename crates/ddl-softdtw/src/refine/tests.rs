@@ -1,18 +1,20 @@
+//! The error bound, the bits and the range of the values of many pairs.
+
 use ddl_simd::{Dispatch, InstructionSet};
 
-use super::{Both, PairValue, PairValues};
-use crate::range::wide_error_log2;
+use super::{Pair, PairValue, PairValues};
+use crate::range::error_log2_64;
 use crate::{Cost, SoftDtw};
 
-type Pair<const D: usize> = (Vec<[f64; D]>, Vec<[f64; D]>);
+type Waves = (Vec<[f64; 2]>, Vec<[f64; 2]>);
 
 /// Pairs of wavy sequences of several lengths; `scale` sets how far apart they are.
-fn pairs(count: usize, scale: f64) -> Vec<Pair<2>> {
+fn pairs(count: usize, scale: f64) -> Vec<Waves> {
     let wave = |i: usize, steps: usize| -> Vec<[f64; 2]> {
         (0..steps)
             .map(|j| {
-                let at = (i * 37 + j * 11) as f64;
-                [scale * at.sin(), scale * (1.3 * at).cos()]
+                let phase = (i * 37 + j * 11) as f64;
+                [scale * phase.sin(), scale * (1.3 * phase).cos()]
             })
             .collect()
     };
@@ -28,7 +30,7 @@ fn each_set(dtw: SoftDtw) -> impl Iterator<Item = PairValues> {
         .map(move |dispatch| PairValues::new(dtw, dispatch))
 }
 
-fn borrowed<const D: usize>(pairs: &[Pair<D>]) -> Vec<Both<'_, D>> {
+fn borrowed(pairs: &[Waves]) -> Vec<Pair<'_, 2>> {
     pairs.iter().map(|(x, y)| (&x[..], &y[..])).collect()
 }
 
@@ -43,8 +45,8 @@ fn known_values_keep_their_error_bound_and_their_bits() {
             let pairs = borrowed(&pairs);
             let mut first = None;
             for values in each_set(dtw) {
-                let found = values.of(pairs.iter().copied());
-                for (&(x, y), &value) in pairs.iter().zip(&found) {
+                let computed = values.of(&pairs);
+                for (&(x, y), &value) in pairs.iter().zip(&computed) {
                     let exact = dtw.value_unchecked(x, y);
                     let PairValue::Known(value) = value else {
                         panic!("{scale}, {gamma}: {exact} is beyond {value:?}");
@@ -52,13 +54,13 @@ fn known_values_keep_their_error_bound_and_their_bits() {
                     let path = (x.len() + y.len() - 1) as f64;
                     // Eight steps have fewer than 2^16 paths.
                     let spread = exact.max(0.0) / gamma * std::f64::consts::LOG2_E + 16.0 + 30.0;
-                    let bound = wide_error_log2(path, spread, 2) * std::f64::consts::LN_2;
+                    let bound = error_log2_64(path, spread, 2) * std::f64::consts::LN_2;
                     // The reference has rounding errors too: an exponential, a logarithm and a sum in every cell of the
                     // path.
                     let oracle = 4.0 * unit * path * (spread + 1.0);
                     worst = worst.max((value - exact).abs() / gamma / (bound + oracle));
                 }
-                assert_eq!(*first.get_or_insert_with(|| found.clone()), found);
+                assert_eq!(*first.get_or_insert_with(|| computed.clone()), computed);
             }
         }
     }
@@ -74,7 +76,7 @@ fn what_is_out_of_reach_is_bounded_from_below_and_taken_from_the_log_domain() {
         let pairs = borrowed(&pairs);
         for values in each_set(dtw) {
             let mut beyond = 0;
-            for (&(x, y), value) in pairs.iter().zip(values.of(pairs.iter().copied())) {
+            for (&(x, y), value) in pairs.iter().zip(values.of(&pairs)) {
                 if let PairValue::AtLeast(bound) = value {
                     let exact = dtw.value_unchecked(x, y);
                     assert!(exact > bound && bound > 450.0 * gamma, "{exact} {bound}");

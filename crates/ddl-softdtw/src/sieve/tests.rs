@@ -1,3 +1,5 @@
+//! The error bound of the scores, and what survives the sieve.
+
 use super::{CandidateSieve, Search};
 use crate::{Cost, SoftDtw};
 use ddl_simd::{Dispatch, InstructionSet};
@@ -17,10 +19,10 @@ fn walks(count: usize, steps: usize, offset: f64) -> Vec<Vec<[f64; 2]>> {
 
 fn sieve(gamma: f64, walks: &[Vec<[f64; 2]>]) -> (SoftDtw, Vec<f64>, Option<CandidateSieve<2>>) {
     let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean).expect("valid");
-    let own: Vec<f64> = walks.iter().map(|walk| dtw.self_value(walk)).collect();
+    let self_values: Vec<f64> = walks.iter().map(|walk| dtw.self_value(walk)).collect();
     let slices: Vec<&[[f64; 2]]> = walks.iter().map(Vec::as_slice).collect();
-    let sieve = CandidateSieve::build(gamma, &slices, &own);
-    (dtw, own, sieve)
+    let sieve = CandidateSieve::build(gamma, &slices, &self_values);
+    (dtw, self_values, sieve)
 }
 
 fn each_set() -> impl Iterator<Item = Dispatch> {
@@ -30,7 +32,7 @@ fn each_set() -> impl Iterator<Item = Dispatch> {
 /// Scores of all candidates: a selection that wants more than there are keeps all of them.
 fn scores(sieve: &CandidateSieve<2>, dispatch: Dispatch, query: &[[f64; 2]]) -> (Search<2>, Vec<f32>) {
     let count = sieve.blocks.members.as_flattened().len();
-    let mut search = sieve.search(dispatch, query, count).expect("in range");
+    let mut search = sieve.search(query, count).expect("in range");
     for run in &sieve.blocks.runs {
         sieve.sweep(dispatch, run, run.blocks.clone(), &mut search);
     }
@@ -47,7 +49,7 @@ fn scores_keep_their_error_bound() {
     let mut worst = 0.0_f64;
     for (steps, gamma) in [(7, 1.0), (8, 1.0), (8, 0.2), (20, 1.0), (3, 0.05)] {
         let walks = walks(500, steps, 0.0);
-        let (dtw, own, sieve) = sieve(gamma, &walks);
+        let (dtw, self_values, sieve) = sieve(gamma, &walks);
         let sieve = sieve.expect("fits f32");
         for dispatch in each_set() {
             let query = &walks[123];
@@ -59,7 +61,7 @@ fn scores_keep_their_error_bound() {
                 if score < range.smallest_accurate_log2() {
                     continue;
                 }
-                let value = dtw.value_unchecked(query, walk) - own[candidate] / 2.0;
+                let value = dtw.value_unchecked(query, walk) - self_values[candidate] / 2.0;
                 let scale = sieve.blocks.narrowing.scale;
                 let exact = f64::from(range.start_log2()) - value * scale * scale;
                 let share = (score - exact).abs() / range.error_log2(score, search.largest, 2);
@@ -86,13 +88,13 @@ fn few_survive_where_f32_can_tell_and_nothing_is_decided_where_it_cannot() {
     // The hundred nearest of the last query are too far for the range.
     let far = walks(1, 8, 8.0);
     for dispatch in each_set() {
-        let found = sieve_of_near.survivors(dispatch, &[&near[7], &near[9], &far[0]], 100);
-        for (query, survivors) in [7, 9].into_iter().zip(&found) {
+        let of_queries = sieve_of_near.survivors(dispatch, &[&near[7], &near[9], &far[0]], 100);
+        for (query, survivors) in [7, 9].into_iter().zip(&of_queries) {
             let survivors = survivors.as_ref().expect("near");
             assert!((100..400).contains(&survivors.len()), "{}", survivors.len());
             assert!(survivors.contains(&query));
         }
-        assert_eq!(found[2], None);
+        assert_eq!(of_queries[2], None);
         assert!(sieve_of_offset.survivors(dispatch, &[&offset[7]], 100)[0].is_some());
     }
     // Gamma is too small for the data.

@@ -1,7 +1,7 @@
 //! Four rows at a time. Their sums share the instructions that add across lanes.
 
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
-use ddl_simd::{DEPTH, Lanes, Simd, Vectors};
+use ddl_simd::{DEPTH, Floats, Lanes, Simd, Vectors};
 
 /// The usual width of a row, in vectors. Loops over it are unrolled.
 pub(super) const USUAL: usize = 2;
@@ -31,7 +31,7 @@ impl<const FIXED: bool> Four<FIXED> {
     }
 
     #[inline(always)]
-    pub(super) fn get<S: Simd>(&self, simd: S, row: usize, vector: usize) -> S::Floats {
+    pub(super) fn get<S: Simd>(&self, simd: S, row: usize, vector: usize) -> Floats<S> {
         if FIXED {
             simd.load(&self.usual[row][vector].0)
         } else {
@@ -40,7 +40,7 @@ impl<const FIXED: bool> Four<FIXED> {
     }
 
     #[inline(always)]
-    pub(super) fn set<S: Simd>(&mut self, simd: S, row: usize, vector: usize, value: S::Floats) {
+    pub(super) fn set<S: Simd>(&mut self, simd: S, row: usize, vector: usize, value: Floats<S>) {
         if FIXED {
             simd.store(value, &mut self.usual[row][vector].0);
         } else {
@@ -75,7 +75,7 @@ impl<const FIXED: bool> Four<FIXED> {
 
 /// Means over `width` numbers, from four vectors of partial sums. Lanes 4 i + k hold the mean of row k.
 #[inline(always)]
-pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> S::Floats {
+pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> Floats<S> {
     // Lane 4 i + k holds a part of the sum of row k.
     let [a, b, c, d] = simd.transpose(sums);
     let parts = simd.add(simd.add(a, b), simd.add(c, d));
@@ -102,7 +102,7 @@ impl Decisions {
     }
 
     #[inline(always)]
-    pub(super) fn apply<S: Simd>(self, simd: S, numbers: S::Floats, row: usize, column: usize) -> S::Floats {
+    pub(super) fn apply<S: Simd>(self, simd: S, numbers: Floats<S>, row: usize, column: usize) -> Floats<S> {
         let bits = RowKey::new(self.seed, row as u64).bits(simd, column);
         simd.mul(simd.keep(numbers, bits, self.least), simd.splat(self.scale))
     }

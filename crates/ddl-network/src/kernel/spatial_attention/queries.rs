@@ -4,7 +4,7 @@ use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
 use crate::kernel::scenes::SceneView;
 use crate::kernel::spatial_attention::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::threads::JobBuffers;
-use ddl_simd::{HalfQuad, LANES, Lanes, Quad, Simd, ZERO_QUAD};
+use ddl_simd::{Floats, HalfQuad, LANES, Lanes, Quad, Simd, ZERO_QUAD};
 use std::cell::Cell;
 use std::ops::Range;
 use std::thread::LocalKey;
@@ -155,7 +155,7 @@ impl SceneBuffers {
 
 /// `start` + Σ a b over all quads.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, a: &[Quad], b: &[HalfQuad], start: S::Floats) -> S::Floats {
+pub(super) fn dot<S: Simd>(simd: S, a: &[Quad], b: &[HalfQuad], start: Floats<S>) -> Floats<S> {
     let mut sum = start;
     for (a, b) in a.iter().zip(b) {
         sum = simd.dot(simd.read(a), simd.read_twice(b), sum);

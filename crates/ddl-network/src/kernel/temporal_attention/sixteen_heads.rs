@@ -4,7 +4,7 @@
 //! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
 use crate::kernel::threads::JobBuffers;
-use ddl_simd::{DEPTH, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
+use ddl_simd::{DEPTH, Floats, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
 use std::cell::Cell;
 use std::thread::LocalKey;
 
@@ -192,7 +192,7 @@ impl SixteenHeads {
 
 /// Σ a b over the numbers of each head, added to `start`.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: S::Floats) -> S::Floats {
+pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: Floats<S>) -> Floats<S> {
     let mut products = a;
     for part in 0..DEPTH {
         products[part] = simd.mul(a[part], b[part]);
@@ -203,7 +203,7 @@ pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: S::Floa
 
 /// `sum` + `weight` of each head · its numbers.
 #[inline(always)]
-pub(super) fn accumulate<S: Simd>(simd: S, sum: Vectors<S>, weight: S::Floats, numbers: Vectors<S>) -> Vectors<S> {
+pub(super) fn accumulate<S: Simd>(simd: S, sum: Vectors<S>, weight: Floats<S>, numbers: Vectors<S>) -> Vectors<S> {
     let (mut sum, weights) = (sum, simd.spread_each(weight));
     for part in 0..DEPTH {
         sum[part] = simd.mul_add(weights[part], numbers[part], sum[part]);
@@ -213,7 +213,7 @@ pub(super) fn accumulate<S: Simd>(simd: S, sum: Vectors<S>, weight: S::Floats, n
 
 /// `weight` of each head · its numbers.
 #[inline(always)]
-pub(super) fn weighted<S: Simd>(simd: S, weight: S::Floats, numbers: Vectors<S>) -> Vectors<S> {
+pub(super) fn weighted<S: Simd>(simd: S, weight: Floats<S>, numbers: Vectors<S>) -> Vectors<S> {
     let (mut result, weights) = (numbers, simd.spread_each(weight));
     for part in 0..DEPTH {
         result[part] = simd.mul(weights[part], numbers[part]);
@@ -231,7 +231,7 @@ pub(super) fn soften<S: Simd>(
     newest: KeyValue<'_>,
     powers: &mut Vec<Lanes>,
     prefetched: bool,
-) -> S::Floats {
+) -> Floats<S> {
     powers.resize(cache.len() + 1, Lanes::ZERO);
     let mut largest = simd.splat(f32::NEG_INFINITY);
     for (token, power) in cache.iter().chain([&newest]).zip(powers.iter_mut()) {

@@ -1,0 +1,138 @@
+//! The backward recursion: the expected alignment of two sequences, and the gradient from it.
+#![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
+
+use ddl_simd::{Dispatch, Kernel, Simd};
+use fearless_simd::f64x8;
+use fearless_simd::prelude::*;
+
+use crate::cost::Cost;
+use crate::forward::{STRETCH, Step};
+use crate::grid::{Grid, Recursion, STRIP, Slanted, Strip};
+use crate::weight::{Plain, Scaled, TOTAL, Weight, above, lane, splat};
+
+/// Steps that are closer than this count as equal in the gradient of the Euclidean cost: the square of their distance
+/// would lose digits.
+const EQUAL: f64 = 1e-150;
+
+impl<const D: usize> Grid<'_, D> {
+    /// The value and its gradient with respect to the rows; not finite when they exceed the range of `f64`.
+    ///
+    /// With S(i, j), the sum of exp(−cost/γ) over the paths from cell (i, j) to the last one, without its own cost,
+    ///
+    /// ```text
+    /// S(i, j) = 2^−t(i+1, j+1) S(i+1, j+1) + 2^−t(i+1, j) S(i+1, j) + 2^−t(i, j+1) S(i, j+1)
+    /// ```
+    ///
+    /// the expected alignment is E(i, j) = R(i, j) S(i, j) / R(n, m). S is computed strip by strip backwards.
+    pub(crate) fn value_and_gradient(&self) -> (f64, Vec<[f64; D]>) {
+        self.value_and_gradient_with(Dispatch::detect())
+    }
+
+    /// The same bits for every instruction set, as the value.
+    pub(crate) fn value_and_gradient_with(&self, dispatch: Dispatch) -> (f64, Vec<[f64; D]>) {
+        let mut result = (0.0, Vec::new());
+        match self.recursion() {
+            Recursion::LogDomain => result = self.log_domain_gradient(),
+            recursion => dispatch.run(Backward {
+                grid: self,
+                recursion,
+                result: &mut result,
+            }),
+        }
+        result
+    }
+
+    #[inline(always)]
+    fn backward<S: Simd, W: Weight<C>, const C: usize>(&self, simd: S, start: f64) -> (f64, Vec<[f64; D]>) {
+        let mut steps = Vec::with_capacity(self.strips() * (self.columns.len() + STRIP));
+        let columns = Slanted::of(self.columns);
+        let total = self.forward::<S, W, C, true>(simd, start, &columns, &mut steps);
+        // S starts from a power of two. Its product with R(n, m) has the exponent that shares are computed with.
+        let (significand, exponent) = total;
+        let mut below = vec![W::NONE; self.columns.len() + 2 * (STRIP - 1)];
+        // Every path ends in the last cell, as if it continued along the diagonal.
+        below[self.columns.len() + STRIP - 1] = W::power(TOTAL - (start + exponent));
+        let mut gradient = vec![[0.0; D]; self.rows.len()];
+        let mut steps = steps.as_slice();
+        for index in (0..self.strips()).rev() {
+            let strip = self.strip(index);
+            let (earlier, strip_steps) = steps.split_at(steps.len() - (strip.end + 1 - strip.start));
+            steps = earlier;
+            let of_lanes = self.retreat::<S, W, C>(simd, &strip, strip_steps, &columns, significand, &mut below);
+            for lane in 0..STRIP {
+                // Lanes above the first row do not belong to a row.
+                if let Some(row) = (index * STRIP + lane).checked_sub(self.spare_lanes()) {
+                    for (component, of_lanes) in gradient[row].iter_mut().zip(&of_lanes) {
+                        *component = of_lanes[lane];
+                    }
+                }
+            }
+            if index % (STRETCH / STRIP) == 0 {
+                for cell in &mut below {
+                    *cell = W::normalised_one(*cell);
+                }
+            }
+        }
+        (self.value_of(total), gradient)
+    }
+
+    /// One strip backwards: the gradient of each of its rows, component by component. `below` holds 2^−t S of the row
+    /// below the strip, entry c + 7 for column c, and then that of its first row.
+    #[inline(always)]
+    fn retreat<S: Simd, W: Weight<C>, const C: usize>(
+        &self,
+        simd: S,
+        strip: &Strip<D>,
+        steps: &[Step<S, C>],
+        columns: &Slanted<D>,
+        significand: f64,
+        below: &mut [[f64; C]],
+    ) -> [f64x8<S>; D] {
+        let row = &mut below[..strip.end + STRIP];
+        let mut gradient = [f64x8::splat(simd, 0.0); D];
+        let mut cells = splat(simd, W::NONE);
+        let mut diagonal = above(simd, cells, row[strip.end + 1]);
+        for (offset, step) in steps.iter().enumerate().rev() {
+            let d = strip.start + offset;
+            let down = above(simd, cells, row[d]);
+            let sum;
+            [sum, cells] = W::cells(simd, [diagonal, down, cells], step.factor);
+            diagonal = down;
+            row[d + STRIP - 1] = lane(cells, 0);
+            // Beyond the first and the last column the expected alignment is 0.
+            let expected = W::shares(simd, step.cells, sum, (significand, TOTAL));
+            let differences = columns.differences(simd, &strip.x, d);
+            let slope = match self.cost {
+                Cost::SquaredEuclidean => expected * 2.0,
+                Cost::Euclidean => {
+                    let length = self.costs(simd, differences);
+                    let apart = length.simd_gt(EQUAL);
+                    apart.select(expected / length, f64x8::splat(simd, 0.0))
+                }
+            };
+            for k in 0..D {
+                gradient[k] += slope * differences[k];
+            }
+            if d.is_multiple_of(STRETCH) {
+                cells = W::normalised(cells);
+            }
+        }
+        gradient
+    }
+}
+
+struct Backward<'a, 'b, const D: usize> {
+    grid: &'a Grid<'b, D>,
+    recursion: Recursion,
+    result: &'a mut (f64, Vec<[f64; D]>),
+}
+
+impl<const D: usize> Kernel for Backward<'_, '_, D> {
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        *self.result = match self.recursion {
+            Recursion::Plain { start } => self.grid.backward::<S, Plain, 1>(simd, start),
+            _ => self.grid.backward::<S, Scaled, 2>(simd, 0.0),
+        };
+    }
+}
