@@ -1,6 +1,5 @@
 //! Properties of soft-DTW for all sequences.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
-#![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
 mod extremes;
 
