@@ -2,6 +2,8 @@
 //!
 //! All quantities are in log2 units: a score Z represents the soft-DTW value −γ ln 2 · log2(Z / start).
 
+use ddl_simd::InstructionSet;
+
 use crate::exp2::EXP2_ERROR;
 
 /// Magnitude of the smallest exponent of a similarity in `f32`; smaller exponents are clamped, so that no power of two
@@ -11,7 +13,10 @@ pub(crate) const COST_LIMIT: f32 = 124.0;
 pub(crate) const COST_LIMIT_64: f64 = 900.0;
 /// Added to every product of a similarity and predecessors in `f32`: 2^−100. A fused product that is added to it is not
 /// first rounded to a denormal number.
-pub(crate) const FLOOR: f32 = f32::from_bits((127 - 100) << 23);
+pub(crate) const FUSED_FLOOR: f32 = f32::from_bits((127 - 100) << 23);
+/// Added to every sum of predecessors in `f32` by [`InstructionSet::Portable`], where products may be rounded on their
+/// own. Its product with 2^−[`COST_LIMIT`] is a normal number.
+pub(crate) const UNFUSED_FLOOR: f32 = 0.25;
 /// Added to every sum of predecessors in `f64`: 2^−120. Its product with 2^−900 is a normal number.
 pub(crate) const FLOOR_64: f64 = f64::from_bits((1023 - 120) << 52);
 
@@ -26,7 +31,7 @@ const WIDEST_MARGIN: f64 = 0.25;
 struct Format {
     longest: usize,
     cost_limit: f64,
-    /// Largest number that is added to a sum of predecessors.
+    /// The number that is added to a sum of predecessors, or to its product.
     floor: f64,
     /// log2 of the largest number, minus two for rounding and for the sums of three terms.
     top: f64,
@@ -37,7 +42,7 @@ struct Format {
 const F32: Format = Format {
     longest: 32,
     cost_limit: COST_LIMIT as f64,
-    floor: FLOOR as f64,
+    floor: UNFUSED_FLOOR as f64,
     top: 125.0,
     headroom: 24.0,
 };
@@ -64,9 +69,14 @@ pub(crate) struct Range {
 }
 
 impl Range {
-    /// The range in `f32` for lengths `n` and `m`, or `None` when the sequences are too long for it.
-    pub(crate) fn of_f32(n: usize, m: usize) -> Option<Self> {
-        Self::of(F32, n, m)
+    /// The range in `f32` for lengths `n` and `m` on `set`, or `None` when the sequences are too long for it.
+    pub(crate) fn of_f32(set: InstructionSet, n: usize, m: usize) -> Option<Self> {
+        let floor = match set {
+            InstructionSet::Portable => UNFUSED_FLOOR,
+            _ => FUSED_FLOOR,
+        };
+        let floor = f64::from(floor);
+        Self::of(Format { floor, ..F32 }, n, m)
     }
 
     pub(crate) fn of_f64(n: usize, m: usize) -> Option<Self> {
@@ -168,6 +178,8 @@ fn delannoy(n: usize, m: usize) -> (f64, f64) {
 mod tests {
     #![expect(clippy::float_cmp, reason = "exact values are what is claimed")]
 
+    use ddl_simd::InstructionSet;
+
     use super::{F32, F64, Range, delannoy};
 
     #[test]
@@ -180,15 +192,17 @@ mod tests {
     }
 
     #[test]
-    fn pedestrians_have_room_for_values_of_57_gamma_and_in_f64_of_570() {
+    fn pedestrians_have_room_for_values_of_57_gamma_or_47_if_portable_and_in_f64_of_570() {
         let reach = |range: Range| {
             let log2 = f64::from(range.start_log2()) - range.smallest_accurate_log2();
             log2 * std::f64::consts::LN_2
         };
-        assert!(reach(Range::of_f32(8, 8).expect("short")) > 57.0);
+        for (set, gammas) in [(InstructionSet::Avx2, 57.0), (InstructionSet::Portable, 47.0)] {
+            assert!(reach(Range::of_f32(set, 8, 8).expect("short")) > gammas);
+            assert!(Range::of_f32(set, F32.longest + 1, 8).is_none());
+        }
         assert!(reach(Range::of_f64(8, 8).expect("short")) > 570.0);
         assert!(reach(Range::of_f64(F64.longest, F64.longest).expect("short")) > 100.0);
-        assert!(Range::of_f32(F32.longest + 1, 8).is_none());
         assert!(Range::of_f64(F64.longest + 1, 8).is_none());
     }
 }

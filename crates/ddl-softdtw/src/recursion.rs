@@ -3,9 +3,9 @@
 //! With K = 2^−cost and costs in log2 units, R(i, j) = K(i, j) (R(i−1, j−1) + R(i−1, j) + R(i, j−1)) sums 2^−cost over
 //! all warping paths: no exponential and no logarithm in the recursion.
 //!
-//! Costs are clamped and a floor is added to every product, so that products with fused multiplication are normal
-//! numbers: denormal numbers would make the recursion ten times slower. [`crate::range`] bounds the effect of both on
-//! small scores.
+//! Costs are clamped, and a floor is added to every product or, without fused multiplication, to every sum, so that
+//! all products are normal numbers: denormal numbers would make the recursion ten times slower. [`crate::range`] bounds
+//! the effect of both on small scores.
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
@@ -15,7 +15,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, f32x16};
 
 use crate::blocks::Step;
-use crate::range::{COST_LIMIT, FLOOR};
+use crate::range::{COST_LIMIT, FUSED_FLOOR, UNFUSED_FLOOR};
 
 /// Number of cells whose similarities are computed together if the compiler does not know the length of a sequence:
 /// enough independent operations to hide their latency.
@@ -57,7 +57,11 @@ pub(crate) fn recursion<S: Simd, const D: usize, const G: usize>(
                 if first + g < steps {
                     let up = row[first + g];
                     // K (diagonal + up + left). `left` is available last, so it is added last.
-                    left = ks[g].mul_add(left, ks[g].mul_add(diagonal + up, FLOOR));
+                    left = if <S::f32s as SimdBase<S>>::LEN < 8 {
+                        ks[g] * (diagonal + up + UNFUSED_FLOOR + left)
+                    } else {
+                        ks[g].mul_add(left, ks[g].mul_add(diagonal + up, FUSED_FLOOR))
+                    };
                     row[first + g] = left;
                     diagonal = up;
                 }

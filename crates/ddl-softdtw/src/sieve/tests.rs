@@ -32,7 +32,8 @@ fn each_set() -> impl Iterator<Item = Dispatch> {
 /// Scores of all candidates: a selection that wants more than there are keeps all of them.
 fn scores(sieve: &CandidateSieve<2>, dispatch: Dispatch, query: &[[f64; 2]]) -> (Search<2>, Vec<f32>) {
     let count = sieve.blocks.members.as_flattened().len();
-    let mut search = sieve.search(query, count).expect("in range");
+    let set = dispatch.instruction_set();
+    let mut search = sieve.search(set, query, count).expect("in range");
     for run in &sieve.blocks.runs {
         sieve.sweep(dispatch, run, run.blocks.clone(), &mut search);
     }
