@@ -1,5 +1,6 @@
-//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set). The windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of
-//! the benchmarks say which.
+//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set). The
+//! windows are real if `DDL_DATASETS` names the folder of the recordings, otherwise synthetic; the names of the
+//! benchmarks say which.
 
 mod recordings;
 
