@@ -2,10 +2,10 @@
 //! future are refused.
 
 use ddl::data::{Dataset, OBSERVED, Observation, Position, Recording, WINDOW, Window};
-use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
+use ddl::eval::baseline::{ConstantVelocity, GoalSource, StraightLine, TrueEndpoint};
 use ddl::eval::leak;
 use ddl::goal::{GoalEstimator, GoalEstimatorParams};
-use ddl::{Ddl, Forecast, ForecastError, Forecaster, Protocol, Remembering, Variant};
+use ddl::{Ddl, Forecast, ForecastError, Forecaster, Protocol, Remembering, Variant, WeightedGoals};
 use ddl_tests::one_forecast::One;
 use ddl_tests::{bits, crowd, drawn_model};
 

@@ -9,6 +9,7 @@ mod position;
 mod region;
 mod region_table;
 mod representative;
+mod weighted_goals;
 mod window;
 
 pub use error::{ForecastError, ForecastShapeError, WindowError};
@@ -22,4 +23,5 @@ pub use position::{
 pub use region::{AdaptiveRegions, TrackedQuantiles};
 pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};
+pub use weighted_goals::WeightedGoals;
 pub use window::{CompletionCounts, RememberedTrack, Window};

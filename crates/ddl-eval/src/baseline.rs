@@ -10,7 +10,7 @@ use ddl_core::{Forecaster, Window};
 pub use constant_acceleration::ConstantAcceleration;
 pub use constant_velocity::ConstantVelocity;
 pub use social_force::SocialForce;
-pub use straight_line::{GoalSource, StraightLine, TrueEndpoint, WeightedGoals};
+pub use straight_line::{GoalSource, StraightLine, TrueEndpoint};
 
 use crate::conditions::{Conditions, ResultRow};
 use crate::error::MeasureError;

@@ -4,10 +4,8 @@ use crate::errors::of_any;
 use crate::forecasts::{EmptyFields, PlainOrCertified, parts};
 use crate::observed::{Observed, completion};
 use ddl::data::Window;
-use ddl::eval::baseline::{
-    ConstantAcceleration, ConstantVelocity, GoalSource, SocialForce, StraightLine, WeightedGoals,
-};
-use ddl::{ForecastError, Forecaster};
+use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, GoalSource, SocialForce, StraightLine};
+use ddl::{ForecastError, Forecaster, WeightedGoals};
 use numpy::{PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -7,9 +7,9 @@
 
 use std::{error::Error, f64::consts::TAU, path::Path};
 
-use ddl_core::{Forecast, ForecastError, Forecaster};
+use ddl_core::{Forecast, ForecastError, Forecaster, WeightedGoals};
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, Window, WindowRule};
-use ddl_eval::baseline::{self, GoalSource, StraightLine, WeightedGoals};
+use ddl_eval::baseline::{self, GoalSource, StraightLine};
 use ddl_eval::metric::stability::RolloutStability;
 use ddl_eval::{Conditions, Protocol, ResultRow};
 use ddl_report::{

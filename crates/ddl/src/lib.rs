@@ -48,7 +48,7 @@ pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
 
-pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable};
+pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable, WeightedGoals};
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare};
 pub use error::DdlError;

@@ -1,55 +1,6 @@
 //! Straight lines to the goals: the quality of a goal estimator without a model.
 
-use ddl_core::{Forecast, ForecastError, ForecastShapeError, Forecaster, HORIZON, OBSERVED, Position, Window};
-
-/// Possible goals of a pedestrian (metres) and their probabilities.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WeightedGoals {
-    goals: Vec<Position>,
-    weights: Vec<f64>,
-}
-
-impl WeightedGoals {
-    /// Goals with their weights. [`Forecast::new`] checks later that they sum to 1.
-    ///
-    /// # Errors
-    /// There are no goals, or not as many weights as goals.
-    pub fn new(goals: Vec<Position>, weights: Vec<f64>) -> Result<Self, ForecastShapeError> {
-        if goals.is_empty() {
-            return Err(ForecastShapeError::Empty {
-                pedestrians: 1,
-                hypotheses: 0,
-            });
-        }
-        if goals.len() != weights.len() {
-            return Err(ForecastShapeError::Length {
-                field: "weights",
-                layout: "one a goal",
-                expected: goals.len(),
-                found: weights.len(),
-            });
-        }
-        Ok(Self { goals, weights })
-    }
-
-    /// One certain goal (m).
-    pub fn certain(goal: Position) -> Self {
-        Self {
-            goals: vec![goal],
-            weights: vec![1.0],
-        }
-    }
-
-    /// The goals, metres.
-    pub fn goals(&self) -> &[Position] {
-        &self.goals
-    }
-
-    /// The weights, in the order of the goals.
-    pub fn weights(&self) -> &[f64] {
-        &self.weights
-    }
-}
+use ddl_core::{Forecast, ForecastError, Forecaster, HORIZON, OBSERVED, Position, WeightedGoals, Window};
 
 /// An estimator of the goals of the pedestrians of a window.
 pub trait GoalSource {
@@ -122,20 +73,20 @@ impl<G: GoalSource> Forecaster for StraightLine<G> {
         if sets.len() != window.len() {
             return refuse(format!("{} goal sets for {} pedestrians", sets.len(), window.len()));
         }
-        let hypotheses = sets.first().map_or(0, |set| set.goals.len());
-        if let Some(odd) = sets.iter().find(|set| set.goals.len() != hypotheses) {
-            let found = odd.goals.len();
+        let hypotheses = sets.first().map_or(0, |set| set.goals().len());
+        if let Some(odd) = sets.iter().find(|set| set.goals().len() != hypotheses) {
+            let found = odd.goals().len();
             return refuse(format!("sets of {hypotheses} and of {found} goals in one window"));
         }
         let mut positions = Vec::with_capacity(window.len() * hypotheses * HORIZON);
         for (i, set) in sets.iter().enumerate() {
             let start = window.observed(i)[OBSERVED - 1];
-            for goal in &set.goals {
+            for goal in set.goals() {
                 positions.extend((1..=HORIZON).map(|t| between(start, *goal, t)));
             }
         }
-        let weights = sets.iter().flat_map(|set| set.weights.iter().copied()).collect();
-        let goals = sets.iter().flat_map(|set| set.goals.iter().copied()).collect();
+        let weights = sets.iter().flat_map(|set| set.weights().iter().copied()).collect();
+        let goals = sets.iter().flat_map(|set| set.goals().iter().copied()).collect();
         Ok(Forecast::new(
             window.len(),
             hypotheses,

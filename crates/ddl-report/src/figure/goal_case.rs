@@ -1,8 +1,7 @@
 //! A pedestrian with its estimated goals: one panel of a picture.
 
-use ddl_core::{Forecast, distance};
+use ddl_core::{Forecast, WeightedGoals, distance};
 use ddl_data::{OBSERVED, Position, WINDOW};
-use ddl_eval::baseline::WeightedGoals;
 
 use crate::figure::error::FigureError;
 

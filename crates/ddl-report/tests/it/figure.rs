@@ -1,8 +1,8 @@
 //! The content of pictures of scenes and of estimated goals.
 
-use ddl_core::Forecaster;
+use ddl_core::{Forecaster, WeightedGoals};
 use ddl_data::{PedestrianId, Position, WINDOW, Window};
-use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint, WeightedGoals};
+use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint};
 use ddl_report::{
     FigureError,
     figure::{self, GoalCase},

@@ -3,10 +3,9 @@
 use crate::error::DdlError;
 use crate::evaluation::goals::MeasuredGoals;
 use crate::goals::model::GoalModel;
-use ddl_core::ForecastError;
+use ddl_core::{ForecastError, WeightedGoals};
 use ddl_data::Window;
 use ddl_eval::MotionKind;
-use ddl_eval::baseline::WeightedGoals;
 use ddl_goal::GoalSet;
 use ddl_report::figure::{self, GoalCase};
 

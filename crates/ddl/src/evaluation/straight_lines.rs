@@ -1,8 +1,8 @@
 //! Straight lines to known goals: the baseline that shows what the dynamics add.
 
-use ddl_core::{Forecast, ForecastError, Forecaster as _};
+use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals};
 use ddl_data::Window;
-use ddl_eval::baseline::{GoalSource, StraightLine, WeightedGoals};
+use ddl_eval::baseline::{GoalSource, StraightLine};
 use ddl_goal::GoalSet;
 
 pub(crate) fn straight_lines(
