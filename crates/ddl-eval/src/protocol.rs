@@ -24,7 +24,7 @@ pub enum Protocol {
 
 impl Protocol {
     /// The greatest number of hypotheses that any protocol allows: 20.
-    pub const MAX_HYPOTHESES: usize = 20;
+    pub(crate) const MAX_HYPOTHESES: usize = 20;
 
     /// All protocols, in display order.
     pub const ALL: [Self; 5] = [

@@ -38,7 +38,7 @@ impl<'a> ScoredWindow<'a> {
     ///
     /// # Errors
     /// `full` has no future, is of other frames or another recording, or lacks a pedestrian of the window.
-    pub fn among(self, full: &'a Window) -> Result<Self, EvaluationError> {
+    pub(crate) fn among(self, full: &'a Window) -> Result<Self, EvaluationError> {
         let window = self.window;
         let same_frames = window.recording() == full.recording() && window.frames() == full.frames();
         if !same_frames || indices_in_full(window, full).is_none() {

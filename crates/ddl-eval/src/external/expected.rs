@@ -4,10 +4,10 @@ use std::collections::HashMap;
 
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 use crate::external::hint::Unknown;
 use crate::external::lines::{Wrong, in_field, whole_line};
-use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, in_short, last_observed};
+use crate::external::pedestrian_key::{PedestrianKey, frames_ahead, last_observed, wrong_frames};
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PedestrianForecast {
@@ -26,16 +26,16 @@ impl PedestrianForecast {
         self.positions.len() / HORIZON
     }
 
-    fn check_weights(&self) -> Result<(), ExternalProblem> {
+    fn check_weights(&self) -> Result<(), String> {
         let Some(weights) = &self.weights else {
             return Ok(());
         };
         if let Some(&found) = weights.iter().find(|&&weight| weight < 0.0) {
-            return Err(ExternalProblem::NegativeWeight { found });
+            return Err(format!("a weight must not be below 0, found {found}"));
         }
         let sum: f64 = weights.iter().sum();
         if (sum - 1.0).abs() > Forecast::WEIGHT_TOLERANCE {
-            return Err(ExternalProblem::WeightSum { sum });
+            return Err(format!("the weights sum to {sum}, not to 1; divide them by their sum"));
         }
         Ok(())
     }
@@ -103,8 +103,8 @@ impl<'a> ExpectedForecasts<'a> {
         match name {
             Some(name) => Ok(self.index_of(name)),
             None if self.recordings.len() > 1 => {
-                let known = self.recordings.iter().map(|&r| r.to_owned()).collect();
-                let problem = ExternalProblem::WhichRecording { known };
+                let names = self.recordings.join(", ");
+                let problem = format!("is missing, but the windows have several recordings: {names}");
                 Err(in_field("recording", problem))
             }
             None => Ok(self.recordings.first().map(|_| 0)),
@@ -144,7 +144,8 @@ impl<'a> ExpectedForecasts<'a> {
             None => *slot = Some(new),
             Some(known) if known.primary && primary => {
                 let first_line = known.line;
-                return Err(whole_line(ExternalProblem::Duplicate { first_line }));
+                let problem = format!("line {first_line} already forecasts this pedestrian; keep one");
+                return Err(whole_line(problem));
             }
             Some(known) if !known.primary && primary => *known = new,
             Some(known) if !known.primary && known.forecast != new.forecast => {
@@ -158,20 +159,21 @@ impl<'a> ExpectedForecasts<'a> {
     fn check(&mut self, forecast: &PedestrianForecast, line: usize) -> Result<(), Wrong> {
         let found = forecast.hypotheses();
         if found == 0 {
-            return Err(whole_line(ExternalProblem::NoHypothesis));
+            return Err(whole_line("at least one hypothesis is needed"));
         }
         let (expected, first_line) = *self.hypotheses.get_or_insert((found, line));
         if found != expected {
-            return Err(whole_line(ExternalProblem::Hypotheses {
-                expected,
-                found,
-                first_line,
-            }));
+            return Err(whole_line(format!(
+                "{found} hypotheses, but {expected} on line {first_line}; the best of K needs the same K for all \
+                 pedestrians"
+            )));
         }
         let has_goals = forecast.goals.is_some();
         let (expected, first_line) = *self.goals.get_or_insert((has_goals, line));
         if has_goals != expected {
-            return Err(whole_line(ExternalProblem::GoalsOfSome { first_line }));
+            return Err(whole_line(format!(
+                "all hypotheses of the file must have goals, or none (as on line {first_line})"
+            )));
         }
         forecast.check_weights().map_err(|problem| in_field("weight", problem))
     }
@@ -196,9 +198,5 @@ fn check_frames(window: &Window, frames: Option<&[i64]>) -> Result<(), Wrong> {
     if ahead.iter().any(|frames| frames == found) {
         return Ok(());
     }
-    let problem = ExternalProblem::Frames {
-        expected: in_short(&ahead[0]),
-        found: in_short(found),
-    };
-    Err(in_field("frames", problem))
+    Err(in_field("frames", wrong_frames(found, &ahead[0])))
 }

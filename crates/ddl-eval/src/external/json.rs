@@ -7,8 +7,7 @@ use serde::{Deserialize, Deserializer, de::DeserializeOwned};
 use serde_json::{Number, Value};
 use serde_path_to_error::{Path, Segment};
 
-use crate::external::error::ExternalProblem;
-use crate::external::lines::{self, Wrong, in_field, quoted, whole_line};
+use crate::external::lines::{self, Wrong, in_field, missing, not_finite, quoted, whole_line};
 
 /// Words for numbers that are not valid JSON, but that several programs write.
 const NO_NUMBERS: [&str; 3] = ["NaN", "-Infinity", "Infinity"];
@@ -53,7 +52,7 @@ pub(super) fn read<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
 }
 
 fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
-    let json = |detail: String| whole_line(ExternalProblem::Json { detail });
+    let json = |detail: String| whole_line(format!("not a JSON object: {detail}"));
     let value: Value = serde_json::from_str(text).map_err(|error| json(error.to_string()))?;
     if !value.is_object() {
         return Err(json(format!("found {}", quoted(&value.to_string()))));
@@ -66,8 +65,8 @@ fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
             path => format!("{path}.{name}"),
         };
         match message.split('`').collect::<Vec<_>>()[..] {
-            ["missing field ", name, ..] => in_field(field(name), ExternalProblem::Missing),
-            ["duplicate field ", name, ..] => in_field(field(name), ExternalProblem::TwiceNamed),
+            ["missing field ", name, ..] => missing(field(name)),
+            ["duplicate field ", name, ..] => in_field(field(name), "appears twice; keep one"),
             _ => match problem(&value, error.path()) {
                 Some(problem) => in_field(error.path().to_string(), problem),
                 None => json(message),
@@ -76,7 +75,7 @@ fn read_with_path<T: DeserializeOwned>(text: &str) -> Result<T, Wrong> {
     })
 }
 
-fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
+fn problem(value: &Value, path: &Path) -> Option<String> {
     let (mut wrong_value, mut name, mut depth) = (value, "", 0);
     for segment in path {
         match segment {
@@ -99,11 +98,11 @@ fn problem(value: &Value, path: &Path) -> Option<ExternalProblem> {
                 Value::Null => "null, NaN or infinity".to_owned(),
                 wrong_value => quoted(&wrong_value.to_string()),
             };
-            return Some(ExternalProblem::NotFinite { found });
+            return Some(not_finite(&found));
         }
     };
     let found = quoted(&wrong_value.to_string());
-    Some(ExternalProblem::Kind { expected, found })
+    Some(format!("must be {expected}, found {found}"))
 }
 
 /// The text with `null` for every word such as NaN outside quotes, so that the error can name its field.

@@ -5,10 +5,10 @@ use std::io::BufRead;
 use ddl_core::{HORIZON, PedestrianName, Position};
 use serde::{Deserialize, Deserializer};
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
 use crate::external::json::{self, Whole};
-use crate::external::lines::{Lines, Wrong, in_field, within_bounds};
+use crate::external::lines::{Lines, Wrong, in_field, missing, within_bounds, wrong_length};
 use crate::external::pedestrian_key::PedestrianKey;
 use crate::protocol::Protocol;
 
@@ -64,7 +64,10 @@ impl JsonForecast {
         }
         let weighted = self.hypotheses.iter().filter(|h| h.weight.is_some()).count();
         if weighted != 0 && weighted != count {
-            return Err(in_field("hypotheses", ExternalProblem::WeightsOfSome));
+            return Err(in_field(
+                "hypotheses",
+                "all hypotheses of a pedestrian must have weights, or none",
+            ));
         }
         let with_goal = self.hypotheses.iter().filter(|h| h.goal.is_some()).count();
         let mut forecast = PedestrianForecast {
@@ -76,9 +79,7 @@ impl JsonForecast {
         for (k, hypothesis) in self.hypotheses.into_iter().enumerate() {
             let found = hypothesis.positions.len();
             if found != HORIZON {
-                let expected = HORIZON;
-                let problem = ExternalProblem::Length { expected, found };
-                return Err(in_field(format!("hypotheses[{k}].positions"), problem));
+                return Err(in_field(format!("hypotheses[{k}].positions"), wrong_length(found)));
             }
             for (t, &position) in hypothesis.positions.iter().enumerate() {
                 within_bounds(position, || format!("hypotheses[{k}].positions[{t}]"))?;
@@ -91,8 +92,8 @@ impl JsonForecast {
                 weights.push(weight);
             }
             if let Some(goals) = &mut forecast.goals {
-                let missing = || in_field(format!("hypotheses[{k}].goal"), ExternalProblem::Missing);
-                goals.push(hypothesis.goal.ok_or_else(missing)?);
+                let goal = hypothesis.goal;
+                goals.push(goal.ok_or_else(|| missing(format!("hypotheses[{k}].goal")))?);
             }
         }
         Ok((who, forecast))

@@ -2,10 +2,10 @@
 
 use std::io::{BufRead, Read as _};
 
-use ddl_core::Position;
+use ddl_core::{HORIZON, Position};
 use ddl_data::COORDINATE_LIMIT;
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 
 /// Longest line, bytes: twenty times the length of 20 hypotheses with certificates.
 const LIMIT: usize = 4 << 20;
@@ -22,15 +22,27 @@ pub(super) struct Lines<R> {
     line: Vec<u8>,
 }
 
-/// An error with its field, if it has one.
-pub(super) type Wrong = (Option<String>, ExternalProblem);
+/// A problem with its field, if it has one.
+pub(super) type Wrong = (Option<String>, String);
 
-pub(super) fn whole_line(problem: ExternalProblem) -> Wrong {
-    (None, problem)
+pub(super) fn whole_line(problem: impl Into<String>) -> Wrong {
+    (None, problem.into())
 }
 
-pub(super) fn in_field(field: impl Into<String>, problem: ExternalProblem) -> Wrong {
-    (Some(field.into()), problem)
+pub(super) fn in_field(field: impl Into<String>, problem: impl Into<String>) -> Wrong {
+    (Some(field.into()), problem.into())
+}
+
+pub(super) fn missing(field: impl Into<String>) -> Wrong {
+    in_field(field, "is missing")
+}
+
+pub(super) fn not_finite(found: &str) -> String {
+    format!("must be a finite number, found {found}; a model that diverged must be reported as such, not scored")
+}
+
+pub(super) fn wrong_length(found: usize) -> String {
+    format!("{found} positions; a forecast has {HORIZON}, 0.4 s apart, after the last observed frame")
 }
 
 impl<R: BufRead> Lines<R> {
@@ -58,7 +70,7 @@ impl<R: BufRead> Lines<R> {
                 return Ok(None);
             }
             if length > LIMIT {
-                let problem = ExternalProblem::LongLine { limit: LIMIT };
+                let problem = format!("the line is longer than {LIMIT} bytes; write one line for each pedestrian");
                 return Err(self.wrong(self.number, whole_line(problem)));
             }
             if self.number == 1 && self.line.starts_with(b"\xef\xbb\xbf") {
@@ -71,7 +83,7 @@ impl<R: BufRead> Lines<R> {
         }
         match std::str::from_utf8(&self.line) {
             Ok(text) => Ok(Some((self.number, text.trim()))),
-            Err(_) => Err(self.wrong(self.number, whole_line(ExternalProblem::NotUtf8))),
+            Err(_) => Err(self.wrong(self.number, whole_line("the text is not UTF-8"))),
         }
     }
 
@@ -85,7 +97,7 @@ pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> Exter
         origin: origin.to_owned(),
         line,
         field,
-        problem: problem.to_string(),
+        problem,
     }
 }
 
@@ -98,7 +110,10 @@ pub(super) fn within_bounds(position: Position, field: impl FnOnce() -> String) 
     let far = position.into_iter().find(|c| c.abs() > COORDINATE_LIMIT);
     match far {
         None => Ok(()),
-        Some(found) => Err(in_field(field(), ExternalProblem::TooFar { found })),
+        Some(found) => {
+            let problem = format!("must lie within {COORDINATE_LIMIT} m of the origin, found {found}");
+            Err(in_field(field(), problem))
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use ddl_core::{Forecast, HORIZON, Position, Window};
 use sha2::{Digest as _, Sha256};
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, Slot};
 use crate::external::hint::NAMED;
 use crate::external::lines::{whole_line, wrong};
@@ -41,7 +41,7 @@ impl Matched {
     }
 
     /// The name of the file, without its folder.
-    pub fn file(&self) -> &str {
+    pub(crate) fn file(&self) -> &str {
         &self.file
     }
 
@@ -95,7 +95,7 @@ impl ExpectedForecasts<'_> {
         let pedestrians: usize = self.windows.iter().map(Window::len).sum();
         let forecast_count = self.slots.iter().flatten().flatten().count();
         if self.forecasts == 0 {
-            return Err(self.wrong(1, ExternalProblem::Empty));
+            return Err(self.wrong(1, "the file holds no forecast; is it empty or truncated?"));
         }
         let refused = match coverage {
             Coverage::Whole => self.unknown.count > 0,
@@ -165,10 +165,11 @@ impl ExpectedForecasts<'_> {
                 if let Some(slot) = slot
                     && let Some(line) = slot.conflict
                 {
-                    let problem = ExternalProblem::Neighbours {
-                        pedestrian: window.name(i),
-                        first_line: slot.line,
-                    };
+                    let (pedestrian, first_line) = (window.name(i), slot.line);
+                    let problem = format!(
+                        "pedestrian {pedestrian} is a neighbour in two scenes that forecast it differently (line \
+                         {first_line}); make it the primary pedestrian of one"
+                    );
                     return Err(self.wrong(line, problem));
                 }
             }
@@ -176,7 +177,7 @@ impl ExpectedForecasts<'_> {
         Ok(())
     }
 
-    fn wrong(&self, line: usize, problem: ExternalProblem) -> ExternalError {
+    fn wrong(&self, line: usize, problem: impl Into<String>) -> ExternalError {
         wrong(&self.origin, line, whole_line(problem))
     }
 }

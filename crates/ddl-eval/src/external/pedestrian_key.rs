@@ -3,7 +3,6 @@
 
 use ddl_core::{HORIZON, OBSERVED, PedestrianName, Window};
 
-use crate::external::error::ExternalProblem;
 use crate::protocol::Protocol;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -19,11 +18,12 @@ impl PedestrianKey {
         named(recording, self.observed_until, &self.pedestrian)
     }
 
-    pub(super) fn too_many_hypotheses(&self) -> ExternalProblem {
-        ExternalProblem::TooManyHypotheses {
-            pedestrian: self.named(),
-            allowed: Protocol::MAX_HYPOTHESES,
-        }
+    pub(super) fn too_many_hypotheses(&self) -> String {
+        let (pedestrian, allowed) = (self.named(), Protocol::MAX_HYPOTHESES);
+        format!(
+            "more than {allowed} hypotheses of {pedestrian}; the protocols allow {allowed}: choose them without the \
+             true future"
+        )
     }
 }
 
@@ -48,6 +48,11 @@ pub(super) fn frames_ahead(window: &Window) -> [Vec<i64>; 2] {
     [annotated, regular]
 }
 
+pub(super) fn wrong_frames(found: &[i64], expected: &[i64]) -> String {
+    let (found, expected) = (in_short(found), in_short(expected));
+    format!("the forecast has the frames {found}; the 12 after the last observed one are {expected}")
+}
+
 pub(super) fn in_short(frames: &[i64]) -> String {
     match frames {
         [] => "none".to_owned(),
@@ -65,7 +70,7 @@ pub(super) struct HypothesisNumbering {
 
 impl HypothesisNumbering {
     /// Checks that sorted numbers are 0 ... K - 1 or 1 ... K, alike for all pedestrians of the file.
-    pub(super) fn check(&mut self, sorted: &[i64], pedestrian: &str) -> Result<(), ExternalProblem> {
+    pub(super) fn check(&mut self, sorted: &[i64], pedestrian: &str) -> Result<(), String> {
         let counts_from = |first: i64| sorted.iter().copied().eq((first..).take(sorted.len()));
         let first = match self.first {
             Some(first) => Some(first).filter(|&first| counts_from(first)),
@@ -81,10 +86,11 @@ impl HypothesisNumbering {
             None => format!("{} or {}", range(0, last), range(1, 1 + last)),
         };
         let numbers: Vec<String> = sorted.iter().map(i64::to_string).collect();
-        Err(ExternalProblem::Numbers {
-            pedestrian: pedestrian.to_owned(),
-            numbers: format!("{}, expected {expected}", numbers.join(", ")),
-        })
+        Err(format!(
+            "the hypotheses of {pedestrian} have the numbers {}, expected {expected}; a number stands for one joint \
+             future, so number them alike for all pedestrians",
+            numbers.join(", ")
+        ))
     }
 }
 

@@ -4,10 +4,12 @@ use std::io::BufRead;
 
 use ddl_core::{HORIZON, PedestrianName, Position};
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
-use crate::external::lines::{self, Lines, Wrong, in_field, quoted, whole_line, within_bounds};
-use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, in_short};
+use crate::external::lines::{
+    self, Lines, Wrong, in_field, not_finite, quoted, whole_line, within_bounds, wrong_length,
+};
+use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, wrong_frames};
 use crate::external::table_rows::{AtLine, Fields, TableRows};
 use crate::protocol::Protocol;
 
@@ -65,7 +67,12 @@ struct TablePosition {
 impl TableColumns {
     fn of(header: &Fields<'_>) -> Result<Self, Wrong> {
         let names: Vec<&str> = (0..header.len()).map(|i| header.get(i)).collect();
-        let wrong = |detail: String| whole_line(ExternalProblem::Header { detail });
+        let wrong = |detail: String| {
+            whole_line(format!(
+                "the header must name the columns observed_until, pedestrian, frame, x and y, and may name recording, \
+                 hypothesis, weight and others, each once: {detail}"
+            ))
+        };
         let find = |name: &str| {
             let mut places = (0..names.len()).filter(|&i| names[i] == name);
             let place = places.next();
@@ -90,7 +97,7 @@ impl TableColumns {
     fn row(&self, fields: &Fields<'_>) -> Result<TablePosition, Wrong> {
         if fields.len() != self.count {
             let (expected, found) = (self.count, fields.len());
-            return Err(whole_line(ExternalProblem::FieldCount { expected, found }));
+            return Err(whole_line(format!("{found} fields where the header names {expected}")));
         }
         let [observed_until, pedestrian, frame, x, y] = self.required.map(|place| fields.get(place));
         let who = PedestrianKey {
@@ -149,8 +156,8 @@ impl PedestrianRows {
         let hypothesis = row.hypothesis;
         if self.hypotheses.last().is_none_or(|last| last.hypothesis != hypothesis) {
             if self.hypotheses.iter().any(|other| other.hypothesis == hypothesis) {
-                let problem = ExternalProblem::Scattered { hypothesis };
-                return Err(in_field("hypothesis", problem));
+                let problem = "appeared before; the rows of a hypothesis must be consecutive";
+                return Err(in_field("hypothesis", format!("hypothesis {hypothesis} {problem}")));
             }
             if self.hypotheses.len() == Protocol::MAX_HYPOTHESES {
                 let problem = self.who.too_many_hypotheses();
@@ -170,12 +177,11 @@ impl PedestrianRows {
         if let (Some(first), Some(found)) = (rows.weight, row.weight)
             && first.to_bits() != found.to_bits()
         {
-            let problem = ExternalProblem::WeightChanges { first, found };
+            let problem = format!("weight {found}, but {first} in the row before; a hypothesis has one weight");
             return Err(in_field("weight", problem));
         }
         if rows.positions.len() == HORIZON {
-            let (expected, found) = (HORIZON, HORIZON + 1);
-            return Err(whole_line(ExternalProblem::Length { expected, found }));
+            return Err(whole_line(wrong_length(HORIZON + 1)));
         }
         rows.frames.push(row.frame);
         rows.positions.push(row.position);
@@ -195,16 +201,11 @@ impl PedestrianRows {
         for rows in self.hypotheses {
             let found = rows.positions.len();
             if found != HORIZON {
-                let expected = HORIZON;
-                let problem = ExternalProblem::Length { expected, found };
-                return Err((rows.line, whole_line(problem)));
+                return Err((rows.line, whole_line(wrong_length(found))));
             }
             let frames = forecast.frames.get_or_insert_with(|| rows.frames.clone());
             if *frames != rows.frames {
-                let problem = ExternalProblem::Frames {
-                    expected: in_short(frames),
-                    found: in_short(&rows.frames),
-                };
+                let problem = wrong_frames(&rows.frames, frames);
                 return Err((rows.line, in_field("frame", problem)));
             }
             forecast.positions.extend(rows.positions);
@@ -219,26 +220,20 @@ impl PedestrianRows {
 fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
     let number = text.parse().ok();
     let number = number.or_else(|| lines::whole(text.parse().ok()?));
-    number.ok_or_else(|| {
-        let (expected, found) = ("a whole number", format!("{:?}", quoted(text)));
-        in_field(name, ExternalProblem::Kind { expected, found })
-    })
+    number.ok_or_else(|| in_field(name, format!("must be a whole number, found {:?}", quoted(text))))
 }
 
 /// A pedestrian: a whole number, or a word that is not a number.
 fn name(text: &str) -> Result<PedestrianName, Wrong> {
     let wrong = text.is_empty() || text.parse::<f64>().is_ok_and(|n| !n.is_infinite() && n.fract() != 0.0);
     if wrong {
-        let (expected, found) = ("a whole number or a word", format!("{:?}", quoted(text)));
-        return Err(in_field(REQUIRED[1], ExternalProblem::Kind { expected, found }));
+        let problem = format!("must be a whole number or a word, found {:?}", quoted(text));
+        return Err(in_field(REQUIRED[1], problem));
     }
     Ok(PedestrianName::of_text(text))
 }
 
 fn finite(text: &str, name: &'static str) -> Result<f64, Wrong> {
     let number = text.parse::<f64>().ok().filter(|n| n.is_finite());
-    number.ok_or_else(|| {
-        let found = format!("{:?}", quoted(text));
-        in_field(name, ExternalProblem::NotFinite { found })
-    })
+    number.ok_or_else(|| in_field(name, not_finite(&format!("{:?}", quoted(text)))))
 }

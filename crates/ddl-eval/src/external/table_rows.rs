@@ -4,7 +4,7 @@ use std::io::BufRead;
 
 use csv_core::{ReadRecordResult, Reader};
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 use crate::external::lines::{Lines, Wrong, whole_line};
 
 pub(super) type AtLine<T> = (usize, T);
@@ -73,7 +73,7 @@ impl<R: BufRead> TableRows<R> {
         let (result, read, _, count) = self.reader.read_record(line, &mut self.fields, &mut self.ends);
         self.at += read;
         if result != ReadRecordResult::Record {
-            return Err(self.wrong(whole_line(ExternalProblem::OpenQuote)));
+            return Err(self.wrong(whole_line("a quote is not closed on this line")));
         }
         Ok(Some(Fields {
             text: &self.fields,

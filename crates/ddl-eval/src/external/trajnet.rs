@@ -7,14 +7,14 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::BufRead;
 
-use ddl_core::{HORIZON, OBSERVED, PedestrianName, Position, Window};
+use ddl_core::{HORIZON, OBSERVED, PedestrianName, Position, TIME_STEP, Window};
 use serde::Deserialize;
 
-use crate::external::error::{ExternalError, ExternalProblem};
+use crate::external::error::ExternalError;
 use crate::external::expected::{ExpectedForecasts, PedestrianForecast};
 use crate::external::json::{self, Whole};
-use crate::external::lines::{Lines, Wrong, in_field, whole_line, within_bounds};
-use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, frames_ahead, in_short};
+use crate::external::lines::{Lines, Wrong, in_field, missing, within_bounds, wrong_length};
+use crate::external::pedestrian_key::{HypothesisNumbering, PedestrianKey, frames_ahead, in_short, wrong_frames};
 use crate::protocol::Protocol;
 
 /// Lines and fields of other names are ignored.
@@ -105,8 +105,7 @@ impl<'w, 'a> Reading<'w, 'a> {
         if let Some(scene) = line.scene {
             let id = scene.id;
             if self.scenes.insert(id, scene).is_some() {
-                let problem = ExternalProblem::ScatteredScene { scene: id };
-                return Err((number, in_field("scene.id", problem)));
+                return Err((number, scattered("scene.id", id)));
             }
         }
         let Some(track) = line.track else {
@@ -116,16 +115,15 @@ impl<'w, 'a> Reading<'w, 'a> {
         let Some(Whole(prediction)) = track.prediction_number else {
             return Ok(());
         };
-        let missing = || in_field("track.scene_id", ExternalProblem::Missing);
-        let Whole(id) = track.scene_id.ok_or_else(|| (number, missing()))?;
+        let Whole(id) = track.scene_id.ok_or_else(|| (number, missing("track.scene_id")))?;
         if self.open.as_ref().is_none_or(|open| open.scene.id != id) {
             self.close()?;
-            let wrong = |problem| Err((number, in_field("track.scene_id", problem)));
             if self.finished.contains(&id) {
-                return wrong(ExternalProblem::ScatteredScene { scene: id });
+                return Err((number, scattered("track.scene_id", id)));
             }
             let Some(scene) = self.scenes.get(&id).cloned() else {
-                return wrong(ExternalProblem::UnknownScene { scene: id });
+                let problem = format!("scene {id} has no scene line before its tracks");
+                return Err((number, in_field("track.scene_id", problem)));
             };
             let open = self.open(scene).map_err(|wrong| (number, wrong))?;
             self.open = Some(open);
@@ -171,9 +169,8 @@ impl<'w, 'a> Reading<'w, 'a> {
         }
         let rows = predictions.entry(prediction).or_default();
         if rows.len() == HORIZON {
-            let (expected, found) = (HORIZON, HORIZON + 1);
             let path = format!("prediction_number {prediction}");
-            return Err(in_field(path, ExternalProblem::Length { expected, found }));
+            return Err(in_field(path, wrong_length(HORIZON + 1)));
         }
         let position = [track.x, track.y];
         within_bounds(position, || "track.x, track.y".to_owned())?;
@@ -222,13 +219,21 @@ fn ends_at(window: &Window, frame: i64) -> bool {
     last.contains(&Some(frame))
 }
 
+fn scattered(field: &str, scene: i64) -> Wrong {
+    let problem = "ended on an earlier line; the tracks of a scene must be consecutive";
+    in_field(field, format!("scene {scene} {problem}"))
+}
+
 /// A scene needs 8 or 9 observed and 12 forecast frames to match the window that starts with it.
 fn wrong_end(window: &Window, scene: &NdjsonScene) -> Wrong {
-    let problem = ExternalProblem::SceneFrames {
-        found: format!("{} to {}", scene.s, scene.e),
-        observed: in_short(&window.frames()[..OBSERVED]),
-        ahead: in_short(&frames_ahead(window)[0]),
-    };
+    let problem = format!(
+        "the scene has the frames {} to {}; the window that starts there has the observed frames {} and the forecast \
+         frames {}: a scene has 8 or 9 observed and 12 forecast frames, {TIME_STEP} s apart",
+        scene.s,
+        scene.e,
+        in_short(&window.frames()[..OBSERVED]),
+        in_short(&frames_ahead(window)[0]),
+    );
     in_field(format!("scene {}", scene.id), problem)
 }
 
@@ -238,26 +243,18 @@ fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<Pedestr
         let path = || format!("prediction_number {number}");
         rows.sort_by_key(|&(frame, _)| frame);
         if rows.len() != HORIZON {
-            let (expected, found) = (HORIZON, rows.len());
-            return Err(in_field(path(), ExternalProblem::Length { expected, found }));
+            return Err(in_field(path(), wrong_length(rows.len())));
         }
         let frames: Vec<i64> = rows.iter().map(|&(frame, _)| frame).collect();
         if let Some(window) = window {
             let ahead = frames_ahead(window);
             if !ahead.contains(&frames) {
-                let problem = ExternalProblem::Frames {
-                    expected: in_short(&ahead[0]),
-                    found: in_short(&frames),
-                };
-                return Err(in_field(path(), problem));
+                return Err(in_field(path(), wrong_frames(&frames, &ahead[0])));
             }
         }
         forecast
             .positions
             .extend(rows.into_iter().map(|(_, position)| position));
-    }
-    if forecast.positions.is_empty() {
-        return Err(whole_line(ExternalProblem::NoHypothesis));
     }
     Ok(forecast)
 }

@@ -41,7 +41,7 @@ impl RegionScores {
 
 /// -ln of the weight of the hypothesis whose goal is nearest to the true endpoint (without goals: whose last position
 /// is nearest), nats. `None` for forecasts of one hypothesis. For equal weights it is ln K.
-pub fn weight_log_loss(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
+pub(crate) fn weight_log_loss(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
     let forecast = scene.forecast();
     let truth = scene.truth(i);
     let off = |k: usize| match (forecast.goal(i, k), truth.last()) {

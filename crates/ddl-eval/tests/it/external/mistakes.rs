@@ -65,6 +65,12 @@ after the last observed one are 80, 90 to 190
         let start = if parts[0] == "{" { 0 } else { first.len() };
         both[..start].to_owned() + &edited(&both[start..], parts[0], parts[1])
     });
+}
+
+#[test]
+fn every_mistake_of_several_hypotheses_is_named_with_its_place() {
+    let format = ExternalFormat::JsonLines;
+    let first = line(70, 3, &hypothesis(1.0));
     let twice = hypothesis(1.0) + "," + &hypothesis(2.0);
     check(
         format,
