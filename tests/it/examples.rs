@@ -10,7 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 9] = [
+const EXAMPLES: [(&str, &[&str]); 8] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -26,15 +26,6 @@ const EXAMPLES: [(&str, &[&str]); 9] = [
     ),
     ("ddl-forecast draw_forecast sample.csv 15 forecast.svg", &[]),
     ("ddl-data sample_recording", &[SAMPLE]),
-    (
-        "ddl-data tracks_to_windows",
-        &[
-            "street.csv: format table, 50 positions of 3 pedestrians, 10 frames per step of 0.4 s",
-            "street.ndjson: format trajnet, 50 positions of 3 pedestrians",
-            "pedestrian 2 at (1.88, 0.80) m; of 8 positions 6 observed, 2 filled in, 0 padded at the start",
-            "pedestrian 3 at (4.00, -1.92) m; of 8 positions 4 observed, 0 filled in, 4 padded at the start",
-        ],
-    ),
     (
         "ddl-softdtw nearest_neighbours",
         &["turns left after 0.4 s, at 1.20 m/s", "an exhaustive search agrees"],

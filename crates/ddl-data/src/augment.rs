@@ -1,9 +1,6 @@
 //! Rotation of the ground plane, the augmentation that STAR and DDL train with.
 
-use std::f64::consts::PI;
-
 use ddl_core::Position;
-use rand::{Rng, RngExt};
 
 /// A rotation about the world's origin.
 ///
@@ -20,12 +17,6 @@ impl Rotation {
     pub fn new(angle_rad: f64) -> Self {
         let (sine, cosine) = angle_rad.sin_cos();
         Self { sine, cosine }
-    }
-
-    /// A rotation by an angle drawn uniformly from [0, pi).
-    #[must_use]
-    pub fn random(rng: &mut impl Rng) -> Self {
-        Self::new(rng.random_range(0.0..PI))
     }
 
     /// The rotated position (m).

@@ -40,7 +40,7 @@ impl Convention {
     }
 
     /// The file format of the convention; `None` for conventions without files of fixed names.
-    pub fn format(self) -> Option<Format> {
+    pub(crate) fn format(self) -> Option<Format> {
         match self {
             Self::Star => Some(Format::StarCsv),
             Self::SocialGan => Some(Format::SocialGan),

@@ -101,7 +101,7 @@ pub use fold::{Fold, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
 pub use homography::{Homography, HomographyError};
 pub use live::{LiveError, LiveTracks, checked_frame, checked_frame_step};
-pub use locate::{DATASETS_VARIABLE, locate};
+pub use locate::locate;
 pub use neighbours::{Neighbours, SpatialIndex};
 pub use observation::{COORDINATE_LIMIT, Observation};
 pub use plausibility::{Fastest, PlausibilityWarning};

@@ -6,7 +6,7 @@ use crate::convention::Convention;
 use crate::error::DataError;
 
 /// Environment variable that names the folder of the recordings.
-pub const DATASETS_VARIABLE: &str = "DDL_DATASETS";
+const DATASETS_VARIABLE: &str = "DDL_DATASETS";
 
 /// Default folder of the recordings, below the root of the workspace.
 const DEFAULT_FOLDER: &str = "datasets/eth_ucy";

@@ -12,7 +12,7 @@ pub struct SceneName(Arc<str>);
 
 impl SceneName {
     /// Largest length of a name in bytes. A file can be named after a scene, even if every byte is escaped.
-    pub const LONGEST: usize = 64;
+    pub(crate) const LONGEST: usize = 64;
 
     /// A name of 1 to 64 bytes without control characters; blanks around it are removed.
     ///

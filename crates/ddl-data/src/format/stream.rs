@@ -69,11 +69,11 @@ pub struct FrameReader<R> {
     lines: usize,
     kind: Option<Kind>,
     /// The frame rate stated by scenes.
-    rate: trajnet::Rate,
+    rate: trajnet::SceneRate,
     words: Numbering,
     /// Pedestrians' numbers that are not written as plain digits, such as `17.0`: the first 200,000 of them.
     numbers: BTreeSet<(Option<SceneName>, Box<str>)>,
-    scenes: BTreeMap<Option<SceneName>, Scene>,
+    scenes: BTreeMap<Option<SceneName>, SceneProgress>,
     /// The last frames of scenes that were forgotten.
     left: VecDeque<Frame>,
     /// The scene of the last line.
@@ -87,7 +87,7 @@ pub struct FrameReader<R> {
 }
 
 #[derive(Debug)]
-struct Scene {
+struct SceneProgress {
     current: Option<Growing>,
     /// The last frame that was returned.
     last: Option<i64>,
@@ -96,7 +96,7 @@ struct Scene {
     heard: Instant,
 }
 
-impl Scene {
+impl SceneProgress {
     fn unseen() -> Self {
         Self {
             current: None,
@@ -130,7 +130,7 @@ impl<R: BufRead> FrameReader<R> {
             origin: origin.into(),
             lines: 0,
             kind: None,
-            rate: trajnet::Rate::default(),
+            rate: trajnet::SceneRate::default(),
             words: Numbering::remembering(MOST_WORDS),
             numbers: BTreeSet::new(),
             scenes: BTreeMap::new(),
@@ -274,26 +274,10 @@ impl<R: BufRead> FrameReader<R> {
         self.hear(&seen.scene)?;
         self.spoken_of.clone_from(&seen.scene);
         let name = seen.scene.clone();
-        let scene = self.scenes.entry(name.clone()).or_insert_with(Scene::unseen);
-        let reached = scene.current.as_ref().map(|growing| growing.frame.number);
-        if let Some(last) = reached.or(scene.last)
-            && (seen.frame < last || (reached.is_none() && seen.frame == last))
-        {
-            let frame = seen.frame;
-            return Err(self.wrong(FormatProblem::OutOfOrder {
-                scene: name,
-                frame,
-                last,
-            }));
-        }
-        let before = if reached == Some(seen.frame) {
-            None
-        } else {
-            self.whole(&name)
-        };
+        let before = self.begin_frame(&name, seen.frame)?;
         let (pedestrian, word) = self.numbered(&name, seen.pedestrian);
         let (line, limit) = (self.lines, LARGEST_CROWD);
-        let scene = self.scenes.entry(name.clone()).or_insert_with(Scene::unseen);
+        let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
         let growing = scene.current.as_ref();
         if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
             let word = word.map(|word| PedestrianName::Word(word.to_string()));
@@ -331,6 +315,19 @@ impl<R: BufRead> FrameReader<R> {
         Ok(before)
     }
 
+    /// Checks that the frame is not before the last one of the scene. If it is a new one, returns the previous frame.
+    fn begin_frame(&mut self, name: &Option<SceneName>, frame: i64) -> Result<Option<Frame>, FormatError> {
+        let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
+        let reached = scene.current.as_ref().map(|growing| growing.frame.number);
+        if let Some(last) = reached.or(scene.last)
+            && (frame < last || (reached.is_none() && frame == last))
+        {
+            let scene = name.clone();
+            return Err(self.wrong(FormatProblem::OutOfOrder { scene, frame, last }));
+        }
+        Ok(if reached == Some(frame) { None } else { self.whole(name) })
+    }
+
     /// Refuses a stream in which only some lines name a scene.
     fn refuse_mixed(&mut self, named: bool) -> Result<(), FormatError> {
         match *self.named.get_or_insert((named, self.lines)) {
@@ -349,7 +346,7 @@ impl<R: BufRead> FrameReader<R> {
             }
             _ => {}
         }
-        let idle = |scene: &Scene| scene.heard.elapsed() >= idle_timeout;
+        let idle = |scene: &SceneProgress| scene.heard.elapsed() >= idle_timeout;
         let scenes = self.scenes.iter();
         let idle = scenes.filter(|(_, scene)| idle(scene));
         let idle: Vec<_> = idle.map(|(name, _)| name.clone()).collect();

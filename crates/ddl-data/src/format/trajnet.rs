@@ -17,10 +17,10 @@ use crate::scene_name::SceneName;
 
 /// The observed tracks. Forecast tracks, which have a `prediction_number`, are skipped. Identical rows count once.
 #[expect(clippy::float_cmp, reason = "a repeated track is written with the same digits")]
-pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), FormatError> {
+pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRate), FormatError> {
     let mut seen: BTreeMap<(i64, PedestrianField), (Position, usize)> = BTreeMap::new();
     let mut rows = Vec::new();
-    let mut rate = Rate::default();
+    let mut rate = SceneRate::default();
     for (index, text) in text.lines().enumerate() {
         let Some(row) = observation(text, index + 1, origin, &mut rate)? else {
             continue;
@@ -57,12 +57,12 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Rate), F
 
 /// Frames per second, as stated by the scenes of a file.
 #[derive(Debug, Default)]
-pub(super) struct Rate {
+pub(super) struct SceneRate {
     line: usize,
     pub(super) frames_a_second: Option<f64>,
 }
 
-impl Rate {
+impl SceneRate {
     #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
     fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
         let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
@@ -126,13 +126,13 @@ pub(super) fn observation(
     text: &str,
     line: usize,
     origin: &str,
-    rate: &mut Rate,
+    rate: &mut SceneRate,
 ) -> Result<Option<TrackRow>, FormatError> {
     let place = FilePlace::line(line);
     place.read(origin, row(text, place, rate))
 }
 
-fn row(text: &str, place: FilePlace, rate: &mut Rate) -> Result<Option<TrackRow>, FormatProblem> {
+fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<TrackRow>, FormatProblem> {
     if text.trim().is_empty() {
         return Ok(None);
     }

@@ -12,11 +12,11 @@ use crate::recording::Recording;
 
 #[derive(Serialize)]
 struct TrackLine {
-    track: TrackFields,
+    track: WrittenTrack,
 }
 
 #[derive(Serialize)]
-struct TrackFields {
+struct WrittenTrack {
     f: i64,
     p: PedestrianName,
     x: f64,
@@ -67,7 +67,7 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
         Format::TrajNet => {
             for seen in observations {
                 let [x, y] = seen.position;
-                let track = TrackFields {
+                let track = WrittenTrack {
                     f: seen.frame,
                     p: name(seen),
                     x,

@@ -86,21 +86,41 @@ fn an_empty_line_ends_a_frame_at_once() {
     assert!(again.contains("line 3: frame 0 comes after frame 0"), "{again}");
 }
 
+/// The lines of a stream, separated by `|`, and the parts of the expected message.
+const MISTAKES: &str = r#"
+frame,pedestrian,x => line 1 => column y is missing
+0 1 2 3|0 1 2 4 => line 2 => already (line 1)
+5 1 2 3|4 1 2 4 => line 2 => frame 4 comes after frame 5
+scene,frame,pedestrian,x,y|LONG,0,1,2,3 => line 2, field 1: scene has 65 bytes => shorter name
+frame,pedestrian,x,y,scene|0,1,2,3, => line 2, field 5: scene is empty => name the camera
+frame,pedestrian,x,y,scene|0,1,2,3,aBELLb => line 2, field 5: scene must not hold control => leave them out
+frame,pedestrian,x,y,scene|0,1,2,3 => line 2: 4 fields where 5 => x, y and scene
+frame,pedestrian,x,y,scene|5,1,2,3,a|9,1,2,3,b|4,1,2,3,a => line 4: frame 4 of scene a comes after frame 5 => in order
+frame,pedestrian,x,y,scene,scene => line 1, field 6 => scene
+{"track":{TRACK,"scene":7}} => line 1: track.scene must be a text => found 7
+{"track":{TRACK,"scene":"a"}}|{"track":{TRACK}} => line 2: track.scene is missing here, but present on line 1 => or omit
+{"track":{TRACK}}|{"track":{TRACK,"scene":"a"}} => line 2: a scene is named here, but not on line 1 => or omit it
+"#;
+
 #[test]
 fn errors_name_their_line() {
     let message = |text: &str| frames(text.as_bytes()).unwrap_err().to_string();
-    for (text, needles) in [
-        ("frame,pedestrian,x\n", ["line 1", "column y is missing"]),
-        ("0 1 2 3\n0 1 2 4\n", ["line 2", "already (line 1)"]),
-        ("5 1 2 3\n4 1 2 4\n", ["line 2", "frame 4 comes after frame 5"]),
-    ] {
-        let message = message(text);
-        for needle in needles {
-            assert!(message.contains(needle), "{message}");
-        }
+    let long = "a".repeat(65);
+    for case in MISTAKES.trim().lines() {
+        let (text, expected) = case.split_once(" => ").unwrap();
+        let text = text.replace('|', "\n").replace("LONG", &long).replace("BELL", "\u{7}");
+        let message = message(&(text.replace("TRACK", r#""f":0,"p":1,"x":2,"y":3"#) + "\n"));
+        assert!(
+            expected.split(" => ").all(|part| message.contains(part)),
+            "{case}: {message}"
+        );
     }
     let long = message(&"7".repeat(70_000));
     assert!(long.contains("longer than 65536 bytes"), "{long}");
+    let file = b"frame,pedestrian,x,y,scene\n0,1,2,3,a\n";
+    let refused = parse_recording(file, "t.csv", Format::Table).unwrap_err();
+    let message = "t.csv, line 2: a file holds one recording, but this one names scenes";
+    assert!(refused.to_string().starts_with(message), "{refused}");
 }
 
 #[test]
@@ -187,68 +207,6 @@ proptest! {
             prop_assert_eq!(seen(&mixed), seen(&alone));
         }
     }
-}
-
-#[test]
-fn what_is_wrong_with_scenes_is_named() {
-    let long = "a".repeat(65);
-    for (text, needles) in [
-        (
-            format!("scene,frame,pedestrian,x,y\n{long},0,1,2,3\n"),
-            ["line 2, field 1: scene has 65 bytes", "shorter name"],
-        ),
-        (
-            "frame,pedestrian,x,y,scene\n0,1,2,3,\n".to_owned(),
-            ["line 2, field 5: scene is empty", "name the camera"],
-        ),
-        (
-            "frame,pedestrian,x,y,scene\n0,1,2,3,a\u{7}b\n".to_owned(),
-            ["line 2, field 5: scene must not hold control", "leave them out"],
-        ),
-        (
-            "frame,pedestrian,x,y,scene\n0,1,2,3\n".to_owned(),
-            ["line 2: 4 fields where 5", "x, y and scene"],
-        ),
-        (
-            "frame,pedestrian,x,y,scene\n5,1,2,3,a\n9,1,2,3,b\n4,1,2,3,a\n".to_owned(),
-            ["line 4: frame 4 of scene a comes after frame 5", "in order of time"],
-        ),
-        (
-            "frame,pedestrian,x,y,scene,scene\n".to_owned(),
-            ["line 1, field 6", "scene"],
-        ),
-        (
-            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":7}}\n".to_owned(),
-            ["line 1: track.scene must be a text", "found 7"],
-        ),
-        (
-            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\"scene\":\"a\"}}\n{\"track\":{\"f\":0,\"p\":1,\
-             \"x\":2,\"y\":3}}\n"
-                .to_owned(),
-            [
-                "line 2: track.scene is missing here, but present on line 1",
-                "or omit it everywhere",
-            ],
-        ),
-        (
-            "{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3}}\n{\"track\":{\"f\":0,\"p\":1,\"x\":2,\"y\":3,\
-             \"scene\":\"a\"}}\n"
-                .to_owned(),
-            [
-                "line 2: a scene is named here, but not on line 1",
-                "or omit it everywhere",
-            ],
-        ),
-    ] {
-        let message = frames(text.as_bytes()).unwrap_err().to_string();
-        for needle in needles {
-            assert!(message.contains(needle), "{message}");
-        }
-    }
-    let file = b"frame,pedestrian,x,y,scene\n0,1,2,3,a\n";
-    let refused = parse_recording(file, "t.csv", Format::Table).unwrap_err();
-    let message = "t.csv, line 2: a file holds one recording, but this one names scenes";
-    assert!(refused.to_string().starts_with(message), "{refused}");
 }
 
 #[test]
