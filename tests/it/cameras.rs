@@ -177,7 +177,7 @@ fn what_is_kept_is_bounded() {
     // Scenes without a frame are forgotten at once.
     let mut scenes = scenes.forgetting_after(Duration::ZERO);
     scenes.observe(Some(&name("more")), 0, []).unwrap();
-    assert_eq!(scenes.len(), 1);
+    assert_eq!(scenes.idle(), [name("more")]);
     let mut scenes = LiveScenes::new();
     let seen = [(PedestrianId(1), [0.0, 0.0])];
     let waiting = LiveScenes::MOST_WAITING as i64;

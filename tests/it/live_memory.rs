@@ -68,7 +68,7 @@ fn a_memory_of_another_place_is_refused() {
             live.push(frame, pedestrians(&watched, frame)).unwrap();
         }
         let kept_memory = live.memory().unwrap();
-        let refused = live.refused_memory();
+        let refused = live.place().and_then(PlaceMemory::refused);
         assert_eq!(refused.is_some(), is_refused, "{name}: {refused:?}");
         // The memory holds the observed place, not the other one.
         let least = if is_refused { 1 } else { memory.segments() };

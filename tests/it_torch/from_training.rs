@@ -24,14 +24,8 @@ fn a_training_reports_its_steps_and_writes_a_run() {
     assert!(again.starts_with(done), "{again}");
 
     let run = RunDirectory::new(place.at("run"));
-    for file in [
-        run.model(),
-        run.optimizer(),
-        run.experts(),
-        run.proposal(),
-        run.epoch(1),
-        run.epoch(2),
-    ] {
+    for name in ["model", "optimizer", "experts", "proposal", "epochs/001", "epochs/002"] {
+        let file = run.path().join(format!("{name}.safetensors"));
         assert!(file.is_file(), "{} is missing", file.display());
     }
     let config = run.config().unwrap();

@@ -7,7 +7,7 @@ use ddl::network::weights::{save_weights, tensors_digest};
 use ddl::network::{
     EpochReport, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, TrainingConfig,
 };
-use ddl::{Ddl, DeviceChoice, FORMAT, GoalRecipe, RunConfig, RunDirectory, TrainingData, Variant};
+use ddl::{Ddl, DeviceChoice, FORMAT, GoalRecipe, RunConfig, TrainingData, Variant};
 use safetensors::tensor::{Dtype, TensorView};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -92,18 +92,18 @@ pub fn goal_recipe(seed: u64) -> GoalRecipe {
 pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     config.data.windows = windows.len();
     config.data.pedestrians = windows.iter().map(Window::len).sum();
-    let run = RunDirectory::new(folder);
     std::fs::create_dir_all(folder.join("epochs")).expect("a folder can be made");
     let network = MotionNetwork::new(config.star.clone(), config.training.seed);
     let network = network.expect("the configuration is valid");
     let origin = config.network_origin();
-    for file in [run.epoch(1), run.model()] {
-        save_weights(network.weights(), &origin, &file).expect("weights can be written");
+    for file in ["epochs/001.safetensors", "model.safetensors"] {
+        save_weights(network.weights(), &origin, &folder.join(file)).expect("weights can be written");
     }
     if let Some(recipe) = config.goals.proposal.clone() {
         let proposal = ProposalNetwork::new(recipe.network, recipe.training.seed);
         let proposal = proposal.expect("the configuration is valid");
-        save_weights(proposal.weights(), &config.goals_origin(), &run.proposal()).expect("weights can be written");
+        let file = folder.join("proposal.safetensors");
+        save_weights(proposal.weights(), &config.goals_origin(), &file).expect("weights can be written");
     }
     let tracks = windows
         .iter()
@@ -117,7 +117,7 @@ pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
         validation: None,
     };
     for (file, bytes) in [
-        (run.experts(), experts(&config, &positions)),
+        (folder.join("experts.safetensors"), experts(&config, &positions)),
         (folder.join("config.json"), json(&config)),
         (folder.join("metrics.jsonl"), json(&epoch)),
     ] {

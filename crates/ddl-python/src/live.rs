@@ -184,7 +184,7 @@ impl Live {
     /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
-        let refused = turn.watching().and_then(|watching| watching.live.refused_memory());
+        let refused = turn.watching().and_then(|watching| watching.live.place()?.refused());
         Ok(refused.map(ToString::to_string))
     }
 

@@ -198,7 +198,12 @@ impl Model {
                 "no pedestrian in the recording was observed at 2 consecutive time steps; check fps",
             ));
         }
-        let player = RecordingPlayer::new(&self.0, &recording.tracks, &windows, most.max(1));
+        let player = RecordingPlayer {
+            model: &self.0,
+            recording: &recording.tracks,
+            windows: &windows,
+            most: most.max(1),
+        };
         let options = ForecastOptions::new(&self.0, self.hypotheses(), false)?;
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();

@@ -23,25 +23,15 @@ use std::ops::ControlFlow;
 ///
 /// # Errors
 /// Unreadable data, a directory that holds another run, an unavailable device, or a loss that is not finite (the last
-/// good state is kept); [`DdlError::WithoutLibtorch`] in a program without libtorch.
-#[cfg(feature = "torch")]
+/// good state is kept); [`DdlError::WithoutLibtorch`] in a program without libtorch, which tells how to build with it.
+#[cfg_attr(not(feature = "torch"), expect(unused_variables, reason = "training needs libtorch"))]
 pub fn train(
     request: &TrainingRequest,
     dataset: &Dataset,
     observe: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
-    stages::train(request, dataset, observe)
-}
-
-/// Training needs libtorch, which this program is built without.
-///
-/// # Errors
-/// [`DdlError::WithoutLibtorch`], which tells how to build with it.
-#[cfg(not(feature = "torch"))]
-pub fn train(
-    _: &TrainingRequest,
-    _: &Dataset,
-    _: impl FnMut(&TrainingProgress) -> ControlFlow<()>,
-) -> Result<(), DdlError> {
+    #[cfg(feature = "torch")]
+    return stages::train(request, dataset, observe);
+    #[cfg(not(feature = "torch"))]
     Err(DdlError::WithoutLibtorch { what: "training" })
 }

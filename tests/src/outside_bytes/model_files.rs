@@ -133,7 +133,9 @@ pub(super) fn experts(choices: &[u8]) {
     }
     VALID.with(|valid| {
         let run = valid.path.parent().expect("the file lies in a run");
-        drop(valid.read(choices, |(), _| GoalModel::load(run, DeviceChoice::Cpu)));
+        drop(valid.read(choices, |(), _| {
+            GoalModel::open(&ModelSource::at(run), DeviceChoice::Cpu)
+        }));
     });
 }
 

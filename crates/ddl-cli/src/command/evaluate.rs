@@ -110,7 +110,7 @@ impl Evaluate {
             _ => format!("{} {}", model.config().data.fold, model.config().star.variant),
         };
         // Results on recordings of another convention are not saved in the run.
-        let own_run = model.run().filter(|_| convention == trained_on);
+        let own_run = model.source().run().filter(|_| convention == trained_on);
         let mut dataset = self.recordings.dataset_for(model.config(), convention)?;
         if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
             dataset = Dataset::own(vec![dataset.recording(name)?.clone()])?;

@@ -47,7 +47,12 @@ impl View {
         let model = self.clear.of(self.model.load(self.machine.device)?)?;
         let observed = self.tracks.observed(model.config())?;
         let recording = &observed.recording;
-        let player = RecordingPlayer::new(&model, recording, &observed.windows, self.moments);
+        let player = RecordingPlayer {
+            model: &model,
+            recording,
+            windows: &observed.windows,
+            most: self.moments,
+        };
         let forecasts = model.forecast_all(&player.shown())?;
         let forecasts: Vec<&Forecast> = forecasts.iter().collect();
         let name = self.tracks.file().file_name().unwrap_or_default();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 /// The distance that pedestrians keep from each other, from centre to centre (metres).
 ///
 /// Every hypothesis is integrated again among the others. Each of them is a disc on its most likely path. Within
-/// [`MARGIN`](Self::MARGIN) of a disc the pedestrian slides along it ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
+/// 0.4 m of a disc the pedestrian slides along it ([`AvoidingFlow`](ddl_dynamics::AvoidingFlow)).
 ///
 /// # What is guaranteed
 /// The distance to the goal still falls at every step. The clearance itself is not guaranteed: the others move, and a
@@ -24,7 +24,7 @@ const MOST: f64 = 10.0;
 impl Clearance {
     /// Pedestrians react within this distance of another's disc (metres). Chosen on validation recordings, see
     /// docs/stability.md.
-    pub const MARGIN: f64 = 0.4;
+    pub(crate) const MARGIN: f64 = 0.4;
 
     /// A clearance of `distance` metres from centre to centre; two pedestrians touch at 0.4 m.
     ///
@@ -38,9 +38,7 @@ impl Clearance {
         }
     }
 
-    /// The distance from centre to centre (metres).
-    #[must_use]
-    pub fn distance(self) -> f64 {
+    pub(crate) fn distance(self) -> f64 {
         self.0
     }
 }

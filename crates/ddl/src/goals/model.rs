@@ -23,7 +23,6 @@ use ddl_memory::Playback;
 use ddl_network::weights::load_weights;
 use ddl_network::{DeviceChoice, ForecastWindows, MemoryConfig, ProposeEndpoints, ProposedEndpoints};
 use rayon::prelude::*;
-use std::path::Path;
 
 /// Estimates goals for the pedestrians of a window, from the 8 observed frames and the memory of the place.
 #[derive(Debug)]
@@ -50,15 +49,7 @@ enum GoalOrigin {
 }
 
 impl GoalModel {
-    /// Loads the goals of the run at `path`, or of a packed model. The forecasting network of the run may be untrained.
-    ///
-    /// # Errors
-    /// As [`GoalModel::open`].
-    pub fn load(path: &Path, device: DeviceChoice) -> Result<Self, DdlError> {
-        Self::open(&ModelSource::at(path), device)
-    }
-
-    /// Loads the goals from any source of models.
+    /// Loads the goals. The forecasting network of a run may be untrained.
     ///
     /// # Errors
     /// When there is no run, its goals are not trained, one of the files is broken, or the device is unavailable.

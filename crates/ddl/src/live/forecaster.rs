@@ -2,7 +2,7 @@
 
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
-use crate::live::place_memory::{MemoryMismatch, PlaceMemory};
+use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
 use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
@@ -137,11 +137,6 @@ impl<M> LiveForecaster<M> {
         self.place().map(PlaceMemory::memory)
     }
 
-    /// The reason why the given memory is no longer used; `None` while it is.
-    pub fn refused_memory(&self) -> Option<&MemoryMismatch> {
-        self.place()?.refused()
-    }
-
     /// The memory of the place, for its [memory file](crate::MemoryFile).
     pub fn place(&self) -> Option<&PlaceMemory> {
         self.watch.place.as_ref()
@@ -206,9 +201,8 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     /// Adds a memory of the place: [`SceneMemory::new`], or one from a file ([`SceneMemory::read`]). The paths of
     /// earlier pedestrians then influence the forecasts, and the memory grows with every frame.
     ///
-    /// A forecast uses observations before its frame. A memory of at least [`MemoryMismatch::MIN_SEGMENTS`] segments
-    /// is tested on the first pedestrians. If it is of another place, it is [refused](Self::refused_memory), and an
-    /// empty one replaces it.
+    /// A forecast uses observations before its frame. A memory of at least 500 segments is tested on the first
+    /// pedestrians. If it is of another place, it is [refused](PlaceMemory::refused), and an empty one replaces it.
     ///
     /// # Errors
     /// When the model has no memory branch, or the memory has another number of raw frames per step.

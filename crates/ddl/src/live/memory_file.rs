@@ -22,10 +22,10 @@ pub struct MemoryFile {
     _lock: RunLock,
 }
 
-impl MemoryFile {
-    /// The interval between writes while frames arrive.
-    pub const PAUSE: Duration = Duration::from_mins(1);
+/// The interval between writes while frames arrive.
+const PAUSE: Duration = Duration::from_mins(1);
 
+impl MemoryFile {
     /// Opens the file for this process, and reads the memory in it if there is one. Links are followed.
     ///
     /// # Errors
@@ -53,9 +53,9 @@ impl MemoryFile {
         &self.path
     }
 
-    /// Whether [`PAUSE`](Self::PAUSE) has passed since the last attempt to write.
+    /// Whether a minute has passed since the last attempt to write.
     pub fn is_due(&self) -> bool {
-        self.written.elapsed() >= Self::PAUSE
+        self.written.elapsed() >= PAUSE
     }
 
     /// Writes the memory, unless it is empty or may be of another place than the file.

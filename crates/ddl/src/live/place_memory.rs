@@ -22,8 +22,7 @@ const FEWEST_TRIED: usize = 13;
 /// The memory of an observed place, and the test that the memory belongs to it. It is the part of a
 /// [`LiveForecaster`](crate::LiveForecaster) for programs that keep tracks themselves.
 ///
-/// A memory of at least [`MemoryMismatch::MIN_SEGMENTS`] segments is tested on the first pedestrians. If it is of
-/// another place, it is [refused](Self::refused), and an empty one replaces it.
+/// A memory of at least 500 segments is tested on the first pedestrians. If it is of another place, it is [refused](Self::refused), and an empty one replaces it.
 #[derive(Debug, Clone)]
 pub struct PlaceMemory {
     memory: SceneMemory,
@@ -51,10 +50,8 @@ pub struct MemoryMismatch {
     pub alike: usize,
 }
 
-impl MemoryMismatch {
-    /// A memory with fewer segments is not tested: it may be of any place.
-    pub const MIN_SEGMENTS: usize = 500;
-}
+/// A memory with fewer segments is not tested: it may be of any place.
+const MIN_SEGMENTS: usize = 500;
 
 impl fmt::Display for MemoryMismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -75,7 +72,7 @@ impl PlaceMemory {
     pub fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
         let count = model.goal_model().recalled_per_pedestrian()?;
         memory.end_tracks();
-        let is_tested = memory.segments() >= MemoryMismatch::MIN_SEGMENTS;
+        let is_tested = memory.segments() >= MIN_SEGMENTS;
         let trial = is_tested.then(|| Trial {
             given: memory.clone(),
             tried: BTreeSet::new(),
@@ -118,13 +115,13 @@ impl PlaceMemory {
     }
 
     /// Ends all tracks, as when a tracker restarts: any frame may follow.
-    pub fn end_tracks(&mut self) {
+    pub(crate) fn end_tracks(&mut self) {
         self.memory.end_tracks();
     }
 
     /// The window with the memory for its pedestrians. Call it before its last frame is [observed](Self::observe).
     #[must_use]
-    pub fn recalling(&self, window: Window) -> Window {
+    pub(crate) fn recalling(&self, window: Window) -> Window {
         self.memory.recalling(window, self.count)
     }
 

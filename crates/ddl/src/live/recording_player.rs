@@ -12,24 +12,18 @@ use ddl_report::page::Viewer;
 /// A self-contained HTML page that plays forecasts for some windows of a recording.
 #[derive(Debug)]
 pub struct RecordingPlayer<'a> {
-    model: &'a Ddl,
-    recording: &'a Recording,
-    windows: &'a [Window],
-    most: usize,
+    /// The model of the forecasts.
+    pub model: &'a Ddl,
+    /// The recording, which holds the true paths.
+    pub recording: &'a Recording,
+    /// The observed windows of the recording.
+    pub windows: &'a [Window],
+    /// Largest number of windows to play.
+    pub most: usize,
 }
 
-impl<'a> RecordingPlayer<'a> {
-    /// A player of at most `most` of the recording's observed windows, evenly spread.
-    pub fn new(model: &'a Ddl, recording: &'a Recording, windows: &'a [Window], most: usize) -> Self {
-        Self {
-            model,
-            recording,
-            windows,
-            most,
-        }
-    }
-
-    /// The windows to forecast.
+impl RecordingPlayer<'_> {
+    /// The windows to forecast, evenly spread.
     pub fn shown(&self) -> Vec<Window> {
         let count = self.windows.len().min(self.most);
         let last = |k: usize| k * self.windows.len() / count - 1;

@@ -22,8 +22,7 @@ use std::time::{Duration, Instant};
 ///
 /// # What is kept
 /// It keeps the state of a `LiveForecaster` for each scene, for at most [`MOST_SCENES`](Self::MOST_SCENES) scenes. A
-/// scene without a frame for [`IDLE_TIMEOUT`](Self::IDLE_TIMEOUT) is forgotten when another scene begins, or by
-/// [`forget_idle`](Self::forget_idle). For adaptive regions the caller keeps one
+/// scene without a frame for 10 minutes is forgotten when another scene begins. For adaptive regions the caller keeps one
 /// [`AdaptiveRegions`](ddl_core::AdaptiveRegions) per scene.
 ///
 /// # Examples
@@ -54,6 +53,9 @@ pub struct LiveScenes {
     dropped: u64,
     idle_timeout: Duration,
 }
+
+/// Time without a frame after which a scene is forgotten.
+const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 
 #[derive(Debug, Clone)]
 struct WatchedScene {
@@ -92,8 +94,6 @@ impl LiveScenes {
     /// Number of pedestrians in a batch with a short latency: several cameras with a dozen pedestrians each, or one
     /// crowd.
     pub const BATCH: usize = 50;
-    /// Time without a frame after which a scene is forgotten.
-    pub const IDLE_TIMEOUT: Duration = Duration::from_mins(10);
 
     /// Starts without scenes; consecutive frame numbers are one step of 0.4 s apart.
     #[must_use]
@@ -117,7 +117,7 @@ impl LiveScenes {
             waiting: VecDeque::new(),
             is_latest_only: false,
             dropped: 0,
-            idle_timeout: Self::IDLE_TIMEOUT,
+            idle_timeout: IDLE_TIMEOUT,
         }
     }
 
@@ -271,20 +271,10 @@ impl LiveScenes {
     }
 
     /// Forgets the [idle](Self::idle) scenes and their memories.
-    pub fn forget_idle(&mut self) {
+    fn forget_idle(&mut self) {
         for scene in self.idle() {
             self.forget(Some(&scene));
         }
-    }
-
-    /// Number of known scenes.
-    pub fn len(&self) -> usize {
-        self.scenes.len()
-    }
-
-    /// Whether no scene is known.
-    pub fn is_empty(&self) -> bool {
-        self.scenes.is_empty()
     }
 
     /// Number of windows that wait for a forecast.

@@ -80,7 +80,7 @@ impl Ddl {
     }
 
     /// The directory of its run; `None` for a packed or built-in model.
-    pub fn run(&self) -> Option<&RunDirectory> {
+    pub(crate) fn run(&self) -> Option<&RunDirectory> {
         self.source().run()
     }
 

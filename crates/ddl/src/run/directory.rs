@@ -51,22 +51,22 @@ impl RunDirectory {
     }
 
     /// Final weights.
-    pub fn model(&self) -> PathBuf {
+    pub(crate) fn model(&self) -> PathBuf {
         self.0.join("model.safetensors")
     }
 
     /// State of an unfinished run.
-    pub fn optimizer(&self) -> PathBuf {
+    pub(crate) fn optimizer(&self) -> PathBuf {
         self.0.join("optimizer.safetensors")
     }
 
     /// Tracks of the expert library.
-    pub fn experts(&self) -> PathBuf {
+    pub(crate) fn experts(&self) -> PathBuf {
         self.0.join("experts.safetensors")
     }
 
     /// Weights of the proposal network.
-    pub fn proposal(&self) -> PathBuf {
+    pub(crate) fn proposal(&self) -> PathBuf {
         self.0.join("proposal.safetensors")
     }
 
@@ -96,12 +96,12 @@ impl RunDirectory {
     }
 
     /// Moments of the evaluation, to look at.
-    pub fn moments(&self) -> PathBuf {
+    pub(crate) fn moments(&self) -> PathBuf {
         self.0.join("moments.json")
     }
 
     /// Weights after an epoch.
-    pub fn epoch(&self, epoch: usize) -> PathBuf {
+    pub(crate) fn epoch(&self, epoch: usize) -> PathBuf {
         self.0.join("epochs").join(format!("{epoch:03}.safetensors"))
     }
 

@@ -98,8 +98,7 @@ impl GoalRecipe {
     }
 
     /// Text that names the origin of the goals.
-    #[must_use]
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         match &self.proposal {
             None => "retrieved".to_owned(),
             Some(proposal) => format!(
