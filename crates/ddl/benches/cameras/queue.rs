@@ -7,46 +7,17 @@ use ddl::{Ddl, LiveScenes};
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::BTreeMap;
 
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Phases {
-    /// The frames of each camera arrive at their own times.
-    Own,
-    AtOnce,
-}
-
 pub(crate) struct Figures {
     /// Seconds from a complete frame to its forecast, sorted.
-    pub(crate) latencies: Vec<f64>,
-    pub(crate) frames: usize,
-    pub(crate) dropped: u64,
+    latencies: Vec<f64>,
+    pub(crate) dropped_share: f64,
     /// Share of the time in which the core was busy.
     pub(crate) busy: f64,
 }
 
 impl Figures {
-    fn new(mut latencies: Vec<f64>, frames: usize, dropped: u64, busy: f64) -> Result<Self> {
-        if latencies.len() as u64 + dropped != frames as u64 {
-            return Err(format!(
-                "of {frames} frames {} were forecast and {dropped} dropped",
-                latencies.len()
-            )
-            .into());
-        }
-        latencies.sort_by(f64::total_cmp);
-        Ok(Self {
-            latencies,
-            frames,
-            dropped,
-            busy,
-        })
-    }
-
     pub(crate) fn latency(&self, share: f64) -> f64 {
         self.latencies[(share * (self.latencies.len() - 1) as f64).round() as usize]
-    }
-
-    pub(crate) fn dropped_share(&self) -> f64 {
-        self.dropped as f64 / self.frames as f64
     }
 }
 
@@ -98,17 +69,13 @@ pub(crate) fn service(model: &Ddl, batch: usize, frames: usize) -> Result<f64> {
 }
 
 /// Simulates the queue: the clock advances by the processor time of the work, and idle time is skipped.
-pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phases) -> Result<Figures> {
+pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize) -> Result<Figures> {
     let (mut cameras, mut scenes) = watched(cameras)?;
     let dropped_before = scenes.dropped();
     let mut due: Vec<(f64, usize, i64)> = Vec::new();
     for (number, camera) in cameras.iter().enumerate() {
-        let phase = match phases {
-            Phases::Own => camera.phase,
-            Phases::AtOnce => 0.0,
-        };
         due.extend((0..frames).map(|frame| {
-            let time = FRAME * (frame as f64 + phase);
+            let time = FRAME * (frame as f64 + camera.phase);
             (time, number, (frame + OBSERVED) as i64 - 1)
         }));
     }
@@ -140,8 +107,20 @@ pub(crate) fn simulated(model: &Ddl, cameras: usize, frames: usize, phases: Phas
             latencies.push(now - came[&scene]);
         }
     }
-    let dropped = scenes.dropped() - dropped_before;
-    Figures::new(latencies, cameras.len() * frames, dropped, busy / now)
+    let (total, dropped) = (cameras.len() * frames, scenes.dropped() - dropped_before);
+    if latencies.len() as u64 + dropped != total as u64 {
+        return Err(format!(
+            "of {total} frames {} were forecast and {dropped} dropped",
+            latencies.len()
+        )
+        .into());
+    }
+    latencies.sort_by(f64::total_cmp);
+    Ok(Figures {
+        latencies,
+        dropped_share: dropped as f64 / total as f64,
+        busy: busy / now,
+    })
 }
 
 /// Memory per camera (KiB): after 7 frames, including the simulation of the camera; and in addition while a frame
