@@ -1,13 +1,14 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
 use crate::clock::Clock;
-use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, warn_of_violation};
+use crate::command::forecast::moment::{Forecasts, Moment, SceneWindows, StreamState, warn_of_violation};
 use crate::command::forecast::{json_lines, table};
 use crate::command::{KeepClear, Machine, ModelChoice};
 use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use clap::{Args, ValueEnum};
-use ddl::{Calibration, CertifiedForecast, Ddl, Forecaster as _};
+use ddl::data::Window;
+use ddl::{Calibration, Ddl, Forecaster as _};
 use std::path::PathBuf;
 
 /// Forecast the next 4.8 s of your own tracks
@@ -94,14 +95,13 @@ impl ForecastCommand {
         clock: Clock,
         state: &mut StreamState,
     ) -> anyhow::Result<String> {
-        let (certified, forecasts);
-        let moments: Vec<Moment<'_>> = if self.certificate {
-            certified = self.certified(model, windows, state)?;
-            windows.moments(&certified, clock, Moment::certified)
-        } else {
-            forecasts = self.plain(model, windows, state)?;
-            windows.moments(&forecasts, clock, Moment::plain)
-        };
+        let mut forecasts = self.forecasts(model, windows.windows)?;
+        if !self.region.is_empty() {
+            for (i, forecast) in forecasts.to_adapt().into_iter().enumerate() {
+                *forecast = state.adapted(windows, i, forecast.clone());
+            }
+        }
+        let moments = windows.moments(&forecasts, clock);
         warn_of_violation(&moments);
         state.warned = state.warned || self.warn_of_unfamiliar(&moments);
         let headed = !std::mem::replace(&mut state.headed, true);
@@ -111,41 +111,13 @@ impl ForecastCommand {
         }
     }
 
-    fn plain(
-        &self,
-        model: &Ddl,
-        windows: SceneWindows<'_>,
-        state: &mut StreamState,
-    ) -> anyhow::Result<Vec<ddl::Forecast>> {
-        let forecasts = if self.one {
-            model.forecast_central(windows.windows)?
-        } else {
-            model.forecast_all(windows.windows)?
-        };
-        if self.region.is_empty() {
-            return Ok(forecasts);
-        }
-        let of_window = |(i, forecast)| state.adapted(windows, i, forecast);
-        Ok(forecasts.into_iter().enumerate().map(of_window).collect())
-    }
-
-    fn certified(
-        &self,
-        model: &Ddl,
-        windows: SceneWindows<'_>,
-        state: &mut StreamState,
-    ) -> anyhow::Result<Vec<CertifiedForecast>> {
-        let mut certified = if self.one {
-            model.forecast_central_certified(windows.windows)?
-        } else {
-            model.forecast_certified(windows.windows)?
-        };
-        if !self.region.is_empty() {
-            for (i, certified) in certified.iter_mut().enumerate() {
-                certified.forecast = state.adapted(windows, i, certified.forecast.clone());
-            }
-        }
-        Ok(certified)
+    fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<Forecasts> {
+        Ok(match (self.certificate, self.one) {
+            (false, false) => Forecasts::Plain(model.forecast_all(windows)?),
+            (false, true) => Forecasts::Plain(model.forecast_central(windows)?),
+            (true, false) => Forecasts::Certified(model.forecast_certified(windows)?),
+            (true, true) => Forecasts::Certified(model.forecast_central_certified(windows)?),
+        })
     }
 
     /// Warns of motions unlike the training motions, whose forecasts are less certain; returns whether there are any.

@@ -15,19 +15,40 @@ pub(super) struct SceneWindows<'a> {
     pub(super) scenes: &'a [Option<SceneName>],
 }
 
+/// Forecasts of the windows, one for each.
+pub(super) enum Forecasts {
+    Plain(Vec<ddl::Forecast>),
+    Certified(Vec<CertifiedForecast>),
+}
+
+impl Forecasts {
+    /// The forecasts, each with the certificates if there are any.
+    fn with_certificates(&self) -> Vec<(&ddl::Forecast, Option<&CertifiedForecast>)> {
+        match self {
+            Self::Plain(forecasts) => forecasts.iter().map(|forecast| (forecast, None)).collect(),
+            Self::Certified(certified) => certified.iter().map(|one| (&one.forecast, Some(one))).collect(),
+        }
+    }
+
+    pub(super) fn to_adapt(&mut self) -> Vec<&mut ddl::Forecast> {
+        match self {
+            Self::Plain(forecasts) => forecasts.iter_mut().collect(),
+            Self::Certified(certified) => certified.iter_mut().map(|one| &mut one.forecast).collect(),
+        }
+    }
+}
+
 impl<'a> SceneWindows<'a> {
-    /// The moments of these forecasts, one for each window.
-    pub(super) fn moments<F>(
-        self,
-        forecasts: &'a [F],
-        clock: Clock,
-        moment: impl Fn(&'a Window, &'a F, Option<&'a SceneName>, Clock) -> Moment<'a>,
-    ) -> Vec<Moment<'a>> {
-        let pairs = self.windows.iter().zip(forecasts).enumerate();
-        let scene = |i: usize| self.scenes.get(i).and_then(Option::as_ref);
-        pairs
-            .map(|(i, (window, forecast))| moment(window, forecast, scene(i), clock))
-            .collect()
+    pub(super) fn moments(self, forecasts: &'a Forecasts, clock: Clock) -> Vec<Moment<'a>> {
+        let pairs = self.windows.iter().zip(forecasts.with_certificates()).enumerate();
+        let moments = pairs.map(|(i, (window, (forecast, certified)))| Moment {
+            scene: self.scenes.get(i).and_then(Option::as_ref),
+            window,
+            forecast,
+            certified,
+            clock,
+        });
+        moments.collect()
     }
 }
 
@@ -66,33 +87,6 @@ pub(super) struct Moment<'a> {
 }
 
 impl<'a> Moment<'a> {
-    pub(super) fn plain(
-        window: &'a Window,
-        forecast: &'a ddl::Forecast,
-        scene: Option<&'a SceneName>,
-        clock: Clock,
-    ) -> Self {
-        Self {
-            scene,
-            window,
-            forecast,
-            certified: None,
-            clock,
-        }
-    }
-
-    pub(super) fn certified(
-        window: &'a Window,
-        certified: &'a CertifiedForecast,
-        scene: Option<&'a SceneName>,
-        clock: Clock,
-    ) -> Self {
-        Self {
-            certified: Some(certified),
-            ..Self::plain(window, &certified.forecast, scene, clock)
-        }
-    }
-
     pub(super) fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
         Some(self.certified?.certificate(i, hypothesis))
     }
