@@ -187,21 +187,15 @@ def here(_):
     check(Benchmark("here", ALL).begin().wait() == 0, "the benchmark failed")
 
 
-def watched(_):
-    """all folds on Slurm in two arrays; a second command submits nothing; Ctrl-C leaves the jobs; same report"""
-    benchmark = Benchmark("watched", ALL, *SLURM)
-    first = benchmark.begin()
-    until("tasks that run", running)
-    submitted = jobs()
-    check(len(submitted) == 3, f"two arrays and a report were expected, not the jobs {submitted}")
-    second = benchmark.begin()
-    time.sleep(5)
-    first.send_signal(signal.SIGINT)
-    first.wait()
-    check(jobs() <= submitted, f"the jobs {submitted} have become {jobs()}")
-    check(jobs(), "no job is left after Ctrl-C")
-    until("the end of the second command", lambda: second.poll() is not None)
-    until("the end of its jobs", lambda: not jobs())
+def submitted(_):
+    """all folds on Slurm in two arrays; the command ends; a second one submits nothing; same report"""
+    benchmark = Benchmark("submitted", ALL, *SLURM)
+    check(benchmark.begin().wait() == 0, "the command failed")
+    first = jobs()
+    check(len(first) == 3, f"two arrays and a report were expected, not the jobs {first}")
+    check(benchmark.begin().wait() == 0, "the second command failed")
+    check(jobs() <= first, f"the jobs {first} have become {jobs()}")
+    until("the end of the jobs", lambda: not jobs())
     benchmark.compare()
 
 
@@ -246,7 +240,7 @@ shutil.rmtree(OUT, ignore_errors=True)
 OUT.mkdir(parents=True)
 slurm = Slurm()
 try:
-    for one in [here, watched, lost_node, warned, cancelled]:
+    for one in [here, submitted, lost_node, warned, cancelled]:
         start = time.monotonic()
         one(slurm)
         print(f"| {one.__doc__} | {time.monotonic() - start:.0f} s |", flush=True)

@@ -25,12 +25,12 @@ pub(crate) struct Recording {
 
 /// The frame rate, if the user gives it.
 #[derive(Debug, Clone, Copy)]
-struct Rate {
+struct GivenRate {
     fps: Option<f64>,
     frame_step: Option<i64>,
 }
 
-impl Rate {
+impl GivenRate {
     fn of(self, tracks: Tracks) -> PyResult<Recording> {
         if self.fps.is_some() && self.frame_step.is_some() {
             return Err(PyValueError::new_err(
@@ -118,7 +118,7 @@ impl Recording {
             let numbered = (0..).map(PedestrianId).zip(words.into_iter().map(Arc::from));
             tracks = tracks.with_words(numbered.collect());
         }
-        Rate { fps, frame_step }.of(tracks)
+        GivenRate { fps, frame_step }.of(tracks)
     }
 
     #[staticmethod]
@@ -145,7 +145,7 @@ impl Recording {
             let homography = Homography::new(rows).map_err(of_any)?;
             tracks = homography.to_ground(&tracks).map_err(of_any)?;
         }
-        Rate { fps, frame_step }.of(tracks)
+        GivenRate { fps, frame_step }.of(tracks)
     }
 
     #[pyo3(signature = (path, *, format = "table"))]

@@ -33,7 +33,7 @@ use slurm::Slurm;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use work::{End, Workers, side_by_side};
+use work::{TaskEnd, Workers, side_by_side};
 
 /// Where the tasks run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -127,7 +127,7 @@ impl Benchmark {
         let start = Instant::now();
         plan.write(out)?;
         let ends = self.work_off(plan, out)?;
-        if ends.contains(&End::Interrupted) {
+        if ends.contains(&TaskEnd::Interrupted) {
             let took = human(start.elapsed());
             let finished = plan.tasks.iter().filter(|t| Record::of(t, out).is_some());
             let progress = format!(
@@ -184,9 +184,9 @@ impl Benchmark {
         let end = workers.run_task(&plan, task, out, &watch, &interrupt);
         watch(task, work::Event::Ended(&end));
         match end {
-            End::Finished { .. } | End::Kept => Ok(()),
-            End::Failed { .. } => bail!("{} failed (above)", task.id),
-            End::Interrupted => Err(DdlError::Interrupted.into()),
+            TaskEnd::Finished { .. } | TaskEnd::Kept => Ok(()),
+            TaskEnd::Failed { .. } => bail!("{} failed (above)", task.id),
+            TaskEnd::Interrupted => Err(DdlError::Interrupted.into()),
         }
     }
 
@@ -218,7 +218,7 @@ impl Benchmark {
         Ok(())
     }
 
-    fn work_off(&self, plan: &Plan, out: &Path) -> anyhow::Result<Vec<End>> {
+    fn work_off(&self, plan: &Plan, out: &Path) -> anyhow::Result<Vec<TaskEnd>> {
         let interrupt = catch()?;
         let tasks = plan.tasks.len();
         let (jobs, threads) = side_by_side(self.jobs, plan.settings.device, self.cores(), tasks);

@@ -4,7 +4,7 @@ use crate::error::DdlError;
 use crate::evaluation::published::Published;
 use crate::evaluation::rows::{NamedForecasts, ResultRows};
 use crate::evaluation::straight_lines::{straight_lines, weighted};
-use crate::evaluation::variant::{EvaluationVariant, GivenGoals, Motion, memory_words};
+use crate::evaluation::variant::{EvaluationVariant, GivenGoals, VariantMotion, memory_words};
 use crate::goals::model::GoalModel;
 use crate::goals::remembering::Remembering;
 use crate::goals::sets;
@@ -197,8 +197,8 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                     _ => goals_for(variant.goals, model.goal_model(), windows, &goals)?,
                 };
                 match variant.motion {
-                    Motion::Shaped(integrator) => model.forecast_towards(windows, goals, integrator),
-                    Motion::Neutral(clearance) => model.forecast_neutral(windows, goals, clearance),
+                    VariantMotion::Shaped(integrator) => model.forecast_towards(windows, goals, integrator),
+                    VariantMotion::Neutral(clearance) => model.forecast_neutral(windows, goals, clearance),
                 }
             };
             Ok(Forecasts {

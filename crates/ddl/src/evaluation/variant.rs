@@ -11,7 +11,7 @@ use ddl_network::Objective;
 #[derive(Debug)]
 pub(crate) struct EvaluationVariant {
     pub(crate) goals: GivenGoals,
-    pub(crate) motion: Motion,
+    pub(crate) motion: VariantMotion,
     /// The difference from the unchanged model; `None` for the unchanged model.
     pub(crate) change: Option<String>,
     pub(crate) protocol: Protocol,
@@ -32,7 +32,7 @@ pub(crate) enum GivenGoals {
 
 /// How the pedestrians move to the goals.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Motion {
+pub(crate) enum VariantMotion {
     /// The motion that the network shapes.
     Shaped(PathIntegrator),
     /// The neutral motion, with a clearance or without regard to others.
@@ -74,7 +74,7 @@ impl EvaluationVariant {
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
         let network = model.config().star.variant;
         let mut variants = Vec::new();
-        let mut add = |protocol: Protocol, goals: GivenGoals, motion: Motion, change: Option<String>| {
+        let mut add = |protocol: Protocol, goals: GivenGoals, motion: VariantMotion, change: Option<String>| {
             if asked.contains(&protocol) {
                 variants.push(Self {
                     goals,
@@ -84,15 +84,15 @@ impl EvaluationVariant {
                 });
             }
         };
-        let stable = Motion::Shaped(PathIntegrator::Stable(None));
+        let stable = VariantMotion::Shaped(PathIntegrator::Stable(None));
         let minding = |clearance: Clearance| {
             let change = format!("minding others within {} m", clearance.distance());
             (Some(clearance), Some(change))
         };
         let careful = model.clearance().map(minding);
         for (clearance, change) in [(None, None)].into_iter().chain(careful) {
-            let shaped = Motion::Shaped(PathIntegrator::Stable(clearance));
-            let neutral = Motion::Neutral(clearance);
+            let shaped = VariantMotion::Shaped(PathIntegrator::Stable(clearance));
+            let neutral = VariantMotion::Neutral(clearance);
             for protocol in [Protocol::Fair, Protocol::Online] {
                 add(protocol, GivenGoals::Own, shaped, change.clone());
             }
@@ -104,7 +104,7 @@ impl EvaluationVariant {
         // Plain steps diverge for a network that was trained on whole paths of the stable integrator.
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
         if network.dynamics() && learned_on_plain_steps {
-            let plain = Motion::Shaped(PathIntegrator::PlainEuler);
+            let plain = VariantMotion::Shaped(PathIntegrator::PlainEuler);
             let change = said("with plain Euler steps");
             add(Protocol::Fair, GivenGoals::Own, plain, change);
         }

@@ -1,7 +1,7 @@
 //! Progress of a plan: one bar in a terminal, and a line for each task that begins or ends.
 
 use crate::command::benchmark::plan::Task;
-use crate::command::benchmark::work::{End, Event};
+use crate::command::benchmark::work::{Event, TaskEnd};
 use crate::progress::{Progress, ProgressMode};
 use crate::telling::human;
 use std::collections::BTreeMap;
@@ -48,7 +48,7 @@ impl Display {
                 state.ended += 1;
                 let line = line_of(&task.id, end, state.ended, state.tasks.len());
                 match end {
-                    End::Failed { .. } => state.progress.say(&line),
+                    TaskEnd::Failed { .. } => state.progress.say(&line),
                     _ => self.say(&state, &line),
                 }
                 state.advance(&task.id, 1.0, "ended");
@@ -74,14 +74,14 @@ impl DisplayState {
     }
 }
 
-fn line_of(id: &str, end: &End, ended: usize, tasks: usize) -> String {
+fn line_of(id: &str, end: &TaskEnd, ended: usize, tasks: usize) -> String {
     match end {
-        End::Finished { seconds } => {
+        TaskEnd::Finished { seconds } => {
             let took = human(Duration::from_secs_f64(*seconds));
             format!("{id}: done in {took} ({ended} of {tasks})")
         }
-        End::Kept => format!("{id}: kept from an earlier run ({ended} of {tasks})"),
-        End::Failed { reason } => format!("{id}: failed: {reason}"),
-        End::Interrupted => format!("{id}: stopped"),
+        TaskEnd::Kept => format!("{id}: kept from an earlier run ({ended} of {tasks})"),
+        TaskEnd::Failed { reason } => format!("{id}: failed: {reason}"),
+        TaskEnd::Interrupted => format!("{id}: stopped"),
     }
 }

@@ -40,7 +40,7 @@ pub(super) struct Workers {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum End {
+pub(super) enum TaskEnd {
     /// Trained and scored now.
     Finished { seconds: f64 },
     /// An earlier run finished it.
@@ -56,7 +56,7 @@ pub(super) enum Event<'a> {
     Started,
     /// The part of the task that is done, from 0 to 1, and the current step.
     Advanced(f64, &'a str),
-    Ended(&'a End),
+    Ended(&'a TaskEnd),
 }
 
 pub(super) type Watcher<'a> = &'a (dyn Fn(&Task, Event<'_>) + Sync);
@@ -74,9 +74,9 @@ pub(super) fn side_by_side(asked: Option<usize>, device: DeviceChoice, cores: us
 impl Workers {
     /// The end of each task, in the plan's order. After a request to stop no task starts, and running tasks save their
     /// state.
-    pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watcher<'_>, interrupt: &Interrupt) -> Vec<End> {
+    pub(super) fn run(&self, plan: &Plan, out: &Path, watch: Watcher<'_>, interrupt: &Interrupt) -> Vec<TaskEnd> {
         let next = AtomicUsize::new(0);
-        let ends = Mutex::new(vec![End::Interrupted; plan.tasks.len()]);
+        let ends = Mutex::new(vec![TaskEnd::Interrupted; plan.tasks.len()]);
         let work = || {
             while interrupt.wishes() == 0 {
                 let index = next.fetch_add(1, Ordering::SeqCst);
@@ -103,9 +103,9 @@ impl Workers {
         out: &Path,
         watch: Watcher<'_>,
         interrupt: &Interrupt,
-    ) -> End {
+    ) -> TaskEnd {
         if Record::of(task, out).is_some() {
-            return End::Kept;
+            return TaskEnd::Kept;
         }
         watch(task, Event::Started);
         let mut log = match open_log(&task.folder(out)) {
@@ -115,14 +115,14 @@ impl Workers {
         // Processes of an earlier benchmark that was killed may still run; they end by themselves.
         while is_held(&log) {
             if interrupt.wishes() > 0 {
-                return End::Interrupted;
+                return TaskEnd::Interrupted;
             }
             let waits = "waits for a process of an earlier benchmark";
             watch(task, Event::Advanced(0.0, waits));
             thread::sleep(BEAT);
         }
         if Record::of(task, out).is_some() {
-            return End::Kept;
+            return TaskEnd::Kept;
         }
         // No other process writes there now; the program itself cleans the folder of the run.
         remove_temporary_files(&task.folder(out));
@@ -141,7 +141,7 @@ impl Workers {
         }
         let seconds = start.elapsed().as_secs_f64();
         match Record::write(task, out, seconds) {
-            Ok(()) => End::Finished { seconds },
+            Ok(()) => TaskEnd::Finished { seconds },
             Err(error) => failure(task, out, &format!("{error:#}")),
         }
     }
@@ -155,7 +155,7 @@ impl Workers {
         log: &mut File,
         watch: Watcher<'_>,
         interrupt: &Interrupt,
-    ) -> Option<End> {
+    ) -> Option<TaskEnd> {
         let steps = [
             (plan.train_arguments(task, out, self.threads), 0.0, TRAINING),
             (plan.goals_arguments(task, out, self.threads), TRAINING, TRAINING),
@@ -168,7 +168,7 @@ impl Workers {
             match self.run_step(log, &arguments, interrupt, &tell) {
                 Ok(status) if status.success() => {}
                 // A process that was asked to stop has saved its state and ended.
-                _ if interrupt.wishes() > 0 => return Some(End::Interrupted),
+                _ if interrupt.wishes() > 0 => return Some(TaskEnd::Interrupted),
                 Ok(status) => {
                     let step = arguments.first().map_or("", String::as_str);
                     return Some(failure(task, out, &format!("`ddl {step}` ended with {status}")));
@@ -176,7 +176,7 @@ impl Workers {
                 Err(error) => return Some(failure(task, out, &format!("{error:#}"))),
             }
             if interrupt.wishes() > 0 {
-                return Some(End::Interrupted);
+                return Some(TaskEnd::Interrupted);
             }
         }
         None
@@ -233,14 +233,14 @@ fn is_held(log: &File) -> bool {
     matches!(log.try_lock(), Err(TryLockError::WouldBlock))
 }
 
-fn failure(task: &Task, out: &Path, what: &str) -> End {
+fn failure(task: &Task, out: &Path, what: &str) -> TaskEnd {
     let log = task.folder(out).join("log.txt");
     let text = fs::read(&log).unwrap_or_default();
     let text = String::from_utf8_lossy(&text);
     let lines: Vec<&str> = text.lines().collect();
     let last = &lines[lines.len().saturating_sub(LAST_LINES)..];
     let end = last.join("\n    ");
-    End::Failed {
+    TaskEnd::Failed {
         reason: format!("{what}; the end of {}:\n    {end}", log.display()),
     }
 }

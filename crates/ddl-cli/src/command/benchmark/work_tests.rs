@@ -75,7 +75,7 @@ impl Bench {
         fs::read_to_string(self.out().join(task).join("log.txt")).unwrap()
     }
 
-    fn run(&self, plan: &Plan) -> Vec<End> {
+    fn run(&self, plan: &Plan) -> Vec<TaskEnd> {
         let ignore = |_: &Task, _: Event<'_>| {};
         self.workers.run(plan, &self.out(), &ignore, &Interrupt::default())
     }
@@ -90,9 +90,9 @@ fn plan(folds: &[&str]) -> Plan {
     fixture::plan(settings, folds, &[Method::FULL], &[1]).unwrap()
 }
 
-fn finished(ends: &[End]) -> usize {
+fn finished(ends: &[TaskEnd]) -> usize {
     let mut ends = ends.to_vec();
-    ends.retain(|end| matches!(end, End::Finished { .. }));
+    ends.retain(|end| matches!(end, TaskEnd::Finished { .. }));
     ends.len()
 }
 
@@ -113,7 +113,7 @@ fn every_task_is_trained_scored_and_kept_the_second_time() {
     assert_eq!(of_a.len(), 21);
     assert!(of_a.is_sorted() && (of_a[20] - 1.0).abs() < 1e-12);
     assert!(bench.log("a-full-1").contains("not json"));
-    assert_eq!(bench.run(&plan), [End::Kept, End::Kept, End::Kept]);
+    assert_eq!(bench.run(&plan), [TaskEnd::Kept, TaskEnd::Kept, TaskEnd::Kept]);
     // Deleted scores are made again from the model.
     fs::remove_file(bench.out().join("b-full-1/run/report.json")).unwrap();
     assert_eq!(finished(&bench.run(&plan)), 1);
@@ -123,14 +123,14 @@ fn every_task_is_trained_scored_and_kept_the_second_time() {
 fn a_failed_task_shows_its_log_and_lets_the_others_run() {
     let mut bench = Bench::new(1);
     let ends = bench.run(&plan(&["broken", "fine"]));
-    let [End::Failed { reason }, End::Finished { .. }] = &ends[..] else {
+    let [TaskEnd::Failed { reason }, TaskEnd::Finished { .. }] = &ends[..] else {
         panic!("{ends:?}")
     };
     assert!(reason.contains("`ddl train` ended with exit status: 1"), "{reason}");
     assert!(reason.contains("the loss is not a number") && reason.contains("broken-full-1/log.txt"));
     bench.workers.program = vec!["/no/such/program".into()];
     let ends = bench.run(&plan(&["a"]));
-    let [End::Failed { reason }] = &ends[..] else {
+    let [TaskEnd::Failed { reason }] = &ends[..] else {
         panic!("{ends:?}")
     };
     assert!(reason.contains("cannot start /no/such/program"));
@@ -150,7 +150,7 @@ fn interrupted_tasks_save_and_a_second_run_resumes_them() {
         }
     };
     let ends = bench.workers.run(&plan, &bench.out(), &watch, &interrupt);
-    assert_eq!(ends, [End::Interrupted, End::Interrupted, End::Interrupted]);
+    assert_eq!(ends, [TaskEnd::Interrupted, TaskEnd::Interrupted, TaskEnd::Interrupted]);
     assert!(!bench.out().join("c-full-1").exists());
     let saved = fs::read_to_string(bench.out().join("patient-full-1/run/epoch")).unwrap();
     let saved: u32 = saved.trim().parse().unwrap();
@@ -184,7 +184,7 @@ fn a_second_interrupt_kills_a_task_that_ignores_the_first() {
     let ends = bench
         .workers
         .run(&plan(&["stubborn"]), &bench.out(), &watch, &interrupt);
-    assert_eq!(ends, [End::Interrupted]);
+    assert_eq!(ends, [TaskEnd::Interrupted]);
     // Without the second interrupt it would have slept a hundred seconds.
     assert!(start.elapsed() < Duration::from_secs(20));
 }

@@ -1,7 +1,7 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
 use crate::clock::Clock;
-use crate::command::forecast::moment::{Forecasts, Moment, SceneWindows, StreamState, warn_of_violation};
+use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::forecast::{json_lines, table};
 use crate::command::{KeepClear, Machine, ModelChoice};
 use crate::telling::tell;
@@ -97,7 +97,7 @@ impl ForecastCommand {
     ) -> anyhow::Result<String> {
         let mut forecasts = self.forecasts(model, windows.windows)?;
         if !self.region.is_empty() {
-            for (i, forecast) in forecasts.to_adapt().into_iter().enumerate() {
+            for (i, forecast) in forecasts.each_mut().into_iter().enumerate() {
                 *forecast = state.adapted(windows, i, forecast.clone());
             }
         }
@@ -111,12 +111,12 @@ impl ForecastCommand {
         }
     }
 
-    fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<Forecasts> {
+    fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<WindowForecasts> {
         Ok(match (self.certificate, self.one) {
-            (false, false) => Forecasts::Plain(model.forecast_all(windows)?),
-            (false, true) => Forecasts::Plain(model.forecast_central(windows)?),
-            (true, false) => Forecasts::Certified(model.forecast_certified(windows)?),
-            (true, true) => Forecasts::Certified(model.forecast_central_certified(windows)?),
+            (false, false) => WindowForecasts::Plain(model.forecast_all(windows)?),
+            (false, true) => WindowForecasts::Plain(model.forecast_central(windows)?),
+            (true, false) => WindowForecasts::Certified(model.forecast_certified(windows)?),
+            (true, true) => WindowForecasts::Certified(model.forecast_central_certified(windows)?),
         })
     }
 

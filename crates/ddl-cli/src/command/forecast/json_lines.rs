@@ -7,7 +7,7 @@ use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
 #[derive(Serialize)]
-struct Line<'a> {
+struct PedestrianLine<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     scene: Option<&'a SceneName>,
     observed_until: FrameNumber,
@@ -94,7 +94,7 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
                 })
                 .collect();
             let counts = moment.window.completion_counts(i);
-            let line = Line {
+            let line = PedestrianLine {
                 scene: moment.scene,
                 observed_until: moment.observed_until(),
                 pedestrian: moment.window.name(i),

@@ -16,12 +16,12 @@ pub(super) struct SceneWindows<'a> {
 }
 
 /// Forecasts of the windows, one for each.
-pub(super) enum Forecasts {
+pub(super) enum WindowForecasts {
     Plain(Vec<ddl::Forecast>),
     Certified(Vec<CertifiedForecast>),
 }
 
-impl Forecasts {
+impl WindowForecasts {
     /// The forecasts, each with the certificates if there are any.
     fn with_certificates(&self) -> Vec<(&ddl::Forecast, Option<&CertifiedForecast>)> {
         match self {
@@ -30,7 +30,7 @@ impl Forecasts {
         }
     }
 
-    pub(super) fn to_adapt(&mut self) -> Vec<&mut ddl::Forecast> {
+    pub(super) fn each_mut(&mut self) -> Vec<&mut ddl::Forecast> {
         match self {
             Self::Plain(forecasts) => forecasts.iter_mut().collect(),
             Self::Certified(certified) => certified.iter_mut().map(|one| &mut one.forecast).collect(),
@@ -39,7 +39,7 @@ impl Forecasts {
 }
 
 impl<'a> SceneWindows<'a> {
-    pub(super) fn moments(self, forecasts: &'a Forecasts, clock: Clock) -> Vec<Moment<'a>> {
+    pub(super) fn moments(self, forecasts: &'a WindowForecasts, clock: Clock) -> Vec<Moment<'a>> {
         let pairs = self.windows.iter().zip(forecasts.with_certificates()).enumerate();
         let moments = pairs.map(|(i, (window, (forecast, certified)))| Moment {
             scene: self.scenes.get(i).and_then(Option::as_ref),
