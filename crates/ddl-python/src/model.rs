@@ -35,8 +35,8 @@ impl ForecastOptions {
         if samples != 1 && samples != hypotheses {
             return Err(PyValueError::new_err(format!(
                 "samples must be {hypotheses} (all hypotheses of the model) or 1 (its central forecast); found \
-             {samples}. \
-             Weights and regions belong to all {hypotheses}; for fewer, select those with the largest weights"
+                 {samples}. Weights and regions belong to all {hypotheses}; for fewer, select those with the largest \
+                 weights"
             )));
         }
         Ok(Self {

@@ -59,6 +59,7 @@ proptest! {
         let frame = HeadingFrame::new(&track)?;
         prop_assert!(distance(frame.to_world(frame.to_frame(point)), point) < 1e-12 * 1e3);
         prop_assert!(distance(frame.to_frame(frame.to_world(point)), point) < 1e-12 * 1e3);
+        // The heading is a difference of two positions, which loses digits that the frame's own axes have.
         let [cos, sin] = heading(&frame);
         // A difference of positions up to 10 m from the origin, each rounded to 1e-15 m.
         prop_assert!((cos.hypot(sin) - 1.0).abs() < 1e-12);
