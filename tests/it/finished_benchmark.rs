@@ -103,8 +103,8 @@ fn the_main_tables_hold_the_numbers_of_the_report() {
     let report: Value = json(&place.text("report.json"));
     let rows = report["rows"].as_array().unwrap().iter();
     let errors: Vec<f64> = rows
-        .filter(|row| row["forecaster"] == "DDL")
-        .map(|row| row["min_fde"].as_f64().unwrap())
+        .filter(|row| row["conditions"]["forecaster"] == "DDL")
+        .map(|row| row["scores"]["min_fde"].as_f64().unwrap())
         .collect();
     assert_eq!(errors.len(), ids.len(), "{report}");
     let expected = format!("9.000/{:.3}", errors.iter().sum::<f64>() / errors.len() as f64);
