@@ -12,12 +12,8 @@ pub(crate) fn ensure_program(program: &str, packages: &[&str]) -> Result<()> {
     if find_on_path(OsStr::new(program)).is_some() {
         return Ok(());
     }
-    let advice = || {
-        format!(
-            "{program} is missing: install it, on Debian with `apt install {}`",
-            packages.join(" ")
-        )
-    };
+    let wanted = packages.join(" ");
+    let advice = || format!("{program} is missing: install it, on Debian with `apt install {wanted}`");
     let is_root = read(Command::new("id").arg("-u")).is_ok_and(|user| user.trim() == "0");
     ensure!(is_root && find_on_path(OsStr::new("apt-get")).is_some(), "{}", advice());
     for arguments in [

@@ -10,11 +10,9 @@ use serde::{Deserialize, Serialize};
 use crate::cache::sha256;
 use crate::process::read;
 use crate::python::Python;
-use crate::workspace::{Workspace, absolute};
+use crate::workspace::{FETCHED, Workspace, absolute};
 
 const MANIFEST: &str = "datasets/manifest.toml";
-/// Folder of fetched recordings, relative to the workspace root.
-pub(crate) const FETCHED: &str = "datasets/eth_ucy";
 /// The conventions with files, in order of preference.
 pub(crate) const RECORDED: [&str; 2] = ["star", "social-gan"];
 /// The convention that needs no files.
@@ -109,25 +107,27 @@ impl Entry {
         Ok(())
     }
 
-    /// The folder of the recordings, found or fetched, and a clause that describes it. Wrong files are an error:
-    /// nothing may replace them silently.
+    /// The folder of the recordings, found or fetched, with hashes verified. Wrong files are an error: nothing may
+    /// replace them silently. Nothing is fetched to a folder that is named without a convention: it may be mistyped.
     pub(crate) fn obtain(
         &self,
         workspace: &Workspace,
         convention: &str,
+        asked: Option<&str>,
         data: Option<&Path>,
-    ) -> Result<(PathBuf, String)> {
-        if let Ok(folder) = self.locate(workspace, convention, data) {
+    ) -> Result<PathBuf> {
+        let located = self.locate(workspace, convention, data);
+        if located.is_ok() || data.is_some() && asked != Some(convention) {
+            let folder = located.context("correct --data, or name the convention to fetch with --convention")?;
             self.check(&folder)?;
-            let reason = format!("its files are in {}, hashes verified", folder.display());
-            return Ok((folder, reason));
+            return Ok(folder);
         }
         let folder = data
             .map_or_else(|| Ok(workspace.path(FETCHED)), absolute)?
             .join(convention);
         let source = self.fetch(convention, &folder)?;
-        let reason = format!("its files are in {}, from {source}, hashes verified", folder.display());
-        Ok((folder, reason))
+        eprintln!("{convention}: fetched from {source}");
+        Ok(folder)
     }
 
     /// Puts every missing or wrong file into `folder`, from the first source of the manifest that has it. Returns the
@@ -154,17 +154,33 @@ impl Entry {
 /// Finds or fetches the recordings of every convention before a command that may use them. What cannot be fetched is
 /// told: the program takes the first convention that is there, and tests say what they lack.
 pub(crate) fn bring_in(workspace: &Workspace) -> Result<()> {
+    bring_in_for(workspace, None, None)
+}
+
+/// The same for `ddl benchmark`, with its options.
+pub(crate) fn bring_in_for(workspace: &Workspace, asked: Option<&str>, data: Option<&Path>) -> Result<()> {
+    if asked.is_some_and(|asked| !RECORDED.contains(&asked)) {
+        return Ok(());
+    }
     let manifest = Manifest::load(workspace)?;
     for convention in RECORDED {
         let entry = manifest.entry(convention)?;
-        match entry.obtain(workspace, convention, None) {
-            Ok((_, reason)) => eprintln!("{convention}: {reason}"),
-            Err(error) if entry.locate(workspace, convention, None).is_ok() => return Err(error),
-            Err(error) => eprintln!("{error:#}"),
+        // A report also shows baselines of the convention that was not asked for, from either folder.
+        for place in [data, None] {
+            if let Ok(folder) = entry.locate(workspace, convention, place) {
+                entry.check(&folder)?;
+            }
+        }
+        if asked.is_none_or(|asked| asked == convention) {
+            match entry.obtain(workspace, convention, asked, data) {
+                Ok(folder) => eprintln!("{convention}: its files are in {}, hashes verified", folder.display()),
+                Err(error) if asked.is_some() => return Err(error),
+                Err(error) => eprintln!("{convention}: {error:#}"),
+            }
         }
     }
     Ok(())
 }
 
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;

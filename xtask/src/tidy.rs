@@ -28,21 +28,23 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let manifest = Manifest::load(workspace)?;
     let entries = RECORDED.iter().filter_map(|name| manifest.entry(name).ok());
     let recordings = entries.flat_map(|entry| &entry.files);
-    let recordings: Vec<[&str; 2]> = recordings
-        .map(|file| [file.name.as_str(), file.sha256.as_str()])
-        .collect();
+    let recordings = Vec::from_iter(recordings.map(|file| [file.name.as_str(), file.sha256.as_str()]));
     let summary = std::fs::read_to_string(workspace.path("docs/SUMMARY.md")).context("docs/SUMMARY.md")?;
     let mut faults = Vec::new();
     let mut pages = 0;
     for file in workspace.files()? {
         let path = workspace.root().join(&file);
         let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
-        let mut of_file: Vec<String> = recording_fault(&file, &sha256(&path)?, &recordings)
-            .into_iter()
-            .collect();
+        let mut of_file = Vec::from_iter(recording_fault(&file, &sha256(&path)?, &recordings));
         // Only text files have lines to check.
         if let Ok(text) = std::str::from_utf8(&bytes) {
             of_file.extend(text_faults(&file, text));
+            let is_package = file.starts_with("crates") && file.ends_with("Cargo.toml");
+            if is_package && !text.contains("publish = false") {
+                let needed = ["LICENSE-MIT", "LICENSE-APACHE", "README.md"];
+                let missing = needed.iter().filter(|name| !path.with_file_name(name).is_file());
+                of_file.extend(missing.map(|name| format!("the package lacks {name}")));
+            }
             if is_page(&file) {
                 pages += written(text);
                 let name = file.file_name().unwrap_or_default().display();
@@ -63,13 +65,9 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
 /// The terms of the recordings do not clearly allow redistribution, so none may be tracked under any name.
 fn recording_fault(file: &Path, sha256: &str, recordings: &[[&str; 2]]) -> Option<String> {
     let name = file.file_name()?.to_str()?;
-    if let Some([recording, _]) = recordings
-        .iter()
-        .find(|recording| recording.contains(&name) || recording[1] == sha256)
-    {
-        return Some(format!(
-            "this is the recording {recording}; no recording may be committed"
-        ));
+    let mut recordings = recordings.iter();
+    if let Some([recording, _]) = recordings.find(|recording| recording.contains(&name) || recording[1] == sha256) {
+        return Some(format!("this is the recording {recording}: none may be committed"));
     }
     let is_data = file.starts_with("datasets") && !DESCRIPTIONS.contains(&name);
     is_data.then(|| "datasets/ holds descriptions and the simulated sample, no data".to_owned())
@@ -85,10 +83,7 @@ fn text_faults(file: &Path, text: &str) -> Vec<String> {
     if let Some(name) = names.find(|name| EMPTY_NAMES.contains(name)) {
         faults.push(format!("{name:?} is not descriptive: name the file after its concept"));
     }
-    let kind = file
-        .extension()
-        .and_then(|extension| extension.to_str())
-        .unwrap_or_default();
+    let kind = file.extension().map_or("", |kind| kind.to_str().unwrap_or_default());
     let is_crate_page = file.starts_with("crates") && file.ends_with("README.md");
     let (size, limit, unit) = match file {
         _ if is_page(file) => (written(text), PAGE, "bytes"),
@@ -103,6 +98,14 @@ fn text_faults(file: &Path, text: &str) -> Vec<String> {
     if is_crate_page && text.contains("](../") {
         faults.push("this page is read elsewhere, too: name files of other folders without a link".to_owned());
     }
+    if kind == "toml" && text.contains("edition.workspace = true") && !text.contains("[lints]\nworkspace = true") {
+        faults.push("the lints of the workspace are not inherited".to_owned());
+    }
+    // Where packages come from is the concern of each machine.
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    if file.starts_with("xtask") && kind == "txt" && lines.any(|line| line.starts_with("--") || line.contains('/')) {
+        faults.push("a list of packages has names, versions and sums alone: no option, no path".to_owned());
+    }
     let mut is_code = false;
     for (number, line) in (1..).zip(text.lines()) {
         is_code ^= line.trim_start().starts_with("```");
@@ -115,11 +118,8 @@ fn text_faults(file: &Path, text: &str) -> Vec<String> {
             faults.push(format!("line {number} has more than {COLUMNS} columns"));
         }
         let mut words = line.split([' ', '"', '\'', '(', '=', '`', ',', '\\']);
-        if words.any(|word| {
-            HOME_FOLDERS
-                .iter()
-                .any(|home| word.len() > home.len() && word.starts_with(home))
-        }) {
+        let is_at_home = |word: &str, home: &&str| word.len() > home.len() && word.starts_with(home);
+        if words.any(|word| HOME_FOLDERS.iter().any(|home| is_at_home(word, home))) {
             faults.push(format!("line {number} has a path in a home folder"));
         }
     }
@@ -165,6 +165,9 @@ mod tests {
             ("a.md", format!("{long}\n"), "line 1"),
             ("a.md", format!("| {long} |\n```text\n{long}\n```\n[a]({target})\n"), ""),
             ("a.toml", format!("{long}\n"), ""),
+            ("a.toml", "edition.workspace = true\n".to_owned(), "not inherited"),
+            ("xtask/a.txt", "--find-links a\n".to_owned(), "no option"),
+            ("xtask/a.txt", "# a/b\na==1\n    --hash=sha256:0\n".to_owned(), ""),
             ("a.md", format!("see {home}someone/x"), "home folder"),
             ("a.md", format!("https://host{home}page, a{home}b"), ""),
         ] {

@@ -18,6 +18,9 @@ const HARMFUL: &str = "RUSTFLAGS CARGO_ENCODED_RUSTFLAGS RUSTDOCFLAGS CARGO_ENCO
 /// Prefixes of variables that `cargo run` sets. A second cargo would see a changed environment and rebuild.
 const LEAKING_PREFIXES: [&str; 4] = ["CARGO_PKG_", "CARGO_MANIFEST_", "CARGO_BIN_", "CARGO_CRATE_"];
 
+/// Folder of fetched recordings, relative to the workspace root.
+pub(crate) const FETCHED: &str = "datasets/eth_ucy";
+
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
     root: PathBuf,
@@ -86,7 +89,7 @@ impl Workspace {
         if let Some(folder) = env::var_os("DDL_DATASETS").filter(|value| !value.is_empty()) {
             return absolute(Path::new(&folder)).map(Some);
         }
-        Ok(Some(self.path(crate::recordings::FETCHED)).filter(|folder| folder.is_dir()))
+        Ok(Some(self.path(FETCHED)).filter(|folder| folder.is_dir()))
     }
 }
 

@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::set_up;
 use crate::process::run;
-use crate::recordings::bring_in;
+use crate::recordings::bring_in_for;
 use crate::workspace::Workspace;
 
 #[derive(Debug, Args)]
@@ -21,13 +21,23 @@ pub(crate) struct Arguments {
 impl Arguments {
     /// Replaces this process by the program, which then receives Ctrl-C and determines the exit code.
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        bring_in(workspace)?;
+        let data = value(&self.options, "--data").map(|folder| workspace.path(folder));
+        bring_in_for(workspace, value(&self.options, "--convention"), data.as_deref())?;
         set_up(workspace)?;
         let mut cargo =
             workspace.cargo("run --release --package ddl-cli --bin ddl --features torch -- benchmark".split(' '));
         cargo.args(self.options);
         Err(cargo.exec()).context("cargo cannot be started")
     }
+}
+
+/// The value of an option of `ddl benchmark`.
+fn value<'a>(options: &'a [String], name: &str) -> Option<&'a str> {
+    let mut words = options.iter().enumerate();
+    words.find_map(|(index, word)| match word.strip_prefix(name)? {
+        "" => options.get(index + 1).map(String::as_str),
+        rest => rest.strip_prefix('='),
+    })
 }
 
 /// The benchmark as `ci` runs it: small, under every protocol, in a separate folder, from the start, with the program
@@ -41,4 +51,11 @@ pub(super) fn smoke(workspace: &Workspace) -> Result<()> {
     run(workspace
         .program(workspace.path("target/debug/ddl"))
         .args(options.split(' ')))
+}
+
+#[test]
+fn both_spellings_of_an_option_are_read() {
+    let options = ["--data-x", "--convention=star", "--data", "here"].map(str::to_owned);
+    let values = ["--convention", "--data", "--out"].map(|name| value(&options, name));
+    assert_eq!(values, [Some("star"), Some("here"), None]);
 }

@@ -32,55 +32,60 @@ enum Action {
 
 impl Arguments {
     pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        if self.convention.as_deref() == Some(SIMULATED) {
+        let (asked, data) = (self.convention.as_deref(), self.data.as_deref());
+        if asked == Some(SIMULATED) {
             println!("{SIMULATED}: generated on demand, needs no files");
             return Ok(());
         }
         let manifest = Manifest::load(workspace)?;
-        let conventions = self
-            .convention
-            .as_deref()
-            .map_or_else(|| RECORDED.to_vec(), |one| vec![one]);
-        let mut reasons = Vec::new();
-        for convention in &conventions {
+        let conventions = asked.map_or_else(|| RECORDED.to_vec(), |one| vec![one]);
+        let mut present = 0;
+        for convention in conventions {
             let entry = manifest.entry(convention)?;
-            let folder = match self.action {
-                Action::Fetch => entry
-                    .obtain(workspace, convention, self.data.as_deref())
-                    .map(|(folder, _)| folder),
-                _ => entry.locate(workspace, convention, self.data.as_deref()),
-            };
-            match &folder {
-                Ok(folder) if self.action == Action::Where => println!("{convention}: {}", folder.display()),
-                Err(error) if self.action == Action::Where => println!("{convention}: {error}"),
-                Ok(folder) => {
-                    entry.check(folder)?;
-                    println!(
-                        "{convention}: {} files verified in {}",
-                        entry.files.len(),
-                        folder.display()
-                    );
-                }
-                Err(error) => reasons.push(format!("{error:#}")),
+            let located = entry.locate(workspace, convention, data);
+            // Wrong files are an error; nothing else may be taken in their place.
+            if let (Ok(folder), true) = (&located, self.action != Action::Where) {
+                entry.check(folder)?;
             }
-            match self.action {
+            let folder = match self.action {
                 // Without a convention: the preferred one that is available.
-                Action::Fetch if folder.is_ok() => return Ok(()),
-                Action::Where => {
-                    println!("  {}\n  terms: {}", entry.description, entry.terms);
-                    entry
-                        .cite
-                        .iter()
-                        .for_each(|key| println!("  cite: {}", manifest.citation[key]));
-                }
-                _ => {}
+                Action::Fetch if present > 0 => break,
+                Action::Fetch => entry.obtain(workspace, convention, asked, data),
+                _ => located,
+            };
+            present += usize::from(folder.is_ok());
+            match folder {
+                Ok(folder) => println!("{convention}: {} files in {}", entry.files.len(), folder.display()),
+                Err(error) => println!("{convention}: {error:#}"),
+            }
+            if self.action == Action::Where {
+                println!("  {}\n  terms: {}", entry.description, entry.terms);
+                let citations = entry.cite.iter().map(|key| &manifest.citation[key]);
+                citations.for_each(|citation| println!("  cite: {citation}"));
             }
         }
         ensure!(
-            reasons.len() < conventions.len(),
-            "no recordings: fetch them with `cargo xtask data fetch`, or work with `--convention {SIMULATED}` ({})",
-            reasons.join("; ")
+            present > 0 || self.action == Action::Where,
+            "no recordings (above): fetch them with `cargo xtask data fetch`, or work with `--convention {SIMULATED}`"
         );
         Ok(())
     }
+}
+
+#[test]
+fn a_fetch_does_not_pass_over_wrong_files() {
+    let (folder, workspace) = crate::recordings::tests::offline();
+    let data = folder.path().join("star");
+    for file in &Manifest::load(&workspace).unwrap().entry("star").unwrap().files {
+        crate::cache::write_file(&data.join(&file.name), b"wrong").unwrap();
+    }
+    let (action, convention, data) = (Action::Fetch, None, Some(data));
+    let error = Arguments {
+        action,
+        convention,
+        data,
+    }
+    .run(&workspace)
+    .unwrap_err();
+    assert!(error.to_string().starts_with("8 of 8 files"), "{error}");
 }

@@ -50,19 +50,19 @@ impl Arguments {
         let checks = Check::value_variants();
         let Some(asked) = self.name else {
             for value in checks.iter().filter_map(Check::to_possible_value) {
-                println!(
-                    "{:<10} {}",
-                    value.get_name(),
-                    value.get_help().cloned().unwrap_or_default()
-                );
+                let help = value.get_help().cloned().unwrap_or_default();
+                println!("{:<10} {help}", value.get_name());
             }
             return Ok(());
         };
+        let is_one = asked != Check::All;
+        ensure!(
+            is_one || self.rest.is_empty(),
+            "words are for one check: name it instead of all"
+        );
         let mut failed = Vec::new();
-        for check in checks
-            .iter()
-            .filter(|check| asked == **check || asked == Check::All && **check != asked)
-        {
+        let is_asked = |check: &&Check| asked == **check || asked == Check::All && **check != asked;
+        for check in checks.iter().filter(is_asked) {
             let start = Instant::now();
             let outcome = check.run(workspace, &self.rest);
             let result = if outcome.is_ok() { "passed" } else { "failed" };
@@ -86,13 +86,8 @@ impl Check {
             Self::Wheel => python::Arguments::default().run(workspace),
             Self::Site => {
                 docs::build(workspace, docs::ALONE)?;
-                let pictures = workspace.path("target/screenshots");
-                browser::check(
-                    workspace,
-                    "tests/page/check_site.py",
-                    &workspace.path(docs::SITE),
-                    Some(&pictures),
-                )
+                let [site, pictures] = [docs::SITE, "target/screenshots"].map(|folder| workspace.path(folder));
+                browser::check(workspace, "tests/page/check_site.py", &site, Some(&pictures))
             }
             Self::All => Ok(()),
         }
@@ -131,15 +126,14 @@ fn cluster(workspace: &Workspace, words: &[String]) -> Result<()> {
     set_up(workspace)?;
     bring_in(workspace)?;
     test::build_with_torch(workspace)?;
-    run(workspace
-        .program("python3")
-        .args(["tests/cluster/check_cluster.py", "target/debug/ddl"])
-        .args(words))
+    let mut check = workspace.program("python3");
+    check.args(["tests/cluster/check_cluster.py", "target/debug/ddl"]);
+    run(check.args(words))
 }
 
 fn sanitizer(workspace: &Workspace, words: &[String]) -> Result<()> {
     let tests = "run nightly cargo test --lib --tests --target x86_64-unknown-linux-gnu --target-dir target/sanitizer \
-                 -p ddl-softdtw -p ddl-network -p ddl-goal";
+                 -p ddl-simd -p ddl-softdtw -p ddl-network -p ddl-goal";
     let mut rustup = workspace.program("rustup");
     rustup
         .args(tests.split(' '))

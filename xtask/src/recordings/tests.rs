@@ -71,7 +71,7 @@ fn a_wrong_file_is_reported_and_only_right_ones_stay() {
 }
 
 /// A workspace whose manifest leads nowhere.
-fn offline() -> (tempfile::TempDir, Workspace) {
+pub(crate) fn offline() -> (tempfile::TempDir, Workspace) {
     let folder = tempfile::tempdir().unwrap();
     let text = fs::read_to_string(Workspace::find().unwrap().path(MANIFEST)).unwrap();
     let lines = text.lines().map(|line| match line.split_once(" = ") {
@@ -97,7 +97,7 @@ fn what_cannot_be_had_is_an_error_and_wrong_files_are_neither_used_nor_replaced(
             .contains("name one of star, social-gan")
     );
     let message = |place: &Path| {
-        let outcome = manifest.star.obtain(&workspace, "star", Some(place));
+        let outcome = manifest.star.obtain(&workspace, "star", Some("star"), Some(place));
         format!("{:#}", outcome.unwrap_err())
     };
     let complaint = message(&folder.path().join("empty"));
@@ -110,7 +110,17 @@ fn what_cannot_be_had_is_an_error_and_wrong_files_are_neither_used_nor_replaced(
     }
     for place in [&data, &beside] {
         assert!(message(place).contains("8 of 8 files"), "{}", message(place));
+        // Also if another convention or a folder is asked for.
+        for asked in [None, Some("star"), Some("social-gan")] {
+            let error = bring_in_for(&workspace, asked, Some(place)).unwrap_err().to_string();
+            assert!(error.contains("8 of 8 files"), "{asked:?}: {error}");
+        }
     }
+    // Nothing is fetched to a folder that may be mistyped.
+    let empty = folder.path().join("empty");
+    let outcome = manifest.star.obtain(&workspace, "star", None, Some(&empty));
+    assert!(format!("{:#}", outcome.unwrap_err()).contains("correct --data"));
+    bring_in_for(&workspace, Some(SIMULATED), Some(&empty)).unwrap();
 }
 
 #[test]
