@@ -28,7 +28,8 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let manifest = Manifest::load(workspace)?;
     let entries = RECORDED.iter().filter_map(|name| manifest.entry(name).ok());
     let recordings = entries.flat_map(|entry| &entry.files);
-    let recordings = Vec::from_iter(recordings.map(|file| [file.name.as_str(), file.sha256.as_str()]));
+    let pins = recordings.map(|file| [file.name.as_str(), file.sha256.as_str()]);
+    let recordings: Vec<_> = pins.collect();
     let summary = std::fs::read_to_string(workspace.path("docs/SUMMARY.md")).context("docs/SUMMARY.md")?;
     let mut faults = Vec::new();
     let mut pages = 0;
