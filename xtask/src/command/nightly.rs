@@ -33,7 +33,7 @@ enum Check {
     Mutants,
     /// The benchmark on a real Slurm of two nodes on this machine
     Cluster,
-    /// Vector arithmetic with `AddressSanitizer`
+    /// Vector arithmetic with `AddressSanitizer`: it tests the `unsafe` code of `fearless_simd` under the kernels
     Sanitizer,
     /// Every crate is built from its package, as for a registry
     Packages,

@@ -1,7 +1,8 @@
 # Writes high_precision.json: soft-DTW values and gradients in 60 decimal digits (mpmath 1.3), rounded once to f64.
 # Nothing is shared with the crate: the sum over paths is formed directly, on numbers of unlimited exponent.
 import json
-from mpmath import mp, mpf, exp, log, sqrt
+
+from mpmath import exp, log, mp, mpf, sqrt
 
 mp.dps = 60
 
