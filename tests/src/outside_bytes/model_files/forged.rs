@@ -119,7 +119,7 @@ fn a_packed_model_with_wrong_contents_and_a_right_digest_is_refused() {
         (
             "not finite",
             after(&parts, |parts| {
-                parts.matrix().bytes[..2].copy_from_slice(&0x7e00_u16.to_le_bytes())
+                parts.matrix().bytes[..2].copy_from_slice(&0x7e00_u16.to_le_bytes());
             }),
         ),
         (
@@ -133,7 +133,7 @@ fn a_packed_model_with_wrong_contents_and_a_right_digest_is_refused() {
         (
             "huge proposal",
             after(&parts, |parts| {
-                parts.configure("/goals/proposal/network/width", json!(1_u64 << 40))
+                parts.configure("/goals/proposal/network/width", json!(1_u64 << 40));
             }),
         ),
         (
