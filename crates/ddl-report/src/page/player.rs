@@ -66,7 +66,11 @@ pub(super) fn scripts(data: &[(&str, &str)], scripts: &[&str]) -> Markup {
             script type="application/json" id=(id) { (PreEscaped(json_in_script(json))) }
             "\n"
         }
-        script { (PreEscaped("\n(() => {\n\"use strict\";\n")) (PreEscaped(scripts.join("\n"))) (PreEscaped("\n})();\n")) }
+        script {
+            (PreEscaped("\n(() => {\n\"use strict\";\n"))
+            (PreEscaped(scripts.join("\n")))
+            (PreEscaped("\n})();\n"))
+        }
     }
 }
 
