@@ -10,7 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 8] = [
+const EXAMPLES: [(&str, &[&str]); 7] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -29,14 +29,6 @@ const EXAMPLES: [(&str, &[&str]); 8] = [
     (
         "ddl-softdtw nearest_neighbours",
         &["turns left after 0.4 s, at 1.20 m/s", "an exhaustive search agrees"],
-    ),
-    (
-        "ddl-dynamics reaching",
-        &[
-            "at the end: 0.000000 m from the cup; least clearance 0.0",
-            "certificate: holds, nearer to the cup at every step",
-            "plain Euler steps: step 43 does not approach the goal",
-        ],
     ),
     ("ddl-dynamics pictures .", &[]),
     (

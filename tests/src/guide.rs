@@ -30,7 +30,6 @@ pub const LONG: &[(&str, &str)] = &[
 
 /// Commands that need another machine or another tool, by page and beginning.
 pub const ELSEWHERE: &[(&str, &str)] = &[
-    ("CONTRIBUTING.md", "release-plz"),
     ("docs/gpu.md", ""),
     ("docs/libtorch.md", "export LIBTORCH="),
     ("docs/rust.md", "eval \"$(cargo xtask setup --env)\""),
