@@ -50,7 +50,8 @@ fn benchmark(profile: &str, convention: Convention, folds: &[&str]) -> Place {
     let plan = json!({
         "format": 3,
         "settings": {
-            "profile": profile, "convention": convention.to_string(), "data": null, "device": "cpu", "cargo_profile": "release",
+            "profile": profile, "convention": convention.to_string(), "data": null, "device": "cpu",
+            "cargo_profile": "release",
             "epochs": 4, "train_pedestrians": null, "proposal_steps": null, "test_pedestrians": 2500,
             "protocols": ["fair", "single"],
             "recipe": {"name": "recommended", "optimiser": null},

@@ -152,7 +152,8 @@ proptest! {
                 let [a, b, c] = numbers.map(|numbers| numbers[l]);
                 prop_assert_eq!(mask >> l & 1 == 1, a >= b);
                 prop_assert!(is_larger(max[l], a, b) && is_larger(-min[l], -a, -b), "{:?}, lane {}", dispatch, l);
-                prop_assert!(is_product(product[l], [a, b, c], dispatch.instruction_set()), "{:?}, lane {}", dispatch, l);
+                let is_right = is_product(product[l], [a, b, c], dispatch.instruction_set());
+                prop_assert!(is_right, "{:?}, lane {}", dispatch, l);
             }
         }
     }

@@ -114,7 +114,8 @@ impl Layers {
     /// or H = number of noise vectors for a single goal (G = 1).
     ///
     /// # Shapes
-    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
+    /// `batch` of at least 8 frames; `goals` `[G, P, 2]`; `noise` 1 or H vectors, or none -> positions
+    /// `[horizon, H, P, 2]` and factors `[horizon, H, P, 3]`.
     pub(crate) fn roll_out(
         &self,
         batch: &WindowBatch,

@@ -68,7 +68,7 @@ fn measure(is_measured: bool) -> Result<()> {
     let [tracks, waiting] = queue::memory(if is_measured { 1_000 } else { 2 })?;
     writeln!(
         out,
-        "\nmemory of a camera: {tracks:.1} KiB, and {waiting:.1} KiB while a frame waits ({PEDESTRIANS} pedestrians each)"
+        "\nmemory of a camera: {tracks:.1} KiB, and {waiting:.1} KiB while a frame waits ({PEDESTRIANS} pedestrians)"
     )?;
     Ok(())
 }

@@ -22,7 +22,8 @@ const FEWEST_TRIED: usize = 13;
 /// The memory of an observed place, and the test that the memory belongs to it. It is the part of a
 /// [`LiveForecaster`](crate::LiveForecaster) for programs that keep tracks themselves.
 ///
-/// A memory of at least 500 segments is tested on the first pedestrians. If it is of another place, it is [refused](Self::refused), and an empty one replaces it.
+/// A memory of at least 500 segments is tested on the first pedestrians. If it is of another place, it is
+/// [refused](Self::refused), and an empty one replaces it.
 #[derive(Debug, Clone)]
 pub struct PlaceMemory {
     memory: SceneMemory,

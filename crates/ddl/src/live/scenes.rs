@@ -22,8 +22,8 @@ use std::time::{Duration, Instant};
 ///
 /// # What is kept
 /// It keeps the state of a `LiveForecaster` for each scene, for at most [`MOST_SCENES`](Self::MOST_SCENES) scenes. A
-/// scene without a frame for 10 minutes is forgotten when another scene begins. For adaptive regions the caller keeps one
-/// [`AdaptiveRegions`](ddl_core::AdaptiveRegions) per scene.
+/// scene without a frame for 10 minutes is forgotten when another scene begins. For adaptive regions the caller keeps
+/// one [`AdaptiveRegions`](ddl_core::AdaptiveRegions) per scene.
 ///
 /// # Examples
 /// ```
