@@ -11,9 +11,8 @@ pub struct StepReport {
     pub done: usize,
     /// Steps in an epoch.
     pub steps_per_epoch: usize,
-    /// Mean loss (square metres) since the last step that has one; `None` if the step does not read the loss.
-    /// On CUDA only every sixteenth step and the last of an epoch read it.
-    pub loss: Option<f64>,
+    /// Mean loss of the batch, square metres.
+    pub loss: f64,
     /// The report of the epoch, after its last step.
     pub finished_epoch: Option<EpochReport>,
 }

@@ -11,15 +11,12 @@ mod flow;
 mod forecaster;
 mod goal_frame;
 mod guidance;
-mod neighbours;
 mod network;
 mod numbers;
 mod own_motion;
-mod packing;
 mod parameters;
 mod rollout;
-mod scene_means;
-mod shared_weights;
+mod scene_rows;
 mod tensor_backend;
 
 pub use backend::TorchBackend;

@@ -2,7 +2,6 @@
 
 pub(crate) mod checkpoint;
 mod draws;
-pub(crate) mod gate;
 mod gradient;
 mod loss;
 pub(crate) mod optimizer;

@@ -148,16 +148,19 @@ fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
         "input_embedding_layer_spatial.bias",
         "fusion_layer.bias",
     ] {
-        let mut trainer = trainer(Variant::Full, 1);
-        {
-            let _guard = tch::no_grad_guard();
-            let parameters = trainer.network().parameters();
-            let bias = parameters.get(bias).unwrap();
-            let _ = bias.shallow_clone().fill_(f64::NAN);
-        }
-        let error = trainer.step().unwrap_err();
+        let (mut trainer, mut undisturbed) = (trainer(Variant::Full, 1), trainer(Variant::Full, 1));
+        let _guard = tch::no_grad_guard();
+        let mut bias = trainer.network().parameters().get(bias).unwrap().shallow_clone();
+        let before = bias.copy();
+        let _ = bias.fill_(f64::NAN);
+        let error = tch::with_grad(|| trainer.step()).unwrap_err();
         assert!(matches!(error, StarError::NonFinite { .. }), "{error}");
         let said = error.to_string();
         assert!(said.contains("epoch 1, batch 0") && said.contains('@'), "{said}");
+        // Nothing else has changed.
+        bias.copy_(&before);
+        let again = tch::with_grad(|| [&mut trainer, &mut undisturbed].map(|trainer| trainer.step().unwrap().loss));
+        assert!(again[0].to_bits() == again[1].to_bits(), "{again:?}");
+        assert_eq!(trainer.weights().unwrap(), undisturbed.weights().unwrap());
     }
 }

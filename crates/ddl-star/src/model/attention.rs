@@ -1,30 +1,31 @@
 //! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms that STAR needs.
 
-use crate::model::neighbours::SeenNeighbours;
+use crate::model::scene_rows::SeenNeighbours;
 use std::rc::Rc;
 use tch::Tensor;
 
 /// Attention of every pedestrian over its neighbours. Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or
 /// B -> `[B, P, width]`.
 pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &SeenNeighbours, dropout: f64) -> Tensor {
-    // Scenes are packed into rows: see `Packing`.
     let (entries, width) = (qkv.size()[0], qkv.size()[2] / 3);
-    let rows = seen.in_rows(qkv);
-    let (count, length) = (rows.size()[0], rows.size()[1]);
+    let rows = seen.rows.in_rows(qkv);
+    let (scenes, length) = (rows.size()[1], rows.size()[2]);
+    let count = entries * scenes;
     let parts = rows.view([count, length, 3, heads, width / heads]).unbind(2);
+    let mask = seen.mask.expand([entries, scenes, length, length], false);
     let [query, key, value] = [0, 1, 2].map(|part: usize| parts[part].transpose(1, 2));
     let mixed = Tensor::scaled_dot_product_attention(
         &query,
         &key,
         &value,
-        Some(&seen.row_mask(entries)),
+        Some(&mask.reshape([count, 1, length, length])),
         dropout,
         false,
         scale(width, heads),
         false,
     );
-    let mixed = mixed.transpose(1, 2).reshape([count, length, width]);
-    seen.out_of_rows(&mixed)
+    let mixed = mixed.transpose(1, 2).reshape([entries, scenes, length, width]);
+    seen.rows.out_of_rows(&mixed)
 }
 
 /// Attention of the newest token over itself and the cached tokens. Shapes: `newest` and each of `cache` `[B, P, 3 *

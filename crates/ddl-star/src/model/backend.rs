@@ -1,20 +1,18 @@
 //! The operations of a backbone on libtorch: on any device, in any precision, with automatic gradients.
 
 use crate::model::attention;
-use crate::model::neighbours::SeenNeighbours;
 use crate::model::parameters::Parameters;
-use crate::model::shared_weights::SharedWeights;
+use crate::model::scene_rows::SeenNeighbours;
 use ddl_network::backend::{Backend, Mode};
 use ddl_network::weights::{EncoderLayer, Linear};
 use std::rc::Rc;
-use tch::{TchError, Tensor};
+use tch::Tensor;
 
 /// One pass of libtorch through a network.
 #[derive(Debug)]
 pub struct TorchBackend {
     tensors: Vec<Tensor>,
     mode: Mode,
-    shared: Option<SharedWeights>,
 }
 
 impl TorchBackend {
@@ -24,15 +22,6 @@ impl TorchBackend {
         Self {
             tensors: tensors.map(Tensor::shallow_clone).collect(),
             mode,
-            shared: None,
-        }
-    }
-
-    /// A training pass: [`gradient`](Self::gradient) computes the gradients of a weight from all its uses at once.
-    pub(crate) fn training(parameters: &Parameters, mode: Mode) -> Self {
-        Self {
-            shared: Some(SharedWeights::default()),
-            ..Self::new(parameters, mode)
         }
     }
 
@@ -45,18 +34,7 @@ impl TorchBackend {
     /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
     fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
         let [weight, bias] = self.learned(weight);
-        match &self.shared {
-            Some(shared) => shared.linear(x, weight, bias),
-            None => x.linear(weight, Some(bias)),
-        }
-    }
-
-    /// The gradient of `loss` with respect to all learned parameters, as one vector.
-    pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
-        match &self.shared {
-            Some(shared) => shared.gradient(loss, parameters),
-            None => parameters.gradient_of(loss),
-        }
+        x.linear(weight, Some(bias))
     }
 
     /// The part of an encoder layer after attention.
@@ -80,7 +58,7 @@ impl TorchBackend {
 impl Backend for TorchBackend {
     type Tokens = Rc<Tensor>;
     type KeyValues = Rc<Tensor>;
-    type Seen = SeenNeighbours;
+    type Seen = Rc<SeenNeighbours>;
 
     fn entries(&self, x: &Rc<Tensor>) -> usize {
         x.size()[0] as usize
@@ -106,7 +84,7 @@ impl Backend for TorchBackend {
         }
     }
 
-    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &SeenNeighbours) -> Rc<Tensor> {
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &Rc<SeenNeighbours>) -> Rc<Tensor> {
         let p = match self.mode {
             Mode::Train => layer.dropout,
             Mode::Evaluate => 0.0,

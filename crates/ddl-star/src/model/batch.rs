@@ -1,12 +1,14 @@
 //! Several windows concatenated into tensors.
 
 use crate::StarError;
-use crate::model::neighbours::Neighbours;
 use crate::model::numbers::tensor;
-use crate::model::scene_means::SceneMeans;
+use crate::model::scene_rows::{SceneRows, SeenNeighbours};
 use ddl_data::Window;
+use ddl_network::backend::Scenes;
 use ddl_network::{NetworkError, visibility};
-use std::sync::Arc;
+use std::ops::Range;
+use std::rc::Rc;
+use std::sync::{Arc, Mutex, PoisonError};
 use tch::{Device, Kind, Tensor};
 
 /// The pedestrians of several windows, concatenated, with their neighbours.
@@ -16,8 +18,11 @@ use tch::{Device, Kind, Tensor};
 #[derive(Debug)]
 pub(crate) struct WindowBatch {
     pub(crate) positions: Tensor,
-    pub(crate) neighbours: Arc<Neighbours>,
-    pub(crate) scene_means: SceneMeans,
+    /// The neighbours in each frame.
+    pub(crate) scenes: Arc<Scenes>,
+    pub(crate) rows: SceneRows,
+    /// The neighbours for libtorch, made at the first use: see [`SceneRows::mask`].
+    pub(crate) mask: Arc<Mutex<Option<Tensor>>>,
     /// Share of the network's metric in the metric of a step, `[1]` or `[1, P, 1]`.
     pub(crate) share: Tensor,
 }
@@ -55,12 +60,12 @@ impl WindowBatch {
             first += window.len();
         }
         let (t, p) = (frames as i64, pedestrians as i64);
-        let visible = visibility(windows, mask_frames, neighbour_box);
-        let neighbours = Neighbours::new(visible, device, kind);
+        let scenes = visibility(windows, mask_frames, neighbour_box);
         Ok(Self {
             positions: tensor(&positions, &[t, p, 2], (kind, device))?,
-            scene_means: SceneMeans::new(neighbours.scenes().ranges(), device, kind),
-            neighbours: Arc::new(neighbours),
+            rows: SceneRows::new(scenes.ranges(), device, kind),
+            scenes: Arc::new(scenes),
+            mask: Arc::default(),
             share: Tensor::ones([1], (kind, device)),
         })
     }
@@ -77,10 +82,21 @@ impl WindowBatch {
     pub(crate) fn shared(&self) -> Self {
         Self {
             positions: self.positions.shallow_clone(),
-            neighbours: Arc::clone(&self.neighbours),
-            scene_means: self.scene_means.shallow_clone(),
+            scenes: Arc::clone(&self.scenes),
+            rows: self.rows.shallow_clone(),
+            mask: Arc::clone(&self.mask),
             share: self.share.shallow_clone(),
         }
+    }
+
+    /// The neighbours for libtorch during `frames`: one frame serves every batch entry, several serve one entry each.
+    pub(crate) fn seen(&self, frames: Range<usize>) -> Rc<SeenNeighbours> {
+        let mut mask = self.mask.lock().unwrap_or_else(PoisonError::into_inner);
+        let mask = mask.get_or_insert_with(|| self.rows.mask(&self.scenes));
+        Rc::new(SeenNeighbours {
+            rows: self.rows.shallow_clone(),
+            mask: mask.narrow(0, frames.start as i64, frames.len() as i64),
+        })
     }
 
     /// The number of pedestrians in all windows.

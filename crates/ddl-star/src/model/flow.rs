@@ -182,5 +182,4 @@ fn entries(factors: &Tensor) -> [Tensor; 3] {
 }
 
 #[cfg(test)]
-#[path = "flow_tests.rs"]
 mod tests;

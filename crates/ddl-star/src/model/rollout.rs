@@ -184,7 +184,7 @@ impl Layers {
             if t + 1 < OBSERVED + horizon {
                 let position = position.detach();
                 sum = &sum + &position;
-                let centred = &position - batch.scene_means.of(&sum) / (t + 1) as f64;
+                let centred = &position - batch.rows.means(&sum) / (t + 1) as f64;
                 let scene = backbone.scene(backend, &backend.given(&centred), &seen);
                 let relative = backend.given(&guidance.seen(&position, &before));
                 features = backbone.step(backend, &mut memory, &relative, &scene, &seen);
@@ -267,5 +267,5 @@ fn observe<B: TensorBackend>(
 fn centre(batch: &WindowBatch, positions: &Tensor) -> Tensor {
     let frames = positions.size()[0];
     let count = Tensor::arange_start(1, frames + 1, (positions.kind(), positions.device())).view([frames, 1, 1]);
-    positions - batch.scene_means.of(&(positions.cumsum(0, positions.kind()) / count))
+    positions - batch.rows.means(&(positions.cumsum(0, positions.kind()) / count))
 }

@@ -47,7 +47,7 @@ impl TensorBackend for TorchBackend {
     }
 
     fn seen(&self, batch: &WindowBatch, steps: Range<usize>) -> Self::Seen {
-        batch.neighbours.during(steps)
+        batch.seen(steps)
     }
 }
 
@@ -92,7 +92,7 @@ impl TensorBackend for KernelBackend {
 
     fn seen(&self, batch: &WindowBatch, steps: Range<usize>) -> VisibleScenes {
         VisibleScenes {
-            scenes: Arc::clone(batch.neighbours.scenes()),
+            scenes: Arc::clone(&batch.scenes),
             steps,
         }
     }
@@ -169,5 +169,4 @@ impl KernelPass {
 }
 
 #[cfg(test)]
-#[path = "pass_tests.rs"]
 mod tests;

@@ -9,7 +9,6 @@ use crate::proposal::loss::{LossWeights, winner_takes_all};
 use crate::proposal::network::TorchProposals;
 use crate::training::GENERATOR;
 use crate::training::checkpoint::{self, Extra};
-use crate::training::gate::FiniteGate;
 use crate::training::optimizer::Adam;
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::Origin;
@@ -38,8 +37,6 @@ struct ProposalProgress {
 pub struct ProposalTrainer {
     network: TorchProposals,
     adam: Adam,
-    /// Always open, because every step is checked before the update.
-    gate: FiniteGate,
     /// Running mean of the weights, which becomes the result.
     average: Tensor,
     /// Views of the examples, then of the reversed ones.
@@ -77,7 +74,6 @@ impl ProposalTrainer {
         let future = tensor(&future, &[both.len() as i64, -1, 2], (kind, device))?;
         Ok(Self {
             adam: Adam::new(network.parameters()),
-            gate: FiniteGate::new(device, kind),
             average: network.parameters().flat().detach().copy(),
             network,
             views,
@@ -182,7 +178,7 @@ impl ProposalTrainer {
         // Members are trained independently, so the norm of all their gradients grows with the square root of their
         // number.
         let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
-        self.adam.step(parameters, &gradient, &norm, clip, rate, &self.gate);
+        self.adam.step(parameters, &gradient, &norm, clip, rate);
         let _guard = tch::no_grad_guard();
         // The decay is smaller at first, so that the initial weights are soon forgotten.
         let decay = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));

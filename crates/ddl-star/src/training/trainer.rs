@@ -1,11 +1,10 @@
 //! The training loop, one step at a time, so that the caller decides when to report, save and stop.
 
 use crate::StarError;
-use crate::model::{TorchNetwork, numbers};
+use crate::model::TorchNetwork;
 use crate::training::GENERATOR;
 use crate::training::checkpoint::{self, Extra, TrainerProgress};
-use crate::training::draws::{StepDraw, StepDraws};
-use crate::training::gate::FiniteGate;
+use crate::training::draws::StepDraw;
 use crate::training::gradient;
 use crate::training::optimizer::Adam;
 use crate::training::prepared::{PreparedBatches, TrainingBatch};
@@ -18,10 +17,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::PoisonError;
 use std::time::Instant;
-use tch::{Device, Tensor};
-
-/// Number of steps whose losses CUDA keeps before they are read.
-const READ_EVERY_ON_CUDA: usize = 16;
+use tch::Tensor;
 
 /// Least mean number of pedestrians in the parts of a batch. On the CPU, several threads compute the parts, and their
 /// gradients are added. Smaller parts take more processor time.
@@ -36,11 +32,6 @@ pub struct Trainer {
     adam: Adam,
     schedule: Schedule,
     batches: PreparedBatches,
-    draws: Option<StepDraws>,
-    gate: FiniteGate,
-    /// Loss and norm of the gradient of the last steps, `[2]` each, not yet read from the device.
-    unread: Vec<Tensor>,
-    read_every: usize,
     config: TrainingConfig,
     progress: TrainerProgress,
 }
@@ -112,21 +103,12 @@ impl Trainer {
             kernels.is_some().then_some(PART),
             (network.device(), network.kind()),
         );
-        let gate = FiniteGate::new(network.device(), network.kind());
-        let read_every = match network.device() {
-            Device::Cpu => 1,
-            _ => READ_EVERY_ON_CUDA,
-        };
         Ok(Self {
             adam: Adam::new(network.parameters()),
             kernels,
             network,
             schedule,
             batches,
-            draws: None,
-            gate,
-            unread: Vec::new(),
-            read_every,
             config,
             progress: TrainerProgress::default(),
         })
@@ -145,8 +127,7 @@ impl Trainer {
         self.network.parameters().to_weights()
     }
 
-    /// Ends training and returns the network. On CUDA, unread losses are discarded unchecked: end at the end of an
-    /// epoch, or [`save`](Self::save) first.
+    /// Ends training and returns the network.
     #[must_use]
     pub fn into_network(self) -> TorchNetwork {
         self.network
@@ -171,10 +152,8 @@ impl Trainer {
     /// Saves weights, optimiser and progress to one file.
     ///
     /// # Errors
-    /// When the file cannot be written; an earlier one is unchanged. [`StarError::NonFinite`] as in
-    /// [`step`](Self::step).
-    pub fn save(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        self.read()?;
+    /// When the file cannot be written; an earlier one is unchanged.
+    pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let TrainerProgress {
             steps,
             loss_sum,
@@ -204,50 +183,30 @@ impl Trainer {
             loss_sum: extra.progress[1],
             seconds: extra.progress[2],
         };
-        self.unread.clear();
-        self.gate.reopen();
         Ok(())
     }
 
     /// One batch: forward, backward, clipped Adam step.
     ///
-    /// Only the loss in [`StepReport::loss`] is read back from the device. If the loss of a step is not finite, the
-    /// device itself skips this step and all later ones; the next reading reports it.
-    ///
     /// # Errors
-    /// [`StarError::NonFinite`] when the loss or gradient of this step, or of one since the last reading, is not
-    /// finite. The weights and the number of steps are then those before that step.
+    /// [`StarError::NonFinite`] when the loss or its gradient is not finite. The weights and the number of steps are
+    /// then those before the step.
     pub fn step(&mut self) -> Result<StepReport, StarError> {
         let started = Instant::now();
         let step = self.progress.steps;
-        let draw = self.draw(step)?;
+        let draw = StepDraw::new(step, &self.schedule, &self.config, &self.network)?;
         self.update_kernels()?;
         let (loss, gradient) = self.gradient(step, &draw)?;
         let norm = gradient.norm();
-        let both = Tensor::f_stack(&[loss.detach(), norm.shallow_clone()], 0)?;
-        self.gate.watch(&both);
+        let loss = loss.double_value(&[]);
+        self.ensure_finite([("loss", loss), ("gradient norm", norm.double_value(&[]))])?;
         let (_, total) = self.steps();
         let config = &self.config;
         let rate = config.learning_rate * config.learning_rate_schedule.factor(step, total);
-        self.adam.step(
-            self.network.parameters(),
-            &gradient,
-            &norm,
-            config.gradient_clip,
-            rate,
-            &self.gate,
-        );
-        self.unread.push(both);
+        let parameters = self.network.parameters();
+        self.adam.step(parameters, &gradient, &norm, config.gradient_clip, rate);
         self.progress.steps += 1;
-        let epoch_ends = self
-            .progress
-            .steps
-            .is_multiple_of(self.schedule.steps_per_epoch() as u64);
-        let loss = if epoch_ends || self.unread.len() >= self.read_every {
-            self.read()?
-        } else {
-            None
-        };
+        self.progress.loss_sum += loss;
         self.progress.seconds += started.elapsed().as_secs_f64();
         Ok(self.report(step, loss))
     }
@@ -259,31 +218,6 @@ impl Trainer {
             Arc::make_mut(kernels).update(weights.numbers());
         }
         Ok(())
-    }
-
-    /// Reads the unread losses; returns their mean, if there are any. Waits for the device.
-    fn read(&mut self) -> Result<Option<f64>, StarError> {
-        let unread = std::mem::take(&mut self.unread);
-        if unread.is_empty() {
-            return Ok(None);
-        }
-        let numbers = numbers(&Tensor::f_stack(&unread, 0)?)?;
-        let (pairs, _) = numbers.as_chunks::<2>();
-        let mut sum = 0.0;
-        for (&[loss, norm], left) in pairs.iter().zip((1..=pairs.len() as u64).rev()) {
-            let bad = [("loss", loss), ("gradient norm", norm)]
-                .into_iter()
-                .find(|(_, value)| !value.is_finite());
-            if let Some((quantity, value)) = bad {
-                self.progress.steps -= left;
-                self.adam.set_steps(self.progress.steps);
-                self.gate.reopen();
-                return Err(self.non_finite(quantity, value));
-            }
-            self.progress.loss_sum += loss;
-            sum += loss;
-        }
-        Ok(Some(sum / pairs.len() as f64))
     }
 
     /// The loss of a step and its gradient with respect to all learned numbers, as one vector.
@@ -314,41 +248,25 @@ impl Trainer {
         gradient::by_torch(network, objective, batch, draw.noise.shallow_clone(), generator)
     }
 
-    /// The draws of a step, made for the rest of its epoch at once.
-    fn draw(&mut self, step: u64) -> Result<StepDraw, StarError> {
-        loop {
-            if let Some(draw) = self.draws.as_ref().and_then(|draws| draws.at(step)) {
-                return Ok(draw);
-            }
-            let epoch = self.schedule.steps_per_epoch() as u64;
-            self.draws = Some(StepDraws::new(
-                step..(step / epoch + 1) * epoch,
-                &self.schedule,
-                (self.config.rotate, self.config.mirror),
-                self.network.config().noise_width,
-                self.network.device(),
-                self.network.kind(),
-            )?);
-        }
-    }
-
-    fn non_finite(&self, quantity: &'static str, value: f64) -> StarError {
+    fn ensure_finite(&self, quantities: [(&'static str, f64); 2]) -> Result<(), StarError> {
+        let Some((quantity, value)) = quantities.into_iter().find(|(_, value)| !value.is_finite()) else {
+            return Ok(());
+        };
         let batch = self.schedule.batch_index(self.progress.steps);
         let windows = self.schedule.batch(batch).first().map_or_else(String::new, |&index| {
             let window = self.batches.window(index);
             format!("{}@{} and following", window.recording(), window.start_frame())
         });
-        let epoch = self.completed_epochs() + 1;
-        StarError::NonFinite {
-            epoch,
+        Err(StarError::NonFinite {
+            epoch: self.completed_epochs() + 1,
             batch,
             quantity,
             value,
             windows,
-        }
+        })
     }
 
-    fn report(&mut self, step: u64, loss: Option<f64>) -> StepReport {
+    fn report(&mut self, step: u64, loss: f64) -> StepReport {
         let steps_per_epoch = self.schedule.steps_per_epoch();
         let epoch = (step / steps_per_epoch as u64) as usize + 1;
         let done = (step % steps_per_epoch as u64) as usize + 1;
@@ -374,5 +292,4 @@ impl Trainer {
 }
 
 #[cfg(test)]
-#[path = "trainer_tests.rs"]
 mod tests;

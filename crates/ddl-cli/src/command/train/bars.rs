@@ -8,8 +8,6 @@ pub(super) struct TrainingBars {
     goals: Option<Progress>,
     network: Option<Progress>,
     stood: String,
-    /// The last loss that was read back; on CUDA this does not happen at every step.
-    loss: String,
 }
 
 impl TrainingBars {
@@ -19,7 +17,6 @@ impl TrainingBars {
             goals: None,
             network: None,
             stood: "before its first step".to_owned(),
-            loss: String::new(),
         }
     }
 
@@ -34,12 +31,9 @@ impl TrainingBars {
                 bar.tell(done, total, &message);
             }
             TrainingStep::Network(step) => {
-                if let Some(loss) = step.loss {
-                    self.loss = format!(" loss {loss:.4}");
-                }
                 self.goals = None;
                 self.stood = format!("in epoch {}, after {done} of {total} batches", step.epoch);
-                let message = format!("batches, epoch {}{}", step.epoch, self.loss);
+                let message = format!("batches, epoch {} loss {:.4}", step.epoch, step.loss);
                 let bar = self.network.get_or_insert_with(|| Progress::new("train", mode));
                 bar.tell(done, total, &message);
             }

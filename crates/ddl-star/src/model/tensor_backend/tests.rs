@@ -59,8 +59,6 @@ fn network(config: &StarConfig, kind: Kind) -> TorchNetwork {
 enum By {
     /// Kernels and tape, in single precision.
     Kernels,
-    /// libtorch in double precision, with gradients of a weight from all its uses at once, as on CUDA.
-    SharedWeights,
     /// libtorch only, in double precision.
     Torch,
 }
@@ -69,7 +67,7 @@ enum By {
 fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'_>) -> Tensor) -> (f64, Tensor) {
     let kind = match by {
         By::Kernels => Kind::Float,
-        By::SharedWeights | By::Torch => Kind::Double,
+        By::Torch => Kind::Double,
     };
     let network = network(config, kind);
     let parameters = network.parameters();
@@ -81,12 +79,9 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'
         let gradient = pass.gradient(&loss, network.layers(), parameters.count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
     } else {
-        let torch = match by {
-            By::Torch => TorchBackend::new(parameters, Mode::Evaluate),
-            _ => TorchBackend::training(parameters, Mode::Evaluate),
-        };
+        let torch = TorchBackend::new(parameters, Mode::Evaluate);
         let loss = loss(&network, Pass::Torch(&torch));
-        let gradient = torch.gradient(&loss, parameters).unwrap();
+        let gradient = parameters.gradient_of(&loss).unwrap();
         (loss, gradient)
     };
     (loss.double_value(&[]), gradient.to_kind(Kind::Double))
@@ -137,17 +132,12 @@ fn kernels_and_tape_give_the_gradients_of_libtorch() {
             let (torch_loss, torch_gradient) = computed(By::Torch);
             let size = torch_gradient.norm().double_value(&[]);
             assert!(size > 1e-3, "{}: {size}", name(&config));
-            for (by, of_loss, of_gradient) in [
-                (By::Kernels, of_loss, of_gradient),
-                (By::SharedWeights, 1e-12, 1e-8 * of_gradient),
-            ] {
-                let name = format!("{}, {by:?}", name(&config));
-                let (loss, ours) = computed(by);
-                let off = (loss / torch_loss - 1.0).abs();
-                assert!(off < of_loss, "{name}: {loss} {torch_loss}");
-                let off = (ours - &torch_gradient).norm().double_value(&[]);
-                assert!(off < of_gradient * size, "{name}: {off} of {size}");
-            }
+            let name = name(&config);
+            let (loss, ours) = computed(By::Kernels);
+            let off = (loss / torch_loss - 1.0).abs();
+            assert!(off < of_loss, "{name}: {loss} {torch_loss}");
+            let off = (ours - &torch_gradient).norm().double_value(&[]);
+            assert!(off < of_gradient * size, "{name}: {off} of {size}");
         }
     }
 }
