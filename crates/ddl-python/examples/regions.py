@@ -1,0 +1,255 @@
+"""Regions of the built-in models: their coverage over the time of recordings, and their calibration.
+
+    python regions.py measure STAR_FOLDER [FOLDER=FPS ...]
+
+prints the tables of docs/regions.md, and draws its figure as regions.svg. The folder of the convention ``star`` holds
+the recordings of ETH/UCY; each is forecast by the model of its fold. The other folders hold csv files (frame,
+pedestrian, x, y in metres), forecast by the default model. On these, and on the two recordings that no fold tests, the
+constants were chosen.
+
+    python regions.py calibrate FOLDER=FPS ...
+
+prints for each folder the coverage of regions that were calibrated on the other folders, and writes the table of all
+folders to crates/ddl/src/trust/calibration.json. It uses every other file of a folder, or the first half of the windows
+of a single file; the rest is for the final evaluation.
+"""
+
+import json
+import sys
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import ddl_forecast as ddl
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+#: Recordings of the convention ``star`` that a fold tests on, and its model.
+TESTED = {"eth": "eth", "hotel": "hotel", "zara01": "zara1", "zara02": "zara2"}
+TESTED |= {"students001": "univ", "students003": "univ"}
+DEFAULT = "hotel"
+LEVELS = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
+HALF, MOST = 4, 8  # the levels that have columns in the table
+CALIBRATED = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99]
+STEP = 0.4 / 60  # minutes
+SLIDING, APART = 1.0, 1.0 / 12.0  # interval over which a share is computed, and its step (minutes)
+SHORTEST, FEWEST = 0.8, 1000  # minutes and forecasts of a pedestrian, below which a recording is left out
+PEDESTRIANS = 1500  # about this many pedestrian-windows of a folder calibrate
+KINDS = ("fixed", "adaptive")
+
+
+def recordings_of(place: str) -> list[ddl.Recording]:
+    """The recordings of ``FOLDER=FPS``, by name."""
+    folder, fps = place.split("=")
+    return [ddl.read(path, format="table", fps=float(fps)) for path in sorted(Path(folder).iterdir())]
+
+
+@dataclass
+class Coverage:
+    """Coverage of the regions of one recording, one row for each frame with a forecast."""
+
+    name: str
+    model: str
+    minutes: Floats
+    people: Floats
+    seen: Floats  # positions at which a forecast pedestrian was observed
+    held: Floats  # (frames, 2, levels) of these inside the fixed and the adaptive regions
+    radii: Floats  # (frames, 2, 2) sums over pedestrians for the levels HALF and MOST, metres
+
+    @property
+    def later(self) -> slice:
+        """The frames after the first quarter."""
+        return slice(int(np.searchsorted(self.minutes, 0.25 * self.minutes[-1])), None)
+
+    def share(self, kind: int, level: int, frames: slice = slice(None)) -> float:
+        return float(self.held[frames, kind, level].sum() / self.seen[frames].sum())
+
+    def radius(self, kind: int, which: int) -> float:
+        return float(self.radii[self.later, kind, which].sum() / self.people[self.later].sum())
+
+    def sliding(self, kind: int) -> Floats:
+        """(points, 2): time (minutes), and the share inside the regions of 90 % in the minute before."""
+        points = []
+        for moment in range(int(SLIDING / 3 / APART), int(self.minutes[-1] / APART) + 1):
+            now = moment * APART
+            start, end = np.searchsorted(self.minutes, [now - SLIDING, now], side="right")
+            if self.seen[start:end].sum() > 0:
+                points.append((now, self.share(kind, MOST, slice(start, end))))
+        return np.array(points)
+
+
+def inside(forecast: ddl.Forecast, radii: Floats, ahead: Floats) -> int:
+    """How many of the later positions (n, 12, 2), NaN where unobserved, are inside the regions of these radii."""
+    off = np.linalg.norm(ahead[:, None] - forecast.paths, axis=-1)
+    return int((off <= radii).any(axis=1).sum())
+
+
+def equivalent_radius(centres: Floats, radii: Floats, cells: int = 24) -> float:
+    """Radius of a disc with the area of the discs together, measured on a grid."""
+    some = ~np.isnan(radii)
+    centres, radii = centres[some], radii[some]
+    low, high = (centres - radii[:, None]).min(axis=0), (centres + radii[:, None]).max(axis=0)
+    shares = (np.arange(cells) + 0.5) / cells
+    grid = np.stack(np.meshgrid(*(low + shares[:, None] * (high - low)).T), axis=-1)
+    covered = (((grid[None] - centres[:, None, None]) ** 2).sum(axis=-1) <= (radii**2)[:, None, None]).any(axis=0)
+    return float(np.sqrt(np.prod(high - low) * covered.mean() / np.pi))
+
+
+def forecasts(recording: ddl.Recording, model: str) -> Iterator[tuple[float, list[ddl.Forecast], Floats]]:
+    """For each frame its minute, the forecasts with fixed and adaptive regions, and the later positions."""
+    forecaster = ddl.Forecaster(model)
+    times = np.round((recording.frame - recording.frame[0]) / recording.frame_step, 6)
+    whole_step = recording.frame_step == int(recording.frame_step)
+    # Interpolated frames are 0.4 s apart; others keep their numbers.
+    numbers = (recording.frame if whole_step else np.round(times)).astype(np.int64)
+    step = int(recording.frame_step) if whole_step else 1
+    rows = {number: np.flatnonzero(numbers == number) for number in np.unique(numbers)}
+    xy = np.stack([recording.x, recording.y], axis=1)
+    positions = {n: dict(zip(recording.id[at].tolist(), xy[at], strict=True)) for n, at in rows.items()}
+    fixed = iter(forecaster.forecast_recording(recording, whole=True))
+    with ddl.Live(forecaster, fps=2.5 * step, whole=True) as live:
+        for number, at in rows.items():
+            adaptive = live.observe(int(number), recording.id[at].tolist(), xy[at])
+            if adaptive is None:
+                continue
+            ahead = np.full((len(adaptive), 12, 2), np.nan)
+            for i, one in enumerate(adaptive.ids.tolist()):
+                for t in range(12):
+                    later = positions.get(number + (t + 1) * step, {}).get(one)
+                    if later is None:
+                        break
+                    ahead[i, t] = later
+            yield (number - numbers[0]) / step * STEP, [next(fixed), adaptive], ahead
+
+
+def coverage(recording: ddl.Recording, model: str) -> Coverage:
+    rows: list[tuple[float, int, int, list[list[int]], list[list[float]]]] = []
+    for minute, kinds, ahead in forecasts(recording, model):
+        valid = [kind.valid for kind in kinds]
+        assert all(mask.all() for mask in valid) and kinds[0].paths.shape == kinds[1].paths.shape
+        held, sums = [], []
+        for forecast in kinds:
+            radii = [forecast.regions(level) for level in LEVELS]
+            held.append([inside(forecast, of_level, ahead) for of_level in radii])
+            ends = [(forecast.paths[:, :, -1], radii[level][:, :, -1]) for level in (HALF, MOST)]
+            sums.append([sum(map(equivalent_radius, centres, ends_of)) for centres, ends_of in ends])
+        rows.append((minute, len(ahead), int((~np.isnan(ahead[..., 0])).sum()), held, sums))
+    columns = [np.array(column, dtype=float) for column in zip(*rows, strict=True)]
+    return Coverage(recording.name, model, *columns)
+
+
+def table(coverages: Sequence[Coverage]) -> str:
+    heads = (
+        "recording (model) | minutes | forecasts | regions | 90 %: whole | later | any minute | radius | 50 %: whole"
+    )
+    lines = [f"| {heads} | later | radius | reliability |", "|" + "---|" * 12]
+    for one in coverages:
+        for kind, name in enumerate(KINDS):
+            minutes = one.sliding(kind)
+            minutes = minutes[minutes[:, 0] >= max(0.25 * one.minutes[-1], SLIDING), 1] if len(minutes) else minutes
+            span = f"{100 * minutes.min():.0f} to {100 * minutes.max():.0f}" if len(minutes) else "-"
+            off = np.abs([one.share(kind, k) - level for k, level in enumerate(LEVELS)])
+            whole, later = ([100 * one.share(kind, k, part) for k in (MOST, HALF)] for part in (slice(None), one.later))
+            head = (
+                f"{one.name} (`{one.model}`) | {one.minutes[-1]:.1f} | {one.people.sum():.0f}" if kind == 0 else "| |"
+            )
+            most = f"{whole[0]:.1f} | {later[0]:.1f} | {span} | {one.radius(kind, 1):.2f}"
+            half = f"{whole[1]:.1f} | {later[1]:.1f} | {one.radius(kind, 0):.2f}"
+            reliability = f"{100 - 100 * off.mean():.1f} / {100 - 100 * off.max():.1f}"
+            lines.append(f"| {head} | {name} | {most} | {half} | {reliability} |")
+    return "\n".join(lines) + "\n"
+
+
+def draw(coverages: Sequence[Coverage], path: str) -> None:
+    matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "regions", "font.size": 9})
+    figure, axes = plt.subplots(-(-len(coverages) // 3), 3, figsize=(10, 5.4), sharey=True, layout="constrained")
+    for panel, one in zip(axes.flat, coverages, strict=False):
+        panel.axhspan(88, 92, color="0.9")
+        for kind, name in enumerate(KINDS):
+            minutes = one.sliding(kind)
+            note = f"{name}: {100 * one.share(kind, MOST, one.later):.0f} %, {one.radius(kind, 1):.1f} m"
+            panel.plot(minutes[:, 0], 100 * minutes[:, 1].round(4), color=("C1", "C0")[kind], linewidth=1, label=note)
+        panel.set(title=one.name, xlabel="minutes")
+        panel.legend(loc="lower right", frameon=False)
+    figure.suptitle("Share (%) of true positions inside the regions of 90 %, over the minute before")
+    figure.savefig(path, metadata={"Date": None})
+
+
+def measure(star: str, places: Sequence[str]) -> None:
+    tested: list[Coverage] = []
+    others: list[Coverage] = []
+    for path in sorted(Path(star).glob("*.csv")):
+        recording = ddl.read(path, format="star-csv")
+        model = TESTED.get(path.stem)
+        (tested if model else others).append(coverage(recording, model or DEFAULT))
+    for recording in (recording for place in places for recording in recordings_of(place)):
+        one = coverage(recording, DEFAULT)
+        minutes = (recording.frame[-1] - recording.frame[0]) / recording.frame_step * STEP
+        if minutes >= SHORTEST and one.people.sum() >= FEWEST:
+            others.append(one)
+    print(f"# Recordings that are tested on\n\n{table(tested)}")
+    print(f"# Recordings that the constants were chosen on\n\n{table(others)}")
+    draw(tested, "regions.svg")
+
+
+def scores(forecast: ddl.Forecast, truth: Floats) -> Floats:
+    """(n, 12) scores of true positions: crates/ddl-core/src/region.rs has the formula."""
+    assert forecast.spread is not None
+    off = np.linalg.norm(truth[:, None] - forecast.paths, axis=-1) / forecast.spread[:, None]
+    relative = forecast.weights / forecast.weights.max(axis=1, keepdims=True)
+    least: Floats = (0.5 * off**2 - np.log(relative)[..., None]).min(axis=1)
+    return least
+
+
+def quantiles(scores: Floats, levels: Sequence[float]) -> Floats:
+    """(levels, 12) split-conformal quantiles of scores (pedestrians, 12)."""
+    ranks = np.ceil(np.array(levels) * (len(scores) + 1)).astype(int)
+    ordered: Floats = np.sort(scores, axis=0)[ranks - 1]
+    return ordered
+
+
+def balanced(places: Sequence[Floats]) -> Floats:
+    """As many scores of each place."""
+    least = min(map(len, places))
+    return np.concatenate([of_place[np.arange(least) * len(of_place) // least] for of_place in places])
+
+
+def calibrate(places: Sequence[str]) -> None:
+    of_places = []
+    for place in places:
+        recordings = recordings_of(place)
+        windows = [window for recording in recordings[::2] for window in ddl.windows(recording)]
+        windows = windows[: len(windows) // 2] if len(recordings) == 1 else windows
+        every = max(1, -(-sum(len(window.past) for window in windows) // PEDESTRIANS))
+        of_places.append(windows[::every])
+    models = [ddl.Forecaster(name) for name in ("eth", "hotel", "univ", "zara1", "zara2")]
+    of_place = [
+        np.concatenate([scores(model.forecast(window.past), window.future) for model in models for window in windows])
+        for windows in of_places
+    ]
+    for left_out, place in enumerate(places):
+        others = [scores for index, scores in enumerate(of_place) if index != left_out]
+        if others:
+            held = [(of_place[left_out] <= row).mean() for row in quantiles(balanced(others), [0.5, 0.9])]
+            print(f"{place}: regions of the other places hold {held[0]:.1%} (50 %) and {held[1]:.1%} (90 %)")
+    file = Path(__file__).parents[2] / "ddl/src/trust/calibration.json"
+    constants: dict[str, Any] = json.loads(file.read_text())
+    constants["regions"] = {"levels": CALIBRATED, "quantiles": quantiles(balanced(of_place), CALIBRATED).tolist()}
+    file.write_text(json.dumps(constants, indent=2) + "\n")
+    print(file)
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("ignore", ddl.DoubtWarning)
+    match sys.argv[1:]:
+        case ["measure", star, *places]:
+            measure(star, places)
+        case ["calibrate", first, *places]:
+            calibrate([first, *places])
+        case _:
+            sys.exit(__doc__)
