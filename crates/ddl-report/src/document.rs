@@ -8,4 +8,4 @@ mod table;
 
 pub(crate) use html::{ContentsEntry, identifier, inline, unused, warning};
 pub(crate) use parts::{Document, Part};
-pub use table::Table;
+pub(crate) use table::Table;

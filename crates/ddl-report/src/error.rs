@@ -1,8 +1,8 @@
-//! Errors of reports.
+//! Errors of reports, pages and figures.
 
 use std::path::PathBuf;
 
-/// A report cannot be made or read.
+/// A report cannot be made or read, or a page or figure of it cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages describe the fields")]
@@ -20,7 +20,34 @@ pub enum ReportError {
     #[error("the report has format {found}; this version reads format {supported}")]
     Format { found: u32, supported: u32 },
     #[error("not a report: {0}")]
-    Json(#[from] serde_json::Error),
+    Json(#[source] serde_json::Error),
+    #[error("cannot be written as JSON: {0}")]
+    Write(#[from] serde_json::Error),
     #[error("{path}: {source}", path = path.display())]
     File { path: PathBuf, source: std::io::Error },
+    #[error("moment {index} (recording `{recording}`, frame {frame}): {problem}")]
+    Moment {
+        index: usize,
+        recording: String,
+        frame: i64,
+        problem: String,
+    },
+    #[error(
+        "training curve {index} (fold `{fold}`, variant `{variant}`, seed {seed}): epoch {epoch} follows {before}; \
+         epochs must ascend"
+    )]
+    Epochs {
+        index: usize,
+        fold: String,
+        variant: String,
+        seed: u64,
+        epoch: usize,
+        before: usize,
+    },
+    #[error("the window holds {expected} pedestrians, the forecast {found}")]
+    Pedestrians { expected: usize, found: usize },
+    #[error("a picture of goals holds 1 to {most} cases, found {found}; draw several pictures")]
+    Cases { found: usize, most: usize },
+    #[error("case `{case}`: {problem}")]
+    GoalCase { case: String, problem: String },
 }

@@ -2,15 +2,12 @@
 //!
 //! - [`scene()`]: one scene with its forecasts;
 //! - [`place()`]: the tracks of a place;
-//! - [`goals()`]: estimated goals, one panel for each pedestrian ([`GoalCase`]);
-//! - [`coverage()`]: coverage of regions over time, one [`TimePanel`] for each recording.
+//! - [`goals()`]: estimated goals, one panel for each pedestrian ([`GoalCase`]).
 //!
 //! Maps show metres at one scale for both axes. Colours are those of the [page](crate::page).
 
 mod axes;
-mod coverage;
 pub(crate) mod drawing;
-mod error;
 mod goal_case;
 mod goals;
 mod legend;
@@ -24,10 +21,7 @@ mod scene;
 mod traffic;
 mod wrap;
 
-pub use coverage::coverage;
-pub use error::FigureError;
 pub use goal_case::GoalCase;
 pub use goals::goals;
-pub use over_time::TimePanel;
 pub use place::place;
 pub use scene::scene;

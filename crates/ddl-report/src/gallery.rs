@@ -47,8 +47,9 @@ pub fn moments(
     shown
         .into_iter()
         .map(|(index, picks)| {
-            let moment = ForecastSnapshot::new(fold, forecaster, &windows[index], &forecasts[index])?;
-            Ok(moment.picked(picks))
+            let mut moment = ForecastSnapshot::new(fold, forecaster, &windows[index], &forecasts[index])?;
+            moment.picks = picks;
+            Ok(moment)
         })
         .collect()
 }
@@ -88,7 +89,13 @@ fn median(show: HighlightKind, mut cases: Vec<GalleryCase>) -> (usize, Highlight
             case.min_ade
         ),
     };
-    (case.window, Highlight::new(show, case.pedestrians, rule))
+    let pedestrians = case.pedestrians;
+    let pick = Highlight {
+        show,
+        pedestrians,
+        rule,
+    };
+    (case.window, pick)
 }
 
 fn shows(scene: &ScoredWindow<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)> {

@@ -10,9 +10,7 @@ mod report;
 mod snapshot;
 mod training_curve;
 
-pub use document::Table;
 pub use error::ReportError;
-pub use figure::FigureError;
-pub use report::{Report, Summary};
+pub use report::Report;
 pub use snapshot::{ForecastSnapshot, Highlight, HighlightKind, SnapshotHypothesis, SnapshotPedestrian};
 pub use training_curve::{EpochPoint, TrainingCurve};

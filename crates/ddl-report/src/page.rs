@@ -2,7 +2,6 @@
 //! Its numbers come from the `report.json` that is embedded in it; tables are those of
 //! [`Report::to_markdown`](crate::Report::to_markdown).
 
-mod error;
 mod gallery_section;
 mod headline;
 mod headline_chart;
@@ -14,6 +13,5 @@ mod standing;
 mod training_section;
 mod viewer;
 
-pub use error::PageError;
 pub use report_page::Page;
 pub use viewer::Viewer;

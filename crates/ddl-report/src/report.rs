@@ -25,7 +25,6 @@ mod summary;
 mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
-pub use summary::Summary;
 
 const FORMAT: u32 = 1;
 
@@ -92,18 +91,19 @@ impl Report {
         self.document().to_markdown()
     }
 
-    /// The tables for a paper as LaTeX, to be included with `\input`; they need `booktabs` and `adjustbox`.
-    pub fn to_latex(&self) -> String {
-        self.document().to_latex()
-    }
-
     /// The report as a document, for markdown, HTML or LaTeX.
     pub(crate) fn document(&self) -> Document {
         content::document(&self.title, &self.rows)
     }
 
-    /// The main numbers of a convention under its headline window rule; `None` if the report has no such results.
-    pub fn summary(&self, convention: Convention) -> Option<Summary> {
+    /// The main tables as markdown: a convention under its headline window rule, without the protocol `published`.
+    /// `None` if the report has no such results.
+    ///
+    /// The first table has minADE/minFDE (m) of each fold, mean over the seeds, then the mean of the folds with the
+    /// standard deviation over the seeds. A row that a second protocol repeats, such as that of a baseline, is given
+    /// once. The last row is the best published system of the convention. The second table has, for the same rows over
+    /// the measured folds, the mean errors with their 95 % intervals, and further metrics.
+    pub fn summary(&self, convention: Convention) -> Option<String> {
         summary::of(&self.rows, convention)
     }
 
@@ -131,7 +131,7 @@ impl Report {
     /// # Errors
     /// The text is not a report, is of a newer format, or holds conflicting rows.
     pub fn from_json(text: &str) -> Result<Self, ReportError> {
-        let read: Self = serde_json::from_str(text)?;
+        let read: Self = serde_json::from_str(text).map_err(ReportError::Json)?;
         if read.format != FORMAT {
             return Err(ReportError::Format {
                 found: read.format,
@@ -141,7 +141,8 @@ impl Report {
         Self::new(read.title, read.rows)
     }
 
-    /// The names and contents of its files: `report.md`, `report.tex` (the tables for a paper) and `report.json`.
+    /// The names and contents of its files: `report.md`, `report.tex` and `report.json`. `report.tex` holds the tables for
+    /// a paper, to be included with `\input`; they need `booktabs` and `adjustbox`.
     ///
     /// # Errors
     /// As [`Report::to_json`].

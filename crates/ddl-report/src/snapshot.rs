@@ -111,7 +111,6 @@ impl fmt::Display for HighlightKind {
 
 /// The reason to show a moment, and the pedestrians concerned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[non_exhaustive]
 pub struct Highlight {
     /// What it shows.
     pub show: HighlightKind,
@@ -119,17 +118,6 @@ pub struct Highlight {
     pub pedestrians: Vec<usize>,
     /// Text that states the rule of the choice, with its numbers.
     pub rule: String,
-}
-
-impl Highlight {
-    /// A case of these pedestrians, picked by this rule.
-    pub fn new(show: HighlightKind, pedestrians: Vec<usize>, rule: impl Into<String>) -> Self {
-        Self {
-            show,
-            pedestrians,
-            rule: rule.into(),
-        }
-    }
 }
 
 impl SnapshotPedestrian {
@@ -202,12 +190,6 @@ impl ForecastSnapshot {
                 .collect(),
             picks: Vec::new(),
         }
-    }
-
-    /// Adds reasons to show the snapshot.
-    #[must_use]
-    pub fn picked(self, picks: Vec<Highlight>) -> Self {
-        Self { picks, ..self }
     }
 }
 

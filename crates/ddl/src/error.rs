@@ -82,12 +82,6 @@ pub enum DdlError {
          also runs, retrieves {experts}; train on more or longer recordings (the validation part does not count)"
     )]
     TooFewTracks { tracks: usize, experts: usize },
-    #[cfg(feature = "report")]
-    #[error(transparent)]
-    Figure(#[from] ddl_report::FigureError),
-    #[cfg(feature = "report")]
-    #[error(transparent)]
-    Page(#[from] ddl_report::page::PageError),
     #[error("run {}: {problem}", path.display())]
     Run { path: PathBuf, problem: String },
     #[error("model {model}: {problem}")]

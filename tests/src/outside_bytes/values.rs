@@ -26,7 +26,7 @@ pub(super) fn report(bytes: &[u8]) {
     let text = report.to_json().expect("valid data can be written");
     let again = Report::from_json(&text).unwrap_or_else(|error| panic!("a written report is refused: {error}\n{text}"));
     assert_eq!(again, report);
-    let _ = (report.to_markdown(), report.to_latex());
+    assert!(report.files().is_ok());
     let page = Page::new(&report);
     assert!(page.figures().is_ok() && page.to_html().is_ok());
 }

@@ -120,15 +120,14 @@ impl Goals {
             MemoryOption::Place => Remembering::Place,
             MemoryOption::Online => Remembering::Online,
         });
-        let measured = ddl::evaluate_goals(&model, &dataset, on, memory)?;
+        let evaluation = ddl::evaluate_goals(&model, &dataset, on, memory)?;
         if let Some(path) = &self.svg {
-            write_output(Some(path), &ddl::goal_picture(&model, &measured)?)?;
+            write_output(Some(path), &ddl::goal_picture(&model, &evaluation)?)?;
         }
-        let evaluation = &measured.evaluation;
         Ok(if self.telling.json {
-            serde_json::to_string_pretty(evaluation)? + "\n"
+            serde_json::to_string_pretty(&evaluation)? + "\n"
         } else {
-            words(evaluation)
+            words(&evaluation)
         })
     }
 }

@@ -2,7 +2,7 @@
 
 /// A table. The first column is text; the others hold numbers, unless they are marked as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Table {
+pub(crate) struct Table {
     caption: Option<String>,
     header: Vec<String>,
     text: Vec<bool>,
@@ -57,7 +57,7 @@ impl Table {
     }
 
     /// The rows, each as long as the header.
-    pub fn rows(&self) -> &[Vec<String>] {
+    pub(crate) fn rows(&self) -> &[Vec<String>] {
         &self.rows
     }
 

@@ -3,7 +3,7 @@
 use ddl_core::{Forecast, WeightedGoals, distance};
 use ddl_data::{OBSERVED, Position, WINDOW};
 
-use crate::figure::error::FigureError;
+use crate::error::ReportError;
 
 /// Positions farther from the pedestrian are an error (m).
 const FARTHEST: f64 = 1e6;
@@ -19,51 +19,32 @@ pub struct GoalCase {
 }
 
 impl GoalCase {
-    /// A pedestrian and its goals, without experts.
+    /// A pedestrian and its goals, with the tracks of the expert library that the goals come from, in any order.
     ///
     /// # Shapes
-    /// `track`: 20 positions (m), 8 observed and 12 true future ones; `goals` in the same coordinates.
+    /// `track` and each expert: 20 positions (m), 8 observed and 12 true future ones, in the coordinates of `goals`. The
+    /// experts are transformed to this pedestrian; their last 12 positions are drawn.
     ///
     /// # Errors
     /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed position;
     /// weights outside [0, 1], or that do not sum to 1.
-    pub fn new(title: impl Into<String>, track: &[Position], goals: WeightedGoals) -> Result<Self, FigureError> {
+    pub fn new(
+        title: impl Into<String>,
+        track: &[Position],
+        goals: WeightedGoals,
+        experts: Vec<Vec<Position>>,
+    ) -> Result<Self, ReportError> {
         let title = title.into();
-        match check(track, &goals) {
+        match check(track, &goals, &experts) {
             Ok(nearest) => Ok(Self {
                 title,
                 track: track.to_vec(),
                 goals,
-                experts: Vec::new(),
+                experts,
                 nearest,
             }),
-            Err(problem) => Err(FigureError::GoalCase { case: title, problem }),
+            Err(problem) => Err(ReportError::GoalCase { case: title, problem }),
         }
-    }
-
-    /// The same case with the tracks of the expert library that the goals come from, in any order.
-    ///
-    /// # Shapes
-    /// Each expert: 20 positions (m), transformed to this pedestrian, in the coordinates of its track. The last 12 are
-    /// drawn.
-    ///
-    /// # Errors
-    /// As [`GoalCase::new`], for the experts.
-    pub fn with_experts(mut self, experts: Vec<Vec<Position>>) -> Result<Self, FigureError> {
-        let here = self.here();
-        let faulty = (0..).zip(&experts).find_map(|(index, expert)| {
-            if expert.len() != WINDOW {
-                let count = expert.len();
-                return Some(format!("expert {index} must hold 20 positions, found {count}"));
-            }
-            check_near(here, expert, |step| format!("position {step} of expert {index}")).err()
-        });
-        if let Some(problem) = faulty {
-            let case = self.title;
-            return Err(FigureError::GoalCase { case, problem });
-        }
-        self.experts = experts;
-        Ok(self)
     }
 
     pub(super) fn title(&self) -> &str {
@@ -102,7 +83,7 @@ impl GoalCase {
 }
 
 /// The index of the nearest goal, or what is wrong.
-fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, String> {
+fn check(track: &[Position], goals: &WeightedGoals, experts: &[Vec<Position>]) -> Result<usize, String> {
     if track.len() != WINDOW {
         let count = track.len();
         return Err(format!(
@@ -112,6 +93,13 @@ fn check(track: &[Position], goals: &WeightedGoals) -> Result<usize, String> {
     let (here, end) = (track[OBSERVED - 1], track[WINDOW - 1]);
     check_near(here, track, |step| format!("position {step} of the track"))?;
     check_near(here, goals.goals(), |goal| format!("goal {goal}"))?;
+    for (index, expert) in experts.iter().enumerate() {
+        if expert.len() != WINDOW {
+            let count = expert.len();
+            return Err(format!("expert {index} must hold 20 positions, found {count}"));
+        }
+        check_near(here, expert, |step| format!("position {step} of expert {index}"))?;
+    }
     let weights = goals.weights();
     for (goal, &weight) in weights.iter().enumerate() {
         if !(0.0..=1.0 + Forecast::WEIGHT_TOLERANCE).contains(&weight) {
@@ -159,7 +147,7 @@ mod tests {
         WeightedGoals::new(goals.to_vec(), weights.to_vec()).unwrap()
     }
 
-    fn message(result: Result<GoalCase, FigureError>) -> String {
+    fn message(result: Result<GoalCase, ReportError>) -> String {
         result.unwrap_err().to_string()
     }
 
@@ -169,7 +157,7 @@ mod tests {
             ([[4.0, 1.0], [9.5, 1.5], [9.5, 3.0]], [0.6, 0.1, 0.3], (1, 0.5)),
             ([[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]], [0.0, 0.4, 0.6], (2, 1.0)),
         ] {
-            let case = GoalCase::new("a", &track(), goals(&places, &weights)).unwrap();
+            let case = GoalCase::new("a", &track(), goals(&places, &weights), Vec::new()).unwrap();
             assert_eq!(case.nearest_goal(), expected.0);
             assert!((case.error() - expected.1).abs() < 1e-12);
         }
@@ -179,7 +167,7 @@ mod tests {
     fn what_is_no_case_says_where_and_why() {
         let refused = |track: &[Position], second: Position, weight: f64, said: &str| {
             let set = goals(&[[9.0, 1.0], second], &[weight, 0.5]);
-            let message = message(GoalCase::new("hotel, pedestrian 3", track, set));
+            let message = message(GoalCase::new("hotel, pedestrian 3", track, set, Vec::new()));
             assert!(message.starts_with("case `hotel, pedestrian 3`: "));
             assert!(message.contains(said), "{message}");
         };
@@ -204,13 +192,12 @@ mod tests {
         ] {
             refused(&track(), good, weight, said);
         }
-        let case = GoalCase::new("a", &track(), goals(&[[9.0, 1.0]], &[1.0])).unwrap();
-        let short = vec![track(), track()[1..].to_vec()];
-        let short = message(case.clone().with_experts(short));
+        let with = |experts| message(GoalCase::new("a", &track(), goals(&[[9.0, 1.0]], &[1.0]), experts));
+        let short = with(vec![track(), track()[1..].to_vec()]);
         assert!(short.contains("expert 1 must hold 20 positions, found 19"));
         let mut lost = track();
         lost[19][0] = f64::NEG_INFINITY;
-        let lost = message(case.with_experts(vec![track(), track(), lost]));
+        let lost = with(vec![track(), track(), lost]);
         assert!(lost.contains("position 19 of expert 2 is"), "{lost}");
     }
 }

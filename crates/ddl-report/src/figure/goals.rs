@@ -2,9 +2,9 @@
 
 use ddl_data::Position;
 
+use crate::error::ReportError;
 use crate::figure::axes::{Axes, PANEL};
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
-use crate::figure::error::FigureError;
 use crate::figure::goal_case::GoalCase;
 use crate::figure::legend::{LegendEntry, LegendRows};
 use crate::figure::marks::{goal_ring, nearest_goal};
@@ -32,10 +32,10 @@ const TITLE_LINES: usize = 2;
 ///
 /// # Errors
 /// There are no cases, or more than 9.
-pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, FigureError> {
+pub fn goals(title: &str, cases: &[GoalCase]) -> Result<String, ReportError> {
     if !(1..=MOST_CASES).contains(&cases.len()) {
         let (found, most) = (cases.len(), MOST_CASES);
-        return Err(FigureError::Cases { found, most });
+        return Err(ReportError::Cases { found, most });
     }
     let panels: Vec<GoalPanel<'_>> = cases.iter().map(GoalPanel::new).collect();
     let [width, height] = panels[0].axes.size();

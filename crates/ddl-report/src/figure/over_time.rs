@@ -1,7 +1,7 @@
-//! Two curves over time, one panel for each recording.
+//! Two curves of errors over time, one panel for each recording.
 
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
-use crate::figure::scale::{Scale, ticks};
+use crate::figure::scale::Scale;
 use crate::figure::wrap::wrapped;
 
 const COLUMNS: usize = 3;
@@ -19,34 +19,24 @@ const NOTE: f64 = 92.0;
 /// Classes of the two curves.
 const CLASSES: [&str; 2] = ["c1", "c0"];
 
-/// Curves of several recordings, one panel for each.
+/// Curves of the errors of several recordings, one panel for each.
 #[derive(Debug)]
 pub(crate) struct OverTime<'a> {
     pub(crate) title: &'a str,
     /// Names of the two curves.
     pub(crate) keys: [&'a str; 2],
-    pub(crate) values: Values,
     pub(crate) panels: &'a [TimePanel],
-}
-
-/// The quantity on the vertical axis.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Values {
-    /// Shares from the lowest to 1, with a band of 2 % around a nominal share.
-    Shares { lowest: f64, aim: f64 },
-    /// Errors in metres, from 0; each panel has its own scale.
-    Metres,
 }
 
 /// Two curves of one recording.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TimePanel {
+pub(crate) struct TimePanel {
     /// The recording.
-    pub name: String,
+    pub(crate) name: String,
     /// Two notes beside the name, in the colours of the curves.
-    pub notes: [String; 2],
-    /// Points of both curves: time (minutes, ascending) and value.
-    pub curves: [Vec<[f64; 2]>; 2],
+    pub(crate) notes: [String; 2],
+    /// Points of both curves: time (minutes, ascending) and error (m). Each panel has its own scale.
+    pub(crate) curves: [Vec<[f64; 2]>; 2],
 }
 
 impl OverTime<'_> {
@@ -66,7 +56,7 @@ impl OverTime<'_> {
         for (index, panel) in self.panels.iter().enumerate() {
             let left = EDGE + LEFT + across(index % COLUMNS);
             let top = HEAD + 26.0 + up(index / COLUMNS);
-            panel.draw(&mut drawing, [left, top], self.values);
+            panel.draw(&mut drawing, [left, top]);
         }
         drawing.to_file(PLOT_STYLE)
     }
@@ -79,17 +69,11 @@ impl OverTime<'_> {
             drawing.text("key", [left + SAMPLE + 8.0, y + 4.0], words);
             left += SAMPLE + 36.0 + 6.7 * words.len() as f64;
         }
-        if let Values::Shares { aim, .. } = self.values {
-            drawing.rectangle("aim", [[left, y - 6.0], [left + SAMPLE, y + 6.0]]);
-            let percent = 100.0 * aim;
-            let words = format!("{} to {} %, the aim", percent - 2.0, percent + 2.0);
-            drawing.text("key", [left + SAMPLE + 8.0, y + 4.0], words);
-        }
     }
 }
 
 impl TimePanel {
-    fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2], values: Values) {
+    fn draw(&self, drawing: &mut Drawing, [left, top]: [f64; 2]) {
         let [right, bottom] = [left + PLOT[0], top + PLOT[1]];
         let points = || self.curves.iter().flatten();
         let longest = points().fold(0.0, |longest, point| point[0].max(longest));
@@ -102,32 +86,20 @@ impl TimePanel {
         }
         let largest = points().fold(0.0, |largest, point| point[1].max(largest));
         let metres = Scale::from_zero(largest, [bottom, top]);
-        let up = |value: f64| match values {
-            Values::Shares { lowest, .. } => bottom - (value - lowest) / (1.0 - lowest) * (bottom - top),
-            Values::Metres => metres.at(value),
-        };
-        if let Values::Shares { lowest, aim } = values {
-            let [low, high] = [-0.02, 0.02].map(|off| up((aim + off).clamp(lowest, 1.0)));
-            drawing.rectangle("aim", [[left, high], [right, low]]);
-        }
         for (tick, label) in time.ticks() {
             let x = time.at(tick);
             drawing.line("grid", [x, top], [x, bottom]);
             drawing.text("small middle", [x, bottom + 16.0], label);
         }
-        let ticks: Vec<(f64, String)> = match values {
-            Values::Shares { lowest, .. } => ticks(lowest, 1.0, 0.1)
-                .map(|(tick, _)| (tick, format!("{:.0} %", 100.0 * tick)))
-                .collect(),
-            Values::Metres => metres.ticks(),
-        };
-        for (tick, label) in ticks {
-            let y = up(tick);
+        for (tick, label) in metres.ticks() {
+            let y = metres.at(tick);
             drawing.line("grid", [left, y], [right, y]);
             drawing.text("small end", [left - 6.0, y + 4.0], label);
         }
         for (class, curve) in CLASSES.into_iter().zip(&self.curves) {
-            let points = curve.iter().map(|&[minutes, value]| [time.at(minutes), up(value)]);
+            let points = curve
+                .iter()
+                .map(|&[minutes, value]| [time.at(minutes), metres.at(value)]);
             let class = format!("curve {class}");
             drawing.path(&class, &points.collect::<Vec<_>>());
         }
@@ -150,7 +122,6 @@ mod tests {
         let drawn = OverTime {
             title: "Errors",
             keys: ["without", "with"],
-            values: Values::Metres,
             panels: &[panel(0.4), panel(4.0)],
         };
         let svg = drawn.to_file();
@@ -158,6 +129,6 @@ mod tests {
         for label in ["0.4", "4", "0.2 m", "without"] {
             assert!(svg.contains(&format!(">{label}</text>")), "{label}: {svg}");
         }
-        assert!(!svg.contains("the aim") && !svg.contains("NaN"));
+        assert!(!svg.contains("NaN"));
     }
 }

@@ -3,9 +3,9 @@
 use ddl_core::{Disc, Forecast};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 
+use crate::error::ReportError;
 use crate::figure::axes::{Axes, SCENE};
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
-use crate::figure::error::FigureError;
 use crate::figure::legend::{self, LegendEntry};
 use crate::figure::pedestrian;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
@@ -18,12 +18,12 @@ const LEVEL: f64 = 0.9;
 ///
 /// # Errors
 /// The forecast is not of the window's pedestrians.
-pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, FigureError> {
+pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, ReportError> {
     let seen = |i: usize| window.track(i)[OBSERVED..].to_vec();
     let seen: Vec<Vec<Position>> = (0..window.len()).map(seen).collect();
     let moment = ForecastSnapshot::under_way("", window, forecast, &seen).map_err(|_| {
         let (expected, found) = (window.len(), forecast.pedestrians());
-        FigureError::Pedestrians { expected, found }
+        ReportError::Pedestrians { expected, found }
     })?;
     let drawn = &moment.pedestrians;
     let axes = Axes::around(&extent(drawn), &SCENE);

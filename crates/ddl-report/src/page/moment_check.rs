@@ -2,7 +2,7 @@
 
 use ddl_data::{COORDINATE_LIMIT, HORIZON, OBSERVED, Position};
 
-use crate::page::error::PageError;
+use crate::error::ReportError;
 use crate::snapshot::{ForecastSnapshot, SnapshotPedestrian};
 
 /// The part of the true future that is required.
@@ -14,9 +14,9 @@ pub(super) enum Truth {
     AsSeen,
 }
 
-pub(super) fn check(moments: &[ForecastSnapshot], truth: Truth) -> Result<(), PageError> {
+pub(super) fn check(moments: &[ForecastSnapshot], truth: Truth) -> Result<(), ReportError> {
     for (index, moment) in moments.iter().enumerate() {
-        check_moment(moment, truth).map_err(|problem| PageError::Moment {
+        check_moment(moment, truth).map_err(|problem| ReportError::Moment {
             index,
             recording: moment.recording.clone(),
             frame: moment.frame,

@@ -18,7 +18,7 @@
 use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position};
 use serde::Serialize;
 
-use crate::page::error::PageError;
+use crate::error::ReportError;
 use crate::snapshot::{ForecastSnapshot, Highlight, SnapshotHypothesis, SnapshotPedestrian};
 
 #[derive(Serialize)]
@@ -52,7 +52,7 @@ struct PedestrianData<'a> {
     made_up: Option<CompletionCounts>,
 }
 
-pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, PageError> {
+pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, ReportError> {
     let lines = moments
         .iter()
         .map(|moment| serde_json::to_string(&MomentData::of(moment)));

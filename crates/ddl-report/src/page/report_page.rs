@@ -3,8 +3,8 @@
 use maud::{Markup, PreEscaped, html};
 
 use crate::document::{ContentsEntry, identifier, inline, unused};
+use crate::error::ReportError;
 use crate::figure::drawing::Drawing;
-use crate::page::error::PageError;
 use crate::page::headline_chart::{ChartShape, headline_chart};
 use crate::page::moment_check::{self, Truth};
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
@@ -43,7 +43,7 @@ impl<'a> Page<'a> {
     ///
     /// # Errors
     /// A moment is incomplete, or the epochs of a curve do not ascend; the error names it.
-    pub fn to_html(&self) -> Result<String, PageError> {
+    pub fn to_html(&self) -> Result<String, ReportError> {
         self.check()?;
         let moments = moment_data::to_json(self.moments)?;
         let curves = serde_json::to_string(self.curves)?;
@@ -114,7 +114,7 @@ impl<'a> Page<'a> {
     ///
     /// # Errors
     /// As [`to_html`](Self::to_html).
-    pub fn figures(&self) -> Result<Vec<(String, String)>, PageError> {
+    pub fn figures(&self) -> Result<Vec<(String, String)>, ReportError> {
         self.check()?;
         let mut figures: Vec<(String, Drawing)> = Vec::new();
         if let Some(standing) = standing::standing(self.report) {
@@ -131,7 +131,7 @@ impl<'a> Page<'a> {
         Ok(figures.map(named).collect())
     }
 
-    fn check(&self) -> Result<(), PageError> {
+    fn check(&self) -> Result<(), ReportError> {
         moment_check::check(self.moments, Truth::Whole)?;
         training_section::check(self.curves)
     }

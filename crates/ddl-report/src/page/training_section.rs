@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
+use crate::error::ReportError;
 use crate::figure::drawing::Drawing;
 use crate::figure::scale::Scale;
-use crate::page::error::PageError;
 use crate::training_curve::{EpochPoint, TrainingCurve};
 
 const SIZE: [f64; 2] = [360.0, 230.0];
@@ -159,11 +159,11 @@ fn epoch_ticks(first: usize, last: usize) -> Vec<usize> {
     ticks
 }
 
-pub(super) fn check(curves: &[TrainingCurve]) -> Result<(), PageError> {
+pub(super) fn check(curves: &[TrainingCurve]) -> Result<(), ReportError> {
     for (index, curve) in curves.iter().enumerate() {
         for pair in curve.epochs.windows(2) {
             if pair[1].epoch <= pair[0].epoch {
-                return Err(PageError::Epochs {
+                return Err(ReportError::Epochs {
                     index,
                     fold: curve.fold.clone(),
                     variant: curve.variant.clone(),

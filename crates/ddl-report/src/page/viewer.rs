@@ -2,7 +2,7 @@
 
 use maud::html;
 
-use crate::page::error::PageError;
+use crate::error::ReportError;
 use crate::page::moment_check::{self, Truth};
 use crate::page::moment_data;
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
@@ -26,7 +26,7 @@ impl Viewer<'_> {
     ///
     /// # Errors
     /// A moment is incomplete; the error names it.
-    pub fn to_html(&self) -> Result<String, PageError> {
+    pub fn to_html(&self) -> Result<String, ReportError> {
         moment_check::check(self.moments, Truth::AsSeen)?;
         let moments = moment_data::to_json(self.moments)?;
         let body = html! {

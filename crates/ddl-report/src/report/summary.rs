@@ -28,18 +28,7 @@ const METRICS: [&str; 7] = [
     "AMV m²",
 ];
 
-/// The main numbers of one convention under its headline window rule, without the protocol `published`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Summary {
-    /// minADE/minFDE (m) of each fold, mean over the seeds, then the mean of the folds with the standard deviation over
-    /// the seeds. A row that a second protocol repeats, such as that of a baseline, is given once. The last row is the
-    /// best published system of the convention.
-    pub errors: Table,
-    /// For the same rows, over the measured folds: the mean errors with their 95 % intervals, and further metrics.
-    pub metrics: Table,
-}
-
-pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> {
+pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
     let groups = groups(rows);
     let shown: Vec<&ResultGroup<'_>> = groups
         .iter()
@@ -86,10 +75,9 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<Summary> 
         let cells = cells.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"));
         errors.row(start.into_iter().chain(cells));
     }
-    Some(Summary {
-        errors,
-        metrics: others,
-    })
+    Some(format!(
+        "minADE/minFDE in metres:\n\n{errors:#}\nMean over the folds, with 95 % intervals:\n\n{others:#}"
+    ))
 }
 
 /// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with

@@ -5,7 +5,7 @@ use ddl_eval::significance::BlockErrors;
 use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::{Part, Table};
-use crate::figure::over_time::{OverTime, TimePanel, Values};
+use crate::figure::over_time::{OverTime, TimePanel};
 use crate::report::cells::or_nothing;
 use crate::report::group::{ResultGroup, TableLine, groups};
 
@@ -124,7 +124,6 @@ pub(crate) fn figures(rows: &[ResultRow]) -> Vec<(String, String)> {
                 "without a memory of the recording",
                 "with what was seen in it until then",
             ],
-            values: Values::Metres,
             panels: &panels,
         };
         let name = format!("watching {} {} {}", group.protocol, group.convention, group.window_rule);

@@ -3,10 +3,8 @@
 use ddl_core::{Forecaster, WeightedGoals};
 use ddl_data::{PedestrianId, Position, WINDOW, Window};
 use ddl_eval::baseline::{ConstantVelocity, StraightLine, TrueEndpoint};
-use ddl_report::{
-    FigureError,
-    figure::{self, GoalCase},
-};
+use ddl_report::ReportError;
+use ddl_report::figure::{self, GoalCase};
 
 /// Circles of the legend: 4 observed dots, a true end, 3 goals, and the nearest with its rim.
 const LEGEND_CIRCLES: usize = 4 + 1 + 3 + 2;
@@ -27,10 +25,7 @@ fn case(title: &str, from: Position, step: Position, k: usize, experts: usize) -
     let goals = (1..=k).map(|g| [end[0] + 0.25 * g as f64, end[1]]).collect();
     let goals = WeightedGoals::new(goals, vec![1.0 / k as f64; k]).unwrap();
     let expert = |e: usize| walk(from, [step[0], step[1] + 0.01 * e as f64]);
-    GoalCase::new(title, &track, goals)
-        .unwrap()
-        .with_experts((0..experts).map(expert).collect())
-        .unwrap()
+    GoalCase::new(title, &track, goals, (0..experts).map(expert).collect()).unwrap()
 }
 
 fn count(svg: &str, shape: &str) -> usize {
@@ -71,7 +66,7 @@ fn a_goal_of_four_times_the_weight_has_twice_the_radius() {
     let track = walk([0.0, 0.0], [0.5, 0.0]);
     let places = vec![[9.5, 0.5], [8.0, 1.0], [9.0, -2.0]];
     let goals = WeightedGoals::new(places, vec![0.2, 0.16, 0.64]).unwrap();
-    let case = GoalCase::new("a", &track, goals).unwrap();
+    let case = GoalCase::new("a", &track, goals, Vec::new()).unwrap();
     let svg = figure::goals("", &[case]).unwrap();
     // 24 px for a certain goal: 9.6 and 19.2; the legend has rings of 2.4, 5.4 and 10.7.
     let rings = |class: &str, radius: &str| {
@@ -95,8 +90,7 @@ fn the_place_in_the_world_does_not_matter() {
 fn people_who_stand_and_goals_at_one_place_are_shown() {
     let track = walk([7.0, 7.0], [0.0, 0.0]);
     let goals = WeightedGoals::new(vec![[7.0, 7.0]; 4], vec![1.0, 0.0, 0.0, 0.0]).unwrap();
-    let case = GoalCase::new("stands", &track, goals).unwrap();
-    let case = case.with_experts(vec![track; 3]).unwrap();
+    let case = GoalCase::new("stands", &track, goals, vec![track.clone(); 3]).unwrap();
     let svg = figure::goals("", &[case]).unwrap();
     assert!(svg.contains("nearest goal 0.00 m off"));
     assert_eq!(count(&svg, "<circle"), LEGEND_CIRCLES + PANEL_CIRCLES + 3);
@@ -109,7 +103,9 @@ fn experts_that_lead_far_away_are_cut_and_do_not_shrink_the_pedestrian() {
     let here = [3.5, 0.0];
     let mut stray = vec![here; WINDOW];
     stray[WINDOW - 1] = [7e5, 7e5];
-    let with = sane.clone().with_experts(vec![stray]).unwrap();
+    let goals = [9.75, 10.0, 10.25].map(|x| [x, 0.0]).to_vec();
+    let goals = WeightedGoals::new(goals, vec![1.0 / 3.0; 3]).unwrap();
+    let with = GoalCase::new("a", &walk([0.0, 0.0], [0.5, 0.0]), goals, vec![stray]).unwrap();
     let (svg, bare) = (figure::goals("", &[with]).unwrap(), figure::goals("", &[sane]).unwrap());
     let circles = |svg: &str| -> Vec<String> {
         let lines = svg.lines().filter(|line| line.starts_with("<circle"));
@@ -133,7 +129,7 @@ fn one_to_nine_cases_make_a_picture() {
         .collect();
     for found in [0, 10] {
         let error = figure::goals("", &cases[..found]).unwrap_err();
-        assert!(matches!(error, FigureError::Cases { found: f, most: 9 } if f == found));
+        assert!(matches!(error, ReportError::Cases { found: f, most: 9 } if f == found));
     }
     let mut last = 0;
     for n in 1..=9 {

@@ -41,6 +41,15 @@ fn moment(pedestrians: usize, hypotheses: usize, goals: bool) -> ForecastSnapsho
     ForecastSnapshot::new("fold", "stand-in", &window, &forecast).unwrap()
 }
 
+fn pick(show: HighlightKind, pedestrians: Vec<usize>, rule: &str) -> Highlight {
+    let rule = rule.to_owned();
+    Highlight {
+        show,
+        pedestrians,
+        rule,
+    }
+}
+
 fn report() -> Report {
     let (window, _) = window_and_forecast(3, 1, false);
     let row = |protocol| {
@@ -165,7 +174,7 @@ fn names_cannot_become_markup() {
     let mut bad = moment(2, 2, true);
     bad.recording = hostile.to_owned();
     bad.forecaster = hostile.to_owned();
-    let bad = bad.picked(vec![Highlight::new(HighlightKind::Turning, vec![1], hostile)]);
+    bad.picks = vec![pick(HighlightKind::Turning, vec![1], hostile)];
     let mut trained = curve(&[1, 2]);
     trained.variant = hostile.to_owned();
     let report = report();
@@ -190,12 +199,9 @@ fn names_cannot_become_markup() {
 
 #[test]
 fn figures_are_files_of_their_own() {
-    let pick = |show| Highlight::new(show, vec![0, 1], "by hand");
-    let picked = moment(3, 20, true).picked(vec![
-        pick(HighlightKind::Group),
-        pick(HighlightKind::Group),
-        pick(HighlightKind::Turning),
-    ]);
+    let mut picked = moment(3, 20, true);
+    let kinds = [HighlightKind::Group, HighlightKind::Group, HighlightKind::Turning];
+    picked.picks = kinds.map(|kind| pick(kind, vec![0, 1], "by hand")).to_vec();
     let report = report();
     let page = Page {
         report: &report,
@@ -263,7 +269,7 @@ fn what_is_not_whole_is_refused_by_name() {
             "a pedestrian has no hypothesis",
         ),
         (
-            |m| m.picks = vec![Highlight::new(HighlightKind::Group, vec![0, 2], "")],
+            |m| m.picks = vec![pick(HighlightKind::Group, vec![0, 2], "")],
             "the pick `walking together` names pedestrian 2 of 2, counted from 0",
         ),
     ];

@@ -1,7 +1,7 @@
 //! A picture of the goals of typical pedestrians.
 
 use crate::error::DdlError;
-use crate::evaluation::goals::MeasuredGoals;
+use crate::evaluation::goals::GoalEvaluation;
 use crate::goals::model::GoalModel;
 use ddl_core::{ForecastError, WeightedGoals};
 use ddl_data::Window;
@@ -17,11 +17,11 @@ const EXPERTS: usize = 60;
 ///
 /// # Errors
 /// When these goals cannot be drawn.
-pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<String, DdlError> {
-    let pedestrians: Vec<PicturedPedestrian<'_>> = measured
-        .windows
+pub fn goal_picture(model: &GoalModel, evaluation: &GoalEvaluation) -> Result<String, DdlError> {
+    let pedestrians: Vec<PicturedPedestrian<'_>> = evaluation
+        .measured_windows
         .iter()
-        .zip(&measured.sets)
+        .zip(&evaluation.sets)
         .flat_map(|(window, sets)| {
             (0..)
                 .zip(sets)
@@ -43,7 +43,6 @@ pub fn goal_picture(model: &GoalModel, measured: &MeasuredGoals) -> Result<Strin
         .into_iter()
         .map(|pedestrian| pedestrian.case(model))
         .collect::<Result<Vec<_>, _>>()?;
-    let evaluation = &measured.evaluation;
     let title = format!(
         "Goals of pedestrians with the median error of their kind of motion: fold {}, {}",
         evaluation.fold, evaluation.windows
@@ -99,6 +98,6 @@ impl<'a> PicturedPedestrian<'a> {
         let goals =
             WeightedGoals::new(self.set.goals().to_vec(), self.set.weights().to_vec()).map_err(ForecastError::from)?;
         let track = self.window.track(self.index);
-        Ok(GoalCase::new(title, track, goals)?.with_experts(experts)?)
+        Ok(GoalCase::new(title, track, goals, experts)?)
     }
 }

@@ -31,17 +31,12 @@ pub struct GoalEvaluation {
     pub calibration: Option<Reliability>,
     /// Wall-clock seconds that the estimation took.
     pub seconds: f64,
-}
-
-/// The quality of the goals, with the windows and goals that it was measured on.
-#[derive(Debug, Clone, PartialEq)]
-pub struct MeasuredGoals {
-    /// The quality of the goals.
-    pub evaluation: GoalEvaluation,
-    /// Windows with their futures.
-    pub windows: Vec<Window>,
-    /// The goals, `[window][pedestrian]`.
-    pub sets: Vec<Vec<GoalSet>>,
+    /// Windows with their futures, for [`goal_picture`](crate::goal_picture).
+    #[serde(skip)]
+    pub(crate) measured_windows: Vec<Window>,
+    /// Their goals, `[window][pedestrian]`.
+    #[serde(skip)]
+    pub(crate) sets: Vec<Vec<GoalSet>>,
 }
 
 /// Distances between goals and true endpoints in metres, means over pedestrians.
@@ -88,7 +83,7 @@ pub fn evaluate_goals(
     dataset: &Dataset,
     on: Split,
     memory: Option<Remembering>,
-) -> Result<MeasuredGoals, DdlError> {
+) -> Result<GoalEvaluation, DdlError> {
     let test = TestSet::of_run(model, dataset, on, &[], None)?;
     let rule = test.rules.first().map(|(rule, _)| *rule);
     let mut windows: Vec<Window> = test.headline().cloned().collect();
@@ -126,7 +121,7 @@ pub fn evaluate_goals(
         || format!("all test windows, {rule}"),
         |subset| format!("{subset}, {rule}"),
     );
-    let evaluation = GoalEvaluation {
+    Ok(GoalEvaluation {
         fold: test.fold,
         goals: model.words(),
         windows: words,
@@ -135,10 +130,7 @@ pub fn evaluate_goals(
         calibration: Reliability::of(likelihoods),
         recordings,
         seconds,
-    };
-    Ok(MeasuredGoals {
-        evaluation,
-        windows,
+        measured_windows: windows,
         sets,
     })
 }

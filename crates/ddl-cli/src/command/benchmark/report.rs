@@ -8,7 +8,6 @@ use crate::progress::ProgressMode;
 use crate::telling::tell;
 use anyhow::Context as _;
 use ddl::data::{Convention, Dataset, locate};
-use ddl::report::Summary;
 use ddl::{BaselineRequest, Protocol, Results};
 use std::fs;
 use std::io::ErrorKind;
@@ -35,15 +34,12 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
     let results = Results::of(title, &folders)?;
     results.save(out)?;
     let summary = results.report.summary(settings.convention);
-    save_summary(summary.as_ref(), &out.join(SUMMARY))?;
+    save_summary(summary.as_deref(), &out.join(SUMMARY))?;
     if reporting.telling.json {
         output::print(&(results.report.to_json()? + "\n"))?;
     } else if reporting.telling.progress != ProgressMode::Json {
-        // The main table: the whole report has more than a thousand lines.
-        let text = match &summary {
-            Some(summary) => format!("minADE/minFDE in metres:\n\n{}", summary.errors),
-            None => results.report.to_markdown(),
-        };
+        // The main tables: the whole report has more than a thousand lines.
+        let text = summary.clone().unwrap_or_else(|| results.report.to_markdown());
         output::print(&format!("\n{}\n\n", text.trim_end()))?;
     }
     let main_tables = summary.map(|_| ("main tables", SUMMARY));
@@ -61,13 +57,9 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
 }
 
 /// Writes the main tables; without any, as with the protocol `published` alone, removes those of an earlier report.
-fn save_summary(summary: Option<&Summary>, file: &Path) -> anyhow::Result<()> {
+fn save_summary(summary: Option<&str>, file: &Path) -> anyhow::Result<()> {
     if let Some(summary) = summary {
-        let text = format!(
-            "minADE/minFDE in metres:\n\n{:#}\nMean over the folds, with 95 % intervals:\n\n{:#}",
-            summary.errors, summary.metrics
-        );
-        return output::write_output(Some(file), &text);
+        return output::write_output(Some(file), summary);
     }
     match fs::remove_file(file) {
         Err(error) if error.kind() != ErrorKind::NotFound => {
