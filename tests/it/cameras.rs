@@ -1,9 +1,9 @@
 //! Many cameras in one process: the forecasts of each are the same as if it were alone.
 
-use ddl::data::{Completion, PedestrianId, Position, SceneName, Window};
+use ddl::data::{Completion, LiveTracks, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::memory::SceneMemory;
-use ddl::{DdlError, Forecast, ForecastError, Forecaster, LiveForecaster, LiveScenes, PlaceMemory, Variant};
+use ddl::{DdlError, Forecast, ForecastError, Forecaster, LiveForecaster, LiveScenes, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{bits, drawn_model, program};
@@ -13,7 +13,6 @@ use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt::Write as _;
 use std::io::{BufRead as _, BufReader, Write as _};
 use std::process::Stdio;
-use std::time::Duration;
 
 type Seen = (i64, Vec<(PedestrianId, Position)>);
 
@@ -25,10 +24,10 @@ fn name(scene: &str) -> SceneName {
 type Answers = Vec<(i64, Vec<u64>)>;
 
 fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
-    let mut live = LiveForecaster::new(model).with_completion(Completion::DEFAULT);
+    let mut live = LiveForecaster::with_tracks(model, LiveTracks::new().with_completion(Completion::DEFAULT));
     let answers = frames.iter().filter_map(|(frame, people)| {
         let now = live.push(*frame, people.iter().copied()).unwrap()?;
-        Some((now.frame(), bits::of(&now.forecast)))
+        Some((now.window.frames()[7], bits::of(&now.forecast)))
     });
     answers.collect()
 }
@@ -61,7 +60,7 @@ fn check_interleaved(
 ) -> Result<(), TestCaseError> {
     let names = ["hall", "yard", "gate"].map(name);
     let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
-    let mut scenes = LiveScenes::new().with_completion(Completion::DEFAULT);
+    let mut scenes = LiveScenes::new(LiveTracks::new().with_completion(Completion::DEFAULT));
     let mut latest = scenes.clone().latest_only();
     let mut answers = BTreeMap::<SceneName, Answers>::new();
     let mut answers_of_latest = answers.clone();
@@ -143,7 +142,7 @@ impl Forecaster for Picky {
 
 #[test]
 fn a_failure_of_one_scene_is_its_own() {
-    let mut scenes = LiveScenes::new();
+    let mut scenes = LiveScenes::new(LiveTracks::new());
     for frame in 0..8 {
         for (scene, x) in [("a", 0.0), ("b", 99.0), ("c", 1.0)] {
             let seen = [(PedestrianId(1), [x, 0.0])];
@@ -164,51 +163,23 @@ fn a_failure_of_one_scene_is_its_own() {
 }
 
 #[test]
-fn what_is_kept_is_bounded() {
-    let mut scenes = LiveScenes::new();
-    for scene in 0..LiveScenes::MOST_SCENES {
-        scenes.observe(Some(&name(&scene.to_string())), 0, []).unwrap();
-    }
-    let error = scenes.observe(Some(&name("more")), 0, []).unwrap_err().to_string();
-    assert!(
-        error.contains("more than 2000") && error.contains("10 minutes"),
-        "{error}"
-    );
-    // Scenes without a frame are forgotten at once.
-    let mut scenes = scenes.forgetting_after(Duration::ZERO);
-    scenes.observe(Some(&name("more")), 0, []).unwrap();
-    assert_eq!(scenes.idle(), [name("more")]);
-    let mut scenes = LiveScenes::new();
-    let seen = [(PedestrianId(1), [0.0, 0.0])];
-    let waiting = LiveScenes::MOST_WAITING as i64;
-    for frame in 0..waiting + 7 {
-        scenes.observe(None, frame, seen).unwrap();
-    }
-    let error = scenes.observe(None, waiting + 7, seen).unwrap_err().to_string();
-    assert!(error.contains("10000 frames wait"), "{error}");
-    scenes.next_batch(1);
-    scenes.observe(None, waiting + 7, seen).unwrap();
-}
-
-#[test]
 fn each_scene_remembers_its_place() {
     let model = drawn_model::of(Variant::Full);
-    let memory = || SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
-    let mut scenes = LiveScenes::with_frame_step(FRAME_STEP).unwrap();
+    let tracks = LiveTracks::with_frame_step(FRAME_STEP).unwrap();
+    let mut scenes = LiveScenes::new(tracks.clone());
     for (scene, crowd) in [("hall", "corridor"), ("yard", "plaza")] {
         let name = name(scene);
-        let place = PlaceMemory::new(&model, memory()).unwrap();
-        scenes.remember(Some(&name), place).unwrap();
-        let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
-        let mut live = live.remembering(memory()).unwrap();
+        scenes.remember(Some(&name), &model, None).unwrap();
+        let live = LiveForecaster::with_tracks(&model, tracks.clone());
+        let mut live = live.remembering(None).unwrap();
         let mut windows = Vec::new();
         for (frame, people) in own_tracks::frames(&own_tracks::of_scene(crowd, 0..400)) {
             scenes.observe(Some(&name), frame, people.clone()).unwrap();
             windows.extend(live.push(frame, people).unwrap().map(|now| now.window));
         }
         assert_eq!(scenes.next_batch(usize::MAX).windows, windows);
-        let place = scenes.place(Some(&name)).unwrap();
-        assert_eq!(place.memory(), live.memory().unwrap());
+        let [one, other] = [scenes.place(Some(&name)), live.place()].map(|place| place.unwrap().memory());
+        assert_eq!(one, other);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The memory of a place that `ddl forecast - --memory` keeps in a file, and its summary by `ddl data`.
 
+use ddl::data::LiveTracks;
 use ddl::memory::SceneMemory;
 use ddl::{Ddl, DeviceChoice, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
@@ -59,9 +60,8 @@ fn hypotheses_in(lines: &str) -> Vec<Value> {
 fn a_stream_cut_in_two_continues_with_its_memory() {
     let place = Place::with_model();
     let model = Ddl::load(&place.at("run"), DeviceChoice::Cpu).unwrap();
-    let empty = SceneMemory::new(FRAME_STEP, SceneMemory::DEFAULT_CAPACITY).unwrap();
-    let live = LiveForecaster::with_frame_step(&model, FRAME_STEP).unwrap();
-    let mut live = live.remembering(empty).unwrap();
+    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(FRAME_STEP).unwrap());
+    let mut live = live.remembering(None).unwrap();
     let [first, second] = [rows(0..50), rows(50..90)];
     // An invalid line ends the first part; the memory until then is kept.
     let input = own_tracks::csv(&first) + "500,1,left,2\n";
@@ -71,7 +71,7 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
     assert_eq!(hypotheses_in(&before.stdout), hypotheses_of(&mut live, &first));
     assert_eq!(
         &SceneMemory::read(&place.at("hall.memory")).unwrap(),
-        live.memory().unwrap()
+        live.place().unwrap().memory()
     );
     live.clear();
     let input = own_tracks::csv(&second);
@@ -82,7 +82,7 @@ fn a_stream_cut_in_two_continues_with_its_memory() {
     assert!(after.len() > 20 && after != hypotheses_in(&forgetful));
     assert_eq!(
         &SceneMemory::read(&place.at("hall.memory")).unwrap(),
-        live.memory().unwrap()
+        live.place().unwrap().memory()
     );
     // A frame rate inferred from the first two frames is as good as a given one.
     let learned = "forecast - --model run --threads 1 --whole --format jsonl --memory learned.memory";

@@ -1,7 +1,7 @@
 //! Forecasts frame by frame, and those of `ddl forecast -`, which reads from a tracker, agree with forecasts of the
 //! windows of the whole recording.
 
-use ddl::data::{Observation, PedestrianId, Recording};
+use ddl::data::{LiveTracks, Observation, PedestrianId, Recording};
 use ddl::{DdlError, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json, json_lines};
@@ -11,6 +11,10 @@ use serde_json::Value;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::process::{Child, ChildStdin, ChildStdout, Stdio};
 
+fn tracks() -> LiveTracks {
+    LiveTracks::with_frame_step(own_tracks::FRAME_STEP).unwrap()
+}
+
 #[test]
 fn live_forecasts_agree_with_forecasts_of_windows() {
     let model = drawn_model::of(Variant::Full);
@@ -18,7 +22,7 @@ fn live_forecasts_agree_with_forecasts_of_windows() {
     let rows = own_tracks::three_pedestrians(24).into_iter().filter(there);
     let seen = rows.map(|(frame, id, x, y)| Observation::new(frame, PedestrianId(id), [x, y]));
     let recording = Recording::new("live", own_tracks::FRAME_STEP, seen.collect()).unwrap();
-    let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
+    let mut live = LiveForecaster::with_tracks(&model, tracks());
     let mut certified = live.clone();
     let mut windows = recording.observed_windows().into_iter().peekable();
     let mut forecasts = 0;
@@ -50,7 +54,7 @@ fn an_error_changes_nothing() {
     let frames = own_tracks::frames(&rows);
     let pedestrians = |frame: i64| frames[&frame].clone();
     let model = drawn_model::of(Variant::Full);
-    let mut live = LiveForecaster::with_frame_step(&model, own_tracks::FRAME_STEP).unwrap();
+    let mut live = LiveForecaster::with_tracks(&model, tracks());
     live.push(0, pedestrians(0)).unwrap();
     for frame in (10..90).step_by(10) {
         let before = live.tracks().clone();

@@ -3,7 +3,7 @@
 use ddl::data::Convention;
 use ddl::eval::ResultRow;
 use ddl::report::Report;
-use ddl::{BuiltinModel, Protocol, Variant};
+use ddl::{BuiltinModel, ModelSource, Protocol, Variant};
 use ddl_tests::place::Place;
 use ddl_tests::{crowd, drawn_model, folder_contents, recordings};
 use serde::Deserialize;
@@ -141,7 +141,7 @@ fn every_built_in_model_has_a_reported_result_of_its_seed() {
     let names: Vec<&str> = reported.keys().map(String::as_str).collect();
     assert_eq!(names, BuiltinModel::ALL.map(BuiltinModel::name));
     for model in BuiltinModel::ALL {
-        let (one, config) = (&reported[model.name()], model.config().unwrap());
+        let (one, config) = (&reported[model.name()], ModelSource::Builtin(model).config().unwrap());
         assert_eq!(one.convention, config.data.convention);
         assert_eq!(one.seed, config.training.seed);
         assert!(one.min_ade > 0.0 && one.min_ade < one.min_fde && !one.commit.is_empty());

@@ -1,6 +1,6 @@
 //! Adaptive regions: of the program on a real recording, and frame by frame.
 
-use ddl::data::{Convention, Dataset, PedestrianId, Recording};
+use ddl::data::{Convention, Dataset, LiveTracks, PedestrianId, Recording};
 use ddl::{AdaptiveRegions, DdlError, Forecaster as _, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, Row};
 use ddl_tests::place::{Place, json_lines};
@@ -93,7 +93,7 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
     let step = own_tracks::FRAME_STEP;
     let frames = own_tracks::frames(&rows);
     let pedestrians = |frame: i64| frames[&frame].clone();
-    let live = LiveForecaster::with_frame_step(&model, step).unwrap();
+    let live = LiveForecaster::with_tracks(&model, LiveTracks::with_frame_step(step).unwrap());
     let mut plain = live.clone();
     let mut adapting = live.with_adaptive_regions(AdaptiveRegions::default());
     let mut certified = adapting.clone();

@@ -72,7 +72,7 @@ impl Units {
     }
 
     pub(crate) fn are_given(&self) -> bool {
-        self.rate().have_rate() || self.homography.is_some()
+        has_rate(&self.rate()) || self.homography.is_some()
     }
 
     pub(crate) fn as_options(&self) -> String {
@@ -101,14 +101,14 @@ impl Units {
         let notes = self.note_of_rate(&recording).into_iter();
         let mut notes: Vec<String> = notes.chain(self.note_of_run(stated_frame_time.is_none())).collect();
         let rate = match stated_frame_time {
-            _ if self.rate().have_rate() => self.rate(),
+            _ if has_rate(&self.rate()) => self.rate(),
             Some(frame_time) => TrackUnits {
                 dt: Some(frame_time),
                 ..TrackUnits::default()
             },
             None => self.remembered,
         };
-        let Some(frame_time) = rate.frame_time() else {
+        let Some(frame_time) = frame_time(&rate) else {
             let recording = match rate.frame_step {
                 None => recording,
                 Some(step) => recording.with_frame_step(step)?,
@@ -116,7 +116,7 @@ impl Units {
             return Ok(ReadRecording {
                 recording,
                 clock: Clock::WHOLE,
-                guessed: !rate.have_rate(),
+                guessed: !has_rate(&rate),
                 notes,
             });
         };
@@ -146,8 +146,8 @@ impl Units {
         let apart = recording.frame_step();
         let of_step = |step: i64| TIME_STEP / step as f64;
         let given = self.rate();
-        let otherwise = if given.have_rate() { given } else { self.remembered };
-        let otherwise = otherwise.frame_time().or(otherwise.frame_step.map(of_step));
+        let otherwise = if has_rate(&given) { given } else { self.remembered };
+        let otherwise = frame_time(&otherwise).or(otherwise.frame_step.map(of_step));
         let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
         let scenes =
             format!("the file's scenes give {rate} frames per second, and its frame numbers increase by {apart}");
@@ -161,7 +161,7 @@ impl Units {
 
     /// A note about units taken from the run; `rate`: whether no file gives its rate.
     pub(crate) fn note_of_run(&self, rate: bool) -> Option<String> {
-        let rate = if rate && !self.rate().have_rate() {
+        let rate = if rate && !has_rate(&self.rate()) {
             rate_option(&self.remembered)
         } else {
             None
@@ -228,6 +228,15 @@ impl Units {
     }
 }
 
+/// Seconds between consecutive frame numbers, if `fps` or `dt` is given.
+fn frame_time(units: &TrackUnits) -> Option<f64> {
+    units.dt.or(units.fps.map(|fps| 1.0 / fps))
+}
+
+fn has_rate(units: &TrackUnits) -> bool {
+    frame_time(units).is_some() || units.frame_step.is_some()
+}
+
 fn rate_option(rate: &TrackUnits) -> Option<String> {
     let fps = rate.fps.map(|fps| format!("--fps {fps}"));
     let dt = rate.dt.map(|dt| format!("--dt {dt}"));
@@ -236,7 +245,7 @@ fn rate_option(rate: &TrackUnits) -> Option<String> {
 }
 
 fn live_step_of(rate: &TrackUnits) -> anyhow::Result<Option<i64>> {
-    match rate.frame_time() {
+    match frame_time(rate) {
         None => Ok(rate.frame_step),
         Some(frame_time) => live_step(frame_time).map(Some),
     }

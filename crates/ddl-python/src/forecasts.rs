@@ -4,7 +4,7 @@ use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::of_any;
 use crate::observed::Observed;
 use ddl::data::{HORIZON, OBSERVED, PedestrianId, PedestrianName, Window};
-use ddl::{Calibration, CertifiedForecast, Forecast, RegionTable};
+use ddl::{CertifiedForecast, Forecast, RegionTable};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -113,7 +113,7 @@ fn spread_and_regions(
     });
     let table = match forecast {
         Some(forecast) => forecast.regions(),
-        None => empty.regions.then(|| &Calibration::fitted().regions),
+        None => empty.regions.then(ddl::region_table),
     };
     let spread = match table {
         Some(_) => Some(array(py, spread.collect(), [rows.len(), HORIZON])?),

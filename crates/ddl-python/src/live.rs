@@ -6,8 +6,7 @@ use crate::forecasts::{PlainOrCertified, named_parts};
 use crate::interruptible::{run_live, wait_for};
 use crate::model::Model;
 use crate::observed::completion;
-use ddl::data::{PedestrianId, Position, Window, whole_frame_step};
-use ddl::memory::SceneMemory;
+use ddl::data::{LiveTracks, PedestrianId, Position, Window, whole_frame_step};
 use ddl::{AdaptiveRegions, Ddl, DdlError, LiveForecaster, MemoryFile};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -54,9 +53,8 @@ impl WatchedPlace {
 
     /// Writes the memory; on success, closes its file.
     fn close(&mut self) -> Result<Option<String>, DdlError> {
-        self.live.finish_test();
         let warning = match (&mut self.file, self.live.place()) {
-            (Some(file), Some(place)) => file.end(place)?,
+            (Some(file), Some(place)) => file.end(place.clone())?,
             _ => None,
         };
         self.file = None;
@@ -112,19 +110,14 @@ impl Live {
              5, 10, 12.5 or 25; live tracks are not resampled"
             ))
         })?;
-        let live = LiveForecaster::with_frame_step(Arc::clone(&model.0), step).map_err(raised)?;
-        let mut live = live
-            .with_completion(completion(whole))
-            .with_adaptive_regions(AdaptiveRegions::default());
+        let tracks = LiveTracks::with_frame_step(step).map_err(|error| raised(DdlError::from(error)))?;
+        let tracks = tracks.with_completion(completion(whole));
+        let live = LiveForecaster::with_tracks(Arc::clone(&model.0), tracks);
+        let mut live = live.with_adaptive_regions(AdaptiveRegions::default());
         let mut file = None;
         if let Some(path) = memory {
             let (opened, read) = MemoryFile::open(&path).map_err(raised)?;
-            let memory = match read {
-                Some(memory) => memory,
-                None => SceneMemory::new(step, SceneMemory::DEFAULT_CAPACITY)
-                    .map_err(|error| raised(DdlError::from(error)))?,
-            };
-            live = live.remembering(memory).map_err(raised)?;
+            live = live.remembering(read).map_err(raised)?;
             file = Some(opened);
         }
         let watching = WatchedPlace {
@@ -177,15 +170,15 @@ impl Live {
     /// Number of remembered segments; 0 without a memory.
     fn remembered(&self, py: Python<'_>) -> PyResult<usize> {
         let mut turn = Turn::take(py, &self.0)?;
-        let memory = turn.watching().and_then(|watching| watching.live.memory());
-        Ok(memory.map_or(0, SceneMemory::segments))
+        let place = turn.watching().and_then(|watching| watching.live.place());
+        Ok(place.map_or(0, |place| place.memory().segments()))
     }
 
     /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
         let mut turn = Turn::take(py, &self.0)?;
         let refused = turn.watching().and_then(|watching| watching.live.place()?.refused());
-        Ok(refused.map(ToString::to_string))
+        Ok(refused.map(str::to_owned))
     }
 
     /// Writes the memory and closes its file; returns a warning, if any.

@@ -58,7 +58,7 @@ pub use goals::model::GoalModel;
 pub use goals::remembering::Remembering;
 pub use live::forecaster::{LiveForecast, LiveForecaster};
 pub use live::memory_file::MemoryFile;
-pub use live::place_memory::{MemoryMismatch, PlaceMemory};
+pub use live::place_memory::PlaceMemory;
 pub use live::scenes::{LiveScenes, SceneBatch, SceneForecast};
 pub use model::ddl::Ddl;
 pub use run::builtin_model::BuiltinModel;
@@ -71,7 +71,7 @@ pub use run::starting_model::{InitialModel, fine_tuning_config, fine_tuning_goal
 pub use run::track_units::TrackUnits;
 pub use run::training_data::fold_by_name;
 pub use run::validation_part::ValidationPart;
-pub use trust::calibration::Calibration;
+pub use trust::calibration::region_table;
 pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
 #[cfg(any(feature = "report", feature = "torch"))]

@@ -6,14 +6,14 @@ use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
 use ddl_core::{AdaptiveRegions, Forecast, ForecastError, Forecaster};
-use ddl_data::{Completion, LiveTracks, OBSERVED, PedestrianId, Position, Window};
+use ddl_data::{LiveTracks, PedestrianId, Position, Window};
 use ddl_memory::SceneMemory;
 use std::borrow::Borrow;
 
 /// A forecaster for a live stream of frames, 0.4 s apart or faster, that keeps the observed tracks itself.
 ///
 /// Every [`push`](Self::push) forecasts all pedestrians that have been observed at 8 consecutive time steps, or as a
-/// [`Completion`] allows. The forecast has the bits of [`Forecaster::forecast`] on the window that
+/// [`Completion`](ddl_data::Completion) allows. The forecast has the bits of [`Forecaster::forecast`] on the window that
 /// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With a memory,
 /// this window also holds the recalled tracks. Adaptive regions are the only other difference. For gaps, see
 /// [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`, one model serves several
@@ -41,7 +41,7 @@ use std::borrow::Borrow;
 /// }
 /// let now = live.push(7, [(PedestrianId(1), [3.5, 0.0]), (PedestrianId(2), [9.0, 0.0])])?;
 /// let now = now.expect("pedestrian 1 has 8 frames");
-/// assert_eq!((now.frame(), now.window.pedestrians()), (7, &[PedestrianId(1)][..]));
+/// assert_eq!((now.window.frames()[7], now.window.pedestrians()), (7, &[PedestrianId(1)][..]));
 /// assert!(now.forecast.hypothesis(0, 0)[11][0] > 3.5, "it goes on");
 /// # Ok::<(), ddl::DdlError>(())
 /// ```
@@ -62,43 +62,22 @@ pub struct LiveForecast<F = Forecast> {
     pub forecast: F,
 }
 
-impl<F> LiveForecast<F> {
-    /// The last observed frame, from which the forecast starts.
-    pub fn frame(&self) -> i64 {
-        self.window.frames()[OBSERVED - 1]
-    }
-}
-
 impl<M> LiveForecaster<M> {
     /// A forecaster without tracks; frame numbers are time steps, 0.4 s apart.
     #[must_use]
     pub fn new(model: M) -> Self {
+        Self::with_tracks(model, LiveTracks::new())
+    }
+
+    /// A forecaster with these tracks, which may have another number of raw frames per step, or fill in incomplete
+    /// observations. [`Window::completion_counts`] counts the filled-in positions.
+    #[must_use]
+    pub fn with_tracks(model: M, tracks: LiveTracks) -> Self {
         Self {
             model,
-            watch: Watch::new(LiveTracks::new()),
+            watch: Watch::new(tracks),
             regions: None,
         }
-    }
-
-    /// A forecaster without tracks, with another number of raw frames per step of 0.4 s, such as 10 for a camera at 25
-    /// frames per second.
-    ///
-    /// # Errors
-    /// [`DdlError::Live`] if the step is outside 1..=2^31.
-    pub fn with_frame_step(model: M, frame_step: i64) -> Result<Self, DdlError> {
-        let tracks = LiveTracks::with_frame_step(frame_step)?;
-        Ok(Self {
-            watch: Watch::new(tracks),
-            ..Self::new(model)
-        })
-    }
-
-    /// Fills in incomplete observations as the completion allows. [`Window::completion_counts`] counts the filled-in
-    /// positions.
-    #[must_use]
-    pub fn with_completion(mut self, completion: Completion) -> Self {
-        self.watch.tracks = self.watch.tracks.with_completion(completion);
-        self
     }
 
     /// Adapts the regions to the observations of this place, so that they keep their coverage; see [`AdaptiveRegions`].
@@ -117,11 +96,6 @@ impl<M> LiveForecaster<M> {
         self.regions.as_ref()
     }
 
-    /// The model.
-    pub fn model(&self) -> &M {
-        &self.model
-    }
-
     /// Forgets all tracks and the last frame, as when a tracker restarts: any frame may follow. The memory of the place
     /// and the adapted regions are kept.
     pub fn clear(&mut self) {
@@ -131,23 +105,10 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// The memory of the place, to be [saved](SceneMemory::write); `None` unless
+    /// The memory of the place, for its [memory file](crate::MemoryFile); `None` unless
     /// [requested](LiveForecaster::remembering).
-    pub fn memory(&self) -> Option<&SceneMemory> {
-        self.place().map(PlaceMemory::memory)
-    }
-
-    /// The memory of the place, for its [memory file](crate::MemoryFile).
     pub fn place(&self) -> Option<&PlaceMemory> {
         self.watch.place.as_ref()
-    }
-
-    /// Decides from the pedestrians so far whether the given memory is of this place. Call it at the end of the stream
-    /// ([`PlaceMemory::finish_test`]).
-    pub fn finish_test(&mut self) {
-        if let Some(place) = &mut self.watch.place {
-            place.finish_test();
-        }
     }
 
     /// The tracks of the frames so far.
@@ -198,7 +159,7 @@ impl<M: Forecaster> LiveForecaster<M> {
 }
 
 impl<M: Borrow<Ddl>> LiveForecaster<M> {
-    /// Adds a memory of the place: [`SceneMemory::new`], or one from a file ([`SceneMemory::read`]). The paths of
+    /// Adds a memory of the place: one from a file ([`SceneMemory::read`]), or an empty one. The paths of
     /// earlier pedestrians then influence the forecasts, and the memory grows with every frame.
     ///
     /// A forecast uses observations before its frame. A memory of at least 500 segments is tested on the first
@@ -206,9 +167,8 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     ///
     /// # Errors
     /// When the model has no memory branch, or the memory has another number of raw frames per step.
-    pub fn remembering(mut self, memory: SceneMemory) -> Result<Self, DdlError> {
-        let place = PlaceMemory::new(self.model.borrow(), memory)?;
-        self.watch.remember(place)?;
+    pub fn remembering(mut self, memory: Option<SceneMemory>) -> Result<Self, DdlError> {
+        self.watch.remember(self.model.borrow(), memory)?;
         Ok(self)
     }
 

@@ -72,13 +72,14 @@ impl MemoryFile {
         Ok(())
     }
 
-    /// Writes the memory at the end of a session, after its [test](PlaceMemory::finish_test). Returns the reason if
-    /// the file is left unchanged.
+    /// Ends the test of the memory at the end of a session, and writes it. Returns the reason if the file is left
+    /// unchanged.
     ///
     /// # Errors
     /// As [`write`](Self::write).
-    pub fn end(&mut self, place: &PlaceMemory) -> Result<Option<String>, DdlError> {
-        self.write(place)?;
+    pub fn end(&mut self, mut place: PlaceMemory) -> Result<Option<String>, DdlError> {
+        place.finish_test();
+        self.write(&place)?;
         let path = self.path.display();
         if let Some(other) = place.refused() {
             return Ok(Some(format!(

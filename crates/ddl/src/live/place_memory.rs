@@ -5,7 +5,6 @@ use crate::model::ddl::Ddl;
 use ddl_data::{OBSERVED, PedestrianId, Position, Window};
 use ddl_memory::SceneMemory;
 use std::collections::BTreeSet;
-use std::fmt;
 
 /// Two motions are similar if their squared distance is below this, which corresponds to 2 m.
 const ALIKE: f64 = 4.0;
@@ -19,8 +18,7 @@ const LEAST_SHARE: f64 = 0.15;
 /// lack a similar track with a probability of 1.4 %.
 const FEWEST_TRIED: usize = 13;
 
-/// The memory of an observed place, and the test that the memory belongs to it. It is the part of a
-/// [`LiveForecaster`](crate::LiveForecaster) for programs that keep tracks themselves.
+/// The memory of an observed place, and the test that the memory belongs to it.
 ///
 /// A memory of at least 500 segments is tested on the first pedestrians. If it is of another place, it is
 /// [refused](Self::refused), and an empty one replaces it.
@@ -30,7 +28,8 @@ pub struct PlaceMemory {
     /// Earlier pedestrians recalled for each pedestrian.
     count: usize,
     trial: Option<Trial>,
-    refused: Option<MemoryMismatch>,
+    /// Why the given memory is no longer used.
+    refused: Option<String>,
 }
 
 /// The given memory, unchanged, until it is confirmed to be of this place.
@@ -41,36 +40,15 @@ struct Trial {
     alike: usize,
 }
 
-/// The given memory is of another place than the observed one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct MemoryMismatch {
-    /// Number of pedestrians that it was tested on.
-    pub tried: usize,
-    /// Number of these that moved like an earlier pedestrian in the memory.
-    pub alike: usize,
-}
-
 /// A memory with fewer segments is not tested: it may be of any place.
 const MIN_SEGMENTS: usize = 500;
-
-impl fmt::Display for MemoryMismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { tried, alike } = self;
-        write!(
-            f,
-            "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved like \
-             an earlier pedestrian in the memory"
-        )
-    }
-}
 
 impl PlaceMemory {
     /// Starts with an empty memory or one from a file; tracks that were running in it have ended.
     ///
     /// # Errors
     /// When the model has no memory branch.
-    pub fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
+    pub(crate) fn new(model: &Ddl, mut memory: SceneMemory) -> Result<Self, DdlError> {
         let count = model.goal_model().recalled_per_pedestrian()?;
         memory.end_tracks();
         let is_tested = memory.segments() >= MIN_SEGMENTS;
@@ -93,18 +71,18 @@ impl PlaceMemory {
     }
 
     /// The reason why the given memory is no longer used; `None` while it is.
-    pub fn refused(&self) -> Option<&MemoryMismatch> {
-        self.refused.as_ref()
+    pub fn refused(&self) -> Option<&str> {
+        self.refused.as_deref()
     }
 
     /// The number of pedestrians that the given memory was tested on so far; `None` once the test is decided.
-    pub fn under_test(&self) -> Option<usize> {
+    pub(crate) fn under_test(&self) -> Option<usize> {
         self.trial.as_ref().map(|trial| trial.tried.len())
     }
 
     /// Ends the test of the memory; call it when no more pedestrians will follow. If there were too few to refuse the
     /// memory, and none of them moved like an earlier one, the test stays [undecided](Self::under_test).
-    pub fn finish_test(&mut self) {
+    pub(crate) fn finish_test(&mut self) {
         if let Some(trial) = &self.trial {
             let tried = trial.tried.len();
             if trial.alike as f64 >= LEAST_SHARE * tried.max(1) as f64 {
@@ -130,7 +108,7 @@ impl PlaceMemory {
     ///
     /// # Errors
     /// As [`SceneMemory::observe`]. The state is then unchanged.
-    pub fn observe(
+    pub(crate) fn observe(
         &mut self,
         frame: i64,
         pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
@@ -151,7 +129,10 @@ impl PlaceMemory {
     fn refuse(&mut self) {
         if let Some(trial) = self.trial.take() {
             let (tried, alike) = (trial.tried.len(), trial.alike);
-            self.refused = Some(MemoryMismatch { tried, alike });
+            self.refused = Some(format!(
+                "the memory is of another place, or the camera was moved: only {alike} of {tried} pedestrians moved \
+                 like an earlier pedestrian in the memory"
+            ));
             self.memory = trial.given.empty_copy();
         }
     }
@@ -172,5 +153,49 @@ impl Trial {
                 .unwrap_or(false);
             self.alike += usize::from(is_alike);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::builtin_model::BuiltinModel;
+    use ddl_data::{Dataset, LiveTracks};
+    use ddl_network::DeviceChoice;
+
+    /// A few pedestrians without similar trajectories do not show that the memory belongs to another place.
+    #[test]
+    fn few_pedestrians_do_not_refuse_a_memory_and_some_alike_accept_it_early() {
+        let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu).unwrap();
+        let dataset = Dataset::simulated(1);
+        let corridor = dataset.recording("corridor").unwrap();
+        let seen = |frame: i64, by: f64| -> Vec<(PedestrianId, Position)> {
+            let here = corridor.at(frame).iter();
+            here.map(|seen| (seen.pedestrian, seen.position.map(|x| x + by)))
+                .collect()
+        };
+        let mut memory = SceneMemory::new(corridor.frame_step(), SceneMemory::DEFAULT_CAPACITY).unwrap();
+        for &frame in &corridor.frames()[..300] {
+            memory.observe(frame, seen(frame, 0.0)).unwrap();
+        }
+        let tried = |by: f64, steps: usize| {
+            let mut place = PlaceMemory::new(&model, memory.clone()).unwrap();
+            let mut tracks = LiveTracks::with_frame_step(corridor.frame_step()).unwrap();
+            for &frame in &corridor.frames()[..steps] {
+                tracks = tracks.after(frame, seen(frame, by)).unwrap();
+                place.observe(frame, seen(frame, by), tracks.window().as_ref()).unwrap();
+            }
+            place
+        };
+        let mut elsewhere = tried(500.0, 9);
+        let few = elsewhere.under_test().unwrap();
+        assert!((1..13).contains(&few), "{few}");
+        elsewhere.finish_test();
+        assert_eq!(elsewhere.under_test(), Some(few));
+        assert_eq!(elsewhere.refused(), None);
+        // In its own place it is accepted before 30 pedestrians were seen.
+        let accepted = (9..120).find(|&steps| tried(0.0, steps).under_test().is_none());
+        let seen = tried(500.0, accepted.unwrap()).under_test();
+        assert!(seen.is_some_and(|seen| (5..30).contains(&seen)), "{seen:?}");
     }
 }

@@ -34,7 +34,7 @@ impl RecordingPlayer<'_> {
     /// `warning` describes a fault of it, and `frame` converts a frame number of the recording to one of its file.
     ///
     /// # Errors
-    /// [`DdlError::Evaluation`] or [`DdlError::Page`] if a forecast does not fit its window, or if there are none.
+    /// [`DdlError::Evaluation`] or [`DdlError::Report`] if a forecast does not fit its window, or if there are none.
     pub fn to_html(
         &self,
         forecasts: &[&Forecast],

@@ -3,8 +3,10 @@
 use crate::error::DdlError;
 use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
+use crate::model::ddl::Ddl;
 use ddl_core::{Forecast, ForecastError, Forecaster};
-use ddl_data::{Completion, Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
+use ddl_data::{Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
+use ddl_memory::SceneMemory;
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
 
@@ -16,23 +18,23 @@ use std::time::{Duration, Instant};
 /// [`LiveForecaster`](crate::LiveForecaster) for this scene alone: it does not depend on the batch or on other scenes.
 ///
 /// # Overload
-/// At most [`MOST_WAITING`](Self::MOST_WAITING) windows wait; then frames are refused until some windows are forecast.
+/// At most 10,000 windows wait; then frames are refused until some windows are forecast.
 /// With [`latest_only`](Self::latest_only) at most one window of each scene waits: the window of a later frame replaces
 /// it in the queue, and the replaced windows are [counted](Self::dropped). Tracks and memory still use every frame.
 ///
 /// # What is kept
-/// It keeps the state of a `LiveForecaster` for each scene, for at most [`MOST_SCENES`](Self::MOST_SCENES) scenes. A
+/// It keeps the state of a `LiveForecaster` for each scene, for at most 2,000 scenes. A
 /// scene without a frame for 10 minutes is forgotten when another scene begins. For adaptive regions the caller keeps
 /// one [`AdaptiveRegions`](ddl_core::AdaptiveRegions) per scene.
 ///
 /// # Examples
 /// ```
-/// use ddl::data::{PedestrianId, SceneName};
+/// use ddl::data::{LiveTracks, PedestrianId, SceneName};
 /// use ddl::{BuiltinModel, Ddl, DeviceChoice, LiveScenes};
 ///
 /// let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
 /// let [hall, yard] = ["hall", "yard"].map(|name| SceneName::new(name).expect("a short name"));
-/// let mut scenes = LiveScenes::new();
+/// let mut scenes = LiveScenes::new(LiveTracks::new());
 /// for frame in 0..8 {
 ///     let x = 0.5 * frame as f64;
 ///     scenes.observe(Some(&hall), frame, [(PedestrianId(1), [x, 0.0])])?;
@@ -88,45 +90,23 @@ pub struct SceneForecast {
 impl LiveScenes {
     /// Largest number of scenes. It is twice that of a [`FrameReader`](ddl_data::FrameReader), so that there is room
     /// for new scenes beside those that the reader has just forgotten.
-    pub const MOST_SCENES: usize = 2_000;
+    pub(crate) const MOST_SCENES: usize = 2_000;
     /// Largest number of waiting windows.
-    pub const MOST_WAITING: usize = 10_000;
+    pub(crate) const MOST_WAITING: usize = 10_000;
     /// Number of pedestrians in a batch with a short latency: several cameras with a dozen pedestrians each, or one
     /// crowd.
     pub const BATCH: usize = 50;
 
-    /// Starts without scenes; consecutive frame numbers are one step of 0.4 s apart.
+    /// Starts without scenes; each begins with these tracks, which are empty.
     #[must_use]
-    pub fn new() -> Self {
-        Self::of(LiveTracks::new())
-    }
-
-    /// Starts without scenes, with another number of raw frames per step of 0.4 s, such as 10 for cameras at 25 frames
-    /// per second.
-    ///
-    /// # Errors
-    /// [`DdlError::Live`] if the step is outside 1..=2^31.
-    pub fn with_frame_step(frame_step: i64) -> Result<Self, DdlError> {
-        Ok(Self::of(LiveTracks::with_frame_step(frame_step)?))
-    }
-
-    fn of(unseen: LiveTracks) -> Self {
+    pub fn new(tracks: LiveTracks) -> Self {
         Self {
-            unseen,
+            unseen: tracks,
             scenes: BTreeMap::new(),
             waiting: VecDeque::new(),
             is_latest_only: false,
             dropped: 0,
             idle_timeout: IDLE_TIMEOUT,
-        }
-    }
-
-    /// Fills in incomplete observations as the completion allows.
-    #[must_use]
-    pub fn with_completion(self, completion: Completion) -> Self {
-        Self {
-            unseen: self.unseen.with_completion(completion),
-            ..self
         }
     }
 
@@ -137,17 +117,6 @@ impl LiveScenes {
             is_latest_only: true,
             ..self
         }
-    }
-
-    /// Sets another time without a frame after which a scene is forgotten.
-    #[must_use]
-    pub fn forgetting_after(self, idle_timeout: Duration) -> Self {
-        Self { idle_timeout, ..self }
-    }
-
-    /// Raw frames in one step of 0.4 s.
-    pub fn frame_step(&self) -> i64 {
-        self.unseen.frame_step()
     }
 
     /// Adds a frame of a scene, with the positions (m) of all pedestrians in any order. `None` is the scene of a stream
@@ -237,25 +206,23 @@ impl LiveScenes {
         Ok(self.scenes.entry(name.clone()).or_insert_with(unseen))
     }
 
-    /// Gives a scene the memory of its place: forecasts read it, and it grows with every frame.
+    /// Gives a scene the memory of its place, or an empty one: forecasts read it, and it grows with every frame.
     ///
     /// # Errors
-    /// When the memory has another number of raw frames per step; [`DdlError::TooManyScenes`] beyond that limit.
-    pub fn remember(&mut self, scene: Option<&SceneName>, place: PlaceMemory) -> Result<(), DdlError> {
-        self.scene(&scene.cloned())?.watch.remember(place)
+    /// As [`LiveForecaster::remembering`](crate::LiveForecaster::remembering); [`DdlError::TooManyScenes`] beyond that
+    /// limit.
+    pub fn remember(
+        &mut self,
+        scene: Option<&SceneName>,
+        model: &Ddl,
+        memory: Option<SceneMemory>,
+    ) -> Result<(), DdlError> {
+        self.scene(&scene.cloned())?.watch.remember(model, memory)
     }
 
     /// The place of a scene, if it [has a memory](Self::remember).
     pub fn place(&self, scene: Option<&SceneName>) -> Option<&PlaceMemory> {
         self.scenes.get(&scene.cloned())?.watch.place.as_ref()
-    }
-
-    /// Decides whether the memory of a scene is of its place ([`PlaceMemory::finish_test`]).
-    pub fn finish_test(&mut self, scene: Option<&SceneName>) {
-        let scene = self.scenes.get_mut(&scene.cloned());
-        if let Some(place) = scene.and_then(|scene| scene.watch.place.as_mut()) {
-            place.finish_test();
-        }
     }
 
     /// Forgets a scene, and returns its place with the memory. Its waiting windows stay in the queue.
@@ -333,8 +300,35 @@ impl LiveScenes {
     }
 }
 
-impl Default for LiveScenes {
-    fn default() -> Self {
-        Self::new()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_is_bounded() {
+        let name = |scene: &str| SceneName::new(scene).unwrap();
+        let mut scenes = LiveScenes::new(LiveTracks::new());
+        for scene in 0..LiveScenes::MOST_SCENES {
+            scenes.observe(Some(&name(&scene.to_string())), 0, []).unwrap();
+        }
+        let error = scenes.observe(Some(&name("more")), 0, []).unwrap_err().to_string();
+        assert!(
+            error.contains("more than 2000") && error.contains("10 minutes"),
+            "{error}"
+        );
+        // Scenes without a frame are forgotten at once.
+        scenes.idle_timeout = Duration::ZERO;
+        scenes.observe(Some(&name("more")), 0, []).unwrap();
+        assert_eq!(scenes.idle(), [name("more")]);
+        let mut scenes = LiveScenes::new(LiveTracks::new());
+        let seen = [(PedestrianId(1), [0.0, 0.0])];
+        let waiting = LiveScenes::MOST_WAITING as i64;
+        for frame in 0..waiting + 7 {
+            scenes.observe(None, frame, seen).unwrap();
+        }
+        let error = scenes.observe(None, waiting + 7, seen).unwrap_err().to_string();
+        assert!(error.contains("10000 frames wait"), "{error}");
+        scenes.next_batch(1);
+        scenes.observe(None, waiting + 7, seen).unwrap();
     }
 }

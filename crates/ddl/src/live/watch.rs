@@ -2,7 +2,9 @@
 
 use crate::error::DdlError;
 use crate::live::place_memory::PlaceMemory;
+use crate::model::ddl::Ddl;
 use ddl_data::{LiveTracks, PedestrianId, Position, Window};
+use ddl_memory::SceneMemory;
 
 /// The state that a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes)
 /// of each scene.
@@ -18,16 +20,21 @@ impl Watch {
         Self { tracks, place }
     }
 
-    /// Uses this memory of the place from now on.
+    /// Uses this memory of the place from now on, or an empty one.
     ///
     /// # Errors
-    /// When it has another number of raw frames per step.
-    pub(crate) fn remember(&mut self, place: PlaceMemory) -> Result<(), DdlError> {
-        let (camera, memory) = (self.tracks.frame_step(), place.memory().frame_step());
-        if camera != memory {
+    /// When the model has no memory branch, or the memory has another number of raw frames per step.
+    pub(crate) fn remember(&mut self, model: &Ddl, memory: Option<SceneMemory>) -> Result<(), DdlError> {
+        let camera = self.tracks.frame_step();
+        let memory = match memory {
+            Some(memory) => memory,
+            None => SceneMemory::new(camera, SceneMemory::DEFAULT_CAPACITY)?,
+        };
+        if memory.frame_step() != camera {
+            let memory = memory.frame_step();
             return Err(DdlError::MemoryFrameStep { camera, memory });
         }
-        self.place = Some(place);
+        self.place = Some(PlaceMemory::new(model, memory)?);
         Ok(())
     }
 

@@ -135,14 +135,6 @@ impl ModelSource {
 }
 
 impl BuiltinModel {
-    /// The configuration of the model.
-    ///
-    /// # Errors
-    /// None if the program was built from matching files, which a test ensures.
-    pub fn config(self) -> Result<RunConfig, DdlError> {
-        ModelSource::Builtin(self).config()
-    }
-
     /// Familiarity of the observed motions of these windows, as
     /// [`GoalModel::familiarity`](crate::GoalModel::familiarity) but without loading the networks. One list for each
     /// window, one value for each pedestrian.
@@ -170,7 +162,7 @@ mod tests {
     #[test]
     fn each_model_is_of_its_fold_small_and_without_tracks() {
         for model in BuiltinModel::ALL {
-            let config = model.config().unwrap();
+            let config = ModelSource::Builtin(model).config().unwrap();
             assert_eq!(config.data.fold, model.name());
             assert_eq!(config.data.convention, Convention::Star);
             assert_eq!(config.star.variant, Variant::Full);
@@ -189,7 +181,7 @@ mod tests {
 
     #[test]
     fn the_default_has_seen_the_most_pedestrians() {
-        let seen = |model: &BuiltinModel| model.config().unwrap().data.pedestrians;
+        let seen = |model: &BuiltinModel| ModelSource::Builtin(*model).config().unwrap().data.pedestrians;
         let most = BuiltinModel::ALL.into_iter().max_by_key(seen);
         assert_eq!(most, Some(BuiltinModel::default()));
     }

@@ -153,10 +153,11 @@ pub struct TrainingData {
 #[cfg(test)]
 mod tests {
     use crate::run::builtin_model::BuiltinModel;
+    use crate::run::model_source::ModelSource;
 
     #[test]
     fn the_origin_holds_the_settings_that_determine_the_numbers() {
-        let first = BuiltinModel::default().config().unwrap();
+        let first = ModelSource::Builtin(BuiltinModel::default()).config().unwrap();
         let mut other = first.clone();
         other.commit = "another".to_owned();
         assert_eq!(first.origin().difference(&other.origin()), None);

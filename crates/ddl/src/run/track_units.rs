@@ -21,17 +21,3 @@ pub struct TrackUnits {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub homography: Option<Homography>,
 }
-
-impl TrackUnits {
-    /// Seconds between consecutive frame numbers, if `fps` or `dt` is given.
-    #[must_use]
-    pub fn frame_time(&self) -> Option<f64> {
-        self.dt.or(self.fps.map(|fps| 1.0 / fps))
-    }
-
-    /// Whether a frame rate is given.
-    #[must_use]
-    pub fn have_rate(&self) -> bool {
-        self.frame_time().is_some() || self.frame_step.is_some()
-    }
-}

@@ -1,6 +1,6 @@
 //! Constants that determine how far a model is trusted. They are the same for all models; `docs/tried.md` describes how
-//! they were chosen. The example `calibrate` writes the regions in `calibration.json`, from places that no model was
-//! trained on.
+//! they were chosen. `ddl-python/examples/regions.py` writes the regions in `calibration.json`, from places that no
+//! model was trained on.
 
 use crate::run::sha256;
 use ddl_core::RegionTable;
@@ -10,28 +10,34 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest as _, Sha256};
 use std::sync::{Arc, LazyLock};
 
+/// The table from which the models make the regions of their forecasts.
+#[must_use]
+pub fn region_table() -> &'static RegionTable {
+    &Calibration::fitted().regions
+}
+
 /// The constants of all models.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Calibration {
+pub(crate) struct Calibration {
     /// Familiarity at which a model is half trusted.
-    pub half_trust: f64,
+    half_trust: f64,
     /// Share of the network's metric in the metric of a step, for a fully trusted motion.
-    pub share: f64,
+    share: f64,
     /// Power of the goals' weights without and with full trust.
-    pub weight_power: [f64; 2],
+    weight_power: [f64; 2],
     /// Share of the probability that is divided equally among the goals.
-    pub uniform_share: f64,
+    uniform_share: f64,
     /// Least spread around a hypothesis, metres.
-    pub least_spread: f64,
+    least_spread: f64,
     /// Spread at the horizon for each m/s of the mean observed speed, seconds.
-    pub spread_of_speed: f64,
+    spread_of_speed: f64,
     /// Spread at the horizon for each metre of the goals' standard deviation (dimensionless).
-    pub spread_of_goals: f64,
+    spread_of_goals: f64,
     /// Exponent of the fraction of the horizon by which the spread grows.
-    pub spread_growth: f64,
+    spread_growth: f64,
     /// Quantiles of the regions' scores.
-    pub regions: RegionTable,
+    regions: RegionTable,
 }
 
 const FILE: &str = include_str!("calibration.json");
@@ -43,8 +49,7 @@ impl Calibration {
     ///
     /// # Panics
     /// Never: a test reads the file.
-    #[must_use]
-    pub fn fitted() -> &'static Self {
+    pub(crate) fn fitted() -> &'static Self {
         #[expect(clippy::expect_used, reason = "the file is part of the program, and a test reads it")]
         FITTED.as_ref().expect("calibration.json holds the constants")
     }

@@ -8,7 +8,7 @@ use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use clap::{Args, ValueEnum};
 use ddl::data::Window;
-use ddl::{Calibration, Ddl, Forecaster as _};
+use ddl::{Ddl, Forecaster as _};
 use std::path::PathBuf;
 
 /// Forecast the next 4.8 s of your own tracks
@@ -152,7 +152,7 @@ impl ForecastCommand {
 }
 
 fn probability(text: &str) -> Result<f64, String> {
-    let [low, high] = Calibration::fitted().regions.range();
+    let [low, high] = ddl::region_table().range();
     let level: f64 = text.trim().parse().map_err(|error| format!("{error}"))?;
     if (low..=high).contains(&level) {
         return Ok(level);

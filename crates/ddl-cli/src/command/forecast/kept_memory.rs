@@ -119,21 +119,18 @@ impl KeptMemory {
         let Some(Some(mut memory)) = self.memories.remove(&scene.cloned()) else {
             return Ok(());
         };
-        scenes.finish_test(scene);
-        let Some(place) = scenes.place(scene) else {
+        let Some(place) = scenes.forget(scene) else {
             return Ok(());
         };
-        let why = memory.file.end(place)?;
-        match why.filter(|_| !memory.is_refusal_told) {
+        let (segments, is_empty) = (place.memory().segments(), place.memory().last_frame().is_none());
+        match memory.file.end(place)? {
+            _ if memory.is_refusal_told => {}
             Some(why) => tell(format_args!("warning: {why}")),
-            None if place.refused().is_none() && place.memory().last_frame().is_some() => {
-                tell(format_args!(
-                    "note: {} remembers {} segments, 8 s of one pedestrian each",
-                    memory.file.path().display(),
-                    place.memory().segments()
-                ));
-            }
-            None => {}
+            None if is_empty => {}
+            None => tell(format_args!(
+                "note: {} remembers {segments} segments, 8 s of one pedestrian each",
+                memory.file.path().display()
+            )),
         }
         Ok(())
     }
@@ -164,14 +161,7 @@ impl OpenMemory {
     }
 
     fn begin(&mut self, scene: Option<&SceneName>, scenes: &mut LiveScenes, model: &Ddl) -> anyhow::Result<()> {
-        let camera = scenes.frame_step();
-        let memory = match self.read.take() {
-            Some(memory) => memory,
-            None => SceneMemory::new(camera, SceneMemory::DEFAULT_CAPACITY)?,
-        };
-        let place = PlaceMemory::new(model, memory)?;
-        let begun = scenes.remember(scene, place);
-        match begun {
+        match scenes.remember(scene, model, self.read.take()) {
             Err(error @ DdlError::MemoryFrameStep { .. }) => {
                 Err(error).with_context(|| self.file.path().display().to_string())
             }

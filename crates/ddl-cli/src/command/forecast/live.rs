@@ -11,7 +11,9 @@ use crate::recordings;
 use crate::telling::{tell, words};
 use crate::units::{Units, live_step};
 use anyhow::{Context as _, bail};
-use ddl::data::{CompletionCounts, Frame, Homography, Observation, PlausibilityWarning, Recording, SceneName, Window};
+use ddl::data::{
+    CompletionCounts, Frame, Homography, LiveTracks, Observation, PlausibilityWarning, Recording, SceneName, Window,
+};
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
 use std::io::{Write as _, stdout};
@@ -96,8 +98,8 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
 
 /// Creates the scenes, as soon as the frame step is known.
 fn begin(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>, step: i64) -> anyhow::Result<()> {
-    let scenes = LiveScenes::with_frame_step(step)?;
-    let scenes = scenes.with_completion(forecast.tracks.completion());
+    let tracks = LiveTracks::with_frame_step(step)?.with_completion(forecast.tracks.completion());
+    let scenes = LiveScenes::new(tracks);
     let scenes = if forecast.latest { scenes.latest_only() } else { scenes };
     let mut watching = lock(watching);
     let WatchedStream { scenes: to, memory } = &mut *watching;
