@@ -1,18 +1,17 @@
 //! Many cameras in one process: the forecasts of each are the same as if it were alone.
 
+use crate::live::Live;
 use ddl::data::{Completion, LiveTracks, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::memory::SceneMemory;
 use ddl::{DdlError, Forecast, ForecastError, Forecaster, LiveForecaster, LiveScenes, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
-use ddl_tests::{bits, drawn_model, program};
+use ddl_tests::{bits, drawn_model};
 use proptest::prelude::*;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::fmt::Write as _;
-use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::Stdio;
 
 type Seen = (i64, Vec<(PedestrianId, Position)>);
 
@@ -383,36 +382,22 @@ fn only_the_latest_frames_are_forecast_and_the_others_counted() {
 #[test]
 fn a_scene_that_falls_silent_blocks_no_other() {
     let place = Place::with_model();
-    let mut command = program::command(place.path(), &format!("{LINE} --one --format jsonl"));
-    let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
-    let mut child = command.spawn().unwrap();
-    let mut input = child.stdin.take().unwrap();
-    let mut output = BufReader::new(child.stdout.take().unwrap());
-    input.write_all(HEADER.as_bytes()).unwrap();
+    let mut live = Live::start(&place, "--frame-step 10 --one");
     // The frame is complete only at the end of the input.
-    for frame in [0, 10] {
-        input
-            .write_all(as_csv("silent", &(frame, 1, 0.0, 0.0)).as_bytes())
-            .unwrap();
-    }
-    let mut answer = || -> (String, i64) {
-        let mut line = String::new();
-        output.read_line(&mut line).unwrap();
-        let line: Value = serde_json::from_str(&line).unwrap();
-        (
-            line["scene"].as_str().unwrap().to_owned(),
-            line["observed_until"].as_i64().unwrap(),
-        )
-    };
+    let silent = [0, 10].map(|frame| as_csv("silent", &(frame, 1, 0.0, 0.0)));
+    live.write(&(HEADER.to_owned() + &silent.concat()));
     for frame in 0..6 {
-        let line = as_csv("hall", &(10 * frame, 1, 0.5 * frame as f64, 0.0)) + "\n";
-        input.write_all(line.as_bytes()).unwrap();
-        input.flush().unwrap();
+        live.write(&(as_csv("hall", &(10 * frame, 1, 0.5 * frame as f64, 0.0)) + "\n"));
         if frame > 0 {
-            assert_eq!(answer(), ("hall".to_owned(), 10 * frame));
+            let line = live.line();
+            assert!(
+                line["scene"] == "hall" && line["observed_until"] == 10 * frame,
+                "{line}"
+            );
         }
     }
-    drop(input);
-    assert_eq!(answer(), ("silent".to_owned(), 10));
-    assert!(child.wait().unwrap().success());
+    let (rest, stderr, code) = live.end();
+    let rest = json_lines::<Value>(&rest);
+    assert_eq!((rest.len(), code), (1, Some(0)), "{stderr}");
+    assert!(rest[0]["scene"] == "silent" && rest[0]["observed_until"] == 10);
 }

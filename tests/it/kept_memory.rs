@@ -1,15 +1,14 @@
 //! The memory of a place that `ddl forecast - --memory` keeps in a file, and its summary by `ddl data`.
 
+use crate::live::Live;
 use ddl::data::LiveTracks;
 use ddl::memory::SceneMemory;
 use ddl::{Ddl, DeviceChoice, LiveForecaster, Variant};
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
-use ddl_tests::{crowd, drawn_model, program};
+use ddl_tests::{crowd, drawn_model};
 use serde_json::{Value, json};
-use std::io::{BufRead as _, BufReader, Write as _};
 use std::ops::Range;
-use std::process::{Child, Stdio};
 
 const LINE: &str = "forecast - --model run --threads 1 --whole --format jsonl --frame-step 10";
 const KEPT: &str = "--memory hall.memory";
@@ -183,26 +182,12 @@ fn a_model_without_a_memory_branch_is_refused_before_anything_is_read() {
     place.all_fail(&["forecast - --model run --memory hall.memory => has no memory branch"]);
 }
 
-/// A program that has read the first frames of a stream that continues.
-fn at_work(place: &Place) -> Child {
-    let mut command = program::command(place.path(), &format!("{LINE} {KEPT}"));
-    let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
-    let mut child = command.stderr(Stdio::piped()).spawn().unwrap();
-    let input = child.stdin.as_mut().unwrap();
-    input
-        .write_all((own_tracks::csv(&rows(0..30)) + "\n").as_bytes())
-        .unwrap();
-    let mut line = String::new();
-    let output = child.stdout.as_mut().unwrap();
-    BufReader::new(output).read_line(&mut line).unwrap();
-    assert!(line.contains("observed_until"), "{line}");
-    child
-}
-
 #[test]
 fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     let place = Place::with_model();
-    let first = at_work(&place);
+    let mut first = Live::start(&place, &format!("--whole --frame-step 10 {KEPT}"));
+    first.write(&(own_tracks::csv(&rows(0..30)) + "\n"));
+    assert!(first.line()["observed_until"].is_i64());
     let second = place.run_on("", &format!("{LINE} {KEPT}")).fails();
     assert!(
         second.contains("another process, or a watch of this process"),
@@ -211,9 +196,8 @@ fn a_second_program_is_refused_and_a_stopped_one_writes_its_memory() {
     #[cfg(unix)]
     {
         use ddl_tests::processes;
-        processes::signal(first.id(), "TERM");
-        let finished = first.wait_with_output().unwrap();
-        assert_eq!(finished.status.code(), Some(130));
+        processes::signal(first.child.id(), "TERM");
+        assert_eq!(first.end().2, Some(130));
         let memory = SceneMemory::read(&place.at("hall.memory")).unwrap();
         assert!(memory.summary().frames >= 8);
     }

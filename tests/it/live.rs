@@ -76,14 +76,15 @@ fn an_error_changes_nothing() {
     }
 }
 
-struct Live {
-    child: Child,
+/// A program that forecasts a stream of standard input.
+pub(crate) struct Live {
+    pub(crate) child: Child,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
 }
 
 impl Live {
-    fn start(place: &Place, options: &str) -> Self {
+    pub(crate) fn start(place: &Place, options: &str) -> Self {
         let line = format!("forecast - --model run --threads 1 --format jsonl {options}");
         let mut command = program::command(place.path(), &line);
         let command = command.stdin(Stdio::piped()).stdout(Stdio::piped());
@@ -95,18 +96,18 @@ impl Live {
         }
     }
 
-    fn write(&mut self, text: &str) {
+    pub(crate) fn write(&mut self, text: &str) {
         self.input.write_all(text.as_bytes()).unwrap();
         self.input.flush().unwrap();
     }
 
-    fn line(&mut self) -> Value {
+    pub(crate) fn line(&mut self) -> Value {
         let mut line = String::new();
         self.output.read_line(&mut line).unwrap();
         json(&line)
     }
 
-    fn end(mut self) -> (String, String, Option<i32>) {
+    pub(crate) fn end(mut self) -> (String, String, Option<i32>) {
         drop(self.input);
         let mut rest = String::new();
         self.output.read_to_string(&mut rest).unwrap();

@@ -1,8 +1,8 @@
-"""Opens the example's report page in a browser and compares it with report.json and moments.json.
+"""Opens a report page in a browser and compares it with report.json and moments.json.
 
     check_page.py FOLDER --browser /path/to/chromium [--screenshots FOLDER]
 
-FOLDER is the output of the example `report_page` of ddl-report. The page is opened from the file system, in light and
+FOLDER is the output of make_page.py. The page is opened from the file system, in light and
 dark, wide and narrow, and must send no network request.
 """
 
@@ -99,14 +99,13 @@ def check_tables(opened, report):
 def check_headline(opened, report):
     group = Group(report["rows"], "simulated", "published", "fair", None)
     folds = list(dict.fromkeys(row["conditions"]["fold"] for row in report["rows"]))
-    means = [(group.over(line, folds, lambda s: s["min_ade"]), line) for line in group.lines]
-    best = min(means, key=lambda pair: sum(pair[0]) / len(pair[0]))[1]
-    # Nothing is trained in the example, so the page is about the best forecaster.
+    # Nothing is trained, so the page is about the forecasts of a file.
+    subject = next(line for line in group.lines if line["label"] == "stand-in")
     for name, of in (("minADE", "min_ade"), ("minFDE", "min_fde")):
-        values = group.over(best, folds, lambda s: s[of])
+        values = group.over(subject, folds, lambda s: s[of])
         shown = opened.text(f"[data-number={name}]")
         assert shown == spread([sum(values) / len(values)], 3), (name, shown)
-    assert best["label"] in opened.text(".verdict")
+    assert subject["label"] in opened.text(".verdict")
     chart = [text.strip() for text in opened.page.locator(".comparison .wide text").all_text_contents()]
     for line in group.lines:
         for fold in folds:
@@ -422,7 +421,7 @@ def main():
     parser.add_argument("--screenshots", type=pathlib.Path)
     arguments = parser.parse_args()
     folder = arguments.folder.resolve()
-    path_of_page, report_text = folder / "page.html", (folder / "report.json").read_text()
+    path_of_page, report_text = folder / "report.html", (folder / "report.json").read_text()
     report, moments = json.loads(report_text), json.loads((folder / "moments.json").read_text())
 
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as temporary:

@@ -113,7 +113,7 @@ fn dependencies(workspace: &Workspace) -> Result<()> {
 /// The report page of the simulated crowds.
 fn report_page(workspace: &Workspace) -> Result<()> {
     let folder = workspace.path("target/report-page");
-    let example = workspace.path("target/debug/examples/report_page");
-    run_command(workspace.program(example).arg(&folder))?;
+    let mut make = Tools::ensure(workspace)?.python(&workspace.path("tests/page/make_page.py"));
+    run_command(make.arg(&folder).arg(workspace.path("target/debug/ddl")))?;
     browser::check(workspace, "tests/page/check_page.py", &folder, None::<&Path>)
 }

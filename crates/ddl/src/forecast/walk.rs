@@ -196,8 +196,8 @@ mod tests {
         assert!(apart(&walk) > 0.5);
         assert_eq!(walk.certificate.verify(), Ok(()));
         assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
-        let nobody = among(vec![stands]).unwrap();
-        let alone = approach.walk_among(&nobody, &factors).unwrap();
+        let no_others = among(vec![stands]).unwrap();
+        let alone = approach.walk_among(&no_others, &factors).unwrap();
         assert_eq!(alone.positions, approach.walk(&factors).unwrap().positions);
     }
 

@@ -36,16 +36,7 @@ pub(super) fn train(
     let device = Device::open(request.device)?;
     let fold = fold_by_name(dataset, &request.fold)?.with_validation_recordings(&request.validation_recordings)?;
     let window_rule = training_rule(dataset.convention());
-    let windows = if request.validation > 0.0 {
-        fold.training_split(window_rule, request.validation).training
-    } else {
-        fold.training_windows(window_rule)
-    };
-    if windows.is_empty() {
-        return Err(StarError::NoTrainingWindows.into());
-    }
-    ensure_patience(request, &fold, window_rule)?;
-    ensure_enough_tracks(&request.goals, &windows)?;
+    let windows = training_windows(request, &fold, window_rule)?;
     let starting_weights = || {
         let from = request.from.as_ref();
         from.map(|source| StartingWeights::of(source, &request.star, &request.goals, request.device))
@@ -92,6 +83,21 @@ pub(super) fn train(
         device,
     };
     stage.train(&fold, windows, network, observe)
+}
+
+/// The windows to train on, if they and the validation part suffice.
+fn training_windows(request: &TrainingRequest, fold: &Fold<'_>, rule: WindowRule) -> Result<Vec<Window>, DdlError> {
+    let windows = if request.validation > 0.0 {
+        fold.training_split(rule, request.validation).training
+    } else {
+        fold.training_windows(rule)
+    };
+    if windows.is_empty() {
+        return Err(StarError::NoTrainingWindows.into());
+    }
+    ensure_patience(request, fold, rule)?;
+    ensure_enough_tracks(&request.goals, &windows)?;
+    Ok(windows)
 }
 
 fn check(request: &TrainingRequest) -> Result<(), DdlError> {

@@ -73,12 +73,39 @@ impl Parts {
     }
 }
 
-/// The file after an edit of its parts.
-fn after(parts: &Parts, edit: impl FnOnce(&mut Parts)) -> Vec<u8> {
-    let mut edited = parts.clone();
-    edit(&mut edited);
-    edited.file()
-}
+type Edit = fn(&mut Parts);
+
+const EDITS: [(&str, Edit); 15] = [
+    ("without one tensor", |parts| drop(parts.tensors.pop_first())),
+    ("without tensors", |parts| parts.tensors.clear()),
+    ("a tensor too many", |parts| {
+        let twin = parts.matrix().clone();
+        parts.tensors.insert("network.twin".to_owned(), twin);
+    }),
+    ("transposed", |parts| parts.matrix().shape.reverse()),
+    ("one more axis", |parts| parts.matrix().shape.push(1)),
+    ("huge shape", |parts| parts.matrix().shape = vec![1 << 62, 1 << 62]),
+    ("another size", |parts| {
+        let matrix = parts.matrix();
+        (matrix.shape, matrix.bytes) = (vec![3], vec![0; 6]);
+    }),
+    ("not finite", |parts| {
+        parts.matrix().bytes[..2].copy_from_slice(&0x7e00_u16.to_le_bytes());
+    }),
+    ("wider network", |parts| parts.configure("/star/model_width", json!(4))),
+    ("huge network", |parts| {
+        parts.configure("/star/model_width", json!(1_u64 << 40));
+    }),
+    ("huge proposal", |parts| {
+        parts.configure("/goals/proposal/network/width", json!(1_u64 << 40));
+    }),
+    ("negative width", |parts| {
+        parts.configure("/star/model_width", json!(-1))
+    }),
+    ("null", |parts| parts.configure("/star", Value::Null)),
+    ("configuration not JSON", |parts| parts.entry["config"] = "{".into()),
+    ("another layout", |parts| parts.entry["layout"] = json!(99)),
+];
 
 #[test]
 fn a_packed_model_with_wrong_contents_and_a_right_digest_is_refused() {
@@ -90,69 +117,17 @@ fn a_packed_model_with_wrong_contents_and_a_right_digest_is_refused() {
     let numbers = safetensors_file::parts(&whole).expect("a valid file").1.len();
     let load = |file: &[u8]| with_file(&path, file, |path| Ddl::load(path, DeviceChoice::Cpu));
     assert!(load(&parts.file()).is_ok(), "without an edit the parts are a model");
-    for (name, file) in [
-        (
-            "without one tensor",
-            after(&parts, |parts| drop(parts.tensors.pop_first())),
-        ),
-        ("without tensors", after(&parts, |parts| parts.tensors.clear())),
-        (
-            "a tensor too many",
-            after(&parts, |parts| {
-                let twin = parts.matrix().clone();
-                parts.tensors.insert("network.twin".to_owned(), twin);
-            }),
-        ),
-        ("transposed", after(&parts, |parts| parts.matrix().shape.reverse())),
-        ("one more axis", after(&parts, |parts| parts.matrix().shape.push(1))),
-        (
-            "huge shape",
-            after(&parts, |parts| parts.matrix().shape = vec![1 << 62, 1 << 62]),
-        ),
-        (
-            "another size",
-            after(&parts, |parts| {
-                let matrix = parts.matrix();
-                (matrix.shape, matrix.bytes) = (vec![3], vec![0; 6]);
-            }),
-        ),
-        (
-            "not finite",
-            after(&parts, |parts| {
-                parts.matrix().bytes[..2].copy_from_slice(&0x7e00_u16.to_le_bytes());
-            }),
-        ),
-        (
-            "wider network",
-            after(&parts, |parts| parts.configure("/star/model_width", json!(4))),
-        ),
-        (
-            "huge network",
-            after(&parts, |parts| parts.configure("/star/model_width", json!(1_u64 << 40))),
-        ),
-        (
-            "huge proposal",
-            after(&parts, |parts| {
-                parts.configure("/goals/proposal/network/width", json!(1_u64 << 40));
-            }),
-        ),
-        (
-            "negative width",
-            after(&parts, |parts| parts.configure("/star/model_width", json!(-1))),
-        ),
-        ("null", after(&parts, |parts| parts.configure("/star", Value::Null))),
-        (
-            "configuration not JSON",
-            after(&parts, |parts| parts.entry["config"] = "{".into()),
-        ),
-        (
-            "another layout",
-            after(&parts, |parts| parts.entry["layout"] = json!(99)),
-        ),
+    let edited = EDITS.map(|(name, edit)| {
+        let mut edited = parts.clone();
+        edit(&mut edited);
+        (name, edited.file())
+    });
+    let damaged = [
         ("huge header", [&u64::MAX.to_le_bytes()[..], &whole[8..]].concat()),
         ("header alone", whole[..whole.len() - numbers].to_vec()),
         ("longer", [&whole[..], b"\0"].concat()),
-    ] {
+    ];
+    for (name, file) in edited.into_iter().chain(damaged) {
         let error = load(&file).err().unwrap_or_else(|| panic!("{name} was accepted"));
         eprintln!("{name}: {error}");
         names_file(&error, "packed.safetensors");

@@ -73,9 +73,9 @@ impl Task {
     }
 }
 
-struct Arguments(Vec<String>);
+struct ProgramArguments(Vec<String>);
 
-impl Arguments {
+impl ProgramArguments {
     fn of(command: &str) -> Self {
         Self(vec![command.to_owned()])
     }
@@ -133,7 +133,7 @@ impl Plan {
     pub(super) fn train_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let settings = &self.settings;
         let optimiser = settings.recipe.optimiser.as_ref();
-        let words = Arguments::of("train")
+        let words = ProgramArguments::of("train")
             .option("--convention", Some(settings.convention))
             .option("--data", settings.data.as_ref().map(|data| data.display()))
             .option("--fold", Some(&task.fold))
@@ -163,7 +163,7 @@ impl Plan {
 
     pub(super) fn evaluate_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
-        let words = Arguments::of("evaluate")
+        let words = ProgramArguments::of("evaluate")
             .path("--model", &task.run_folder(out))
             .option("--data", data);
         let protocols = self.settings.protocols.iter();
@@ -174,7 +174,7 @@ impl Plan {
 
     pub(super) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
         let data = self.settings.data.as_ref().map(|data| data.display());
-        let words = Arguments::of("goals")
+        let words = ProgramArguments::of("goals")
             .flag("--json", true)
             .path("--model", &task.run_folder(out))
             .option("--measure", Some("test"))
@@ -184,7 +184,7 @@ impl Plan {
         self.on_machine(words, threads).0
     }
 
-    fn on_machine(&self, words: Arguments, threads: usize) -> Arguments {
+    fn on_machine(&self, words: ProgramArguments, threads: usize) -> ProgramArguments {
         words
             .option("--device", Some(self.settings.device))
             .option("--threads", Some(threads))

@@ -17,12 +17,12 @@ echo "$$ $*" > begun.writing; mv begun.writing begun
 while :; do sleep 0.02; done
 "#;
 
-struct Task {
+struct QueuedTask {
     folder: tempfile::TempDir,
     script: Child,
 }
 
-impl Task {
+impl QueuedTask {
     fn begin(variables: &[(&str, &str)]) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let put = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
@@ -71,7 +71,7 @@ fn signal(process: i32, signal: Signal) {
 #[test]
 fn the_script_ends_with_the_exit_code_of_the_program() {
     for code in ["0", "1", "130"] {
-        let task = Task::begin(&[("code", code)]);
+        let task = QueuedTask::begin(&[("code", code)]);
         assert_eq!(task.begun().1, "benchmark --task 1007");
         let ended = task.end();
         assert_eq!(ended, (code.parse().ok(), None, String::new()));
@@ -80,13 +80,13 @@ fn the_script_ends_with_the_exit_code_of_the_program() {
 
 #[test]
 fn a_warned_task_saves_and_is_queued_again_and_a_cancelled_one_is_not() {
-    let warned = Task::begin(&[]);
+    let warned = QueuedTask::begin(&[]);
     warned.begun();
     signal(warned.script.id().cast_signed(), Signal::INT);
     let (code, asked, message) = warned.end();
     assert_eq!((code, asked.as_deref()), (Some(0), Some("requeue 42\n")), "{message}");
     // Slurm sends SIGTERM to every process of a job.
-    let cancelled = Task::begin(&[]);
+    let cancelled = QueuedTask::begin(&[]);
     let (program, _) = cancelled.begun();
     signal(cancelled.script.id().cast_signed(), Signal::TERM);
     signal(program, Signal::TERM);
@@ -97,7 +97,7 @@ fn a_warned_task_saves_and_is_queued_again_and_a_cancelled_one_is_not() {
 #[test]
 fn a_time_limit_that_is_too_short_is_named() {
     for times in ["3", "100"] {
-        let task = Task::begin(&[("SLURM_RESTART_COUNT", times)]);
+        let task = QueuedTask::begin(&[("SLURM_RESTART_COUNT", times)]);
         task.begun();
         signal(task.script.id().cast_signed(), Signal::INT);
         let (code, asked, message) = task.end();
