@@ -35,7 +35,7 @@ pub(super) fn read(bytes: &[u8]) {
     // Tensors of libtorch stay on their thread.
     thread_local! {
         static VALID: Resumable = ValidFile::new("optimizer.safetensors", without_digest, |path| {
-            let (mut trainer, origin) = training().expect("the training can be started");
+            let (trainer, origin) = training().expect("the training can be started");
             trainer.save(&origin, path).expect("its state can be written");
             (RefCell::new(trainer), origin)
         });
