@@ -10,7 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 7] = [
+const EXAMPLES: [(&str, &[&str]); 5] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -29,11 +29,6 @@ const EXAMPLES: [(&str, &[&str]); 7] = [
     (
         "ddl-softdtw nearest_neighbours",
         &["turns left after 0.4 s, at 1.20 m/s", "an exhaustive search agrees"],
-    ),
-    ("ddl-dynamics pictures .", &[]),
-    (
-        "ddl-goal goals_of_a_pedestrian",
-        &["300 experts of 3000 pedestrians", "nearest goal: 0."],
     ),
 ];
 

@@ -59,7 +59,7 @@ impl<T: Real, const D: usize> Attractor<T, D> {
 
     /// [`distance`](Self::distance) and [`gradient`](Self::gradient) together, at the cost of one.
     #[inline]
-    pub fn distance_and_gradient(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
+    pub(crate) fn distance_and_gradient(&self, position: &SVector<T, D>) -> (T, SVector<T, D>) {
         polar_way(&self.goal, position)
     }
 }

@@ -5,18 +5,23 @@
     reason = "counting allocations takes a global allocator, whose trait is unsafe"
 )]
 
-#[path = "../benches/hypotheses/mod.rs"]
-mod hypotheses;
-
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,
     hint::black_box,
 };
 
-use ddl_dynamics::{AvoidingFlow, Ball, Euler, Flow, Integrator, Real, StableEuler, rollout, rollout_into};
-use hypotheses::{MadeUpWalk, STEPS, TIME_STEP, drawn};
-use nalgebra::SVector;
+use ddl_dynamics::{
+    Attractor, AvoidingFlow, Ball, CholeskyMetric, Euler, Flow, Integrator, MetricSchedule, NaturalGradientFlow,
+    PUBLISHED_SIGMA, Real, StableEuler, rollout, rollout_into,
+};
+use nalgebra::{SMatrix, SVector};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+const STEPS: usize = 12;
+/// Seconds of a step.
+const TIME_STEP: f64 = 0.4;
 
 thread_local! {
     // Counted per thread, because the tests of this file run in parallel. A constant initial value and no destructor:
@@ -48,6 +53,42 @@ unsafe impl GlobalAlloc for Counting {
 
 #[global_allocator]
 static COUNTING: Counting = Counting;
+
+/// A pedestrian with the flow to its goal, which has a metric for each of 12 steps.
+struct MadeUpWalk<T, const D: usize> {
+    start: SVector<T, D>,
+    flow: NaturalGradientFlow<T, D, MetricSchedule<T, D>>,
+}
+
+/// Pedestrians at about 1 m/s, 2 to 6 m from their goals in any direction, with deviations to either side. About half
+/// of them arrive within the 4.8 s. The draws are the same in every precision.
+fn drawn<T: Real, const D: usize>(count: usize, seed: u64) -> Vec<MadeUpWalk<T, D>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut between = |low: f64, high: f64| rng.random_range(low..high);
+    (0..count)
+        .map(|_| {
+            let start: SVector<f64, D> = SVector::from_fn(|_, _| between(-10.0, 10.0));
+            let heading = SVector::<f64, D>::from_fn(|_, _| between(-1.0, 1.0));
+            let goal = start + heading.normalize() * between(2.0, 6.0);
+            let factor = SMatrix::<f64, D, D>::from_fn(|row, column| match row.cmp(&column) {
+                std::cmp::Ordering::Less => 0.0,
+                std::cmp::Ordering::Equal => between(0.8, 1.1),
+                std::cmp::Ordering::Greater => between(-0.4, 0.4),
+            });
+            let mut metric = || {
+                let sway = 1.0 + between(-0.1, 0.1);
+                let factor = factor.map(|entry| T::rounded(entry * sway));
+                CholeskyMetric::new(factor, T::rounded(PUBLISHED_SIGMA)).expect("finite")
+            };
+            let schedule = MetricSchedule::new((0..STEPS).map(|_| metric()).collect()).expect("12 metrics");
+            let attractor = Attractor::new(goal.map(T::rounded)).expect("finite");
+            MadeUpWalk {
+                start: start.map(T::rounded),
+                flow: NaturalGradientFlow::new(attractor, schedule),
+            }
+        })
+        .collect()
+}
 
 fn allocations(run: impl FnOnce()) -> u64 {
     let before = ALLOCATIONS.get();

@@ -2,8 +2,8 @@
 
 use approx::assert_relative_eq;
 use ddl_dynamics::{
-    Attractor, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, NaturalGradientFlow, Real, StableEuler,
-    Violation, rollout,
+    Attractor, CholeskyMetric, DynamicsError, Euler, LyapunovCertificate, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
+    StableEuler, Violation, rollout,
 };
 use nalgebra::{SVector, Vector1, Vector2};
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -152,4 +152,22 @@ fn plain_euler_circles_the_goal_and_the_certificate_names_the_step() {
         violation.to_string(),
         "step 2 does not approach the goal: 0.25 m away before it, 0.25 m after it"
     );
+}
+
+/// The picture of `docs/stability.md`: to a goal 4 m away, 24 steps of 0.4 s with either integrator.
+#[test]
+fn the_flow_of_the_picture_circles_its_goal_or_ends_on_it() {
+    let attractor = Attractor::new(Vector2::new(4.0, 0.0)).unwrap();
+    let metric = CholeskyMetric::planar(1.1, 0.4, 1.1, PUBLISHED_SIGMA).unwrap();
+    let flow = NaturalGradientFlow::new(attractor, metric);
+    let euler = rollout(&flow, &Euler, Vector2::zeros(), 0.4, 24).unwrap();
+    let nearest = euler.iter().map(|p| attractor.distance(p)).fold(f64::MAX, f64::min);
+    assert!((0.02..0.03).contains(&nearest), "{nearest}");
+    let verdict = LyapunovCertificate::of_rollout(&flow, &euler, 0.4).unwrap().verify();
+    assert!(
+        matches!(verdict, Err(Violation::NotDecreasing { step: 10, .. })),
+        "{verdict:?}"
+    );
+    let stable = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 24).unwrap();
+    assert_eq!(stable.iter().position(|p| p == attractor.goal()), Some(19));
 }

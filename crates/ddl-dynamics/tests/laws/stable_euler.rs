@@ -52,7 +52,7 @@ for_every_space!(no_finite_input_breaks_it, wild_scene);
 fn step_is_as_long_as_proved<T: Real, const D: usize>(scene: &SceneDraw) -> TestCaseResult {
     let attractor = scene.attractor::<T, D>();
     let (start, dt) = (scene.start::<T, D>(), scene.dt::<T>());
-    let (before, away) = attractor.distance_and_gradient(&start);
+    let (before, away) = (attractor.distance(&start), attractor.gradient(&start));
     let noise = T::rounded(32.0) * T::EPSILON * start.amax().max(attractor.goal().amax());
     for metric in scene.metrics::<T, D>() {
         let flow = NaturalGradientFlow::new(attractor, metric);
