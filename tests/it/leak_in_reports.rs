@@ -12,6 +12,7 @@ use serde_json::Value;
 /// The convention whose windows of 20 frames are independent: one window is the whole test scene.
 const CONVENTION: Convention = Convention::SocialGan;
 const TEST_SCENE: &str = "hotel";
+const TEST_FILE: &str = "biwi_hotel.txt";
 
 /// Writes simulated pedestrians to the files of the convention. The test scene is one window, in which `future` places
 /// all pedestrians after the observation.
@@ -19,8 +20,8 @@ fn write_recordings(place: &Place, folder: &str, future: fn(usize, usize, Positi
     let dataset = crowd::dataset();
     let mut scenes = dataset.recordings().iter().cycle();
     let window = with_future(&crowd::windows(1, 8)[0], future);
-    for (name, file) in CONVENTION.recording_names().zip(CONVENTION.file_names()) {
-        let rows: Vec<Row> = if name == TEST_SCENE {
+    for file in CONVENTION.file_names() {
+        let rows: Vec<Row> = if file == TEST_FILE {
             let track = |i: usize| window.track(i).iter().enumerate();
             let row = |i, (t, &[x, y]): (usize, &Position)| (10 * t as i64, i as i64, x, y);
             let pedestrians = 0..window.len();

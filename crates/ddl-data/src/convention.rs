@@ -64,11 +64,6 @@ impl Convention {
         self.plan().recordings.iter().filter_map(|r| r.file.as_deref())
     }
 
-    /// Names of the recordings, in order.
-    pub fn recording_names(self) -> impl Iterator<Item = &'static str> {
-        self.plan().recordings.iter().map(|r| r.name.as_str())
-    }
-
     /// Names of the leave-one-out folds, in order; empty for own recordings.
     pub fn fold_names(self) -> impl Iterator<Item = &'static str> {
         self.plan().folds.iter().map(|f| f.name.as_str())

@@ -44,13 +44,9 @@ impl Dataset {
     /// not transfer to real pedestrians.
     #[must_use]
     pub fn simulated(seed: u64) -> Self {
-        let recordings = simulate::CrowdScene::ALL
-            .into_iter()
-            .map(|scene| scene.simulate(seed).recording)
-            .collect();
         Self {
             convention: Convention::Simulated,
-            recordings,
+            recordings: simulate::recordings(seed),
         }
     }
 

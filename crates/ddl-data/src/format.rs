@@ -23,7 +23,7 @@ pub use write::write_recording;
 
 use crate::error::DataError;
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
+use crate::format::problem::NOT_UTF8;
 use crate::recording::Recording;
 
 /// Reads one file of tracks. The recording is named after the file, without its extension.
@@ -62,12 +62,12 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
 /// ```
 pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Recording, DataError> {
     if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
-        let place = FilePlace::line(1);
-        return Err(place.wrong(origin, FormatProblem::Compressed).into());
+        let problem = "the file is compressed; unpack it, or export the spreadsheet as csv";
+        return Err(FilePlace::line(1).wrong(origin, problem).into());
     }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
-        FilePlace::line(line).wrong(origin, FormatProblem::NotUtf8)
+        FilePlace::line(line).wrong(origin, NOT_UTF8)
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);

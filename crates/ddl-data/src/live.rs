@@ -63,6 +63,7 @@ impl Default for LiveTracks {
     }
 }
 
+#[expect(clippy::len_without_is_empty, reason = "nobody asks whether tracks are empty")]
 impl LiveTracks {
     /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart.
     #[must_use]
@@ -83,8 +84,11 @@ impl LiveTracks {
     /// # Errors
     /// [`LiveError::FrameStep`] if the step is outside 1..=2^31.
     pub fn with_frame_step(frame_step: i64) -> Result<Self, LiveError> {
+        if !is_frame_step(frame_step) {
+            return Err(LiveError::FrameStep { found: frame_step });
+        }
         Ok(Self {
-            frame_step: checked_frame_step(frame_step)?,
+            frame_step,
             ..Self::new()
         })
     }
@@ -123,11 +127,6 @@ impl LiveTracks {
     /// Number of pedestrians remembered: those of the last frame, and those seen shortly before.
     pub fn len(&self) -> usize {
         self.pedestrians.len()
-    }
-
-    /// Whether no pedestrian is remembered.
-    pub fn is_empty(&self) -> bool {
-        self.pedestrians.is_empty()
     }
 
     /// Adds one frame, with the positions (m) of all pedestrians in any order, and returns the window that ends there.
@@ -290,18 +289,6 @@ pub fn checked_frame(
             frame,
         }),
         None => Ok(positions),
-    }
-}
-
-/// Checks the number of raw frames per step of 0.4 s.
-///
-/// # Errors
-/// [`LiveError::FrameStep`] if it is outside 1..=2^31.
-pub fn checked_frame_step(frame_step: i64) -> Result<i64, LiveError> {
-    if is_frame_step(frame_step) {
-        Ok(frame_step)
-    } else {
-        Err(LiveError::FrameStep { found: frame_step })
     }
 }
 

@@ -88,16 +88,6 @@ impl Neighbours {
         Self { near, ends }
     }
 
-    /// Number of pedestrians N.
-    pub fn len(&self) -> usize {
-        self.ends.len()
-    }
-
-    /// Whether there are no pedestrians.
-    pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
-    }
-
     /// The neighbours of i, ascending.
     pub fn of(&self, i: usize) -> &[u32] {
         let first = i.checked_sub(1).map_or(0, |before| self.ends[before]);
@@ -106,6 +96,6 @@ impl Neighbours {
 
     /// Every ordered pair (i, j) of neighbours: two pedestrians close to each other make two pairs.
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.len()).flat_map(|i| self.of(i).iter().map(move |&j| (i, j as usize)))
+        (0..self.ends.len()).flat_map(|i| self.of(i).iter().map(move |&j| (i, j as usize)))
     }
 }

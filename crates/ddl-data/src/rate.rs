@@ -1,6 +1,6 @@
 //! Resampling of recordings to steps of 0.4 s.
 
-use ddl_core::{FRAME_LIMIT, FRAME_STEP_LIMIT, TIME_STEP};
+use ddl_core::{FRAME_LIMIT, TIME_STEP, is_frame_step};
 use thiserror::Error;
 
 use crate::error::RecordingError;
@@ -62,7 +62,8 @@ impl Recording {
     /// large.
     pub fn resampled_to_steps(&self, frame_time: f64) -> Result<ResampledRecording, RateError> {
         let frames = TIME_STEP / frame_time;
-        if !(frames > 0.0 && frames <= FRAME_STEP_LIMIT as f64) {
+        // False for NaN.
+        if !(frames > 0.0 && is_frame_step(frames.ceil() as i64)) {
             return Err(RateError::FrameTime { found: frame_time });
         }
         let spacing = self.frame_step();

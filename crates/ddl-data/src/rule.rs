@@ -47,13 +47,6 @@ impl fmt::Display for WindowRule {
 }
 
 /// `published`, `complete`, `social-gan` (at least 2 pedestrians), or `social-gan-N` for at least N.
-///
-/// ```
-/// use ddl_data::WindowRule;
-/// assert_eq!("complete".parse(), Ok(WindowRule::Complete));
-/// assert_eq!("social-gan-1".parse(), Ok(WindowRule::SocialGan { min_pedestrians: 1 }));
-/// assert!("social-gan-few".parse::<WindowRule>().is_err());
-/// ```
 impl FromStr for WindowRule {
     type Err = UnknownName;
 

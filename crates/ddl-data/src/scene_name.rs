@@ -4,7 +4,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use serde::{Serialize, Serializer};
-use thiserror::Error;
+
+use crate::error::DataError;
 
 /// The name of a scene, that is of a camera, in a stream of several.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -12,25 +13,25 @@ pub struct SceneName(Arc<str>);
 
 impl SceneName {
     /// Largest length of a name in bytes. A file can be named after a scene, even if every byte is escaped.
-    pub(crate) const LONGEST: usize = 64;
+    const LONGEST: usize = 64;
 
     /// A name of 1 to 64 bytes without control characters; blanks around it are removed.
     ///
     /// # Errors
-    /// [`SceneNameError`] for any other text.
-    pub fn new(text: &str) -> Result<Self, SceneNameError> {
-        let text = text.trim();
-        if text.is_empty() {
-            return Err(SceneNameError::Empty);
-        }
-        if text.len() > Self::LONGEST {
-            return Err(SceneNameError::TooLong { found: text.len() });
-        }
-        if text.chars().any(char::is_control) {
-            let found = text.to_owned();
-            return Err(SceneNameError::Control { found });
-        }
-        Ok(Self(text.into()))
+    /// [`DataError::Own`] for any other text.
+    pub fn new(text: &str) -> Result<Self, DataError> {
+        let (text, longest) = (text.trim(), Self::LONGEST);
+        let problem = if text.is_empty() {
+            "scene is empty; name the camera that each row is from".to_owned()
+        } else if text.len() > longest {
+            let found = text.len();
+            format!("scene has {found} bytes, and {longest} are allowed; give the camera a shorter name")
+        } else if text.chars().any(char::is_control) {
+            format!("scene must not hold control characters, found {text:?}; leave them out")
+        } else {
+            return Ok(Self(text.into()));
+        };
+        Err(DataError::Own { problem })
     }
 
     /// The name.
@@ -50,22 +51,6 @@ impl Serialize for SceneName {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_str(&self.0)
     }
-}
-
-/// A text that cannot be the name of a scene.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-#[expect(missing_docs, reason = "the messages say what the fields are")]
-pub enum SceneNameError {
-    #[error("scene is empty; name the camera that each row is from")]
-    Empty,
-    #[error(
-        "scene has {found} bytes, and {limit} are allowed; give the camera a shorter name",
-        limit = SceneName::LONGEST
-    )]
-    TooLong { found: usize },
-    #[error("scene must not hold control characters, found {found:?}; leave them out")]
-    Control { found: String },
 }
 
 #[cfg(test)]
@@ -91,7 +76,7 @@ mod tests {
         fn a_name_is_itself_again(text in "\\PC{0,80}") {
             if let Ok(name) = SceneName::new(&text) {
                 prop_assert_eq!(name.as_str(), text.trim());
-                prop_assert_eq!(SceneName::new(name.as_str()), Ok(name));
+                prop_assert_eq!(SceneName::new(name.as_str()).unwrap(), name);
             }
         }
     }

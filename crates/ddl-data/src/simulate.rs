@@ -14,44 +14,35 @@ mod layout;
 mod obstacle;
 mod pedestrian;
 mod population;
-mod scene;
 mod vector;
 
 #[cfg(test)]
 mod tests;
 
-use ddl_core::PedestrianId;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 
 use crate::recording::Recording;
-use crate::simulate::engine::FRAME_STEP;
-use crate::simulate::layout::SceneLayout;
-pub(crate) use crate::simulate::scene::CrowdScene;
+use crate::simulate::engine::{FRAME_STEP, Trace};
+use crate::simulate::layout::{SCENES, SceneLayout};
 
 /// Recorded steps of a scene: three minutes.
 const STEPS: i64 = 450;
 
-impl CrowdScene {
-    /// Simulates three minutes of the scene. The same seed gives the same bytes.
-    pub(crate) fn simulate(self, seed: u64) -> Crowd {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        rng.set_stream(self as u64);
-        let layout = SceneLayout::of(self);
-        let trace = engine::run(&layout, STEPS, &mut rng);
+/// Three minutes of each scene. The same seed gives the same bytes.
+pub(crate) fn recordings(seed: u64) -> Vec<Recording> {
+    let scenes = (0..).zip(SCENES);
+    let recording = |(stream, (name, layout)): (u64, (&'static str, fn() -> SceneLayout))| {
         // Cannot fail: pedestrians have unique ids and are seen once a frame, capped speeds keep positions finite, and
         // there are many arrivals in three minutes.
-        let recording = Recording::new(self.name(), FRAME_STEP, trace.observations)
-            .expect("a simulation yields unique, finite observations");
-        let groups = trace.groups;
-        Crowd { recording, groups }
-    }
+        Recording::new(name, FRAME_STEP, trace(&layout(), stream, seed).observations)
+            .expect("a simulation yields unique, finite observations")
+    };
+    scenes.map(recording).collect()
 }
 
-/// A simulated recording with its groups.
-pub(crate) struct Crowd {
-    pub(crate) recording: Recording,
-    /// Two or more pedestrians that entered together and stay together.
-    #[cfg_attr(not(test), expect(dead_code, reason = "the tests check that groups stay together"))]
-    pub(crate) groups: Vec<Vec<PedestrianId>>,
+fn trace(layout: &SceneLayout, stream: u64, seed: u64) -> Trace {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(stream);
+    engine::run(layout, STEPS, &mut rng)
 }

@@ -11,7 +11,5 @@ mod track;
 
 pub use error::MemoryError;
 pub use memory::SceneMemory;
-pub use recall::MAX_SQUARED_DISTANCE;
 pub use replay::Playback;
 pub use summary::MemorySummary;
-pub use track::{MAX_ABSENCE_STEPS, MAX_RUNS};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use ddl_data::{PedestrianId, Position, checked_frame, checked_frame_step};
+use ddl_data::{LiveTracks, PedestrianId, Position, checked_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::error::MemoryError;
@@ -23,14 +23,12 @@ const OLDEST: usize = 8;
 /// than steps, a track uses the positions at whole steps after its first frame, or after the first frame after a gap.
 /// A segment contains only positions of observed frames.
 ///
-/// - A missing step ends a run of segments. A track ends after more than
-///   [`MAX_ABSENCE_STEPS`](crate::MAX_ABSENCE_STEPS) steps without a position; if the same id returns later, a new
-///   track begins.
+/// - A missing step ends a run of segments. A track ends after more than 8 steps (3.2 s) without a position; if the
+///   same id returns later, a new track begins.
 /// - Two segments are similar if their squared distance, as defined at [`recall`](Self::recall), is below 1.
 /// - A track is kept in runs of up to 8 segments. A run is removed if its first and its last segment are both similar
 ///   to segments of an earlier run of the same track, except the run right before it. Of the remaining runs, the
-///   latest [`MAX_RUNS`](crate::MAX_RUNS) are kept. So a pedestrian that stands for an hour takes the space of three
-///   runs.
+///   latest 32 are kept. So a pedestrian that stands for an hour takes the space of three runs.
 /// - The memory holds at most `capacity` segments. A full memory frees 1/32 of them among the oldest eighth of the
 ///   ended tracks. It first removes tracks whose middle is similar to a newer track, then the others, in both cases the
 ///   oldest first. If no track has ended, the longest one loses its oldest run.
@@ -91,7 +89,8 @@ impl SceneMemory {
     /// # Errors
     /// [`MemoryError::Frame`] or [`MemoryError::Capacity`] for a number that is out of range.
     pub fn new(frame_step: i64, capacity: usize) -> Result<Self, MemoryError> {
-        let frame_step = checked_frame_step(frame_step)?;
+        // The rules are those of live tracks, whose frames a memory accepts.
+        LiveTracks::with_frame_step(frame_step)?;
         if !(1..=LARGEST_CAPACITY).contains(&capacity) {
             return Err(MemoryError::Capacity {
                 capacity,

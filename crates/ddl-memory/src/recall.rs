@@ -6,7 +6,7 @@ use crate::memory::SceneMemory;
 use crate::piece::{Motion, Piece};
 
 /// Squared distance from which segments are ignored.
-pub const MAX_SQUARED_DISTANCE: f64 = 60.0;
+const MAX_SQUARED_DISTANCE: f32 = 60.0;
 
 impl SceneMemory {
     /// Returns the tracks of at most `count` other pedestrians with a similar motion, nearest first. Each is
@@ -15,7 +15,7 @@ impl SceneMemory {
     /// The last of the 8 observed positions (m, one step of 0.4 s apart) is the present one. The squared distance of a
     /// segment is `|dp|² / (1 m)² + |dv|² / (0.4 m/s)² + |de|² / (0.6 m/s)²`. Here `dp` is the difference of the eighth
     /// positions, `dv` that of the velocities over the last 3 of the 8 steps, and `de` that over the first 3. It is
-    /// computed in `f32`, to about 1e-5, and must be below [`MAX_SQUARED_DISTANCE`]. Pedestrians at equal distance are
+    /// computed in `f32`, to about 1e-5, and must be below 60. Pedestrians at equal distance are
     /// ordered: first those that have left, in the order in which they left, then those present, by id.
     ///
     /// `own` is the id of this pedestrian, whose running track is left out. If a component of the motion is not finite,
@@ -33,7 +33,7 @@ impl SceneMemory {
         let mut near: Vec<(f32, usize, &Piece)> = Vec::new();
         for (age, track) in self.ended.iter().chain(running).enumerate() {
             match track.nearest(&motion) {
-                Some((distance, piece)) if distance < MAX_SQUARED_DISTANCE as f32 => {
+                Some((distance, piece)) if distance < MAX_SQUARED_DISTANCE => {
                     near.push((distance, age, piece));
                 }
                 _ => (),

@@ -7,9 +7,9 @@ use crate::piece::{Motion, Piece, SHARED};
 
 /// A track ends after this many steps of 0.4 s (3.2 s) without a position. If the same id returns later, a new track
 /// begins.
-pub const MAX_ABSENCE_STEPS: i64 = 8;
+const MAX_ABSENCE_STEPS: i64 = 8;
 /// Largest number of runs of 8 segments kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
-pub const MAX_RUNS: usize = 32;
+pub(crate) const MAX_RUNS: usize = 32;
 
 /// A pedestrian of this memory: pieces, oldest first. Only the last may be without a segment.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]

@@ -4,7 +4,7 @@
 use crate::error::FormatError;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
+use crate::format::problem::field_count;
 use crate::format::rows::{FIELDS, TrackRow};
 
 const OBSMAT: &str = "frame, pedestrian, x, z, y, v_x, v_z, v_y";
@@ -24,14 +24,12 @@ fn fields<'a, const COUNT: usize>(
     text: &'a str,
     line: usize,
     origin: &str,
-    names: &'static str,
+    names: &str,
 ) -> Result<[&'a str; COUNT], FormatError> {
     let fields: Vec<&str> = text.split_ascii_whitespace().collect();
-    let (expected, found) = (COUNT, fields.len());
-    fields.try_into().map_err(|_| {
-        let problem = FormatProblem::FieldCount { expected, found, names };
-        FilePlace::line(line).wrong(origin, problem)
-    })
+    let found = fields.len();
+    let fields = fields.try_into();
+    fields.map_err(|_| FilePlace::line(line).wrong(origin, field_count(COUNT, found, names)))
 }
 
 pub(super) fn social_gan(text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {

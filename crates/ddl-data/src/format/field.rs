@@ -4,26 +4,22 @@ use std::borrow::Cow;
 
 use ddl_core::{FRAME_LIMIT, PedestrianName, is_frame};
 
-use crate::format::problem::FormatProblem;
+use crate::format::problem::{not_finite, not_integer};
 use crate::observation::COORDINATE_LIMIT;
 
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;
 
 /// A frame or pedestrian number. Files write them as `12`, `12.0` or `1.2e1`.
-pub(super) fn integer(text: &str, name: &'static str) -> Result<i64, FormatProblem> {
+pub(super) fn integer(text: &str, name: &str) -> Result<i64, String> {
     let text = text.trim();
     let number = text.parse::<i64>().ok().or_else(|| {
         let number = text.parse::<f64>().ok()?;
         // Within the limit every whole `f64` is exactly an `i64`.
         (number.fract() == 0.0 && number.abs() < FRAME_LIMIT as f64).then_some(number as i64)
     });
-    number
-        .filter(|number| is_frame(*number))
-        .ok_or_else(|| FormatProblem::NotInteger {
-            name,
-            found: quoted(text),
-        })
+    let number = number.filter(|number| is_frame(*number));
+    number.ok_or_else(|| not_integer(name, &quoted(text)))
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
@@ -46,7 +42,7 @@ impl PedestrianField {
 
 /// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
 /// refused. Whole numbers that are too large are words.
-pub(super) fn pedestrian(text: &str, name: &'static str) -> Result<PedestrianField, FormatProblem> {
+pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, String> {
     let text = text.trim();
     match integer(text, name) {
         Ok(number) => {
@@ -70,27 +66,24 @@ fn is_fraction_or_infinite(text: &str) -> bool {
     })
 }
 
-pub(super) fn coordinate(text: &str, name: &'static str) -> Result<f64, FormatProblem> {
+pub(super) fn coordinate(text: &str, name: &str) -> Result<f64, String> {
     let text = text.trim();
     match text.parse::<f64>() {
         Ok(number) if number.abs() <= COORDINATE_LIMIT => Ok(number),
-        Ok(number) if number.is_finite() => Err(FormatProblem::TooFar {
-            name,
-            found: quoted(text),
-        }),
-        _ => Err(FormatProblem::NotFinite {
-            name,
-            found: quoted(text),
-        }),
+        Ok(number) if number.is_finite() => Err(format!(
+            "{name} must lie within {COORDINATE_LIMIT} m of the origin, found {:?}; use an origin near the scene",
+            quoted(text)
+        )),
+        _ => Err(not_finite(name, &quoted(text))),
     }
 }
 
 /// Checks that an unused field holds a number, of any size or NaN.
-pub(super) fn number(text: &str, name: &'static str) -> Result<(), FormatProblem> {
-    text.parse::<f64>().map(|_| ()).map_err(|_| FormatProblem::NotNumber {
-        name,
-        found: quoted(text),
-    })
+pub(super) fn number(text: &str, name: &str) -> Result<(), String> {
+    match text.parse::<f64>() {
+        Ok(_) => Ok(()),
+        Err(_) => Err(format!("{name} must be a number, found {:?}", quoted(text))),
+    }
 }
 
 pub(super) fn quoted(text: &str) -> String {

@@ -1,7 +1,6 @@
 //! Position of a field within a file.
 
 use crate::error::FormatError;
-use crate::format::problem::FormatProblem;
 
 /// A place within a file, both counted from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -20,18 +19,17 @@ impl FilePlace {
         Self { line, field }
     }
 
-    #[expect(clippy::needless_pass_by_value, reason = "a problem is reported once")]
-    pub(super) fn wrong(self, origin: &str, problem: FormatProblem) -> FormatError {
+    pub(super) fn wrong(self, origin: &str, problem: impl Into<String>) -> FormatError {
         let Self { line, field } = self;
         FormatError {
             origin: origin.to_owned(),
             line,
             field,
-            problem: problem.to_string(),
+            problem: problem.into(),
         }
     }
 
-    pub(super) fn read<T>(self, origin: &str, read: Result<T, FormatProblem>) -> Result<T, FormatError> {
+    pub(super) fn read<T>(self, origin: &str, read: Result<T, String>) -> Result<T, FormatError> {
         read.map_err(|problem| self.wrong(origin, problem))
     }
 }

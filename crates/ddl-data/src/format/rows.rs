@@ -8,7 +8,7 @@ use crate::error::{DataError, FormatError};
 use crate::format::field::{self, PedestrianField};
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
+use crate::format::problem::{EMPTY, duplicate};
 use crate::observation::Observation;
 use crate::recording::Recording;
 use crate::scene_name::SceneName;
@@ -51,10 +51,12 @@ impl TrackRow {
 /// The recording of all rows, with an inferred frame step.
 pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {
     if rows.is_empty() {
-        return Err(FilePlace::line(1).wrong(origin, FormatProblem::Empty).into());
+        return Err(FilePlace::line(1).wrong(origin, EMPTY).into());
     }
     if let Some(row) = rows.iter().find(|row| row.scene.is_some()) {
-        return Err(row.place.wrong(origin, FormatProblem::ScenesInFile).into());
+        let problem = "a file holds one recording, but this one names scenes; pipe it to `ddl forecast -`, or make a \
+                       file of each scene without the column";
+        return Err(row.place.wrong(origin, problem).into());
     }
     let (mut placed, names) = numbered(rows);
     refuse_duplicates(&mut placed, &names, origin)?;
@@ -99,12 +101,7 @@ fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, origin: &str)
         None => Ok(()),
         Some(pair) => {
             let (frame, pedestrian) = key(&pair[1]);
-            let first_line = pair[0].1.line;
-            let problem = FormatProblem::Duplicate {
-                pedestrian: Box::new(names.of(pedestrian)),
-                frame,
-                first_line,
-            };
+            let problem = duplicate(names.of(pedestrian), frame, pair[0].1.line);
             Err(pair[1].1.wrong(origin, problem))
         }
     }

@@ -3,7 +3,7 @@
 use crate::error::FormatError;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
+use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
 
 const LINES: usize = 4;
@@ -12,25 +12,23 @@ const NAMES: &str = "frame, pedestrian, y, x";
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatError> {
     let text = text.trim_end();
     if text.is_empty() {
-        return Err(FilePlace::line(1).wrong(origin, FormatProblem::Empty));
+        return Err(FilePlace::line(1).wrong(origin, EMPTY));
     }
     let lines: Vec<Vec<&str>> = text.lines().map(|line| line.split(',').collect()).collect();
     if lines.len() > LINES {
-        let problem = FormatProblem::ExtraLine { expected: LINES };
+        let problem = format!("unexpected line: the format has exactly {LINES} lines");
         return Err(FilePlace::line(LINES + 1).wrong(origin, problem));
     }
     let [frames, pedestrians, ys, xs] = lines.as_slice() else {
-        let problem = FormatProblem::MissingLine {
-            expected: LINES,
-            names: NAMES,
-        };
+        let problem = format!("line missing: the format has exactly {LINES} lines ({NAMES}), the file ends here");
         return Err(FilePlace::line(lines.len() + 1).wrong(origin, problem));
     };
     let expected = frames.len();
     for (index, line) in lines.iter().enumerate() {
         let found = line.len();
         if found != expected {
-            let problem = FormatProblem::UnequalLines { expected, found };
+            let problem =
+                format!("{found} fields, but line 1 has {expected}; all lines must have the same number of fields");
             return Err(FilePlace::line(index + 1).wrong(origin, problem));
         }
     }

@@ -14,7 +14,7 @@ use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
+use crate::format::problem::{NOT_UTF8, duplicate};
 use crate::format::rows::TrackRow;
 use crate::format::table::TrackColumns;
 use crate::format::{blanks, trajnet};
@@ -213,11 +213,11 @@ impl<R: BufRead> FrameReader<R> {
             if bytes.last() != Some(&b'\n') {
                 self.skip_line()?;
             }
-            let limit = LONGEST_LINE;
-            return Err(self.wrong(FormatProblem::LongLine { limit }).into());
+            let problem = format!("the line is longer than {LONGEST_LINE} bytes; is it a file of tracks?");
+            return Err(self.wrong(problem).into());
         }
         match String::from_utf8(bytes) {
-            Err(_) => Err(self.wrong(FormatProblem::NotUtf8).into()),
+            Err(_) => Err(self.wrong(NOT_UTF8).into()),
             Ok(text) if self.lines == 1 => Ok(Some(text.trim_start_matches('\u{feff}').to_owned())),
             Ok(text) => Ok(Some(text)),
         }
@@ -281,20 +281,20 @@ impl<R: BufRead> FrameReader<R> {
         let growing = scene.current.as_ref();
         if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
             let word = word.map(|word| PedestrianName::Word(word.to_string()));
-            let problem = FormatProblem::Duplicate {
-                pedestrian: Box::new(word.unwrap_or(pedestrian.into())),
-                frame: seen.frame,
-                first_line,
-            };
-            return Err(self.wrong(problem));
+            let name = word.unwrap_or(pedestrian.into());
+            return Err(self.wrong(duplicate(name, seen.frame, first_line)));
         }
         // A returned frame makes room for a pedestrian.
         if self.unfinished == limit {
-            return Err(self.wrong(FormatProblem::Crowd {
-                scene: name,
-                frame: seen.frame,
-                limit,
-            }));
+            let frames = match name {
+                None => format!("frame {}", seen.frame),
+                Some(scene) => format!(
+                    "the incomplete frames, one of them frame {} of scene {scene}",
+                    seen.frame
+                ),
+            };
+            let problem = format!("more than {limit} pedestrians in {frames}; does the frame number increase?");
+            return Err(self.wrong(problem));
         }
         let is_first = scene.last.is_none();
         let growing = scene.current.get_or_insert_with(|| Growing {
@@ -322,18 +322,30 @@ impl<R: BufRead> FrameReader<R> {
         if let Some(last) = reached.or(scene.last)
             && (frame < last || (reached.is_none() && frame == last))
         {
-            let scene = name.clone();
-            return Err(self.wrong(FormatProblem::OutOfOrder { scene, frame, last }));
+            let of_scene = name
+                .as_ref()
+                .map_or_else(String::new, |scene| format!(" of scene {scene}"));
+            return Err(self.wrong(format!(
+                "frame {frame}{of_scene} comes after frame {last}; a stream of tracks must be in order of time"
+            )));
         }
         Ok(if reached == Some(frame) { None } else { self.whole(name) })
     }
 
     /// Refuses a stream in which only some lines name a scene.
     fn refuse_mixed(&mut self, named: bool) -> Result<(), FormatError> {
-        match *self.named.get_or_insert((named, self.lines)) {
-            (first, first_line) if first != named => Err(self.wrong(FormatProblem::MixedScenes { named, first_line })),
-            _ => Ok(()),
+        let (first, first_line) = *self.named.get_or_insert((named, self.lines));
+        if first == named {
+            return Ok(());
         }
+        let here = if named {
+            "a scene is named here, but not"
+        } else {
+            "track.scene is missing here, but present"
+        };
+        Err(self.wrong(format!(
+            "{here} on line {first_line}; name the scene of every observation or omit it everywhere"
+        )))
     }
 
     /// Makes room for a new scene, and forgets idle scenes.
@@ -358,11 +370,11 @@ impl<R: BufRead> FrameReader<R> {
         if let Some(scene) = name
             && self.scenes.len() == MOST_SCENES
         {
-            return Err(self.wrong(FormatProblem::TooManyScenes {
-                scene: scene.clone(),
-                limit: MOST_SCENES,
-                minutes: idle_timeout.as_secs() / 60,
-            }));
+            let minutes = idle_timeout.as_secs() / 60;
+            return Err(self.wrong(format!(
+                "scene {scene} exceeds the limit of {MOST_SCENES} scenes; a scene is forgotten after {minutes} minutes \
+                 without a line; give the other scenes to another `ddl forecast -`"
+            )));
         }
         Ok(())
     }
@@ -404,7 +416,7 @@ impl<R: BufRead> FrameReader<R> {
         })
     }
 
-    fn wrong(&self, problem: FormatProblem) -> FormatError {
+    fn wrong(&self, problem: impl Into<String>) -> FormatError {
         FilePlace::line(self.lines).wrong(&self.origin, problem)
     }
 }

@@ -5,7 +5,7 @@ use csv::{ErrorKind, StringRecord};
 use crate::error::FormatError;
 use crate::format::field;
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
+use crate::format::problem::{EMPTY, field_count};
 use crate::format::rows::{FIELDS, TrackRow};
 use crate::scene_name::SceneName;
 
@@ -19,19 +19,20 @@ const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields,
 /// The fields of a row that is one field.
 const ONE: &str = "frame, pedestrian, x, y, separated by commas";
 
-/// The expected fields, for a row with too few or too many.
-fn names(expected: usize, found: usize) -> &'static str {
-    match found {
+/// For a row with too few or too many fields.
+fn wrong_count(expected: usize, found: usize) -> String {
+    let names = match found {
         _ if expected > COLUMNS.len() => "frame, pedestrian, x, y and scene",
         1 => ONE,
         _ if found > expected => FEWER,
         _ => FIELDS,
-    }
+    };
+    field_count(expected, found, names)
 }
 
 pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatError> {
     if text.trim().is_empty() {
-        return Err(FilePlace::line(1).wrong(origin, FormatProblem::Empty));
+        return Err(FilePlace::line(1).wrong(origin, EMPTY));
     }
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
@@ -62,19 +63,15 @@ impl TrackColumns {
     pub(super) fn row_of_line(&self, text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
         let record = record(text, line, origin)?;
         if record.len() != self.count {
-            let problem = FormatProblem::FieldCount {
-                expected: self.count,
-                found: record.len(),
-                names: names(self.count, record.len()),
-            };
-            return Err(FilePlace::line(line).wrong(origin, problem));
+            return Err(FilePlace::line(line).wrong(origin, wrong_count(self.count, record.len())));
         }
         self.row(&record, line, origin)
     }
 
     fn of(header: &StringRecord, line: usize, origin: &str) -> Result<Self, FormatError> {
         let wrong = |field: Option<usize>, detail: String| {
-            FilePlace { line, field }.wrong(origin, FormatProblem::Header { detail })
+            let rule = "the header must name the columns frame, pedestrian, x and y, each once";
+            FilePlace { line, field }.wrong(origin, format!("{rule}: {detail}"))
         };
         if header.iter().all(|name| name.parse::<f64>().is_ok()) {
             let detail = "found numbers; put the line frame,pedestrian,x,y above them".to_owned();
@@ -125,7 +122,7 @@ impl TrackColumns {
             return Ok(row);
         };
         let (number, text) = field(column);
-        let scene = SceneName::new(text).map_err(FormatProblem::from);
+        let scene = SceneName::new(text).map_err(|error| error.to_string());
         let scene = FilePlace::field(line, number).read(origin, scene)?;
         Ok(TrackRow {
             scene: Some(scene),
@@ -185,25 +182,21 @@ fn quoted_record(text: &str, line: usize, origin: &str) -> Result<StringRecord, 
         .from_reader(text.as_bytes());
     let mut record = StringRecord::new();
     let read = reader.read_record(&mut record);
-    read.map(|_| record).map_err(|error| {
-        let detail = error.to_string();
-        FilePlace::line(line).wrong(origin, FormatProblem::Table { detail })
-    })
+    read.map(|_| record)
+        .map_err(|error| FilePlace::line(line).wrong(origin, malformed(&error)))
 }
 
 fn table_error(error: &csv::Error, origin: &str) -> FormatError {
     let line = error.position().map_or(1, |p| p.line() as usize);
     let problem = match error.kind() {
-        ErrorKind::UnequalLengths { expected_len, len, .. } => FormatProblem::FieldCount {
-            expected: *expected_len as usize,
-            found: *len as usize,
-            names: names(*expected_len as usize, *len as usize),
-        },
-        _ => FormatProblem::Table {
-            detail: error.to_string(),
-        },
+        ErrorKind::UnequalLengths { expected_len, len, .. } => wrong_count(*expected_len as usize, *len as usize),
+        _ => malformed(error),
     };
     FilePlace::line(line).wrong(origin, problem)
+}
+
+fn malformed(error: &csv::Error) -> String {
+    format!("not a well-formed table: {error}")
 }
 
 #[cfg(test)]

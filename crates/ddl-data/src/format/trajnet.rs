@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_core::{PedestrianName, Position};
+use ddl_core::Position;
 use serde::de::IgnoredAny;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -11,7 +11,6 @@ use serde_json::value::RawValue;
 use crate::error::FormatError;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::FilePlace;
-use crate::format::problem::FormatProblem;
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
@@ -37,17 +36,12 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRat
             }
             Some((known, _)) if *known == position => {}
             Some(&(known, first_line)) => {
-                let problem = FormatProblem::Disagreement {
-                    pedestrian: Box::new(match key {
-                        PedestrianField::Number(number, _) => PedestrianName::Number(number),
-                        PedestrianField::Word(word) => PedestrianName::Word(word.into()),
-                    }),
-                    frame,
-                    first_line,
-                    // Prints as many digits as distinguish the two.
-                    first: format!("{known:?}"),
-                    found: format!("{position:?}"),
-                };
+                // The debug format prints as many digits as distinguish the two.
+                let problem = format!(
+                    "pedestrian {} is in frame {frame} at {position:?}, but on line {first_line} at {known:?}; \
+                     overlapping scenes must agree",
+                    key.written()
+                );
                 return Err(place.wrong(origin, problem));
             }
         }
@@ -64,21 +58,24 @@ pub(super) struct SceneRate {
 
 impl SceneRate {
     #[expect(clippy::float_cmp, reason = "equal rates have the same digits")]
-    fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), FormatProblem> {
+    fn take(&mut self, scene: &SceneFields, line: usize) -> Result<(), String> {
         let Some(fps) = scene.fps.as_ref().filter(|fps| !fps.is_null()) else {
             return Ok(());
         };
         let rate = fps.as_f64().filter(|fps| fps.is_finite() && *fps > 0.0);
         let found = || field::quoted(&fps.to_string());
-        let rate = rate.ok_or_else(|| FormatProblem::Rate { found: found() })?;
+        let rate = rate.ok_or_else(|| {
+            let found = found();
+            format!("scene.fps must be a number above 0, the frames in a second, found {found}")
+        })?;
         match self.frames_a_second {
             None => (self.line, self.frames_a_second) = (line, Some(rate)),
             Some(first) if first != rate => {
-                return Err(FormatProblem::RateChanges {
-                    first_line: self.line,
-                    first: first.to_string(),
-                    found: found(),
-                });
+                let (found, first_line) = (found(), self.line);
+                return Err(format!(
+                    "scene.fps is {found}, but {first} on line {first_line}; a file holds one recording with one frame \
+                     rate"
+                ));
             }
             Some(_) => {}
         }
@@ -132,15 +129,14 @@ pub(super) fn observation(
     place.read(origin, row(text, place, rate))
 }
 
-fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<TrackRow>, FormatProblem> {
+fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<TrackRow>, String> {
     if text.trim().is_empty() {
         return Ok(None);
     }
-    let not_one = |detail: String| FormatProblem::Json { detail };
-    let wrong = |error: serde_json::Error| not_one(error.to_string());
+    let wrong = |error: serde_json::Error| not_one_object(&error.to_string());
     if !text.trim_start().starts_with('{') {
         let other: Value = serde_json::from_str(text).map_err(wrong)?;
-        return Err(not_one(format!("found {}", field::quoted(&other.to_string()))));
+        return Err(not_one_object(&format!("found {}", field::quoted(&other.to_string()))));
     }
     let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // A scene that is not an object shows that the file is of another kind.
@@ -154,7 +150,7 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
         return Ok(None);
     }
     let text = |value: Option<Value>, name: &'static str| match value {
-        None => Err(FormatProblem::MissingField { name }),
+        None => Err(format!("{name} is missing")),
         // As written in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
         Some(value) => Ok(value.to_string()),
     };
@@ -172,10 +168,10 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
     let scene = match track.scene {
         None => None,
-        Some(Value::String(name)) => Some(SceneName::new(&name)?),
+        Some(Value::String(name)) => Some(SceneName::new(&name).map_err(|error| error.to_string())?),
         Some(other) => {
             let found = field::quoted(&other.to_string());
-            return Err(FormatProblem::SceneIsNoText { found });
+            return Err(format!("track.scene must be a text, such as \"hall\", found {found}"));
         }
     };
     Ok(Some(TrackRow {
@@ -188,16 +184,19 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
 }
 
 /// The fields of a part; `None` where it is missing or null.
-fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str) -> Result<Option<T>, FormatProblem> {
+fn fields<'a, T: Deserialize<'a>>(part: Option<&'a RawValue>, name: &'static str) -> Result<Option<T>, String> {
     let Some(text) = part.map(RawValue::get) else {
         return Ok(None);
     };
     if !text.starts_with('{') {
-        let found = field::quoted(text);
-        return Err(FormatProblem::NotObject { name, found });
+        return Err(format!("{name} must be a JSON object, found {}", field::quoted(text)));
     }
     let fields = serde_json::from_str(text);
-    fields.map(Some).map_err(|error| FormatProblem::Json {
-        detail: format!("{name}: {error}"),
-    })
+    fields
+        .map(Some)
+        .map_err(|error| not_one_object(&format!("{name}: {error}")))
+}
+
+fn not_one_object(detail: &str) -> String {
+    format!("the line must be one JSON object (which has no NaN and no Infinity): {detail}")
 }

@@ -25,6 +25,7 @@ const ENTRY_CLEARANCE: f64 = 0.7;
 #[derive(Debug)]
 pub(super) struct Trace {
     pub(super) observations: Vec<Observation>,
+    /// Two or more pedestrians that entered together and stay together.
     pub(super) groups: Vec<Vec<PedestrianId>>,
 }
 

@@ -3,7 +3,6 @@
 use ddl_core::Position;
 
 use crate::simulate::obstacle::{Pillar, Wall};
-use crate::simulate::scene::CrowdScene;
 use crate::simulate::vector::{dot, left, lerp, norm, scale, sub, unit};
 
 #[derive(Debug, Clone, Copy)]
@@ -74,17 +73,14 @@ pub(super) struct SceneLayout {
     pub(super) arrival_interval: f64,
 }
 
-impl SceneLayout {
-    pub(super) fn of(scene: CrowdScene) -> Self {
-        match scene {
-            CrowdScene::Corridor => corridor(),
-            CrowdScene::Crossing => crossing(),
-            CrowdScene::Plaza => plaza(),
-            CrowdScene::Bottleneck => bottleneck(),
-            CrowdScene::Doorway => doorway(),
-        }
-    }
-}
+/// Each scene: the name of its recording and of its fold, and its layout.
+pub(super) const SCENES: [(&str, fn() -> SceneLayout); 5] = [
+    ("corridor", corridor),
+    ("crossing", crossing),
+    ("plaza", plaza),
+    ("bottleneck", bottleneck),
+    ("doorway", doorway),
+];
 
 /// A walled way of 26 m x 6 m with two pillars, used in both directions; some pedestrians stop at the wall.
 fn corridor() -> SceneLayout {

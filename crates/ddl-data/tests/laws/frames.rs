@@ -34,24 +34,22 @@ fn of_frames(frames: Vec<Frame>) -> Seen {
         .collect()
 }
 
-/// Checks that a written recording is read back with its rows in any order. Formats that can be read frame by frame are
-/// also read in that way.
+/// Checks that a written recording is read back, with its rows in any order. Formats that can be read frame by frame
+/// are also read in that way.
 fn check(recording: &Recording) {
-    let mut rows = recording.observations().to_vec();
-    rows.reverse();
     for format in Format::ALL {
-        let text = written(&rows, format);
+        let text = String::from_utf8(write_recording(recording, format).unwrap()).unwrap();
         let back = parse_recording(text.as_bytes(), "t", format).unwrap();
         assert_eq!(back.observations(), recording.observations(), "{format}");
-        let ours = write_recording(recording, format).unwrap();
-        let back = parse_recording(&ours, "t", format).unwrap();
-        assert_eq!(back.observations(), recording.observations(), "{format}");
-        if format != Format::StarCsv {
-            let text = written(recording.observations(), format);
-            let whole = parse_recording(text.as_bytes(), "t", format).unwrap();
-            let read = frames(text.as_bytes()).unwrap();
-            assert_eq!(of_frames(read), of_whole(&whole), "{format}");
+        if format == Format::StarCsv {
+            continue;
         }
+        assert_eq!(of_frames(frames(text.as_bytes()).unwrap()), of_whole(&back), "{format}");
+        let mut lines: Vec<&str> = text.lines().collect();
+        let first_row = usize::from(format == Format::Table);
+        lines[first_row..].reverse();
+        let back = parse_recording(lines.join("\n").as_bytes(), "t", format).unwrap();
+        assert_eq!(back.observations(), recording.observations(), "{format}");
     }
 }
 
@@ -242,61 +240,4 @@ fn scenes_that_fall_silent_make_room() {
     let read: Vec<Frame> = std::iter::from_fn(|| reader.next_frame().unwrap()).collect();
     assert_eq!(read.len(), 1_002);
     assert!(read.iter().all(|frame| frame.is_first));
-}
-
-fn written(rows: &[Observation], format: Format) -> String {
-    let column = |value: &dyn Fn(&Observation) -> String| rows.iter().map(value).collect::<Vec<_>>().join(",");
-    let mut text = String::new();
-    match format {
-        Format::StarCsv => {
-            let lines = [
-                column(&|o| o.frame.to_string()),
-                column(&|o| o.pedestrian.to_string()),
-                column(&|o| o.position[1].to_string()),
-                column(&|o| o.position[0].to_string()),
-            ];
-            text = lines.join("\n");
-        }
-        Format::SocialGan => {
-            for o in rows {
-                let [x, y] = o.position;
-                writeln!(text, "{}\t{}.0\t{x}\t{y}", o.frame, o.pedestrian).unwrap();
-            }
-        }
-        Format::TrajNet => {
-            for (scene, o) in rows.iter().enumerate() {
-                let [x, y] = o.position;
-                let (f, p) = (o.frame, o.pedestrian);
-                let span = format!(r#""p":{p},"s":{f},"e":{f}"#);
-                writeln!(text, r#"{{"scene":{{"id":{scene},{span},"fps":2.5,"tag":[4,[]]}}}}"#).unwrap();
-                writeln!(text, "{{\"track\":{{\"f\":{f},\"p\":{p},\"x\":{x:?},\"y\":{y:?}}}}}").unwrap();
-                // A forecast of the same frame, which is not an observation.
-                let place = format!(r#""f":{f},"p":{p},"x":0.5,"y":{x:?}"#);
-                writeln!(
-                    text,
-                    r#"{{"track":{{{place},"prediction_number":0,"scene_id":{scene}}}}}"#
-                )
-                .unwrap();
-            }
-        }
-        Format::Obsmat => {
-            for o in rows {
-                let [x, y] = o.position;
-                writeln!(
-                    text,
-                    "  {:e}   {:e}  {x:e}  0.0e+00 {y:e} 1.5e+0 0 -2E-3",
-                    o.frame as f64, o.pedestrian.0 as f64
-                )
-                .unwrap();
-            }
-        }
-        _ => {
-            text.push_str("pedestrian,frame,y,x\n");
-            for o in rows {
-                let [x, y] = o.position;
-                writeln!(text, "{},{},{y},{x}", o.pedestrian, o.frame).unwrap();
-            }
-        }
-    }
-    text
 }

@@ -127,7 +127,6 @@ proptest! {
         places in prop::collection::vec(prop::array::uniform2(-20.0..20.0_f64), 0..12),
     ) {
         let mask = Neighbours::within_box(&places, 10.0);
-        prop_assert_eq!(mask.len(), places.len());
         let mut pairs = Vec::new();
         for (i, a) in places.iter().enumerate() {
             for (j, b) in places.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use crate::{crowd::Crowd, memory_of, queries};
 use ddl_data::{OBSERVED, PedestrianId, Position};
-use ddl_memory::{MAX_RUNS, SceneMemory};
+use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 
 proptest! {
@@ -106,7 +106,7 @@ fn a_pedestrian_walking_about_for_hours_does_not_fill_a_memory() {
             .observe(frame, [(PedestrianId(1), [0.5 * frame as f64, 0.0])])
             .unwrap();
     }
-    let most = 8 * MAX_RUNS;
+    let most = 8 * 32;
     assert!(
         (most - 7..=most + 1).contains(&memory.segments()),
         "{}",

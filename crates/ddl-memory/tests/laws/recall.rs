@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::{Frames, memory_of, queries, step_of};
 use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack, WINDOW};
-use ddl_memory::{MAX_ABSENCE_STEPS, MAX_SQUARED_DISTANCE, SceneMemory};
+use ddl_memory::SceneMemory;
 use proptest::prelude::*;
 
 type Segment = [Position; WINDOW];
@@ -17,7 +17,7 @@ fn segments(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Segment>)> {
     for (frame, pedestrians) in frames {
         for (id, position) in pedestrians {
             let (first, last) = current.entry(*id).or_insert((*frame, *frame));
-            if frame - *last > MAX_ABSENCE_STEPS * step {
+            if frame - *last > 8 * step {
                 *first = *frame;
             }
             *last = *frame;
@@ -32,7 +32,7 @@ fn segments(frames: &Frames) -> Vec<(PedestrianId, bool, Vec<Segment>)> {
         };
         let last = track.last_key_value().map_or(0, |(frame, _)| *frame);
         let segments = track.keys().filter_map(segment).collect();
-        (id, now - last <= MAX_ABSENCE_STEPS * step, segments)
+        (id, now - last <= 8 * step, segments)
     };
     tracks.into_iter().map(pedestrian).collect()
 }
@@ -55,7 +55,7 @@ fn reference(frames: &Frames, observed: &[Position; OBSERVED], pedestrian: Optio
         let distances = segments.iter().map(|segment| distance(segment, observed));
         distances.fold(f64::INFINITY, f64::min)
     });
-    let mut nearest: Vec<f64> = nearest.filter(|d| *d < MAX_SQUARED_DISTANCE).collect();
+    let mut nearest: Vec<f64> = nearest.filter(|d| *d < 60.0).collect();
     nearest.sort_by(f64::total_cmp);
     nearest
 }
