@@ -47,6 +47,5 @@ pub fn goal_estimator(params: GoalEstimatorParams) -> GoalEstimator {
     let stride = (tracks.len() / EXPERTS).max(1);
     let some = tracks.into_iter().step_by(stride).collect();
     let library = ExpertLibrary::new(some, TIME_STEP).expect("simulated tracks are complete");
-    let params = params.check().expect("the parameters of the tests are valid");
-    GoalEstimator::new(params, library).expect("there are more tracks than experts")
+    GoalEstimator::new(params, library).expect("the parameters are valid, and there are more tracks than experts")
 }

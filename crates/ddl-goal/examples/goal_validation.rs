@@ -64,7 +64,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let dataset = star_files::dataset()?;
     let stride: usize = std::env::args().nth(1).map_or(Ok(1), |n| n.parse())?;
     let every = |tracks: Vec<Positions>| tracks.into_iter().step_by(stride.max(1)).collect();
-    let published = GoalEstimatorParams::published().query(QuerySpan::Observed);
+    let query = QuerySpan::Observed;
+    let published = GoalEstimatorParams {
+        query,
+        ..GoalEstimatorParams::published()
+    };
     for (name, params) in [
         ("published, without the future", published),
         ("default", GoalEstimatorParams::default()),
@@ -81,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 .collect();
             let library = training().flat_map(|r| within(r, |_, end| end <= LIBRARY_SHARE));
             let library = ExpertLibrary::new(library.collect(), 0.4)?;
-            let estimator = GoalEstimator::new(params.clone().check()?, library)?;
+            let estimator = GoalEstimator::new(params.clone(), library)?;
             let unseen = judged.mean_error(&estimator, &unseen)?;
             let tails = judged.mean_error(&estimator, &tails)?;
             println!(

@@ -1,10 +1,12 @@
 //! Goals from analogues: similar pedestrians in their own heading frames, and their endpoints.
 
+use ddl_core::WINDOW;
+
 use crate::choice::choose;
 use crate::error::{GoalError, LibraryError, TrackError};
 use crate::expert::Expert;
 use crate::goal_set::GoalSet;
-use crate::library::{ExpertLibrary, TRACK_LENGTH};
+use crate::library::ExpertLibrary;
 use crate::motion::Motion;
 use crate::motion_index::{Alike, MotionIndex};
 use crate::points::{Points, is_in_range};
@@ -33,8 +35,8 @@ impl Analogues {
         let time_step = library.time_step();
         let prepared = library.of_each(|track| {
             let motion = Motion::new(track, time_step)?;
-            let deviation = motion.deviation(track[TRACK_LENGTH - 1], 1.0);
-            let index = TRACK_LENGTH - 2;
+            let deviation = motion.deviation(track[WINDOW - 1], 1.0);
+            let index = WINDOW - 2;
             is_in_range(deviation)
                 .then_some((motion.components, deviation))
                 .ok_or(TrackError::VelocityOverflow { index })

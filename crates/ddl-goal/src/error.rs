@@ -60,6 +60,8 @@ pub enum GoalError {
     )]
     TooFewTracks { tracks: usize, experts: usize },
     #[error(transparent)]
+    Params(#[from] ParamsError),
+    #[error(transparent)]
     Library(#[from] LibraryError),
     #[error("the observed track: {0}")]
     Track(#[from] TrackError),

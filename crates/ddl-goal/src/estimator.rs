@@ -1,5 +1,6 @@
 //! The goal estimator: it retrieves similar pedestrians and places goals among their endpoints.
 
+use ddl_core::WINDOW;
 use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 use rayon::prelude::*;
 
@@ -8,9 +9,9 @@ use crate::error::{GoalError, TrackError};
 use crate::expert::Expert;
 use crate::goal_set::GoalSet;
 use crate::kmeans::KMeans;
-use crate::library::{ExpertLibrary, TRACK_LENGTH};
+use crate::library::ExpertLibrary;
 use crate::motion::Motion;
-use crate::params::{RetrievalFrame, ValidGoalEstimatorParams};
+use crate::params::{GoalEstimatorParams, RetrievalFrame};
 use crate::span::{QuerySpan, velocities};
 
 /// Estimates the goals of pedestrians from the endpoints of similar pedestrians in a library.
@@ -36,7 +37,7 @@ use crate::span::{QuerySpan, velocities};
 /// // Pedestrians of a training scene: 20 positions (m), 0.4 s apart, at 0.8 to 1.6 m/s.
 /// let walk = |speed: f64| (0..20).map(|t| [0.4 * speed * f64::from(t), 0.0]).collect();
 /// let tracks = (0..90).map(|i| walk(0.8 + 0.4 * f64::from(i % 3))).collect();
-/// let params = GoalEstimatorParams::default().experts(30).clusters(3).check()?;
+/// let params = GoalEstimatorParams { experts: 30, clusters: 3, ..Default::default() };
 /// let estimator = GoalEstimator::new(params, ExpertLibrary::new(tracks, 0.4)?)?;
 ///
 /// // A pedestrian that walks north, seen for 3.2 s.
@@ -48,7 +49,7 @@ use crate::span::{QuerySpan, velocities};
 /// ```
 #[derive(Clone, Debug)]
 pub struct GoalEstimator {
-    params: ValidGoalEstimatorParams,
+    params: GoalEstimatorParams,
     library: ExpertLibrary,
     method: Preparation,
 }
@@ -63,9 +64,10 @@ impl GoalEstimator {
     /// Creates an estimator and its search index.
     ///
     /// # Errors
-    /// [`GoalError::TooFewTracks`] if the frame is [`RetrievalFrame::World`] and the library is smaller than the number
+    /// [`GoalError::Params`] for invalid parameters; [`GoalError::TooFewTracks`] if the frame is [`RetrievalFrame::World`] and the library is smaller than the number
     /// of experts. Also for a library whose velocities exceed the range of `f64`.
-    pub fn new(params: ValidGoalEstimatorParams, library: ExpertLibrary) -> Result<Self, GoalError> {
+    pub fn new(params: GoalEstimatorParams, library: ExpertLibrary) -> Result<Self, GoalError> {
+        params.check()?;
         let method = match params.frame {
             RetrievalFrame::Heading => Preparation::Heading(Analogues::new(&library)?),
             RetrievalFrame::World => {
@@ -86,7 +88,7 @@ impl GoalEstimator {
     }
 
     /// The parameters.
-    pub fn params(&self) -> &ValidGoalEstimatorParams {
+    pub fn params(&self) -> &GoalEstimatorParams {
         &self.params
     }
 
@@ -149,7 +151,7 @@ impl GoalEstimator {
     /// deviation from repeating the last observed step is added to the pedestrian's own last step, repeated.
     ///
     /// # Shapes
-    /// `track`: as for [`GoalEstimator::estimate`]; the result has [`TRACK_LENGTH`] positions (m).
+    /// `track`: as for [`GoalEstimator::estimate`]; the result has 20 positions (m).
     ///
     /// # Errors
     /// As [`GoalEstimator::estimate`].
@@ -170,7 +172,7 @@ impl GoalEstimator {
         let pedestrian = Motion::new(track, library.time_step())?;
         let expert_motion = Motion::new(other, library.time_step())?;
         let mirror = if expert.mirrored { -1.0 } else { 1.0 };
-        let horizon = (TRACK_LENGTH - observed) as f64;
+        let horizon = (WINDOW - observed) as f64;
         let transferred = |(step, &position): (usize, &[f64; 2])| {
             let share = (step as f64 - (observed - 1) as f64) / horizon;
             let [ahead, left] = expert_motion.deviation(position, share);

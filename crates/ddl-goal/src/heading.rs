@@ -72,11 +72,6 @@ impl HeadingFrame {
         Ok(Self { origin: last, heading })
     }
 
-    /// The last observed position (m): the origin.
-    pub fn origin(&self) -> [f64; 2] {
-        self.origin
-    }
-
     /// Unit vector of the heading in world coordinates: the first axis.
     pub(crate) fn heading(&self) -> [f64; 2] {
         self.heading

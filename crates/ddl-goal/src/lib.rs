@@ -39,6 +39,6 @@ pub use estimator::GoalEstimator;
 pub use expert::Expert;
 pub use goal_set::GoalSet;
 pub use heading::HeadingFrame;
-pub use library::{ExpertLibrary, TRACK_LENGTH};
-pub use params::{GoalEstimatorParams, RetrievalFrame, ValidGoalEstimatorParams};
+pub use library::ExpertLibrary;
+pub use params::{GoalEstimatorParams, RetrievalFrame};
 pub use span::QuerySpan;

@@ -1,12 +1,10 @@
 //! The library of complete tracks.
 
+use ddl_core::WINDOW;
 use serde::{Deserialize, Serialize};
 
 use crate::error::{LibraryError, TrackError};
 use crate::span::check_finite;
-
-/// Positions of a complete track: 8 observed and 12 to forecast.
-pub const TRACK_LENGTH: usize = 20;
 
 /// Complete tracks of pedestrians from the training scenes; the most similar ones are retrieved as experts.
 ///
@@ -44,7 +42,7 @@ impl ExpertLibrary {
     /// Creates a library of tracks sampled every `time_step` seconds.
     ///
     /// # Shapes
-    /// `tracks`: at least one, each of [`TRACK_LENGTH`] positions (m).
+    /// `tracks`: at least one, each of 20 positions (m): 8 observed and 12 to forecast.
     ///
     /// # Errors
     /// If the list is empty, a track has another length or a position that is not finite, or the time step is not
@@ -58,7 +56,7 @@ impl ExpertLibrary {
         }
         let library = Self { time_step, tracks };
         library.of_each(|track| {
-            let (positions, needed) = (track.len(), TRACK_LENGTH);
+            let (positions, needed) = (track.len(), WINDOW);
             if positions != needed {
                 return Err(TrackError::WrongLength { positions, needed });
             }
@@ -93,7 +91,7 @@ impl ExpertLibrary {
     /// If there is no such track.
     pub(crate) fn end(&self, index: usize) -> [f64; 2] {
         let track = &self.tracks[index];
-        [0, 1].map(|d| track[TRACK_LENGTH - 1][d] - track[0][d])
+        [0, 1].map(|d| track[WINDOW - 1][d] - track[0][d])
     }
 }
 

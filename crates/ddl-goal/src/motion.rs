@@ -1,8 +1,9 @@
 //! The motion of a pedestrian in its own frame, relative to its own pace.
 
+use ddl_core::WINDOW;
+
 use crate::error::TrackError;
 use crate::heading::HeadingFrame;
-use crate::library::TRACK_LENGTH;
 use crate::span::{QuerySpan, velocities};
 
 /// Components compared: 7 velocities ahead, the direction in the world (2), 7 velocities to the left.
@@ -54,7 +55,7 @@ impl Motion {
         for (component, direction) in components[STEPS..SIGNED].iter_mut().zip(frame.heading()) {
             *component = (share * direction) as f32;
         }
-        let seconds = (TRACK_LENGTH - span.positions()) as f64 * time_step;
+        let seconds = (WINDOW - span.positions()) as f64 * time_step;
         let straight_on = frame
             .turn_to_frame(velocities[STEPS - 1])
             .map(|velocity| seconds * velocity);

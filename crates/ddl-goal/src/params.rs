@@ -1,4 +1,4 @@
-//! Parameters of the goal estimator, unchecked and checked.
+//! Parameters of the goal estimator.
 
 use serde::{Deserialize, Serialize};
 
@@ -17,7 +17,7 @@ pub enum RetrievalFrame {
     Heading,
 }
 
-/// Unchecked parameters of a [`crate::GoalEstimator`].
+/// Parameters of a [`crate::GoalEstimator`].
 ///
 /// | parameter | default | published | |
 /// |---|---|---|---|
@@ -35,9 +35,8 @@ pub enum RetrievalFrame {
 /// # Examples
 /// ```
 /// use ddl_goal::GoalEstimatorParams;
-/// let params = GoalEstimatorParams::default().experts(50).seed(7).check()?;
-/// assert_eq!((params.experts, params.clusters), (50, 20));
-/// # Ok::<(), ddl_goal::ParamsError>(())
+/// let params = GoalEstimatorParams { experts: 50, ..Default::default() };
+/// assert!(params.check().is_ok());
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
@@ -77,56 +76,19 @@ impl GoalEstimatorParams {
     /// The estimator exactly as published: the query reads the first future position.
     #[must_use]
     pub fn published() -> Self {
-        Self::default().into_published()
-    }
-
-    /// The published estimator with the seed of `self`.
-    #[must_use]
-    pub fn into_published(self) -> Self {
         Self {
             frame: RetrievalFrame::World,
             experts: 100,
-            clusters: 20,
-            gamma: 1.0,
-            restarts: 10,
-            seed: self.seed,
             query: QuerySpan::PublishedFuture,
+            ..Self::default()
         }
-    }
-
-    /// Sets [`experts`](Self::experts).
-    #[must_use]
-    pub fn experts(mut self, experts: usize) -> Self {
-        self.experts = experts;
-        self
-    }
-
-    /// Sets [`clusters`](Self::clusters).
-    #[must_use]
-    pub fn clusters(mut self, clusters: usize) -> Self {
-        self.clusters = clusters;
-        self
-    }
-
-    /// Sets [`seed`](Self::seed).
-    #[must_use]
-    pub fn seed(mut self, seed: u64) -> Self {
-        self.seed = seed;
-        self
-    }
-
-    /// Sets [`query`](Self::query).
-    #[must_use]
-    pub fn query(mut self, query: QuerySpan) -> Self {
-        self.query = query;
-        self
     }
 
     /// Checks the parameters.
     ///
     /// # Errors
     /// If a count is 0, gamma is negative or not finite, or the query reads the future in the frame `Heading`.
-    pub fn check(self) -> Result<ValidGoalEstimatorParams, ParamsError> {
+    pub fn check(&self) -> Result<(), ParamsError> {
         if self.experts == 0 {
             return Err(ParamsError::NoExperts);
         }
@@ -142,20 +104,7 @@ impl GoalEstimatorParams {
         if self.frame == RetrievalFrame::Heading && self.query == QuerySpan::PublishedFuture {
             return Err(ParamsError::FutureInHeadingFrame);
         }
-        Ok(ValidGoalEstimatorParams(self))
-    }
-}
-
-/// Parameters that passed [`GoalEstimatorParams::check`]; the fields can be read.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(transparent)]
-pub struct ValidGoalEstimatorParams(GoalEstimatorParams);
-
-impl std::ops::Deref for ValidGoalEstimatorParams {
-    type Target = GoalEstimatorParams;
-
-    fn deref(&self) -> &GoalEstimatorParams {
-        &self.0
+        Ok(())
     }
 }
 
@@ -163,27 +112,38 @@ impl std::ops::Deref for ValidGoalEstimatorParams {
 mod tests {
     use super::{GoalEstimatorParams, RetrievalFrame};
     use crate::error::ParamsError;
-    use crate::span::QuerySpan;
 
     #[test]
     fn each_invalid_value_is_refused() {
+        let default = GoalEstimatorParams::default;
         let refused = |params: GoalEstimatorParams| params.check().unwrap_err();
-        let params = GoalEstimatorParams::default;
-        assert_eq!(refused(params().experts(0)), ParamsError::NoExperts);
-        assert_eq!(refused(params().clusters(0)), ParamsError::NoClusters);
-        let restarts = |restarts| GoalEstimatorParams { restarts, ..params() };
-        assert_eq!(refused(restarts(0)), ParamsError::NoRestarts);
-        let with = |gamma| GoalEstimatorParams { gamma, ..params() };
+        let experts = GoalEstimatorParams {
+            experts: 0,
+            ..default()
+        };
+        assert_eq!(refused(experts), ParamsError::NoExperts);
+        let clusters = GoalEstimatorParams {
+            clusters: 0,
+            ..default()
+        };
+        assert_eq!(refused(clusters), ParamsError::NoClusters);
+        let restarts = GoalEstimatorParams {
+            restarts: 0,
+            ..default()
+        };
+        assert_eq!(refused(restarts), ParamsError::NoRestarts);
+        let with = |gamma| GoalEstimatorParams { gamma, ..default() };
         for gamma in [-1.0, f64::INFINITY, f64::NAN] {
             let error = refused(with(gamma)).to_string();
             assert!(error.starts_with("gamma is"), "{error}");
         }
         assert!(with(0.0).check().is_ok());
-        let future = params().query(QuerySpan::PublishedFuture);
-        let error = refused(future.clone());
-        assert_eq!(error, ParamsError::FutureInHeadingFrame);
-        let frame = RetrievalFrame::World;
-        let future = GoalEstimatorParams { frame, ..future };
-        assert!(future.check().is_ok());
+        assert!(GoalEstimatorParams::published().check().is_ok());
+        let frame = RetrievalFrame::Heading;
+        let future = GoalEstimatorParams {
+            frame,
+            ..GoalEstimatorParams::published()
+        };
+        assert_eq!(refused(future), ParamsError::FutureInHeadingFrame);
     }
 }

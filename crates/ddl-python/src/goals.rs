@@ -3,8 +3,8 @@
 use crate::arrays::{array, numbers, tracks};
 use crate::errors::of_any;
 use crate::interruptible::run;
-use ddl::data::{OBSERVED, TIME_STEP};
-use ddl::goal::{ExpertLibrary, GoalEstimatorParams, TRACK_LENGTH};
+use ddl::data::{OBSERVED, TIME_STEP, WINDOW};
+use ddl::goal::{ExpertLibrary, GoalEstimatorParams};
 use numpy::PyReadonlyArray3;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -17,14 +17,14 @@ impl GoalEstimator {
     #[new]
     #[pyo3(signature = (experts, *, similar = 800, goals = 20, seed = 0))]
     fn new(experts: PyReadonlyArray3<'_, f64>, similar: usize, goals: usize, seed: u64) -> PyResult<Self> {
-        let tracks = tracks("experts", &experts, TRACK_LENGTH, false)?;
+        let tracks = tracks("experts", &experts, WINDOW, false)?;
         let library = ExpertLibrary::new(tracks, TIME_STEP).map_err(of_any)?;
-        let params = GoalEstimatorParams::default()
-            .experts(similar.min(library.tracks().len()))
-            .clusters(goals)
-            .seed(seed)
-            .check()
-            .map_err(of_any)?;
+        let params = GoalEstimatorParams {
+            experts: similar.min(library.tracks().len()),
+            clusters: goals,
+            seed,
+            ..Default::default()
+        };
         let estimator = ddl::goal::GoalEstimator::new(params, library).map_err(of_any)?;
         Ok(Self(Arc::new(estimator)))
     }

@@ -43,7 +43,11 @@ fn reference() -> Definition {
 }
 
 fn of_six(library: &[Coefficients], clusters: usize) -> GoalEstimator {
-    let params = GoalEstimatorParams::default().experts(6).clusters(clusters);
+    let params = GoalEstimatorParams {
+        experts: 6,
+        clusters,
+        ..Default::default()
+    };
     estimator(params, library.iter().map(|&walk| track(walk)).collect())
 }
 
@@ -98,7 +102,10 @@ fn equal_analogues_weigh_the_same() {
         onward.for_each(|(place, step)| place[1] += side * 0.1 * f64::from(step));
         track
     };
-    let params = GoalEstimatorParams::default().clusters(3);
+    let params = GoalEstimatorParams {
+        clusters: 3,
+        ..Default::default()
+    };
     let library = [3.0, 0.0, -3.0].map(turned).to_vec();
     let set = estimator(params, library).estimate(&turned(0.0)).unwrap();
     // Each track is present with its mirror image.
@@ -110,7 +117,10 @@ fn equal_analogues_weigh_the_same() {
 #[test]
 fn the_nearest_hundred_experts_are_kept() {
     let tracks = (0..300_u32).map(|i| walk(0.005 * f64::from(i), 0.1, 0.01));
-    let params = GoalEstimatorParams::default().experts(250);
+    let params = GoalEstimatorParams {
+        experts: 250,
+        ..Default::default()
+    };
     let set = estimator(params, tracks.collect()).estimate(&walk(1.0, 0.1, 0.01));
     let set = set.unwrap();
     assert_eq!(set.experts().len(), 100);

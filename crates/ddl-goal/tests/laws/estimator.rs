@@ -15,12 +15,16 @@ fn library() -> Vec<Positions> {
 }
 
 fn estimator(mut params: GoalEstimatorParams) -> GoalEstimator {
-    params.restarts = 2;
-    tracks::estimator(params.experts(100), library())
+    (params.restarts, params.experts) = (2, 100);
+    tracks::estimator(params, library())
 }
 
 fn both_frames() -> [GoalEstimatorParams; 2] {
-    let world = GoalEstimatorParams::published().query(QuerySpan::Observed);
+    let query = QuerySpan::Observed;
+    let world = GoalEstimatorParams {
+        query,
+        ..GoalEstimatorParams::published()
+    };
     [GoalEstimatorParams::default(), world]
 }
 
@@ -58,7 +62,7 @@ proptest! {
         clusters in 1..40_usize,
     ) {
         for params in both_frames() {
-            let goals = estimator(params.clusters(clusters)).estimate(&walk(speed, heading, 0.0))?;
+            let goals = estimator(GoalEstimatorParams { clusters, ..params }).estimate(&walk(speed, heading, 0.0))?;
             prop_assert_eq!(goals.goals().len(), clusters);
             prop_assert_eq!(goals.weights().len(), clusters);
             prop_assert_eq!(goals.experts().len(), 100);
@@ -152,7 +156,11 @@ fn the_seed_decides_in_the_frame_of_the_world_only() {
     let track = walk(1.1, 0.4, 0.01);
     let [own, world] = both_frames().map(|params| {
         (1..12)
-            .map(|seed| estimator(params.clone().seed(seed)).estimate(&track).unwrap())
+            .map(|seed| {
+                estimator(GoalEstimatorParams { seed, ..params.clone() })
+                    .estimate(&track)
+                    .unwrap()
+            })
             .collect::<Vec<_>>()
     });
     assert!(own.iter().all(|set| bits(set) == bits(&own[0])));
@@ -186,16 +194,24 @@ fn rounding_errors_move_goals_only_slightly() {
 
 #[test]
 fn invalid_input_is_reported() {
-    let params = GoalEstimatorParams::published().experts(401);
-    let library_of = ExpertLibrary::new(library(), 0.4).unwrap();
-    let error = GoalEstimator::new(params.check().unwrap(), library_of).unwrap_err();
+    let refused = |experts| {
+        let params = GoalEstimatorParams {
+            experts,
+            ..GoalEstimatorParams::published()
+        };
+        GoalEstimator::new(params, ExpertLibrary::new(library(), 0.4).unwrap()).unwrap_err()
+    };
     let (tracks, experts) = (400, 401);
-    assert_eq!(error, GoalError::TooFewTracks { tracks, experts });
+    assert_eq!(refused(experts), GoalError::TooFewTracks { tracks, experts });
+    assert!(matches!(refused(0), GoalError::Params(_)));
 
     let estimator = estimator(GoalEstimatorParams::default());
     let track = walk(1.0, 0.0, 0.0);
     // The heading frame accepts fewer tracks.
-    let params = GoalEstimatorParams::default().experts(1_000);
+    let params = GoalEstimatorParams {
+        experts: 1_000,
+        ..Default::default()
+    };
     let goals = tracks::estimator(params, library()).estimate(&track);
     assert_eq!(goals.unwrap().goals().len(), 20);
     let (positions, needed) = (7, 8);
@@ -219,7 +235,11 @@ fn invalid_input_is_reported() {
 #[test]
 fn in_the_world_a_track_is_carried_to_where_the_pedestrian_was_first_seen() {
     let (other, pedestrian) = (walk(1.2, 0.3, 0.05), walk(1.0, 2.0, -0.04));
-    let params = GoalEstimatorParams::published().experts(1).clusters(1);
+    let params = GoalEstimatorParams {
+        experts: 1,
+        clusters: 1,
+        ..GoalEstimatorParams::published()
+    };
     let estimator = tracks::estimator(params, vec![other.clone()]);
     let expert = estimator.estimate(&pedestrian).unwrap().experts()[0];
     assert!(estimator.transfer_track(&expert, &pedestrian[..7]).is_err());

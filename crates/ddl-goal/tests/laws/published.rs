@@ -39,7 +39,11 @@ fn published(dataset: &Dataset, test_recording: &str, experts: usize) -> GoalEst
     let names = dataset.recordings().iter().map(Recording::name);
     let training = names.filter(|&name| name != test_recording);
     let tracks = training.flat_map(|name| windows(dataset, name, WindowRule::Complete).into_values());
-    let params = GoalEstimatorParams::published().experts(experts).seed(1);
+    let params = GoalEstimatorParams {
+        experts,
+        seed: 1,
+        ..GoalEstimatorParams::published()
+    };
     estimator(params, tracks.collect())
 }
 
@@ -136,7 +140,11 @@ fn the_heading_frame_transfers_between_streets() {
             .map(|(goals, track)| goal_error(goals, track));
         errors.sum::<f64>() / pedestrians.len() as f64
     };
-    let world = mean_error(GoalEstimatorParams::published().query(QuerySpan::Observed));
+    let query = QuerySpan::Observed;
+    let world = mean_error(GoalEstimatorParams {
+        query,
+        ..GoalEstimatorParams::published()
+    });
     let heading = mean_error(GoalEstimatorParams::default());
     println!(
         "{} pedestrians: {heading:.4} m, {world:.4} m in the frame of the world",

@@ -23,5 +23,5 @@ pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 pub(crate) fn estimator(params: GoalEstimatorParams, tracks: Vec<Positions>) -> GoalEstimator {
     let library = ExpertLibrary::new(tracks, 0.4).unwrap();
-    GoalEstimator::new(params.check().unwrap(), library).unwrap()
+    GoalEstimator::new(params, library).unwrap()
 }

@@ -91,10 +91,14 @@ impl GoalModel {
         network: Option<Box<dyn ProposeEndpoints>>,
     ) -> Result<Self, DdlError> {
         let library = experts::load(&config.goals_origin(), config.data.pedestrians, &run.experts())?;
-        let clusters = config.goals.retrieval.clone().check()?.clusters;
-        let params = config.goals.retrieval.clone().query(QuerySpan::Observed);
+        let params = GoalEstimatorParams {
+            query: QuerySpan::Observed,
+            ..config.goals.retrieval.clone()
+        };
+        params.check()?;
+        let clusters = params.clusters;
         let estimator =
-            GoalEstimator::new(params.check()?, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
+            GoalEstimator::new(params, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
         let motions = TrainingMotions::learn(estimator.library().tracks(), config.star.time_step);
         let origin = match (&config.goals.proposal, network) {
             (Some(recipe), Some(network)) => GoalOrigin::Pooled {
@@ -124,7 +128,8 @@ impl GoalModel {
             proposal,
             motions,
         } = unpacked;
-        let clusters = config.goals.retrieval.clone().check()?.clusters;
+        config.goals.retrieval.check()?;
+        let clusters = config.goals.retrieval.clusters;
         let goals = Self {
             source: source.clone(),
             config,
@@ -397,9 +402,12 @@ impl GoalModel {
             ));
         };
         let library: ExpertLibrary = estimator.library().clone();
-        let retrieval = self.recipe().retrieval.clone();
-        let params: GoalEstimatorParams = retrieval.into_published().query(query);
-        Ok(GoalEstimator::new(params.check()?, library)?)
+        let params = GoalEstimatorParams {
+            seed: self.recipe().retrieval.seed,
+            query,
+            ..GoalEstimatorParams::published()
+        };
+        Ok(GoalEstimator::new(params, library)?)
     }
 }
 

@@ -67,7 +67,10 @@ impl GoalRecipe {
     #[must_use]
     pub fn retrieved(seed: u64) -> Self {
         Self {
-            retrieval: GoalEstimatorParams::default().seed(seed),
+            retrieval: GoalEstimatorParams {
+                seed,
+                ..Default::default()
+            },
             proposal: None,
         }
     }
@@ -77,7 +80,7 @@ impl GoalRecipe {
     /// # Errors
     /// The first parameter that is out of range.
     pub fn check(&self) -> Result<(), DdlError> {
-        self.retrieval.clone().check()?;
+        self.retrieval.check()?;
         if let Some(proposal) = &self.proposal {
             proposal.network.check()?;
             proposal.training.check()?;

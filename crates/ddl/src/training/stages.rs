@@ -15,7 +15,7 @@ use crate::training::goals::{self, GoalStage};
 use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
 use crate::training::starting_weights::StartingWeights;
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
-use ddl_goal::RetrievalFrame;
+use ddl_goal::{GoalEstimatorParams, RetrievalFrame};
 use ddl_network::weights::{Weights, load_weights, save_weights};
 use ddl_network::{EpochReport, Objective};
 use ddl_star::{LIBTORCH_VERSION, StarError, TorchNetwork, Trainer};
@@ -177,8 +177,8 @@ fn ensure_patience(request: &TrainingRequest, fold: &Fold<'_>, rule: WindowRule)
 
 /// Evaluation also runs the published estimator, which retrieves this many tracks.
 fn ensure_enough_tracks(goals: &GoalRecipe, windows: &[Window]) -> Result<(), DdlError> {
-    let published = goals.retrieval.clone().into_published().check()?;
-    let retrieval = goals.retrieval.clone().check()?;
+    let (published, retrieval) = (GoalEstimatorParams::published(), &goals.retrieval);
+    retrieval.check()?;
     let (tracks, experts) = (
         windows.iter().map(Window::len).sum::<usize>(),
         match retrieval.frame {
