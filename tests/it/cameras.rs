@@ -111,7 +111,7 @@ fn check_interleaved(
 proptest! {
     #[test]
     fn each_scene_is_forecast_as_if_it_were_alone(streams in streams()) {
-        check_interleaved(&ConstantVelocity::last_step(), streams)?;
+        check_interleaved(&ConstantVelocity::LastStep, streams)?;
     }
 }
 
@@ -135,7 +135,7 @@ impl Forecaster for Picky {
         if window.observed(0)[7][0] > 98.0 {
             return Err(ForecastError::model("picky", std::io::Error::other("far")));
         }
-        ConstantVelocity::last_step().forecast(window)
+        ConstantVelocity::LastStep.forecast(window)
     }
 }
 

@@ -97,14 +97,14 @@ impl GoalSource for EstimatedGoals {
 #[test]
 fn baselines_never_see_the_future() {
     for forecaster in [
-        ConstantVelocity::last_step(),
-        ConstantVelocity::mean_observed(),
-        ConstantVelocity::angular_noise(3),
+        ConstantVelocity::LastStep,
+        ConstantVelocity::MeanObserved,
+        ConstantVelocity::AngularNoise { seed: 3 },
     ] {
         never_sees_the_future(&forecaster);
     }
     let goals = EstimatedGoals::with(GoalEstimatorParams::default());
-    never_sees_the_future(&StraightLine::to(goals));
+    never_sees_the_future(&StraightLine(goals));
 }
 
 #[test]
@@ -127,7 +127,7 @@ impl Forecaster for PublishedWhenItCan {
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let [published, fair] = &self.0;
         let source = if window.has_future() { published } else { fair };
-        StraightLine::to(source).forecast(window)
+        StraightLine(source).forecast(window)
     }
 }
 
@@ -145,7 +145,7 @@ fn forecasters_that_need_the_future_are_refused() {
     let goals = EstimatedGoals::with(GoalEstimatorParams::published());
     let error = goals.0.estimate(windows[0].observed(0)).unwrap_err();
     assert!(error.to_string().contains('9'), "{error}");
-    let (published, oracle) = (StraightLine::to(goals), StraightLine::to(TrueEndpoint));
+    let (published, oracle) = (StraightLine(goals), StraightLine(TrueEndpoint));
     for forecaster in [&published as &dyn Forecaster, &oracle] {
         assert!(leak::find(forecaster, &windows[0]).is_err());
         assert!(Protocol::Published.forecast(forecaster, &windows).is_ok());

@@ -102,10 +102,10 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
         if frame >= 8 * step {
             let mut far = pedestrians(frame);
             far[0].1 = [f64::MAX, 0.0];
-            let before = adapting.regions().unwrap().learned().cloned();
+            let before = adapting.regions().unwrap().table().cloned();
             let error = adapting.push(frame, far).unwrap_err();
             assert!(matches!(error, DdlError::Forecast(_)), "{error}");
-            assert_eq!(adapting.regions().unwrap().learned().cloned(), before);
+            assert_eq!(adapting.regions().unwrap().table().cloned(), before);
         }
         let now = adapting.push(frame, pedestrians(frame)).unwrap();
         let evidence = certified.push_certified(frame, pedestrians(frame)).unwrap();
@@ -125,8 +125,8 @@ fn a_live_forecaster_adapts_and_an_error_changes_nothing() {
         );
     }
     // The adaptation is kept when the tracker restarts.
-    let learned = adapting.regions().unwrap().learned().cloned();
+    let learned = adapting.regions().unwrap().table().cloned();
     adapting.clear();
-    assert_eq!(adapting.regions().unwrap().learned().cloned(), learned);
+    assert_eq!(adapting.regions().unwrap().table().cloned(), learned);
     assert!(adapting.push(0, pedestrians(0)).unwrap().is_none());
 }

@@ -205,11 +205,6 @@ impl Forecast {
         self.certified.as_ref().map(|certified| certified[pair])
     }
 
-    /// Whether every hypothesis has a certificate that holds or fails.
-    pub fn has_certificates(&self) -> bool {
-        self.certified.is_some()
-    }
-
     /// The hypothesis of pedestrian `i` with the largest weight; of equal weights, the first.
     pub fn most_likely(&self, i: usize) -> usize {
         (1..self.hypotheses).fold(0, |best, k| {

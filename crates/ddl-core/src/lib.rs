@@ -17,10 +17,9 @@ pub use forecast::Forecast;
 pub use forecaster::Forecaster;
 pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 pub use position::{
-    FRAME_LIMIT, FRAME_STEP_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance, is_finite, is_frame,
-    is_frame_step,
+    FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance, is_finite, is_frame, is_frame_step,
 };
-pub use region::{AdaptiveRegions, TrackedQuantiles};
+pub use region::AdaptiveRegions;
 pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};
 pub use weighted_goals::WeightedGoals;

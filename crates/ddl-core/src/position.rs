@@ -14,17 +14,15 @@ pub const WINDOW: usize = OBSERVED + HORIZON;
 
 /// Limit of frame numbers: exact in an `f64`, and far from overflow in sums.
 pub const FRAME_LIMIT: i64 = 1 << 53;
-/// Largest number of raw frames per step.
-pub const FRAME_STEP_LIMIT: i64 = 1 << 31;
 
 /// Whether a raw frame number is below [`FRAME_LIMIT`] in size.
 pub fn is_frame(frame: i64) -> bool {
     frame.unsigned_abs() < FRAME_LIMIT.unsigned_abs()
 }
 
-/// Whether a number of raw frames per step is in 1..=[`FRAME_STEP_LIMIT`].
+/// Whether a number of raw frames per step is in 1..=2^31.
 pub fn is_frame_step(step: i64) -> bool {
-    (1..=FRAME_STEP_LIMIT).contains(&step)
+    (1..=1 << 31).contains(&step)
 }
 
 /// Whether both coordinates are finite.

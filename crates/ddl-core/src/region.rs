@@ -23,33 +23,19 @@ use crate::position::Position;
 use crate::region_table::Disc;
 
 pub use adaptive::AdaptiveRegions;
-pub use tracked::TrackedQuantiles;
 
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [standard deviation](Self::std_dev).
     pub fn region_score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
-        self.score_among(i, t, position, &self.log_weights(i))
-    }
-
-    /// As [`region_score`](Self::region_score), from the precomputed [`log_weights`](Self::log_weights) of the
-    /// pedestrian.
-    fn score_among(&self, i: usize, t: usize, position: Position, log_weights: &[f64]) -> Option<f64> {
         let std_dev = self.std_dev(i, t)?;
-        let of_hypothesis = |(k, log_weight): (usize, &f64)| {
+        let heaviest = self.weight(i, self.most_likely(i));
+        let of_hypothesis = |k: usize| {
             let p = self.hypothesis(i, k)[t];
             let off = [0, 1].map(|axis| (position[axis] - p[axis]) / std_dev);
-            0.5 * (off[0] * off[0] + off[1] * off[1]) - log_weight
+            0.5 * (off[0] * off[0] + off[1] * off[1]) - (self.weight(i, k) / heaviest).ln()
         };
-        let scores = log_weights.iter().enumerate().map(of_hypothesis);
-        scores.reduce(f64::min)
-    }
-
-    /// ln of the weight of each hypothesis, relative to the most likely one of the pedestrian.
-    fn log_weights(&self, i: usize) -> Vec<f64> {
-        let heaviest = self.weight(i, self.most_likely(i));
-        let of_hypothesis = |k: usize| (self.weight(i, k) / heaviest).ln();
-        (0..self.hypotheses()).map(of_hypothesis).collect()
+        (0..self.hypotheses()).map(of_hypothesis).reduce(f64::min)
     }
 
     /// ln of the weight of a hypothesis, relative to the most likely one of the pedestrian.

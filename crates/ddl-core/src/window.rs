@@ -18,11 +18,6 @@ pub struct CompletionCounts {
 }
 
 impl CompletionCounts {
-    /// Whether all 8 positions were seen.
-    pub fn is_complete(self) -> bool {
-        self == Self::default()
-    }
-
     /// How many positions were seen.
     pub fn seen(self) -> usize {
         OBSERVED - self.padded - self.filled
@@ -71,6 +66,7 @@ pub struct Window {
     remembered: Vec<Vec<RememberedTrack>>,
 }
 
+#[expect(clippy::len_without_is_empty, reason = "a window holds at least one pedestrian")]
 impl Window {
     /// Creates a window from tracks, one per pedestrian.
     ///
@@ -179,7 +175,7 @@ impl Window {
             "{} counts",
             counts.len()
         );
-        let whole = counts.iter().all(|counts| counts.is_complete());
+        let whole = counts.iter().all(|counts| *counts == CompletionCounts::default());
         self.completion_counts = if whole { Vec::new() } else { counts };
         self
     }
@@ -245,11 +241,6 @@ impl Window {
     /// Number of pedestrians N (at least one).
     pub fn len(&self) -> usize {
         self.pedestrians.len()
-    }
-
-    /// Always false: a window holds at least one pedestrian.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     /// Number of positions of each track, T: 20, or 8 without a future.

@@ -36,11 +36,6 @@ impl<T: Real, const D: usize> Ball<T, D> {
         &self.centre
     }
 
-    /// The radius (metres).
-    pub fn radius(&self) -> T {
-        self.radius
-    }
-
     /// The distance from the surface (metres), negative inside, and the unit vector from the centre to `position`, 0 at
     /// the centre. A distance too large for `T` is infinite.
     #[must_use]

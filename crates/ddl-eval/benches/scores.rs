@@ -66,7 +66,7 @@ fn windows() -> Vec<Window> {
 
 fn score(criterion: &mut Criterion) {
     let windows = windows();
-    let noisy = ConstantVelocity::angular_noise(1);
+    let noisy = ConstantVelocity::AngularNoise { seed: 1 };
     let forecasts: Vec<Forecast> = noisy.forecast_all(&windows).expect("a forecast");
     let mut group = criterion.benchmark_group("24,254 pedestrians");
     group.sample_size(10);
@@ -85,7 +85,7 @@ fn adapt(criterion: &mut Criterion) {
     let scores: Vec<[f64; HORIZON]> = (1..1000).map(|n| [f64::from(n) / 200.0; HORIZON]).collect();
     let levels: Vec<f64> = (1..13).map(|n| f64::from(n) / 13.0).collect();
     let table = Arc::new(RegionTable::of(&scores, &levels).expect("999 scores"));
-    let noisy = ConstantVelocity::angular_noise(1).forecast_all(&windows);
+    let noisy = ConstantVelocity::AngularNoise { seed: 1 }.forecast_all(&windows);
     let spread = || vec![0.5; CROWD * HORIZON];
     let forecasts: Vec<Forecast> = noisy
         .expect("a forecast")

@@ -13,7 +13,7 @@ pub use social_force::SocialForce;
 pub use straight_line::{GoalSource, StraightLine, TrueEndpoint};
 
 use crate::conditions::{Conditions, ResultRow};
-use crate::error::MeasureError;
+use crate::error::EvaluationError;
 
 /// Default seed of the baseline with angular noise, so that its rows are reproducible.
 pub const NOISE_SEED: u64 = 1;
@@ -25,7 +25,11 @@ pub const NOISE_SEED: u64 = 1;
 ///
 /// # Errors
 /// The windows cannot be scored.
-pub fn measure(conditions: &Conditions, windows: &[Window], noise_seed: u64) -> Result<Vec<ResultRow>, MeasureError> {
+pub fn measure(
+    conditions: &Conditions,
+    windows: &[Window],
+    noise_seed: u64,
+) -> Result<Vec<ResultRow>, EvaluationError> {
     measure_among(conditions, windows, windows, noise_seed)
 }
 
@@ -34,7 +38,7 @@ pub(crate) fn measure_among(
     windows: &[Window],
     full_windows: &[Window],
     noise_seed: u64,
-) -> Result<Vec<ResultRow>, MeasureError> {
+) -> Result<Vec<ResultRow>, EvaluationError> {
     let row = |forecaster: &dyn Forecaster, seed| {
         let conditions = Conditions {
             forecaster: forecaster.name(),
@@ -50,16 +54,19 @@ pub(crate) fn measure_among(
         ResultRow::measure_among(conditions, forecaster, windows, full_windows)
     };
     let mut rows = vec![
-        row(&ConstantVelocity::last_step(), None)?,
-        row(&ConstantVelocity::mean_observed(), None)?,
+        row(&ConstantVelocity::LastStep, None)?,
+        row(&ConstantVelocity::MeanObserved, None)?,
     ];
     if conditions.protocol.hypotheses() > 1 {
-        rows.push(row(&ConstantVelocity::angular_noise(noise_seed), Some(noise_seed))?);
+        rows.push(row(
+            &ConstantVelocity::AngularNoise { seed: noise_seed },
+            Some(noise_seed),
+        )?);
     }
-    rows.push(row(&ConstantAcceleration::bounded(), None)?);
+    rows.push(row(&ConstantAcceleration::Bounded, None)?);
     rows.push(row(&SocialForce, None)?);
     if conditions.protocol.gives_future() {
-        rows.push(row(&StraightLine::to(TrueEndpoint), None)?);
+        rows.push(row(&StraightLine(TrueEndpoint), None)?);
     }
     Ok(rows)
 }

@@ -4,7 +4,7 @@ use ddl_core::{Forecast, Forecaster, Window};
 use ddl_data::{Convention, WindowRule};
 use serde::{Deserialize, Serialize};
 
-use crate::error::{EvaluationError, MeasureError};
+use crate::error::EvaluationError;
 use crate::protocol::Protocol;
 use crate::scored_window::indices_in_full;
 use crate::scores::Scores;
@@ -104,7 +104,7 @@ impl ResultRow {
         conditions: Conditions,
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
-    ) -> Result<Self, MeasureError> {
+    ) -> Result<Self, EvaluationError> {
         Self::measure_among(conditions, forecaster, windows, windows)
     }
 
@@ -113,7 +113,7 @@ impl ResultRow {
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
         full_windows: &[Window],
-    ) -> Result<Self, MeasureError> {
+    ) -> Result<Self, EvaluationError> {
         let mut forecasts = conditions.protocol.forecast(forecaster, full_windows)?;
         for (forecast, (window, full_window)) in forecasts.iter_mut().zip(windows.iter().zip(full_windows)) {
             // Mismatches are reported by the scoring.
@@ -124,7 +124,7 @@ impl ResultRow {
                 *forecast = forecast.of_pedestrians(&indices);
             }
         }
-        Ok(Self::score_among(conditions, windows, full_windows, &forecasts)?)
+        Self::score_among(conditions, windows, full_windows, &forecasts)
     }
 
     /// Scores given forecasts, one for each window.

@@ -2,11 +2,13 @@
 
 use ddl_core::{ForecastError, HORIZON, Window};
 
-/// Forecasts cannot be scored.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+/// Forecasts cannot be made or scored.
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages describe the fields")]
 pub enum EvaluationError {
+    #[error(transparent)]
+    Forecast(#[from] ForecastError),
     #[error("no window to score; is the test set empty?")]
     NoWindows,
     #[error("{windows} windows but {forecasts} forecasts; each window needs one forecast")]
@@ -60,16 +62,4 @@ impl EvaluationError {
         }
         Err(Self::Count { windows, forecasts })
     }
-}
-
-/// A forecaster cannot be measured.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum MeasureError {
-    /// Its forecast failed.
-    #[error(transparent)]
-    Forecast(#[from] ForecastError),
-    /// Its forecasts cannot be scored.
-    #[error(transparent)]
-    Evaluation(#[from] EvaluationError),
 }

@@ -2,38 +2,32 @@
 
 use ddl_core::{Forecast, ForecastError, Forecaster, OBSERVED, Position, WINDOW, Window};
 
-/// A change of the future that changed a forecast.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Leak {
-    /// The change of the window.
-    pub change: String,
-}
-
 /// Looks for a leak: forecasts the window as it is, without its future, and with futures changed one frame of one
-/// pedestrian at a time and all together. `None` when every forecast is bit-identical.
+/// pedestrian at a time and all together. `None` when every forecast is bit-identical, else the change that a forecast
+/// revealed.
 ///
 /// # Errors
 /// The forecaster failed, for instance because it needs the future, which is also a leak.
-pub fn find(forecaster: &(impl Forecaster + ?Sized), window: &Window) -> Result<Option<Leak>, ForecastError> {
+pub fn find(forecaster: &(impl Forecaster + ?Sized), window: &Window) -> Result<Option<String>, ForecastError> {
     let reference = bits(&forecaster.forecast(&window.without_future())?);
     let leaks =
         |changed: &Window| -> Result<bool, ForecastError> { Ok(bits(&forecaster.forecast(changed)?) != reference) };
-    let leak = |change: String| Ok(Some(Leak { change }));
     if !window.has_future() {
         return Ok(None);
     }
     if leaks(window)? {
-        return leak("the future was shown at all".to_owned());
+        return Ok(Some("the future was shown at all".to_owned()));
     }
     let everything = window.map_positions(|_, frame, p| if frame < OBSERVED { p } else { moved(p) });
     if leaks(&everything)? {
-        return leak("every future position was moved".to_owned());
+        return Ok(Some("every future position was moved".to_owned()));
     }
     for pedestrian in 0..window.len() {
         for frame in OBSERVED..WINDOW {
             let one = window.map_positions(|i, t, p| if (i, t) == (pedestrian, frame) { moved(p) } else { p });
             if leaks(&one)? {
-                return leak(format!("pedestrian {pedestrian} was moved at frame {}", frame + 1));
+                let frame = frame + 1;
+                return Ok(Some(format!("pedestrian {pedestrian} was moved at frame {frame}")));
             }
         }
     }

@@ -31,7 +31,7 @@ pub mod significance;
 pub use category::{Category, MotionKind};
 pub use category_scores::CategoryScores;
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
-pub use error::{EvaluationError, MeasureError, WindowProblem};
+pub use error::{EvaluationError, WindowProblem};
 pub use metric::stability::StabilityScores;
 pub use protocol::Protocol;
 pub use scored_window::ScoredWindow;

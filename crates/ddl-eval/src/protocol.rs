@@ -101,7 +101,7 @@ impl Protocol {
     }
 
     /// Whether forecasters see the true future of the windows.
-    pub const fn gives_future(self) -> bool {
+    pub(crate) const fn gives_future(self) -> bool {
         matches!(self, Self::Published)
     }
 

@@ -72,12 +72,12 @@ impl<'a> ScoredWindow<'a> {
     }
 
     /// Number of pedestrians, N.
-    pub fn pedestrians(&self) -> usize {
+    pub(crate) fn pedestrians(&self) -> usize {
         self.forecast.pedestrians()
     }
 
     /// Number of hypotheses, K.
-    pub fn hypotheses(&self) -> usize {
+    pub(crate) fn hypotheses(&self) -> usize {
         self.forecast.hypotheses()
     }
 
@@ -87,7 +87,7 @@ impl<'a> ScoredWindow<'a> {
     }
 
     /// The last observed position of pedestrian `i`, metres.
-    pub fn last_observed(&self, i: usize) -> Position {
+    pub(crate) fn last_observed(&self, i: usize) -> Position {
         self.window.observed(i)[OBSERVED - 1]
     }
 

@@ -13,13 +13,4 @@ mod paired;
 
 pub use blocks::{BlockErrors, block_errors};
 pub use bootstrap::{Interval, mean_interval};
-pub use paired::{DifferentWindowsError, PairedDifference, paired_difference};
-
-/// The error of a block that is compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum BlockMetric {
-    /// minADE, m.
-    MinAde,
-    /// minFDE, m.
-    MinFde,
-}
+pub use paired::{PairedDifference, paired_difference};

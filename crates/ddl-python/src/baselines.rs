@@ -24,12 +24,12 @@ pub(crate) fn baseline<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let scene = Observed::new(&past, asked, completion(false))?;
     let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
-        "constant_velocity" => Box::new(ConstantVelocity::last_step()),
-        "mean_velocity" => Box::new(ConstantVelocity::mean_observed()),
-        "angular_noise" => Box::new(ConstantVelocity::angular_noise(seed)),
-        "constant_acceleration" => Box::new(ConstantAcceleration::bounded()),
+        "constant_velocity" => Box::new(ConstantVelocity::LastStep),
+        "mean_velocity" => Box::new(ConstantVelocity::MeanObserved),
+        "angular_noise" => Box::new(ConstantVelocity::AngularNoise { seed }),
+        "constant_acceleration" => Box::new(ConstantAcceleration::Bounded),
         "social_force" => Box::new(SocialForce),
-        "straight_line" => Box::new(StraightLine::to(given(goals.as_ref(), &scene)?)),
+        "straight_line" => Box::new(StraightLine(given(goals.as_ref(), &scene)?)),
         _ => {
             return Err(PyValueError::new_err(format!("there is no baseline {name:?}")));
         }

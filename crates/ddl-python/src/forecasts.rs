@@ -79,7 +79,7 @@ pub(crate) fn parts<'py>(
         None
     };
     dict.set_item("goals", goals)?;
-    let certified = if forecast.map_or(empty.certified, Forecast::has_certificates) {
+    let certified = if forecast.map_or(empty.certified, |forecast| forecast.certified(0, 0).is_some()) {
         Some(array(py, certified.collect(), [n, k])?)
     } else {
         None

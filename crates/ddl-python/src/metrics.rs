@@ -63,9 +63,9 @@ pub(crate) fn displacement_errors(
     let forecast = forecast(&paths, None, None)?;
     of_scene(&truth, &forecast, |scene| {
         let errors = DisplacementErrors::of(scene);
-        let shape = [errors.pedestrians(), errors.hypotheses()];
+        let shape = [forecast.pedestrians(), forecast.hypotheses()];
         let matrix = |row: fn(&DisplacementErrors, usize) -> &[f64]| {
-            let rows = (0..errors.pedestrians()).flat_map(|i| row(&errors, i).to_vec());
+            let rows = (0..shape[0]).flat_map(|i| row(&errors, i).to_vec());
             array(py, rows.collect(), shape)
         };
         Ok((matrix(DisplacementErrors::ade)?, matrix(DisplacementErrors::fde)?))
@@ -82,8 +82,8 @@ pub(crate) fn kde_nll(
 ) -> PyResult<Py<PyAny>> {
     let forecast = forecast(&paths, weights.as_ref(), None)?;
     of_scene(&truth, &forecast, |scene| {
-        let likelihoods = (0..scene.pedestrians()).map(|i| kde_of(scene, i));
-        array(py, several(likelihoods)?, [scene.pedestrians()])
+        let n = forecast.pedestrians();
+        array(py, several((0..n).map(|i| kde_of(scene, i)))?, [n])
     })
 }
 
@@ -97,7 +97,7 @@ pub(crate) fn mahalanobis(
 ) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
     let forecast = forecast(&paths, weights.as_ref(), None)?;
     of_scene(&truth, &forecast, |scene| {
-        let n = scene.pedestrians();
+        let n = forecast.pedestrians();
         let errors: Vec<DistributionErrors> = several((0..n).map(|i| DistributionErrors::of(scene, i)))?;
         let distances = errors.iter().map(|errors| errors.mahalanobis).collect();
         let covariances = errors.iter().map(|errors| errors.covariance);

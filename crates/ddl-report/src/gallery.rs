@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use ddl_core::{Forecast, distance};
-use ddl_data::{HORIZON, Position, Window};
+use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use ddl_eval::category::{Interaction, MotionKind};
 use ddl_eval::metric::collision::closest_approach;
 use ddl_eval::metric::displacement::DisplacementErrors;
@@ -126,7 +126,7 @@ fn shows(scene: &ScoredWindow<'_>, i: usize) -> Vec<(HighlightKind, Vec<usize>)>
 fn converges(scene: &ScoredWindow<'_>, i: usize) -> bool {
     let k = scene.forecast().representative(i);
     let end = scene.forecast().hypothesis(i, k)[HORIZON - 1];
-    distance(scene.last_observed(i), end) >= GONE
+    distance(scene.window().observed(i)[OBSERVED - 1], end) >= GONE
         && scene
             .forecast()
             .goal(i, k)

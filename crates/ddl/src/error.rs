@@ -52,9 +52,6 @@ pub enum DdlError {
     Evaluation(#[from] ddl_eval::EvaluationError),
     #[cfg(feature = "report")]
     #[error(transparent)]
-    Measure(#[from] ddl_eval::MeasureError),
-    #[cfg(feature = "report")]
-    #[error(transparent)]
     Report(#[from] ddl_report::ReportError),
     #[error("validation = {0} is out of range: it is a share of the recordings' time, at least 0 and below 1")]
     Validation(f64),

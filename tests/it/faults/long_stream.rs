@@ -80,7 +80,7 @@ fn a_day_of_tracks_needs_constant_memory() {
         "a live stream, constant velocity",
         "a_day_of_tracks_needs_constant_memory",
         size,
-        || stream(ConstantVelocity::last_step(), size),
+        || stream(ConstantVelocity::LastStep, size),
     );
 }
 

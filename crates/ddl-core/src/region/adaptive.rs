@@ -6,6 +6,7 @@ use crate::forecast::Forecast;
 use crate::pedestrian::PedestrianId;
 use crate::position::{HORIZON, OBSERVED, Position};
 use crate::region::tracked::{Outcomes, TrackedQuantiles};
+use crate::region_table::RegionTable;
 use crate::window::Window;
 
 /// Adapts the regions of the forecasts of one place so that they keep their coverage. It takes every forecast, in order
@@ -16,10 +17,6 @@ use crate::window::Window;
 /// the order of the pedestrians, or on later frames.
 ///
 /// It begins with the table of the first forecast that has one. Forecasts without regions are unchanged.
-///
-/// # State
-/// It keeps the [learned](Self::learned) shifts, which can be saved and [resumed](Self::resuming), and the forecasts of
-/// the last 4.8 s, which are not saved.
 ///
 /// # Examples
 /// ```
@@ -53,26 +50,15 @@ struct Pending {
     frame: i64,
     pedestrians: Vec<PedestrianId>,
     forecast: Forecast,
-    /// `[N][K]`: ln of the weight, relative to the weight of the most likely hypothesis.
-    log_weights: Vec<f64>,
 }
 
 impl AdaptiveRegions {
-    /// Resumes with the learned state.
-    #[must_use]
-    pub fn resuming(learned: TrackedQuantiles) -> Self {
-        Self {
-            learned: Some(learned),
-            pending: VecDeque::new(),
-        }
+    /// The table as learned so far; `None` before the first forecast with regions.
+    pub fn table(&self) -> Option<&RegionTable> {
+        self.learned.as_ref().map(|learned| learned.table().as_ref())
     }
 
-    /// The learned state; `None` before the first forecast with regions.
-    pub fn learned(&self) -> Option<&TrackedQuantiles> {
-        self.learned.as_ref()
-    }
-
-    /// Forgets the pending forecasts, as after a restart of a tracker. The learned state is kept.
+    /// Forgets the pending forecasts, as after a restart of a tracker. The [table](Self::table) is kept.
     pub fn clear(&mut self) {
         self.pending.clear();
     }
@@ -115,7 +101,6 @@ impl Pending {
             frame: window.frames()[OBSERVED - 1],
             pedestrians: window.pedestrians().to_vec(),
             forecast: forecast.clone(),
-            log_weights: (0..window.len()).flat_map(|i| forecast.log_weights(i)).collect(),
         }
     }
 
@@ -136,17 +121,10 @@ impl Pending {
             .pedestrians
             .iter()
             .enumerate()
-            .filter_map(|(i, id)| self.score(i, step, position(id)?))
+            .filter_map(|(i, id)| self.forecast.region_score(i, step, position(id)?))
             .collect();
         let table = self.forecast.shared_regions()?;
         (!scores.is_empty()).then_some(Outcomes { step, table, scores })
-    }
-
-    /// As [`Forecast::region_score`].
-    fn score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
-        let k = self.forecast.hypotheses();
-        let log_weights = &self.log_weights[i * k..][..k];
-        self.forecast.score_among(i, t, position, log_weights)
     }
 }
 
@@ -159,7 +137,6 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
-    use crate::region_table::RegionTable;
 
     /// The positions of all pedestrians, frame by frame.
     type Tracks = Vec<Vec<Position>>;
@@ -244,35 +221,6 @@ mod tests {
             let other = adapted(&mut AdaptiveRegions::default(), &forecasts(&tracks, order));
             prop_assert_eq!(one, other);
         }
-
-        #[test]
-        fn what_is_saved_goes_on_as_what_was_cleared(tracks in tracks(), at in 0..30usize) {
-            let stream = forecasts(&tracks, ORDER);
-            let mut never_saved = AdaptiveRegions::default();
-            adapted(&mut never_saved, &stream[..=at]);
-            let text = serde_json::to_string(never_saved.learned().unwrap()).unwrap();
-            let mut restored = AdaptiveRegions::resuming(serde_json::from_str(&text).unwrap());
-            never_saved.clear();
-            let on = adapted(&mut never_saved, &stream[at + 1..]);
-            prop_assert_eq!(on, adapted(&mut restored, &stream[at + 1..]));
-        }
-
-        #[test]
-        fn every_score_is_that_of_the_forecast(tracks in tracks()) {
-            let stream = forecasts(&tracks, ORDER);
-            for pair in stream.windows(6) {
-                let [(window, forecast), .., (later, _)] = pair else { unreachable!() };
-                let outcomes = Pending::new(window, forecast).outcomes(later).unwrap();
-                prop_assert_eq!(outcomes.step, 4);
-                let mut expected = Vec::new();
-                for (i, id) in window.pedestrians().iter().enumerate() {
-                    if let Some(j) = later.pedestrians().iter().position(|other| other == id) {
-                        expected.push(forecast.region_score(i, 4, later.observed(j)[7]).unwrap());
-                    }
-                }
-                prop_assert_eq!(outcomes.scores, expected);
-            }
-        }
     }
 
     #[test]
@@ -282,15 +230,15 @@ mod tests {
         let mut regions = AdaptiveRegions::default();
         let bare = Forecast::with_equal_weights(PEOPLE, 1, vec![[0.0; 2]; PEOPLE * HORIZON]).unwrap();
         assert_eq!(regions.adapt(&stream[0].0, bare.clone()), bare);
-        assert_eq!(regions.learned(), None);
+        assert_eq!(regions.table(), None);
         let (window, forecast) = &stream[0];
         assert_eq!(&regions.adapt(window, forecast.clone()), forecast);
         // An earlier time is a restart, and so not an outcome.
-        let learned = regions.learned().cloned();
+        let table = regions.table().cloned();
         let _ = regions.adapt(window, forecast.clone());
-        assert_eq!(regions.learned().cloned(), learned);
+        assert_eq!(regions.table().cloned(), table);
         let _ = regions.adapt(&stream[1].0, stream[1].1.clone());
-        assert_ne!(regions.learned().cloned(), learned);
+        assert_ne!(regions.table().cloned(), table);
         // After 4.8 s a forecast is no longer pending.
         assert!(regions.pending.len() <= HORIZON);
     }

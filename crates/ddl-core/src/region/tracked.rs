@@ -20,8 +20,6 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use crate::position::HORIZON;
 use crate::region_table::{LevelQuantiles, RegionTable};
 
@@ -36,43 +34,12 @@ const LARGEST_SHIFT: f64 = 4.158_883_083_359_672;
 const LEAST: f64 = 1e-3;
 
 /// A table of quantiles with their learned shifts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "Columns", into = "Columns")]
-pub struct TrackedQuantiles {
+#[derive(Debug, Clone)]
+pub(super) struct TrackedQuantiles {
     start: Arc<RegionTable>,
     /// `[levels][12]`, no unit.
     shifts: Vec<[f64; HORIZON]>,
     now: Arc<RegionTable>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Columns {
-    start: RegionTable,
-    shifts: Vec<[f64; HORIZON]>,
-}
-
-impl TryFrom<Columns> for TrackedQuantiles {
-    type Error = &'static str;
-
-    fn try_from(Columns { start, shifts }: Columns) -> Result<Self, Self::Error> {
-        let bounded = |shift: &f64| shift.abs() <= LARGEST_SHIFT;
-        if shifts.len() != start.0.levels.len() || !shifts.as_flattened().iter().all(bounded) {
-            return Err("tracked quantiles need a row of 12 shifts for each level, none beyond ln 64");
-        }
-        let now = shifted(&start, &shifts).into();
-        let start = Arc::new(start);
-        Ok(Self { start, shifts, now })
-    }
-}
-
-impl From<TrackedQuantiles> for Columns {
-    fn from(tracked: TrackedQuantiles) -> Self {
-        Self {
-            start: (*tracked.start).clone(),
-            shifts: tracked.shifts,
-        }
-    }
 }
 
 /// Scores of the positions at one frame under forecasts made `step` + 1 steps before it.
@@ -187,19 +154,6 @@ mod tests {
         }
     }
 
-    #[test]
-    fn forged_shifts_are_refused() {
-        let tracked = TrackedQuantiles::new(table(&[(0.5, 1.0), (0.9, 4.0)]));
-        let text = serde_json::to_string(&tracked).unwrap();
-        let read = |text: &str| serde_json::from_str::<TrackedQuantiles>(text);
-        assert_eq!(read(&text).unwrap(), tracked);
-        for forged in ["5.0", "-4.2", "1e999", "null"] {
-            let text = text.replacen("[[0.0", &format!("[[{forged}"), 1);
-            assert!(read(&text).is_err(), "{forged}");
-        }
-        assert!(read(&text.replace("0.9", "1.5")).is_err());
-    }
-
     /// One frame: for each observed pedestrian, whether it is missed, and its distance from the edge.
     type Judged = Vec<(bool, f64)>;
 
@@ -252,9 +206,6 @@ mod tests {
                 let quantile = |level| tracked.table().quantile(level, step).unwrap();
                 let [low, middle, high] = [0.2, 0.5, 0.9].map(quantile);
                 prop_assert!(low > 0.0 && low <= middle && middle <= high && high <= 256.1);
-                let again: TrackedQuantiles =
-                    serde_json::from_str(&serde_json::to_string(&tracked).unwrap()).unwrap();
-                prop_assert_eq!(&again, &tracked);
             }
         }
     }

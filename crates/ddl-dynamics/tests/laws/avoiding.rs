@@ -63,20 +63,26 @@ fn the_distance_falls_and_no_ball_is_entered<T: Real, const D: usize>(scene: &Sc
 }
 for_every_space!(the_distance_falls_and_no_ball_is_entered, any_scene);
 
+/// Centre and radius (m).
+type Pillar = (Vector2<f64>, f64);
+
+fn ball(&(centre, radius): &Pillar) -> Ball<f64, 2> {
+    Ball::new(centre, radius).unwrap()
+}
+
 /// Pillars at least 2 cm apart, none of them on the goal at the origin, a pedestrian outside them, a metric with a
 /// condition number up to 20, and a margin.
-fn park() -> impl Strategy<Value = (Vec<Ball<f64, 2>>, Vector2<f64>, CholeskyMetric<f64, 2>, f64)> {
+fn park() -> impl Strategy<Value = (Vec<Pillar>, Vector2<f64>, CholeskyMetric<f64, 2>, f64)> {
     let place = || (-6.0..6.0_f64, -6.0..6.0_f64).prop_map(|(x, y)| Vector2::new(x, y));
     let factor = (-0.7..0.0_f64, 0.0..std::f64::consts::PI);
     (vec((place(), 0.2..1.5_f64), 0..14), place(), factor, 0.3..3.0_f64).prop_map(
         |(pillars, start, (slow, turn), margin)| {
-            let mut pillars_apart: Vec<Ball<f64, 2>> = Vec::new();
-            for (centre, radius) in pillars {
-                let ball = Ball::new(centre, radius).unwrap();
-                let clear = |point: &Vector2<f64>, gap| ball.gap_and_normal(point).0 > gap;
-                let apart = |other: &Ball<f64, 2>| clear(other.centre(), other.radius() + 0.02);
+            let mut pillars_apart: Vec<Pillar> = Vec::new();
+            for pillar in pillars {
+                let clear = |point: &Vector2<f64>, gap| ball(&pillar).gap_and_normal(point).0 > gap;
+                let apart = |(centre, radius): &Pillar| clear(centre, radius + 0.02);
                 if clear(&start, 0.02) && clear(&Vector2::zeros(), 0.05) && pillars_apart.iter().all(apart) {
-                    pillars_apart.push(ball);
+                    pillars_apart.push(pillar);
                 }
             }
             let turn = Rotation2::new(turn);
@@ -95,6 +101,7 @@ proptest! {
     fn every_pedestrian_arrives((pillars, start, metric, margin) in park()) {
         let origin = Attractor::new(Vector2::zeros()).unwrap();
         let pedestrian = NaturalGradientFlow::new(origin, metric);
+        let pillars: Vec<Ball<f64, 2>> = pillars.iter().map(ball).collect();
         let flow = AvoidingFlow::new(pedestrian, pillars.clone(), margin).unwrap();
         let path = rollout(&flow, &StableEuler, start, 0.4, 20_000).unwrap();
         for pillar in &pillars {
@@ -112,12 +119,13 @@ proptest! {
     ) {
         let origin = Attractor::new(Vector2::zeros()).unwrap();
         let pedestrian = NaturalGradientFlow::new(origin, metric);
-        let flow = AvoidingFlow::new(pedestrian, pillars.clone(), margin).unwrap();
+        let balls: Vec<Ball<f64, 2>> = pillars.iter().map(ball).collect();
+        let flow = AvoidingFlow::new(pedestrian, balls.clone(), margin).unwrap();
         let outwards = Vector2::new(angle.cos(), angle.sin());
-        for beside in &pillars {
-            let place = beside.centre() + outwards * (beside.radius() + 10_f64.powf(exponent));
+        for (centre, radius) in pillars {
+            let place = centre + outwards * (radius + 10_f64.powf(exponent));
             let velocity = flow.velocity(&at(place)).unwrap();
-            for pillar in &pillars {
+            for pillar in &balls {
                 let (gap, normal) = pillar.gap_and_normal(&place);
                 let share = (gap / margin).max(f64::EPSILON);
                 let largest = (2.0 * share).sqrt() * metric.eigenvalue_range().largest;

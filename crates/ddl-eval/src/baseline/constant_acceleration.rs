@@ -7,34 +7,24 @@ use crate::metric::displacement::minus;
 /// Constant acceleration: `p(8 + t) = p(8) + t v + t (t + 1)/2 a`, with `v = p(8) - p(7)` in metres per frame and
 /// `a = v - (p(7) - p(6))` in metres per frame squared.
 ///
-/// [`unbounded`](Self::unbounded) is the literature's definition. [`bounded`](Self::bounded) is at most as fast as the
+/// [`Unbounded`](Self::Unbounded) is the literature's definition. [`Bounded`](Self::Bounded) is at most as fast as the
 /// fastest of the 7 observed steps, and stops where it would turn back.
 ///
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ConstantAcceleration {
-    bounded: bool,
-}
-
-impl ConstantAcceleration {
+pub enum ConstantAcceleration {
     /// The definition of the literature, without bounds.
-    pub fn unbounded() -> Self {
-        Self { bounded: false }
-    }
-
+    Unbounded,
     /// At most as fast as the fastest observed step, and without turning back.
-    pub fn bounded() -> Self {
-        Self { bounded: true }
-    }
+    Bounded,
 }
 
 impl Forecaster for ConstantAcceleration {
     fn name(&self) -> String {
-        if self.bounded {
-            "constant acceleration (bounded)".to_owned()
-        } else {
-            "constant acceleration".to_owned()
+        match self {
+            Self::Unbounded => "constant acceleration".to_owned(),
+            Self::Bounded => "constant acceleration (bounded)".to_owned(),
         }
     }
 
@@ -50,7 +40,7 @@ impl Forecaster for ConstantAcceleration {
             let mut stands = false;
             for _ in 0..HORIZON {
                 step = [step[0] + acceleration[0], step[1] + acceleration[1]];
-                if self.bounded {
+                if *self == Self::Bounded {
                     stands |= step[0] * last[0] + step[1] * last[1] < 0.0;
                     let speed = length(step);
                     if stands {
@@ -84,7 +74,7 @@ mod tests {
     /// 0.55 m: it gets faster, bounded by 0.6 m.
     #[test]
     fn ends_by_hand() {
-        let (free, bounded) = (ConstantAcceleration::unbounded(), ConstantAcceleration::bounded());
+        let (free, bounded) = (ConstantAcceleration::Unbounded, ConstantAcceleration::Bounded);
         for (forecaster, usual, (at, other), last, expected) in [
             (free, 1.0, (5, [1.0, -0.1]), 1.0, [19.0, 7.7]),
             (free, 1.0, (5, [1.0, 0.0]), 0.75, [6.75 - 10.5, 0.0]),

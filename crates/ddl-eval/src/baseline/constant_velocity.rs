@@ -14,38 +14,22 @@ const NOISE_DEG: f64 = 25.0;
 /// # References
 /// Schoeller et al., "What the constant velocity model can teach us about pedestrian motion prediction", RA-L 2020.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ConstantVelocity(VelocityRule);
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum VelocityRule {
+pub enum ConstantVelocity {
+    /// v is the last observed step, `p(8) - p(7)`.
     LastStep,
+    /// v is the mean of the 7 observed steps, `(p(8) - p(1)) / 7`.
     MeanObserved,
-    AngularNoise { seed: u64 },
+    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2). They
+    /// depend only on the seed, the recording and the first frame.
+    AngularNoise {
+        /// Seed of the draws.
+        seed: u64,
+    },
 }
 
 impl ConstantVelocity {
-    /// v is the last observed step, `p(8) - p(7)`.
-    pub fn last_step() -> Self {
-        Self(VelocityRule::LastStep)
-    }
-
-    /// v is the mean of the 7 observed steps, `(p(8) - p(1)) / 7`.
-    pub fn mean_observed() -> Self {
-        Self(VelocityRule::MeanObserved)
-    }
-
-    /// Twenty hypotheses of equal weight: the last observed step turned by angles drawn from N(0, (25 degrees)^2). They
-    /// depend only on the seed, the recording and the first frame.
-    pub fn angular_noise(seed: u64) -> Self {
-        Self(VelocityRule::AngularNoise { seed })
-    }
-
     fn velocity(self, observed: &[Position]) -> Position {
-        let back = if self.0 == VelocityRule::MeanObserved {
-            OBSERVED - 1
-        } else {
-            1
-        };
+        let back = if self == Self::MeanObserved { OBSERVED - 1 } else { 1 };
         let (from, to) = (observed[OBSERVED - 1 - back], observed[OBSERVED - 1]);
         [(to[0] - from[0]) / back as f64, (to[1] - from[1]) / back as f64]
     }
@@ -53,18 +37,18 @@ impl ConstantVelocity {
 
 impl Forecaster for ConstantVelocity {
     fn name(&self) -> String {
-        match self.0 {
-            VelocityRule::LastStep => "constant velocity (last step)".to_owned(),
-            VelocityRule::MeanObserved => "constant velocity (mean observed)".to_owned(),
-            VelocityRule::AngularNoise { .. } => {
+        match *self {
+            Self::LastStep => "constant velocity (last step)".to_owned(),
+            Self::MeanObserved => "constant velocity (mean observed)".to_owned(),
+            Self::AngularNoise { .. } => {
                 format!("constant velocity ({NOISE_DEG} degree angular noise)")
             }
         }
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        let (mut random, samples) = match self.0 {
-            VelocityRule::AngularNoise { seed } => (Some(stream(seed, window)), SAMPLES),
+        let (mut random, samples) = match *self {
+            Self::AngularNoise { seed } => (Some(stream(seed, window)), SAMPLES),
             _ => (None, 1),
         };
         let mut positions = Vec::with_capacity(window.len() * samples * HORIZON);
@@ -122,16 +106,16 @@ mod tests {
     #[test]
     fn the_last_step_goes_on_or_the_mean_one() {
         let position = |rule: ConstantVelocity, t| rule.forecast(&turning()).unwrap().hypothesis(0, 0)[t];
-        assert_eq!(position(ConstantVelocity::last_step(), 0), [6.0, 4.0]);
-        assert_eq!(position(ConstantVelocity::last_step(), 11), [6.0, 26.0]);
-        let mean = position(ConstantVelocity::mean_observed(), 6);
+        assert_eq!(position(ConstantVelocity::LastStep, 0), [6.0, 4.0]);
+        assert_eq!(position(ConstantVelocity::LastStep, 11), [6.0, 26.0]);
+        let mean = position(ConstantVelocity::MeanObserved, 6);
         assert_relative_eq!(mean[0], 12.0, epsilon = 1e-12);
         assert_relative_eq!(mean[1], 4.0, epsilon = 1e-12);
     }
 
     #[test]
     fn noise_turns_but_keeps_the_speed_and_the_seed_decides() {
-        let noisy = ConstantVelocity::angular_noise(3);
+        let noisy = ConstantVelocity::AngularNoise { seed: 3 };
         let forecast = noisy.forecast(&turning()).unwrap();
         assert_eq!(forecast.hypotheses(), 20);
         let mut headings = Vec::new();
@@ -147,7 +131,7 @@ mod tests {
         assert_eq!(forecast, noisy.forecast(&turning()).unwrap());
         assert_ne!(
             forecast,
-            ConstantVelocity::angular_noise(4).forecast(&turning()).unwrap()
+            ConstantVelocity::AngularNoise { seed: 4 }.forecast(&turning()).unwrap()
         );
     }
 }

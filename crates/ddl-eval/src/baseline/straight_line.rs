@@ -48,14 +48,10 @@ impl GoalSource for TrueEndpoint {
 /// Straight at constant speed to each goal, with arrival at the 12th frame:
 /// `p(8 + t) = p(8) + t/12 (g - p(8))`, one hypothesis for each goal, with the goal's weight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct StraightLine<G>(G);
-
-impl<G: GoalSource> StraightLine<G> {
-    /// Straight lines to the goals of `source`.
-    pub fn to(source: G) -> Self {
-        Self(source)
-    }
-}
+pub struct StraightLine<G>(
+    /// The source of the goals.
+    pub G,
+);
 
 impl<G: GoalSource> Forecaster for StraightLine<G> {
     fn name(&self) -> String {
@@ -133,7 +129,7 @@ mod tests {
         let sets = Corners(1).goals(&windows[0]).unwrap();
         assert_eq!(sets[0].goals(), [[12.0, 0.0], [0.0, -24.0]]);
         assert_eq!(sets[0].weights(), [0.25, 0.75]);
-        let straight = StraightLine::to(Corners(1));
+        let straight = StraightLine(Corners(1));
         let forecast = straight.forecast(&windows[0]).unwrap();
         assert_eq!(forecast.hypothesis(0, 0)[2], [3.0, 0.0]);
         assert_eq!(forecast.hypothesis(0, 1)[11], [0.0, -24.0]);
@@ -141,7 +137,7 @@ mod tests {
         assert_eq!(forecast.most_likely(0), 1);
         let single = Protocol::Single.forecast(&straight, &windows).unwrap();
         assert_eq!(single, [forecast.single()]);
-        let error = StraightLine::to(Corners(0)).forecast(&windows[0]).unwrap_err();
+        let error = StraightLine(Corners(0)).forecast(&windows[0]).unwrap_err();
         let expected = "goal source `two corners`: 0 goal sets for 1 pedestrians";
         assert_eq!(error.to_string(), expected);
     }
@@ -149,7 +145,7 @@ mod tests {
     #[test]
     fn the_oracle_works_only_where_the_future_is_shown() {
         let windows = [window(&[[0.0, 0.0]], &[[1.0, 0.0]])];
-        let oracle = StraightLine::to(TrueEndpoint);
+        let oracle = StraightLine(TrueEndpoint);
         assert!(Protocol::Published.forecast(&oracle, &windows).is_ok());
         for protocol in [Protocol::Fair, Protocol::Single] {
             let error = protocol.forecast(&oracle, &windows).unwrap_err();

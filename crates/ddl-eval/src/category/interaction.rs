@@ -61,10 +61,10 @@ pub enum Interaction {
 
 impl Interaction {
     /// All kinds, in display order.
-    pub const ALL: [Self; 4] = [Self::LeaderFollower, Self::CollisionAvoidance, Self::Group, Self::Other];
+    pub(crate) const ALL: [Self; 4] = [Self::LeaderFollower, Self::CollisionAvoidance, Self::Group, Self::Other];
 
-    /// The kinds of pedestrian `i`, in the order of [`Interaction::ALL`]; empty without interaction or future.
-    pub fn of(window: &Window, i: usize) -> Vec<Self> {
+    /// The kinds of pedestrian `i`, in display order; empty without interaction or future.
+    pub(crate) fn of(window: &Window, i: usize) -> Vec<Self> {
         if !window.has_future() {
             return Vec::new();
         }

@@ -38,7 +38,7 @@ pub enum TrajectoryType {
 
 impl TrajectoryType {
     /// All types, I to IV.
-    pub const ALL: [Self; 4] = [Self::Static, Self::Linear, Self::Interacting, Self::NonInteracting];
+    pub(crate) const ALL: [Self; 4] = [Self::Static, Self::Linear, Self::Interacting, Self::NonInteracting];
 
     /// The type of pedestrian `i` with the kinds of its interaction, which only type III has.
     pub(crate) fn with_interactions(window: &Window, i: usize) -> Option<(Self, Vec<Interaction>)> {

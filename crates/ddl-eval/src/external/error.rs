@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ddl_core::{ForecastError, ForecastShapeError};
 
-use crate::error::{EvaluationError, MeasureError};
+use crate::error::EvaluationError;
 
 /// Forecasts of another program cannot be read, matched or scored.
 #[derive(Debug, thiserror::Error)]
@@ -67,6 +67,4 @@ pub enum ExternalError {
     Forecast(#[from] ForecastError),
     #[error(transparent)]
     Evaluation(#[from] EvaluationError),
-    #[error(transparent)]
-    Measure(#[from] MeasureError),
 }

@@ -45,11 +45,6 @@ impl Matched {
         &self.file
     }
 
-    /// Number of pedestrians with forecasts, counted once for each window.
-    pub fn forecast_pedestrians(&self) -> usize {
-        self.windows.iter().map(Window::len).sum()
-    }
-
     /// Number of pedestrians in the windows.
     pub fn pedestrians(&self) -> usize {
         self.pedestrians
@@ -57,7 +52,7 @@ impl Matched {
 
     /// Text that describes the scored part of the pedestrians, with a digest of them; `None` if all are scored.
     pub fn test_subset(&self) -> Option<String> {
-        let scored = self.forecast_pedestrians();
+        let scored: usize = self.windows.iter().map(Window::len).sum();
         (scored < self.pedestrians).then(|| {
             format!(
                 "pedestrians forecast by {}: {scored} of {}, digest {}",

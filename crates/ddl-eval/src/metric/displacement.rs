@@ -61,16 +61,6 @@ impl DisplacementErrors {
         }
     }
 
-    /// Number of pedestrians, N.
-    pub fn pedestrians(&self) -> usize {
-        self.ade.len() / self.hypotheses
-    }
-
-    /// Number of hypotheses, K.
-    pub fn hypotheses(&self) -> usize {
-        self.hypotheses
-    }
-
     /// ADE of each hypothesis of pedestrian `i`, metres.
     pub fn ade(&self, i: usize) -> &[f64] {
         &self.ade[i * self.hypotheses..(i + 1) * self.hypotheses]
@@ -126,8 +116,8 @@ pub(crate) fn joint_fde(errors: &DisplacementErrors) -> f64 {
 }
 
 fn least_scene_mean(errors: &DisplacementErrors, metric: fn(&DisplacementErrors, usize) -> &[f64]) -> f64 {
-    let n = errors.pedestrians();
-    (0..errors.hypotheses())
+    let n = errors.ade.len() / errors.hypotheses;
+    (0..errors.hypotheses)
         .map(|k| (0..n).map(|i| metric(errors, i)[k]).sum::<f64>() / n as f64)
         .fold(f64::INFINITY, f64::min)
 }

@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 use crate::error::EvaluationError;
 use crate::metric::displacement::DisplacementErrors;
 use crate::scored_window::ScoredWindow;
-use crate::significance::BlockMetric;
 
 /// Length of a block in steps of 0.4 s: 20 s. A window belongs to the block in which it starts.
 pub(crate) const BLOCK_STEPS: i64 = 50;
@@ -30,14 +29,6 @@ pub struct BlockErrors {
 }
 
 impl BlockErrors {
-    /// The sum of one metric, m.
-    pub fn sum(&self, metric: BlockMetric) -> f64 {
-        match metric {
-            BlockMetric::MinAde => self.min_ade,
-            BlockMetric::MinFde => self.min_fde,
-        }
-    }
-
     /// Whether both have the same windows: recording, block and pedestrians agree.
     pub fn same_windows(&self, other: &Self) -> bool {
         (&self.recording, self.block, self.pedestrians) == (&other.recording, other.block, other.pedestrians)
@@ -130,8 +121,8 @@ mod tests {
             .collect();
         assert_eq!(short, [("a", -1, 1), ("a", 0, 2), ("a", 1, 1), ("b", 0, 1)]);
         for (block, expected) in blocks.iter().zip([4.0, 3.0, 3.0, 5.0]) {
-            assert_relative_eq!(block.sum(BlockMetric::MinAde), expected);
-            assert_relative_eq!(block.sum(BlockMetric::MinFde), expected);
+            assert_relative_eq!(block.min_ade, expected);
+            assert_relative_eq!(block.min_fde, expected);
         }
     }
 }

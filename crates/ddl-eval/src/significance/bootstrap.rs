@@ -3,7 +3,7 @@
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use crate::significance::{BlockErrors, BlockMetric};
+use crate::significance::BlockErrors;
 
 /// Resamples drawn for an interval, and sign changes for a test.
 pub(crate) const RESAMPLES: usize = 10_000;
@@ -28,13 +28,13 @@ pub struct Interval {
 /// The unweighted mean over the folds of the mean error of each fold, with its 95 % percentile interval over resampled
 /// blocks, m.
 ///
-/// `folds[f]` are the blocks of fold f. In each of 10,000 resamples every fold draws as many of its blocks as it
+/// `folds[f]` are the blocks of fold f, and `metric` is a sum of errors of a block, m. In each of 10,000 resamples every fold draws as many of its blocks as it
 /// has, with replacement; its mean is that of the pedestrians in them. `None` without folds, or with a fold of fewer
 /// than 10.
-pub fn mean_interval(folds: &[&[BlockErrors]], metric: BlockMetric) -> Option<Interval> {
+pub fn mean_interval(folds: &[&[BlockErrors]], metric: fn(&BlockErrors) -> f64) -> Option<Interval> {
     let folds: Vec<Vec<PartialSum>> = folds
         .iter()
-        .map(|blocks| blocks.iter().map(|b| PartialSum::of(b.sum(metric), b)).collect())
+        .map(|blocks| blocks.iter().map(|b| PartialSum::of(metric(b), b)).collect())
         .collect();
     interval(&folds)
 }
@@ -120,11 +120,11 @@ mod tests {
     fn the_interval_is_that_of_the_binomial_distribution() {
         let errors: Vec<f64> = (0..40).map(|i| f64::from(i % 2)).collect();
         let fold = blocks(&errors);
-        let interval = mean_interval(&[&fold], BlockMetric::MinAde).unwrap();
+        let interval = mean_interval(&[&fold], |block| block.min_ade).unwrap();
         assert_relative_eq!(interval.mean, 0.5, epsilon = 1e-12);
         assert_relative_eq!(interval.low, 0.345, epsilon = 0.011);
         assert_relative_eq!(interval.high, 0.655, epsilon = 0.011);
-        let twice = mean_interval(&[&fold], BlockMetric::MinFde).unwrap();
+        let twice = mean_interval(&[&fold], |block| block.min_fde).unwrap();
         assert_relative_eq!(twice.low, 2.0 * interval.low, epsilon = 1e-12);
     }
 
@@ -147,8 +147,8 @@ mod tests {
             blocks(&errors),
             blocks(&errors.iter().map(|e| e + 2.0).collect::<Vec<_>>()),
         );
-        let one = mean_interval(&[&low], BlockMetric::MinAde).unwrap();
-        let two = mean_interval(&[&low, &high], BlockMetric::MinAde).unwrap();
+        let one = mean_interval(&[&low], |block| block.min_ade).unwrap();
+        let two = mean_interval(&[&low, &high], |block| block.min_ade).unwrap();
         assert_relative_eq!(two.mean, 1.5, epsilon = 1e-12);
         let ratio = (one.high - one.low) / (two.high - two.low);
         assert_relative_eq!(ratio, std::f64::consts::SQRT_2, epsilon = 0.1);

@@ -3,7 +3,7 @@
 use rand::RngExt as _;
 
 use crate::significance::bootstrap::{PartialSum, RESAMPLES, generator, interval, mean};
-use crate::significance::{BlockErrors, BlockMetric, Interval};
+use crate::significance::{BlockErrors, Interval};
 
 /// Difference of the errors of two forecasters, window by window.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,61 +16,33 @@ pub struct PairedDifference {
     pub p_value: f64,
 }
 
-/// The two were not measured on the same blocks.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the two results have different windows: fold {fold}, {what}; measure both on the same recordings, window rule \
-     and subset"
-)]
-pub struct DifferentWindowsError {
-    fold: usize,
-    what: String,
-}
-
 /// Compares two forecasters on the same blocks, fold by fold.
 ///
-/// The null hypothesis of the test: both signs of the difference of a block are equally likely. `None` without folds,
-/// or with a fold of fewer than 10 blocks.
-///
-/// # Errors
-/// The blocks of the two differ in number, recording or pedestrians.
+/// `metric` is a sum of errors of a block, m. The null hypothesis of the test: both signs of the difference of a block
+/// are equally likely. `None` without folds, with a fold of fewer than 10 blocks, and where the two have different
+/// windows: their blocks differ in number, recording or pedestrians.
 ///
 /// # References
 /// Good, "Permutation, Parametric and Bootstrap Tests of Hypotheses", 2005, section 3.
 pub fn paired_difference(
     first: &[&[BlockErrors]],
     second: &[&[BlockErrors]],
-    metric: BlockMetric,
-) -> Result<Option<PairedDifference>, DifferentWindowsError> {
-    let unpaired = |fold, what: String| Err(DifferentWindowsError { fold, what });
+    metric: fn(&BlockErrors) -> f64,
+) -> Option<PairedDifference> {
     if first.len() != second.len() {
-        let (a, b) = (first.len(), second.len());
-        return unpaired(a.min(b), format!("{a} folds against {b}"));
+        return None;
     }
-    let mut folds: Vec<Vec<PartialSum>> = Vec::with_capacity(first.len());
-    for (fold, (a, b)) in first.iter().zip(second).enumerate() {
-        if a.len() != b.len() {
-            return unpaired(fold, format!("{} blocks against {}", a.len(), b.len()));
-        }
-        let mut parts = Vec::with_capacity(a.len());
-        for (a, b) in a.iter().zip(*b) {
-            let place = |block: &BlockErrors| {
-                format!(
-                    "block {} of {} with {} pedestrians",
-                    block.block, block.recording, block.pedestrians
-                )
-            };
-            if !a.same_windows(b) {
-                return unpaired(fold, format!("{} against {}", place(a), place(b)));
-            }
-            parts.push(PartialSum::of(a.sum(metric) - b.sum(metric), a));
-        }
-        folds.push(parts);
-    }
-    Ok(interval(&folds).map(|difference| PairedDifference {
+    let of_fold = |(first, second): (&&[BlockErrors], &&[BlockErrors])| -> Option<Vec<PartialSum>> {
+        let pairs = first.iter().zip(*second);
+        let mut same = pairs.clone().map(|(a, b)| a.same_windows(b));
+        (first.len() == second.len() && same.all(|same| same))
+            .then(|| pairs.map(|(a, b)| PartialSum::of(metric(a) - metric(b), a)).collect())
+    };
+    let folds: Vec<_> = first.iter().zip(second).map(of_fold).collect::<Option<_>>()?;
+    interval(&folds).map(|difference| PairedDifference {
         difference,
         p_value: p_value(&folds, difference.mean),
-    }))
+    })
 }
 
 fn p_value(folds: &[Vec<PartialSum>], observed: f64) -> f64 {
@@ -105,8 +77,7 @@ mod tests {
 
     fn compare(a: &[f64], b: &[f64]) -> PairedDifference {
         let (a, b) = (blocks(a), blocks(b));
-        let compared = paired_difference(&[&a], &[&b], BlockMetric::MinAde);
-        compared.unwrap().unwrap()
+        paired_difference(&[&a], &[&b], |block| block.min_ade).unwrap()
     }
 
     /// Every one of ten blocks is better by the same 0.1 m: of the 1,024 patterns of signs, two are as extreme.
@@ -131,14 +102,17 @@ mod tests {
     }
 
     #[test]
-    fn other_windows_are_refused_with_their_place() {
-        let (a, mut b) = (blocks(&[0.1, 0.2]), blocks(&[0.1, 0.2]));
-        b[1].pedestrians = 5;
-        let error = paired_difference(&[&a], &[&b], BlockMetric::MinFde).unwrap_err();
-        assert!(error.to_string().contains("block 1 of a with 4 pedestrians against"));
-        let error = paired_difference(&[&a], &[&b[..1]], BlockMetric::MinFde).unwrap_err();
-        assert!(error.to_string().contains("2 blocks against 1"), "{error}");
-        assert!(paired_difference(&[&a], &[], BlockMetric::MinFde).is_err());
-        assert_eq!(paired_difference(&[], &[], BlockMetric::MinFde), Ok(None));
+    fn other_windows_and_too_few_blocks_are_not_compared() {
+        let ten = blocks(&[0.1; 10]);
+        let mut other = ten.clone();
+        other[1].pedestrians = 5;
+        let compared = |a: &[&[BlockErrors]], b: &[&[BlockErrors]]| paired_difference(a, b, |block| block.min_fde);
+        assert!(compared(&[&ten], &[&ten]).is_some());
+        for second in [&other[..], &ten[..9]] {
+            assert_eq!(compared(&[&ten], &[second]), None);
+        }
+        assert_eq!(compared(&[&ten[..9]], &[&ten[..9]]), None);
+        assert_eq!(compared(&[&ten], &[]), None);
+        assert_eq!(compared(&[], &[]), None);
     }
 }

@@ -36,15 +36,15 @@ fn measured(name: &str) -> &'static BaselineReference {
 fn baselines_agree_to_the_printed_decimals_or_within_their_spread() {
     let Some(folds) = folds() else { return };
     let pedestrians = [2511, 1026, 24_254, 2324, 5900];
-    let noisy = ConstantVelocity::angular_noise(1);
+    let noisy = ConstantVelocity::AngularNoise { seed: 1 };
     let of_noise = "constant velocity, 25 degree angular noise, best of 20".to_owned();
     let deterministic: [Box<dyn Forecaster>; 6] = [
-        Box::new(ConstantVelocity::last_step()),
-        Box::new(ConstantVelocity::mean_observed()),
-        Box::new(ConstantAcceleration::unbounded()),
-        Box::new(ConstantAcceleration::bounded()),
+        Box::new(ConstantVelocity::LastStep),
+        Box::new(ConstantVelocity::MeanObserved),
+        Box::new(ConstantAcceleration::Unbounded),
+        Box::new(ConstantAcceleration::Bounded),
         Box::new(SocialForce),
-        Box::new(StraightLine::to(TrueEndpoint)),
+        Box::new(StraightLine(TrueEndpoint)),
     ];
     let printed = deterministic
         .into_iter()

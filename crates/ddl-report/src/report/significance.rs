@@ -1,6 +1,6 @@
 //! Intervals of the errors, and of the differences between lines.
 
-use ddl_eval::significance::{BlockErrors, BlockMetric, Interval, mean_interval, paired_difference};
+use ddl_eval::significance::{BlockErrors, Interval, mean_interval, paired_difference};
 use rayon::prelude::*;
 
 use crate::document::{Part, Table};
@@ -14,6 +14,11 @@ pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 9
     Intervals need at least 10 such stretches in every fold. Seeds are averaged first; their spread is the ± of the \
     first table, not part of the intervals. The intervals hold for other moments in the same places; for other places, \
     compare the folds.";
+
+type BlockMetric = fn(&BlockErrors) -> f64;
+
+/// minADE and minFDE, summed over a block.
+const METRICS: [BlockMetric; 2] = [|block| block.min_ade, |block| block.min_fde];
 
 /// Intervals of every line that has errors by block, and its difference from a reference line: the first trained line
 /// with the most folds.
@@ -46,7 +51,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
         .map(|(measured, label)| {
             let mut cells = vec![label.clone(), cells::folds(&measured.names(), &folds)];
             cells.extend(measured.intervals());
-            for metric in [BlockMetric::MinAde, BlockMetric::MinFde] {
+            for metric in METRICS {
                 cells.extend(difference(measured, reference, metric));
             }
             cells
@@ -93,8 +98,7 @@ impl<'a> MeasuredLine<'a> {
     }
 
     fn intervals(&self) -> [String; 2] {
-        [BlockMetric::MinAde, BlockMetric::MinFde]
-            .map(|metric| or_nothing(mean_interval(&self.slices(), metric).map(in_words)))
+        METRICS.map(|metric| or_nothing(mean_interval(&self.slices(), metric).map(in_words)))
     }
 
     fn names(&self) -> Vec<&str> {
@@ -109,7 +113,7 @@ fn difference(measured: &MeasuredLine<'_>, reference: &MeasuredLine<'_>, metric:
         return nothing();
     }
     match paired_difference(&measured.slices(), &reference.slices(), metric) {
-        Ok(Some(pair)) => {
+        Some(pair) => {
             let p = match pair.p_value {
                 small if small < 1e-3 => "<0.001".to_owned(),
                 p => format!("{p:.3}"),
@@ -118,7 +122,7 @@ fn difference(measured: &MeasuredLine<'_>, reference: &MeasuredLine<'_>, metric:
             let [mean, low, high] = [mean, low, high].map(signed);
             [format!("{mean} [{low}, {high}]"), p]
         }
-        Ok(None) | Err(_) => nothing(),
+        None => nothing(),
     }
 }
 

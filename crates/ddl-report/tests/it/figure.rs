@@ -153,7 +153,7 @@ const STAR: &str = "class=\"star\"";
 #[test]
 fn every_role_of_a_scene_is_drawn_and_named() {
     let window = window(2);
-    let forecast = StraightLine::to(TrueEndpoint).forecast(&window).unwrap();
+    let forecast = StraightLine(TrueEndpoint).forecast(&window).unwrap();
     let svg = figure::scene(&window, &forecast).unwrap();
     assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
     for text in ["observed, 3.2 s", "truth, 4.8 s", "forecast", "goal", "x (m)", "y (m)"] {
@@ -170,7 +170,7 @@ fn every_role_of_a_scene_is_drawn_and_named() {
 #[test]
 fn everybody_has_hypotheses() {
     let window = window(3);
-    let noisy = ConstantVelocity::angular_noise(1);
+    let noisy = ConstantVelocity::AngularNoise { seed: 1 };
     let forecast = noisy.forecast(&window).unwrap();
     let svg = figure::scene(&window, &forecast).unwrap();
     assert_eq!(count(&svg, STAR), 3 + 1);
@@ -180,14 +180,14 @@ fn everybody_has_hypotheses() {
 #[test]
 fn a_window_without_future_has_no_truth() {
     let window = window(1).without_future();
-    let forecast = ConstantVelocity::last_step().forecast(&window).unwrap();
+    let forecast = ConstantVelocity::LastStep.forecast(&window).unwrap();
     let svg = figure::scene(&window, &forecast).unwrap();
     assert!(!svg.contains("class=\"truth") && !svg.contains("truth, 4.8 s"));
 }
 
 #[test]
 fn strangers_are_refused() {
-    let forecast = ConstantVelocity::last_step().forecast(&window(2)).unwrap();
+    let forecast = ConstantVelocity::LastStep.forecast(&window(2)).unwrap();
     let error = figure::scene(&window(1), &forecast).unwrap_err();
     let expected = "the window holds 1 pedestrians, the forecast 2";
     assert_eq!(error.to_string(), expected);

@@ -13,7 +13,7 @@ fn windows() -> Vec<Window> {
 
 fn oracle(windows: &[Window]) -> Vec<Forecast> {
     Protocol::Published
-        .forecast(&StraightLine::to(TrueEndpoint), windows)
+        .forecast(&StraightLine(TrueEndpoint), windows)
         .unwrap()
 }
 
@@ -89,7 +89,7 @@ fn the_case_shown_is_the_median_one() {
 fn forecasts_without_goals_converge_nowhere_and_few_windows_are_all_shown() {
     let windows = windows();
     let forecasts = Protocol::Fair
-        .forecast(&ConstantVelocity::last_step(), &windows[..3])
+        .forecast(&ConstantVelocity::LastStep, &windows[..3])
         .unwrap();
     let moments = gallery::moments("corridor", "CV", &windows[..3], &forecasts).unwrap();
     assert_eq!(moments.len(), 3);

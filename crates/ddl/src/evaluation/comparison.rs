@@ -5,7 +5,7 @@ use crate::model::ddl::Ddl;
 use crate::windows::test_set::TestSet;
 use ddl_data::{Dataset, Window};
 use ddl_eval::Protocol;
-use ddl_eval::significance::{BlockErrors, BlockMetric, PairedDifference, block_errors, paired_difference};
+use ddl_eval::significance::{BlockErrors, PairedDifference, block_errors, paired_difference};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
@@ -23,10 +23,10 @@ pub struct BestOf20Errors {
 impl BestOf20Errors {
     fn of(blocks: &[BlockErrors]) -> Self {
         let pedestrians: usize = blocks.iter().map(|block| block.pedestrians).sum();
-        let mean = |metric| blocks.iter().map(|block| block.sum(metric)).sum::<f64>() / pedestrians.max(1) as f64;
+        let mean = |metric: fn(&BlockErrors) -> f64| blocks.iter().map(metric).sum::<f64>() / pedestrians.max(1) as f64;
         Self {
-            min_ade: mean(BlockMetric::MinAde),
-            min_fde: mean(BlockMetric::MinFde),
+            min_ade: mean(|block| block.min_ade),
+            min_fde: mean(|block| block.min_fde),
         }
     }
 }
@@ -72,12 +72,10 @@ pub fn compare_on_validation(
         Ok(block_errors(&windows, &forecasts)?)
     };
     let (of_run, of_other) = (measured(run)?, measured(other)?);
-    // The windows are the same, so the only error is too few blocks.
-    let difference = paired_difference(&[&of_run], &[&of_other], BlockMetric::MinAde).ok();
     Ok(Comparison {
         pedestrians: windows.iter().map(Window::len).sum(),
         run: BestOf20Errors::of(&of_run),
         other: BestOf20Errors::of(&of_other),
-        difference: difference.flatten(),
+        difference: paired_difference(&[&of_run], &[&of_other], |block| block.min_ade),
     })
 }

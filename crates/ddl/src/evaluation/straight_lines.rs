@@ -13,7 +13,7 @@ pub(crate) fn straight_lines(
     windows
         .iter()
         .zip(goals)
-        .map(|(window, goals)| StraightLine::to(KnownGoals { name, goals }).forecast(window))
+        .map(|(window, goals)| StraightLine(KnownGoals { name, goals }).forecast(window))
         .collect()
 }
 

@@ -81,8 +81,7 @@ impl<M> LiveForecaster<M> {
     }
 
     /// Adapts the regions to the observations of this place, so that they keep their coverage; see [`AdaptiveRegions`].
-    /// All other parts of the forecasts have the same bits. To continue from the [learned
-    /// state](AdaptiveRegions::learned) of an earlier session, use [`AdaptiveRegions::resuming`].
+    /// All other parts of the forecasts have the same bits.
     #[must_use]
     pub fn with_adaptive_regions(self, regions: AdaptiveRegions) -> Self {
         Self {

@@ -33,7 +33,7 @@ fn every_format_says_the_same() {
         let matched = read(&text, format, Coverage::Whole).unwrap();
         assert_eq!(matched.forecasts, expected(), "{format}");
         assert_eq!(matched.windows, windows());
-        assert_eq!((matched.forecast_pedestrians(), matched.pedestrians()), (3, 3));
+        assert_eq!(matched.pedestrians(), 3);
         assert_eq!(matched.test_subset(), None);
     }
 }
