@@ -117,7 +117,7 @@ fn no_variant_of_the_model_sees_the_future() {
 }
 
 /// Uses the published goals if there is a future, and other goals otherwise. Only its forecasts reveal this.
-struct PublishedWhenItCan([EstimatedGoals; 2]);
+struct PublishedWhenItCan([StraightLine<EstimatedGoals>; 2]);
 
 impl Forecaster for PublishedWhenItCan {
     fn name(&self) -> String {
@@ -126,15 +126,14 @@ impl Forecaster for PublishedWhenItCan {
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
         let [published, fair] = &self.0;
-        let source = if window.has_future() { published } else { fair };
-        StraightLine(source).forecast(window)
+        if window.has_future() { published } else { fair }.forecast(window)
     }
 }
 
 #[test]
 fn forecasters_that_read_the_future_are_detected() {
     let params = [GoalEstimatorParams::published(), GoalEstimatorParams::default()];
-    let forecaster = PublishedWhenItCan(params.map(EstimatedGoals::with));
+    let forecaster = PublishedWhenItCan(params.map(|params| StraightLine(EstimatedGoals::with(params))));
     let window = &crowd::windows(1, 4)[0];
     assert!(leak::find(&forecaster, window).unwrap().is_some());
 }

@@ -22,17 +22,8 @@ pub struct Homography([[f64; SIZE]; SIZE]);
 impl TryFrom<[[f64; SIZE]; SIZE]> for Homography {
     type Error = HomographyError;
 
+    /// The matrix, row by row. Fails where an entry is not finite, or the matrix is singular.
     fn try_from(rows: [[f64; SIZE]; SIZE]) -> Result<Self, HomographyError> {
-        Self::new(rows)
-    }
-}
-
-impl Homography {
-    /// The matrix, row by row. It maps (u, v, 1) in pixels to (X, Y, W); X / W and Y / W are metres.
-    ///
-    /// # Errors
-    /// [`HomographyError`] where an entry is not finite, or the matrix is singular.
-    pub fn new(rows: [[f64; SIZE]; SIZE]) -> Result<Self, HomographyError> {
         for (row, entries) in rows.iter().enumerate() {
             if let Some(column) = entries.iter().position(|entry| !entry.is_finite()) {
                 return Err(HomographyError::NotFinite { row, column });
@@ -48,7 +39,9 @@ impl Homography {
             Err(HomographyError::Singular)
         }
     }
+}
 
+impl Homography {
     /// The place of a pixel on the ground (m). `None` on the horizon, and near it where the place would be farther away
     /// than [`COORDINATE_LIMIT`].
     #[must_use]
@@ -122,7 +115,7 @@ impl std::str::FromStr for Homography {
         if count < SIZE {
             return Err(HomographyError::Rows { found: count });
         }
-        Self::new(rows)
+        rows.try_into()
     }
 }
 

@@ -32,13 +32,13 @@ const STEPS: i64 = 450;
 /// Three minutes of each scene. The same seed gives the same bytes.
 pub(crate) fn recordings(seed: u64) -> Vec<Recording> {
     let scenes = (0..).zip(SCENES);
-    let recording = |(stream, (name, layout)): (u64, (&'static str, fn() -> SceneLayout))| {
+    let recordings = scenes.map(|(stream, scene)| {
+        let observations = trace(&(scene.layout)(), stream, seed).observations;
         // Cannot fail: pedestrians have unique ids and are seen once a frame, capped speeds keep positions finite, and
         // there are many arrivals in three minutes.
-        Recording::new(name, FRAME_STEP, trace(&layout(), stream, seed).observations)
-            .expect("a simulation yields unique, finite observations")
-    };
-    scenes.map(recording).collect()
+        Recording::new(scene.name, FRAME_STEP, observations).expect("a simulation yields unique, finite observations")
+    });
+    recordings.collect()
 }
 
 fn trace(layout: &SceneLayout, stream: u64, seed: u64) -> Trace {

@@ -142,7 +142,7 @@ impl Recording {
         };
         let mut tracks = py.detach(|| read_recording(&path, format)).map_err(raised)?;
         if let Some(rows) = homography {
-            let homography = Homography::new(rows).map_err(of_any)?;
+            let homography = Homography::try_from(rows).map_err(of_any)?;
             tracks = homography.to_ground(&tracks).map_err(of_any)?;
         }
         GivenRate { fps, frame_step }.of(tracks)

@@ -73,14 +73,23 @@ pub(super) struct SceneLayout {
     pub(super) arrival_interval: f64,
 }
 
-/// Each scene: the name of its recording and of its fold, and its layout.
-pub(super) const SCENES: [(&str, fn() -> SceneLayout); 5] = [
-    ("corridor", corridor),
-    ("crossing", crossing),
-    ("plaza", plaza),
-    ("bottleneck", bottleneck),
-    ("doorway", doorway),
+pub(super) struct SimulatedScene {
+    /// The name of its recording and of its fold.
+    pub(super) name: &'static str,
+    pub(super) layout: fn() -> SceneLayout,
+}
+
+pub(super) const SCENES: [SimulatedScene; 5] = [
+    scene("corridor", corridor),
+    scene("crossing", crossing),
+    scene("plaza", plaza),
+    scene("bottleneck", bottleneck),
+    scene("doorway", doorway),
 ];
+
+const fn scene(name: &'static str, layout: fn() -> SceneLayout) -> SimulatedScene {
+    SimulatedScene { name, layout }
+}
 
 /// A walled way of 26 m x 6 m with two pillars, used in both directions; some pedestrians stop at the wall.
 fn corridor() -> SceneLayout {

@@ -20,19 +20,17 @@ struct Crowd {
 
 fn crowds() -> impl Iterator<Item = Crowd> {
     let recordings = Dataset::simulated(SEED).recordings().to_vec();
-    (0..)
-        .zip(SCENES)
-        .zip(recordings)
-        .map(|((stream, (scene, layout)), recording)| {
-            let layout = layout();
-            let groups = trace(&layout, stream, SEED).groups;
-            Crowd {
-                scene,
-                layout,
-                recording,
-                groups,
-            }
-        })
+    let scenes = (0..).zip(SCENES).zip(recordings);
+    scenes.map(|((stream, scene), recording)| {
+        let layout = (scene.layout)();
+        let groups = trace(&layout, stream, SEED).groups;
+        Crowd {
+            scene: scene.name,
+            layout,
+            recording,
+            groups,
+        }
+    })
 }
 
 /// Whether the straight line from `a` to `b` (m) crosses the wall.

@@ -22,15 +22,8 @@ fn implausible_speeds_give_warnings() {
     assert!(matches!(warnings(walk(30.0))[..], [PlausibilityWarning::Fast { median }] if median > 70.0));
     // A standing pedestrian causes no warning, even with the noise of a tracker.
     assert_eq!(warnings(walk(0.001)), []);
-}
-
-#[test]
-fn degrees_give_warnings() {
     // A walk through a park in degrees of latitude.
-    assert!(matches!(
-        warnings(walk(5e-6))[..],
-        [PlausibilityWarning::Still { farthest }] if farthest < 1e-3
-    ));
+    assert!(matches!(warnings(walk(5e-6))[..], [PlausibilityWarning::Still { farthest }] if farthest < 1e-3));
 }
 
 /// A camera at 25 frames per second whose tracker loses every tenth detection, and with them the positions at whole

@@ -14,15 +14,6 @@ pub trait GoalSource {
     fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError>;
 }
 
-impl<G: GoalSource + ?Sized> GoalSource for &G {
-    fn name(&self) -> String {
-        (**self).name()
-    }
-    fn goals(&self, window: &Window) -> Result<Vec<WeightedGoals>, ForecastError> {
-        (**self).goals(window)
-    }
-}
-
 /// The last true position: an oracle, for the protocol `published` only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TrueEndpoint;

@@ -2,7 +2,7 @@
 
 use std::io::{BufRead, Read as _};
 
-use ddl_core::{HORIZON, Position};
+use ddl_core::{FRAME_LIMIT, HORIZON, Position};
 use ddl_data::COORDINATE_LIMIT;
 
 use crate::external::error::ExternalError;
@@ -11,8 +11,6 @@ use crate::external::error::ExternalError;
 const LIMIT: usize = 4 << 20;
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;
-/// Bound of the absolute value of whole numbers, which are exact in an `f64`.
-const WHOLE_LIMIT: f64 = 9_007_199_254_740_992.0;
 
 /// The lines of a file that are not blank, with their numbers.
 pub(super) struct Lines<R> {
@@ -102,7 +100,7 @@ pub(super) fn wrong(origin: &str, line: usize, (field, problem): Wrong) -> Exter
 }
 
 pub(super) fn whole(number: f64) -> Option<i64> {
-    (number.fract() == 0.0 && number.abs() < WHOLE_LIMIT).then_some(number as i64)
+    (number.fract() == 0.0 && number.abs() < FRAME_LIMIT as f64).then_some(number as i64)
 }
 
 /// Refuses a position so far away that later computations would overflow.
