@@ -10,7 +10,7 @@ const SAMPLE: &str = include_str!("../../datasets/sample.csv");
 
 /// Crate, example and arguments, and what its output must hold. An example that receives the name of a picture draws
 /// it.
-const EXAMPLES: [(&str, &[&str]); 5] = [
+const EXAMPLES: [(&str, &[&str]); 4] = [
     (
         "ddl-forecast forecast_csv",
         &[
@@ -26,10 +26,6 @@ const EXAMPLES: [(&str, &[&str]); 5] = [
     ),
     ("ddl-forecast draw_forecast sample.csv 15 forecast.svg", &[]),
     ("ddl-data sample_recording", &[SAMPLE]),
-    (
-        "ddl-softdtw nearest_neighbours",
-        &["turns left after 0.4 s, at 1.20 m/s", "an exhaustive search agrees"],
-    ),
 ];
 
 /// Examples that are not run here: they need minutes for recordings.

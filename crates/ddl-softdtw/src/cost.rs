@@ -15,8 +15,7 @@ pub enum Cost {
 
 impl Cost {
     /// Cost of matching step `a` with step `b`; never negative, infinite when it exceeds the range of `f64`.
-    #[must_use]
-    pub fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
+    pub(crate) fn between<const D: usize>(self, a: &[f64; D], b: &[f64; D]) -> f64 {
         let squared = a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum();
         match self {
             Self::SquaredEuclidean => squared,

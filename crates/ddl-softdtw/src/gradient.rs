@@ -60,8 +60,8 @@ impl SoftDtw {
     }
 
     /// [`SoftDtw::value_and_gradient`] by the textbook recursion in the log domain: slow, the reference for tests.
-    #[doc(hidden)]
-    pub fn log_domain_gradient<const D: usize>(
+    #[cfg(test)]
+    pub(crate) fn log_domain_gradient<const D: usize>(
         &self,
         x: &[[f64; D]],
         y: &[[f64; D]],

@@ -5,7 +5,7 @@
 //! The recursion runs on R = exp(−r/γ), where the smoothed minimum is a sum. A cell needs one exponential, off the
 //! critical path, and no logarithm. R is stored as a significand with a separate integer exponent, so no range of costs
 //! underflows. All terms are positive, so nothing cancels. [`SoftDtw`] states a bound of the error, and
-//! `tests/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last bit.
+//! `src/laws/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last bit.
 //!
 //! Eight rows advance together along antidiagonals. The loops are compiled for each instruction set, and all give the
 //! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs are
@@ -49,6 +49,8 @@ mod exp2;
 mod forward;
 mod gradient;
 mod grid;
+#[cfg(test)]
+mod laws;
 mod log_domain;
 mod range;
 mod recursion;

@@ -91,11 +91,6 @@ impl<const D: usize> SearchIndex<D> {
         Ok(Self { dispatch, ..self })
     }
 
-    /// The instruction set of the searches.
-    pub fn instruction_set(&self) -> InstructionSet {
-        self.dispatch.instruction_set()
-    }
-
     /// Number of candidates.
     pub fn len(&self) -> usize {
         self.offsets.len() - 1

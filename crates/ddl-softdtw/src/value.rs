@@ -57,12 +57,12 @@ impl SoftDtw {
     }
 
     /// The smoothing γ.
-    pub fn gamma(&self) -> f64 {
+    pub(crate) fn gamma(&self) -> f64 {
         self.gamma
     }
 
     /// The cost between two steps.
-    pub fn cost(&self) -> Cost {
+    pub(crate) fn cost(&self) -> Cost {
         self.cost
     }
 
@@ -116,8 +116,8 @@ impl SoftDtw {
     }
 
     /// [`SoftDtw::value`] by the textbook recursion in the log domain: slow, the reference for tests.
-    #[doc(hidden)]
-    pub fn log_domain_value<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
+    #[cfg(test)]
+    pub(crate) fn log_domain_value<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
         check(x, SequenceRole::X)?;
         check(y, SequenceRole::Y)?;
         finite(self.grid(x, y).log_domain_value())

@@ -41,10 +41,11 @@ fn assert_same(neighbours: &[Neighbour], oracle: &[Neighbour], n: usize, toleran
     assert!(neighbours.windows(2).all(ordered), "not in order, or one twice");
 }
 
-fn compare(dtw: SoftDtw, candidates: &[Walk], queries: &[Walk], n: usize) {
+fn compare((gamma, cost): (f64, Cost), candidates: &[Walk], queries: &[Walk], n: usize) {
+    let dtw = SoftDtw::new(gamma, cost).expect("valid");
     let index = SearchIndex::build(&dtw, candidates).expect("valid");
     // A distance is a small difference of values of the size of gamma.
-    let tolerance = 1e-9_f64.max(1e-13 * dtw.gamma());
+    let tolerance = 1e-9_f64.max(1e-13 * gamma);
     for query in queries {
         let neighbours = index.nearest(query, n).expect("valid");
         assert_same(&neighbours, &brute_force(&dtw, candidates, query), n, tolerance);
@@ -57,23 +58,27 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
     let candidates: Vec<Walk> = (0..300).map(|_| numbers.pedestrian(8)).collect();
     let queries: Vec<Walk> = (0..4).map(|_| numbers.pedestrian(8)).collect();
     for gamma in [0.0, 1e-300, 1e-3, 0.01, 0.1, 10.0, 1e6, 1e300] {
-        compare(squared(gamma), &candidates, &queries, 20);
+        compare((gamma, Cost::SquaredEuclidean), &candidates, &queries, 20);
     }
     for gamma in [0.0, 0.5] {
-        let dtw = SoftDtw::new(gamma, Cost::Euclidean).unwrap();
-        compare(dtw, &candidates, &queries, 20);
+        compare((gamma, Cost::Euclidean), &candidates, &queries, 20);
     }
     // Far queries saturate f32; huge data and data far from the origin do not fit it.
     for (scale, by) in [(1.0, 5.0), (8.0, 0.0)] {
-        compare(squared(1.0), &candidates, &mapped(&queries, scale, by), 20);
+        compare(
+            (1.0, Cost::SquaredEuclidean),
+            &candidates,
+            &mapped(&queries, scale, by),
+            20,
+        );
     }
     for (scale, by) in [(1.0, 1e6), (1e5, 0.0), (1e60, 0.0)] {
         let (candidates, queries) = (mapped(&candidates, scale, by), mapped(&queries, scale, by));
-        compare(squared(1.0), &candidates, &queries, 20);
+        compare((1.0, Cost::SquaredEuclidean), &candidates, &queries, 20);
     }
     // So long that the number of paths exceeds the range of f32.
     let long: Vec<Walk> = (0..60).map(|i| numbers.pedestrian(30 + i % 5)).collect();
-    compare(squared(1.0), &long, &[numbers.pedestrian(31)], 10);
+    compare((1.0, Cost::SquaredEuclidean), &long, &[numbers.pedestrian(31)], 10);
 }
 
 fn bits(neighbours: &[Neighbour]) -> Vec<(usize, u64)> {
@@ -98,11 +103,9 @@ fn instruction_sets_threads_and_company_change_nothing() {
     ] {
         let dtw = SoftDtw::new(gamma, cost).unwrap();
         let index = SearchIndex::build(&dtw, &candidates).unwrap();
-        assert_eq!(index.instruction_set(), InstructionSet::detect());
         let expected: Vec<_> = queries.iter().map(|q| bits(&index.nearest(q, 70).unwrap())).collect();
         for set in InstructionSet::available() {
             let index = index.clone().with_instruction_set(set).unwrap();
-            assert_eq!(index.instruction_set(), set);
             for threads in [1, 3] {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
                 let neighbours = pool.unwrap().install(|| index.nearest_batch(&queries, 70)).unwrap();
@@ -169,6 +172,6 @@ proptest! {
         gamma in prop_oneof![Just(0.0), 1e-3..10.0_f64],
         n in 1..40_usize,
     ) {
-        compare(squared(gamma), &candidates, &[query], n);
+        compare((gamma, Cost::SquaredEuclidean), &candidates, &[query], n);
     }
 }

@@ -1,7 +1,7 @@
-//! The stated error bounds, against values of 60 decimal digits from `reference/high_precision.py`.
+//! The stated error bounds, against values of 60 decimal digits from `tests/reference/high_precision.py`.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-use ddl_softdtw::{Cost, SoftDtw};
+use crate::{Cost, SoftDtw};
 use serde::Deserialize;
 
 const UNIT: f64 = f64::EPSILON / 2.0;
@@ -84,7 +84,7 @@ fn compare<const D: usize>(number: usize, case: &Case) -> f64 {
 
 #[test]
 fn values_and_gradients_keep_the_stated_bounds() {
-    let text = include_str!("reference/high_precision.json");
+    let text = include_str!("../../tests/reference/high_precision.json");
     let reference: Reference = serde_json::from_str(text).unwrap();
     assert_eq!(reference.cases.len(), 24);
     let mut worst = 0.0_f64;

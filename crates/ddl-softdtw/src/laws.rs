@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 mod extremes;
+mod precision;
 
-use ddl_softdtw::{Cost, SoftDtw};
+use crate::{Cost, SoftDtw};
 use proptest::prelude::*;
 
 type Sequence = Vec<[f64; 2]>;

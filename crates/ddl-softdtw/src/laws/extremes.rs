@@ -1,9 +1,9 @@
 //! Extreme and invalid input: huge and tiny numbers, long sequences, and errors.
 
-use ddl_softdtw::{Cost, SoftDtw, SoftDtwError};
 use proptest::prelude::*;
 
-use crate::{Sequence, cost, dtw};
+use crate::laws::{Sequence, cost, dtw};
+use crate::{Cost, SoftDtw, SoftDtwError};
 
 /// Steps of every size, zero and subnormal numbers among them.
 fn any_sequence() -> impl Strategy<Value = Sequence> {
