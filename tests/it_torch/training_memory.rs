@@ -28,7 +28,7 @@ fn growth([first, last, lost]: [usize; 3]) -> Option<Vec<f64>> {
     windows.truncate(40); // all of them are visited within the first steps
     let device = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
     let network = TorchNetwork::new(config, 1, device).unwrap();
-    let mut trainer = Trainer::new(network, windows, training).unwrap();
+    let mut trainer = Trainer::new(network, windows, None, training).unwrap();
     let mut leak = Vec::new();
     let mut before = 0;
     for step in 1..=last {

@@ -5,7 +5,8 @@ use crate::folder_contents::{self, Contents};
 use ddl::data::{Convention, Window, WindowRule};
 use ddl::network::weights::{save_weights, tensors_digest};
 use ddl::network::{
-    EpochReport, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, TrainingConfig,
+    EpochReport, ForecastWindows as _, MemoryConfig, MotionNetwork, ProposalConfig, ProposalNetwork,
+    ProposeEndpoints as _, StarConfig, TrainingConfig,
 };
 use ddl::{Ddl, DeviceChoice, FORMAT, GoalRecipe, RunConfig, TrainingData, Variant};
 use safetensors::tensor::{Dtype, TensorView};
@@ -95,15 +96,17 @@ pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     std::fs::create_dir_all(folder.join("epochs")).expect("a folder can be made");
     let network = MotionNetwork::new(config.star.clone(), config.training.seed);
     let network = network.expect("the configuration is valid");
+    let weights = network.copy_weights().expect("weights in memory");
     let origin = config.network_origin();
     for file in ["epochs/001.safetensors", "model.safetensors"] {
-        save_weights(network.weights(), &origin, &folder.join(file)).expect("weights can be written");
+        save_weights(&weights, &origin, &folder.join(file)).expect("weights can be written");
     }
     if let Some(recipe) = config.goals.proposal.clone() {
         let proposal = ProposalNetwork::new(recipe.network, recipe.training.seed);
         let proposal = proposal.expect("the configuration is valid");
+        let weights = proposal.copy_weights().expect("weights in memory");
         let file = folder.join("proposal.safetensors");
-        save_weights(proposal.weights(), &config.goals_origin(), &file).expect("weights can be written");
+        save_weights(&weights, &config.goals_origin(), &file).expect("weights can be written");
     }
     let tracks = windows
         .iter()

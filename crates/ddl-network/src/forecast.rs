@@ -6,7 +6,6 @@ mod emission;
 mod forecast_windows;
 mod motion_bounds;
 mod network;
-mod numbers;
 mod one_step;
 mod own_frame;
 mod pass;

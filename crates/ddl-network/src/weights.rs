@@ -8,9 +8,10 @@ mod learned;
 mod origin;
 
 pub use crate::kernel::Sizes;
-pub use digest::{DigestMismatch, check_digest, tensors_digest};
+pub use digest::{check_digest, tensors_digest};
 pub use file::{StoredTensor, TensorData, find_tensor, load_weights, read_tensors, save_weights, write_tensors};
 pub use half_precision::HalfTensor;
-pub use layout::{EncoderLayer, Initial, Layout, Linear, TensorLayout};
+pub(crate) use layout::Initial;
+pub use layout::{EncoderLayer, Layout, Linear, TensorLayout};
 pub use learned::Weights;
 pub use origin::Origin;

@@ -10,8 +10,8 @@ use crate::simd::Kernel;
 ///
 /// # Examples
 /// ```
-/// use ddl_simd::InstructionSet;
-/// assert_eq!(InstructionSet::available().last(), Some(&InstructionSet::detect()));
+/// use ddl_simd::{Dispatch, InstructionSet};
+/// assert_eq!(InstructionSet::available().last(), Some(&Dispatch::detect().instruction_set()));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
@@ -25,11 +25,6 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// The fastest one of this machine.
-    pub fn detect() -> Self {
-        Dispatch::detect().instruction_set()
-    }
-
     /// All instruction sets of this machine, slowest first.
     pub fn available() -> Vec<Self> {
         let sets = [Self::Portable, Self::Avx2, Self::Avx512].into_iter();

@@ -7,5 +7,5 @@ mod simd;
 
 pub use dispatch::{Dispatch, InstructionSet};
 pub use exp2::exp2_each;
-pub use lanes::{DEPTH, HALF, HalfQuad, LANES, Lanes, Quad, ZERO_QUAD};
-pub use simd::{Bits, Floats, Kernel, Simd, Tile, TiledKernel, Vectors};
+pub use lanes::{DEPTH, LANES, Lanes};
+pub use simd::{Floats, Kernel, Simd, TiledKernel, Vectors};

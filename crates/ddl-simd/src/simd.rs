@@ -2,20 +2,16 @@
 
 #![expect(clippy::inline_always, reason = "the lanes must stay in registers")]
 
-use fearless_simd::prelude::{Select as _, SimdBase, SimdCombine as _, SimdFloat as _, SimdMask as _, SimdSplit as _};
+use fearless_simd::prelude::*;
 use fearless_simd::{f32x4, f32x8, f32x16, mask32x16, u32x16};
 
 use crate::exp2::exp2_each;
-use crate::lanes::{DEPTH, HALF, HalfQuad, LANES, Quad};
+use crate::lanes::{DEPTH, LANES};
 
 /// Sixteen numbers.
 pub type Floats<S> = f32x16<S>;
-/// Sixteen words of 32 bits.
-pub type Bits<S> = u32x16<S>;
-/// Four times sixteen numbers: a [`Quad`] in registers.
+/// Four times sixteen numbers.
 pub type Vectors<S> = [Floats<S>; DEPTH];
-/// Accumulators of a product of matrices: `R` rows of `V` times sixteen numbers.
-pub type Tile<S, const R: usize, const V: usize> = [[Floats<S>; V]; R];
 
 /// Smallest exponent whose [`Simd::exp2`] is not 0. Products of such a power and a number of at least 2^−30 are normal;
 /// an operation on denormal numbers takes a hundred cycles.
@@ -25,11 +21,12 @@ const VANISHING_FROM: f32 = -96.0;
 ///
 /// A value that implements this trait proves that the machine has the instructions.
 ///
+/// The operators and the methods of `fearless_simd` do the arithmetic.
+///
 /// # Numerics
-/// Every operation is rounded once to the nearest `f32`, except [`mul_add`](Self::mul_add), which the baseline of
-/// x86-64 rounds twice.
+/// Every operation is rounded once to the nearest `f32`, except `mul_add`, which the baseline of x86-64 rounds twice.
 pub trait Simd: fearless_simd::Simd {
-    /// Runs `kernel` from within another kernel, with the [`Tile`] size that fits the registers.
+    /// Runs `kernel` from within another kernel, with the number of accumulators that fits the registers.
     #[inline(always)]
     fn run_tiled<K: TiledKernel>(self, kernel: K) {
         match <Self::f32s as SimdBase<Self>>::LEN {
@@ -60,13 +57,13 @@ pub trait Simd: fearless_simd::Simd {
 
     /// The numbers of two arrays in the lower and in the upper lanes.
     #[inline(always)]
-    fn load_halves(self, low: &[f32; HALF], high: &[f32; HALF]) -> Floats<Self> {
+    fn load_halves(self, low: &[f32; LANES / 2], high: &[f32; LANES / 2]) -> Floats<Self> {
         f32x8::load_array_ref(self, low).combine(f32x8::load_array_ref(self, high))
     }
 
     /// Writes the lower and the upper lanes to two arrays.
     #[inline(always)]
-    fn store_halves(self, value: Floats<Self>, low: &mut [f32; HALF], high: &mut [f32; HALF]) {
+    fn store_halves(self, value: Floats<Self>, low: &mut [f32; LANES / 2], high: &mut [f32; LANES / 2]) {
         let (lower, upper) = value.split();
         lower.store_array(low);
         upper.store_array(high);
@@ -83,89 +80,14 @@ pub trait Simd: fearless_simd::Simd {
         let _ = number;
     }
 
-    /// a + b.
-    #[inline(always)]
-    fn add(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
-        a + b
-    }
-
-    /// a − b.
-    #[inline(always)]
-    fn sub(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
-        a - b
-    }
-
-    /// a b.
-    #[inline(always)]
-    fn mul(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
-        a * b
-    }
-
-    /// a / b.
-    #[inline(always)]
-    fn div(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
-        a / b
-    }
-
-    /// √a.
-    #[inline(always)]
-    fn sqrt(self, a: Floats<Self>) -> Floats<Self> {
-        a.sqrt()
-    }
-
-    /// The larger of each two numbers; either of them if one is NaN.
-    #[inline(always)]
-    fn max(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
-        a.max(b)
-    }
-
-    /// The smaller of each two numbers; either of them if one is NaN.
-    #[inline(always)]
-    fn min(self, a: Floats<Self>, b: Floats<Self>) -> Floats<Self> {
-        a.min(b)
-    }
-
-    /// a b + c, rounded once or twice.
-    #[inline(always)]
-    fn mul_add(self, a: Floats<Self>, b: Floats<Self>, c: Floats<Self>) -> Floats<Self> {
-        a.mul_add(b, c)
-    }
-
-    /// Bit l is set where a >= b in lane l.
-    #[inline(always)]
-    fn at_least(self, a: Floats<Self>, b: Floats<Self>) -> u32 {
-        a.simd_ge(b).to_bitmask() as u32
-    }
-
-    /// `taken` where a >= b, `other` elsewhere.
-    #[inline(always)]
-    fn where_at_least(
-        self,
-        a: Floats<Self>,
-        b: Floats<Self>,
-        taken: Floats<Self>,
-        other: Floats<Self>,
-    ) -> Floats<Self> {
-        a.simd_ge(b).select(taken, other)
-    }
-
-    /// 0 where `condition` <= 0, `a` elsewhere (also where `condition` is NaN).
-    #[inline(always)]
-    fn zero_unless_positive(self, condition: Floats<Self>, a: Floats<Self>) -> Floats<Self> {
-        condition.simd_le(0.0).select(self.splat(0.0), a)
-    }
-
     /// 2^`exponent` for exponents that are not positive; exactly 0 below −96 and for NaN.
     ///
     /// # Numerics
     /// The relative error is below 3e-7 down to −96, and the result is exactly 1 at 0.
     #[inline(always)]
     fn exp2(self, exponent: Floats<Self>) -> Floats<Self> {
-        let smallest = self.splat(VANISHING_FROM);
-        let [power] = exp2_each(
-            self,
-            [self.where_at_least(exponent, smallest, exponent, self.splat(-127.0))],
-        );
+        let vanishing = self.splat(-127.0);
+        let [power] = exp2_each(self, [exponent.simd_ge(VANISHING_FROM).select(exponent, vanishing)]);
         power
     }
 
@@ -205,101 +127,14 @@ pub trait Simd: fearless_simd::Simd {
 
     /// Lane l is `first` xor l.
     #[inline(always)]
-    fn count_from(self, first: u32) -> Bits<Self> {
-        Bits::load_array(self, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]) ^ first
-    }
-
-    /// a xor b.
-    #[inline(always)]
-    fn xor(self, a: Bits<Self>, b: u32) -> Bits<Self> {
-        a ^ b
-    }
-
-    /// a xor (a >> `N`).
-    #[inline(always)]
-    fn xor_shift<const N: u32>(self, a: Bits<Self>) -> Bits<Self> {
-        a ^ (a >> N)
-    }
-
-    /// a << `N`.
-    #[inline(always)]
-    fn shift_left<const N: u32>(self, a: Bits<Self>) -> Bits<Self> {
-        a << N
-    }
-
-    /// The low 32 bits of the product.
-    #[inline(always)]
-    fn mul_low(self, a: Bits<Self>, b: u32) -> Bits<Self> {
-        a * b
+    fn count_from(self, first: u32) -> u32x16<Self> {
+        u32x16::load_array(self, [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15]) ^ first
     }
 
     /// `a` where `bits` >= `least`, 0 elsewhere.
     #[inline(always)]
-    fn keep(self, a: Floats<Self>, bits: Bits<Self>, least: u32) -> Floats<Self> {
+    fn keep(self, a: Floats<Self>, bits: u32x16<Self>, least: u32) -> Floats<Self> {
         bits.simd_ge(least).select(a, self.splat(0.0))
-    }
-
-    /// The vectors of a quad.
-    #[inline(always)]
-    fn read(self, quad: &Quad) -> Vectors<Self> {
-        let [a, b, c, d] = quad;
-        [self.load(&a.0), self.load(&b.0), self.load(&c.0), self.load(&d.0)]
-    }
-
-    /// Writes the vectors to a quad.
-    #[inline(always)]
-    fn write(self, vectors: Vectors<Self>, quad: &mut Quad) {
-        for d in 0..DEPTH {
-            self.store(vectors[d], &mut quad[d].0);
-        }
-    }
-
-    /// The vectors of a half, in the lower and again in the upper lanes.
-    #[inline(always)]
-    fn read_twice(self, half: &HalfQuad) -> Vectors<Self> {
-        let [a, b, c, d] = &half.0;
-        [
-            self.load_halves(a, a),
-            self.load_halves(b, b),
-            self.load_halves(c, c),
-            self.load_halves(d, d),
-        ]
-    }
-
-    /// Writes the lower and the upper lanes of four vectors.
-    #[inline(always)]
-    fn write_halves(self, vectors: Vectors<Self>, low: &mut HalfQuad, high: &mut HalfQuad) {
-        for (d, vector) in vectors.into_iter().enumerate() {
-            self.store_halves(vector, &mut low.0[d], &mut high.0[d]);
-        }
-    }
-
-    /// Σ a b over four vectors, added to `start`.
-    #[inline(always)]
-    fn dot(self, a: Vectors<Self>, b: Vectors<Self>, start: Floats<Self>) -> Floats<Self> {
-        let mut sum = start;
-        for d in 0..DEPTH {
-            sum = self.mul_add(a[d], b[d], sum);
-        }
-        sum
-    }
-
-    /// `sum` + `weight` · `vectors`.
-    #[inline(always)]
-    fn accumulate(self, mut sum: Vectors<Self>, weight: Floats<Self>, vectors: Vectors<Self>) -> Vectors<Self> {
-        for d in 0..DEPTH {
-            sum[d] = self.mul_add(weight, vectors[d], sum[d]);
-        }
-        sum
-    }
-
-    /// `factor` · `vectors`.
-    #[inline(always)]
-    fn scaled(self, mut vectors: Vectors<Self>, factor: Floats<Self>) -> Vectors<Self> {
-        for vector in &mut vectors {
-            *vector = self.mul(*vector, factor);
-        }
-        vectors
     }
 }
 
@@ -349,7 +184,7 @@ pub trait Kernel {
     fn run<S: Simd>(self, simd: S);
 }
 
-/// A [`Kernel`] for matrix products, written for a [`Tile`] of any size.
+/// A [`Kernel`] for matrix products, written for accumulators of `R` rows and `V` vectors.
 ///
 /// The instruction set determines how many accumulators fit its registers: `R` divides 8, `V` is 1 or 2. The rules of
 /// [`Kernel`] apply.

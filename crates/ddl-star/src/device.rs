@@ -39,7 +39,7 @@ impl ComputeDevice {
 
     /// The device in libtorch's type.
     #[must_use]
-    pub fn torch(self) -> tch::Device {
+    pub(crate) fn torch(self) -> tch::Device {
         self.0
     }
 }

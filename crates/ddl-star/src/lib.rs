@@ -30,7 +30,7 @@
 //! }
 //! let weights = trainer.into_network()?.parameters().to_weights()?;
 //!
-//! let network = ProposalNetwork::new(config, 1)?.with_weights(weights)?; // without libtorch
+//! let network = ProposalNetwork::reading(config, |_| Ok(weights))?; // without libtorch
 //! let proposed = network.propose(&[examples[10].view.clone()])?.remove(0);
 //! assert_eq!(proposed.endpoints.len(), 2 * 5); // metres ahead, metres to the left; with weights
 //! let off = |end: &[f64; 2]| (end[0] - examples[10].future[11][0]).hypot(end[1]);

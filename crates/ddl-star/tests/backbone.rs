@@ -118,7 +118,7 @@ fn a_custom_backbone_is_trained_and_forecasts_without_libtorch() {
         jitter: 0.0,
         ..TrainingConfig::recommended(Variant::Full)
     };
-    let mut trainer = Trainer::new(torch(Kind::Float), windows(), training).unwrap();
+    let mut trainer = Trainer::new(torch(Kind::Float), windows(), None, training).unwrap();
     let mut losses = Vec::new();
     while !trainer.is_finished() {
         let epoch = trainer.step().unwrap().finished_epoch;

@@ -6,7 +6,7 @@ use ddl_data::RememberedTrack;
 use ddl_network::weights::Origin;
 use ddl_network::{
     DeviceChoice, MemoryTraining, NetworkError, PedestrianView, ProposalConfig, ProposalExample, ProposalNetwork,
-    ProposalTraining, ProposeEndpoints as _, ProposedEndpoints,
+    ProposalTraining, ProposeEndpoints, ProposedEndpoints,
 };
 use ddl_star::{ComputeDevice, ProposalTrainer, StarError, TorchProposals};
 use std::f64::consts::TAU;
@@ -91,7 +91,7 @@ fn training(steps: u64) -> ProposalTraining {
 }
 
 /// Mean distance of the nearest endpoint to the true one (m).
-fn oracle(network: &TorchProposals, examples: &[ProposalExample]) -> f64 {
+fn oracle(network: &dyn ProposeEndpoints, examples: &[ProposalExample]) -> f64 {
     let views: Vec<_> = examples.iter().map(|example| example.view.clone()).collect();
     let proposed = network.propose(&views).unwrap();
     let nearest = |(proposed, example): (&ProposedEndpoints, &ProposalExample)| {
@@ -114,9 +114,9 @@ fn trained(steps: u64) -> TorchProposals {
 
 #[test]
 fn it_learns_where_pedestrians_go_on_a_fork() {
-    let before = oracle(&network(), &examples());
-    let after = trained(250);
-    let error = oracle(&after, &examples());
+    let before = oracle(&*network().into_proposer(), &examples());
+    let after = trained(250).into_proposer();
+    let error = oracle(&*after, &examples());
     assert!(before > 1.0 && error < 0.45, "{before:.2} m before, {error:.2} m after");
     // A faster pedestrian ends further away: the endpoints depend on the observation.
     let reach = |speed| {
@@ -151,8 +151,7 @@ fn earlier_pedestrians_decide_and_the_rest_of_the_network_is_unchanged() {
             trainer.step().unwrap();
         }
         let weights = trainer.into_network().unwrap().parameters().to_weights();
-        let plain = ProposalNetwork::new(config.clone(), 1).unwrap();
-        plain.with_weights(weights.unwrap()).unwrap()
+        ProposalNetwork::reading(config.clone(), |_| Ok(weights.unwrap())).unwrap()
     };
     let views: Vec<_> = examples.iter().map(|example| example.view.clone()).collect();
     // The first endpoints are from the observation only, the others from the memory branch.
@@ -192,9 +191,9 @@ fn kernels_propose_the_endpoints_of_libtorch() {
     }
     for torch in [network(), trained(20)] {
         let weights = torch.parameters().to_weights().unwrap();
-        let plain = ProposalNetwork::new(small(), 1).unwrap();
-        let plain = plain.with_weights(weights).unwrap();
-        let (ours, reference) = (plain.propose(&views).unwrap(), torch.propose(&views).unwrap());
+        let plain = ProposalNetwork::reading(small(), |_| Ok(weights)).unwrap();
+        let reference = torch.into_proposer().propose(&views).unwrap();
+        let ours = plain.propose(&views).unwrap();
         assert_eq!((ours.len(), reference.len()), (views.len(), views.len()));
         for (i, (ours, reference)) in ours.iter().zip(&reference).enumerate() {
             let numbers =

@@ -9,7 +9,7 @@ use super::valid_file::{ValidFile, names_file, with_file};
 use crate::{drawn_model, safetensors_file};
 use arbitrary::Unstructured;
 use ddl::network::weights::{Origin, Weights, load_weights, save_weights};
-use ddl::network::{MemoryConfig, MotionNetwork, ProposalConfig, StarConfig};
+use ddl::network::{ForecastWindows as _, MemoryConfig, MotionNetwork, ProposalConfig, StarConfig};
 use ddl::{Ddl, DeviceChoice, GoalModel, GoalRecipe, ModelSource, RunConfig, RunDirectory, Variant};
 use ddl_data::{PedestrianId, Window};
 use serde_json::Value;
@@ -22,7 +22,7 @@ use tempfile::TempDir;
 pub(super) fn smallest_config() -> RunConfig {
     let mut config = drawn_model::config(Variant::Full);
     config.star = StarConfig {
-        model_width: 2,
+        model_width: 4,
         heads: 1,
         feed_forward_width: 1,
         spatial_layers: 1,
@@ -74,7 +74,11 @@ pub(super) fn run_config(bytes: &[u8]) {
         match with_file(&path, &text, |_| run.config()) {
             Err(error) => names_file(&error, &folder.path().display().to_string()),
             Ok(config) => {
-                let _ = (config.star.check(), config.goals.check(), config.training.check());
+                let _ = (
+                    config.star.check(),
+                    config.goals.check(),
+                    config.training.check(config.star.variant),
+                );
                 let written = serde_json::to_string(&config).expect("a valid configuration can be written");
                 let again = with_file(&path, written.as_bytes(), |_| run.config());
                 assert_eq!(again.ok(), Some(config));
@@ -103,7 +107,8 @@ pub(super) fn weights(choices: &[u8]) {
         static VALID: ValidFile<(Weights, Origin)> = ValidFile::new("model.safetensors", without_digest, |path| {
             let config = smallest_config();
             let network = MotionNetwork::new(config.star.clone(), 1).expect("a valid configuration");
-            let (weights, origin) = (network.weights().clone(), config.network_origin());
+            let weights = network.copy_weights().expect("weights in memory");
+            let origin = config.network_origin();
             save_weights(&weights, &origin, path).expect("weights can be written");
             (weights, origin)
         });

@@ -23,7 +23,7 @@ fn training() -> Result<(Trainer, Origin), Box<dyn std::error::Error>> {
     let window = Window::new("yard", 0, 10, vec![PedestrianId(1)], vec![walk])?;
     let device = ComputeDevice::open(DeviceChoice::Cpu)?;
     let network = TorchNetwork::new(config.star.clone(), 1, device)?;
-    let trainer = Trainer::new(network, vec![window], training)?;
+    let trainer = Trainer::new(network, vec![window], None, training)?;
     Ok((trainer, config.network_origin()))
 }
 

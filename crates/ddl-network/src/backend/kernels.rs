@@ -324,7 +324,7 @@ mod tests {
     fn layer(dropout: f64) -> (Arc<Kernels>, EncoderLayer) {
         let mut layout = Layout::default();
         let sizes = Sizes {
-            width: 4,
+            width: 8,
             heads: 2,
             hidden: 3,
         };

@@ -45,7 +45,7 @@ impl MemoryConfig {
     ///
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
-    pub fn check(&self) -> Result<(), NetworkError> {
+    pub(crate) fn check(&self) -> Result<(), NetworkError> {
         // The upper limits prevent a damaged file from requesting all memory of the machine.
         for (field, value, most, rule) in [
             ("memory.remembered", self.remembered as i64, 256, "1 to 256"),
@@ -98,7 +98,7 @@ impl MemoryTraining {
     ///
     /// # Errors
     /// [`NetworkError::Config`] naming the first field that is out of range.
-    pub fn check(&self) -> Result<(), NetworkError> {
+    pub(crate) fn check(&self) -> Result<(), NetworkError> {
         require(self.steps > 0, "memory.steps", &self.steps, "at least 1")?;
         let partial = self.partial;
         let holds = (0.0..=1.0).contains(&partial);

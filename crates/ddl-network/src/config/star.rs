@@ -3,6 +3,7 @@
 use crate::NetworkError;
 use crate::config::range::{positive, require};
 use crate::config::variant::{BackboneKind, Variant};
+use crate::kernel::HEAD_WIDTH;
 use serde::{Deserialize, Serialize};
 
 /// The coordinate frame of the network's input and output.
@@ -29,7 +30,7 @@ pub struct StarConfig {
     pub frame: NetworkFrame,
     /// Width of a token.
     pub model_width: i64,
-    /// Attention heads; must divide the width.
+    /// Attention heads, a quarter of the width.
     pub heads: i64,
     /// Width of the hidden layer of each feed-forward block.
     pub feed_forward_width: i64,
@@ -167,8 +168,8 @@ impl StarConfig {
         )?;
         let few = layers <= MOST_LAYERS;
         require(few, "spatial_layers", &layers, "at most 64")?;
-        let divides = self.model_width % heads == 0;
-        require(divides, "heads", &heads, "a divisor of model_width")?;
+        let fits = self.model_width == heads * HEAD_WIDTH as i64;
+        require(fits, "heads", &heads, "a quarter of model_width")?;
         require(
             self.frame == NetworkFrame::World || self.variant.goal_shift(),
             "frame",

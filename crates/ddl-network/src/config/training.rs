@@ -123,11 +123,12 @@ impl TrainingConfig {
         }
     }
 
-    /// Checks every field.
+    /// Checks every field, for a network of this variant.
     ///
     /// # Errors
-    /// [`NetworkError::Config`] naming the first field that is out of range.
-    pub fn check(&self) -> Result<(), NetworkError> {
+    /// [`NetworkError::Config`] naming the first field that is out of range, or [`Objective::Walk`] for
+    /// [`Variant::Star`], which has no goals.
+    pub fn check(&self, variant: Variant) -> Result<(), NetworkError> {
         require(
             (1..=MOST_EPOCHS).contains(&self.epochs),
             "epochs",
@@ -146,14 +147,7 @@ impl TrainingConfig {
         positive("gradient_clip", self.gradient_clip)?;
         at_least_one("batch_pedestrians", self.batch_pedestrians as u64)?;
         let pedestrians = self.pedestrians_per_epoch.unwrap_or(1);
-        at_least_one("pedestrians_per_epoch", pedestrians as u64)
-    }
-
-    /// Checks that a network of this variant can be trained with these settings.
-    ///
-    /// # Errors
-    /// [`NetworkError::Config`] for [`Objective::Walk`] with [`Variant::Star`], which has no goals.
-    pub fn check_for(&self, variant: Variant) -> Result<(), NetworkError> {
+        at_least_one("pedestrians_per_epoch", pedestrians as u64)?;
         require(
             variant.uses_goal() || self.objective == Objective::NextStep,
             "objective",

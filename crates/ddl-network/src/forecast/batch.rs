@@ -112,12 +112,12 @@ pub(super) fn batches<'a>(
 
 impl ForecastBatch<'_> {
     /// The number of pedestrians P.
-    pub fn pedestrians(&self) -> usize {
+    pub(super) fn pedestrians(&self) -> usize {
         self.windows.iter().map(Window::len).sum()
     }
 
     /// The number of hypotheses H.
-    pub fn hypotheses(&self) -> usize {
+    pub(super) fn hypotheses(&self) -> usize {
         self.goals.len().max(self.noise_vectors)
     }
 

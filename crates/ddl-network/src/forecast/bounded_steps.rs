@@ -8,10 +8,11 @@
 
 #![expect(clippy::inline_always, reason = "compiled per instruction set")]
 
-use crate::forecast::numbers::Numbers;
 use crate::forecast::one_step::{around, next};
 use ddl_dynamics::{MotionBounds, StepTime};
-use ddl_simd::{Kernel, LANES, Lanes, Simd};
+use ddl_simd::{Floats, Kernel, LANES, Lanes, Simd};
+use fearless_simd::mask32x16;
+use fearless_simd::prelude::*;
 
 /// Sum of the squares of a row's numbers up to which every sum and product but a square is finite.
 const LARGEST: f32 = 1e16;
@@ -71,15 +72,15 @@ impl Kernel for BoundedSteps<'_> {
 /// Writes the ends of the steps, and returns in which lanes they are exact.
 #[inline(always)]
 fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<f32>), ends: &mut [Lanes; 2]) -> u32 {
-    let mut numbers = [Numbers::load(simd, &rows[0].0); INPUTS];
+    let mut numbers = [simd.load(&rows[0].0); INPUTS];
     let mut squares = numbers[0] * 0.0;
     for (number, lanes) in numbers.iter_mut().zip(rows) {
-        *number = Numbers::load(simd, &lanes.0);
-        squares = squares + *number * *number;
+        *number = simd.load(&lanes.0);
+        squares += *number * *number;
     }
     let [px, py, gx, gy, a, b, c, vx, vy, top, share] = numbers;
-    let zero = px.like(0.0);
-    let mut exact = squares.like(LARGEST).at_least(squares);
+    let zero = simd.splat(0.0);
+    let mut exact = lane_bits(squares.simd_le(LARGEST));
     if !((1e-3..1e3).contains(&time.dt) && sigma > 0.0 && sigma < 1e3) {
         exact = 0;
     }
@@ -99,8 +100,9 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
         mixed[i] = neutral[i] + (mixed[i] - neutral[i]) * share;
     }
     let ([first, second], [cos, sin]) = axes(mixed, range, &mut exact);
-    let x = cos.where_at_least(zero, cos + 1.0, sin);
-    let y = cos.where_at_least(zero, sin, cos.like(1.0) - cos);
+    let ahead = cos.simd_ge(zero);
+    let x = ahead.select(cos + 1.0, sin);
+    let y = ahead.select(sin, simd.splat(1.0) - cos);
     let (_, axis) = polar([x, y], &mut exact);
     let stretch = (first - second).max(zero).sqrt();
     let [x, y] = [axis[0] * stretch, axis[1] * stretch];
@@ -115,26 +117,28 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
     let cosine = (away[0] * heading[0] + away[1] * heading[1]) * -1.0;
     let reach = distance * cosine;
     let moved = speed * time.dt;
-    let x = reach.where_at_least(moved, px + velocity[0] * time.dt, px + heading[0] * reach);
-    let y = reach.where_at_least(moved, py + velocity[1] * time.dt, py + heading[1] * reach);
+    let unlimited = reach.simd_ge(moved);
+    let x = unlimited.select(px + velocity[0] * time.dt, px + heading[0] * reach);
+    let y = unlimited.select(py + velocity[1] * time.dt, py + heading[1] * reach);
     let (left, _) = polar([x - gx, y - gy], &mut exact);
-    exact &= left.at_least(zero) & !left.at_least(distance) & !zero.at_least(cosine);
+    exact &= lane_bits(left.simd_ge(zero)) & !lane_bits(left.simd_ge(distance)) & !lane_bits(cosine.simd_le(zero));
 
     let largest = magnitude(px).max(magnitude(py)).max(magnitude(gx)).max(magnitude(gy));
-    let resolution = (largest * f32::EPSILON).max(zero.like(f32::MIN_POSITIVE));
+    let resolution = (largest * f32::EPSILON).max(f32::MIN_POSITIVE);
     // A step that is not limited by the closest point counts as one that ends far from the goal.
-    let left = reach.where_at_least(moved, left.like(f32::INFINITY), left);
+    let left = unlimited.select(simd.splat(f32::INFINITY), left);
     let arrival = resolution * ARRIVAL;
-    arrival.where_at_least(left, gx, x).store(&mut ends[0].0);
-    arrival.where_at_least(left, gy, y).store(&mut ends[1].0);
+    let arrived = arrival.simd_ge(left);
+    simd.store(arrived.select(gx, x), &mut ends[0].0);
+    simd.store(arrived.select(gy, y), &mut ends[1].0);
     exact
 }
 
 /// The arriving speed, and the range of the eigenvalues.
 #[inline(always)]
-fn speeds<S: Simd>(distance: Numbers<S>, top: Numbers<S>, time: StepTime<f32>) -> (Numbers<S>, [Numbers<S>; 2]) {
+fn speeds<S: Simd>(distance: Floats<S>, top: Floats<S>, time: StepTime<f32>) -> (Floats<S>, [Floats<S>; 2]) {
     let s = distance / (time.left.max(1) as f32 * time.dt);
-    let s = s.min(top).max(s.like(f32::MIN_POSITIVE));
+    let s = s.min(top).max(f32::MIN_POSITIVE);
     if time.left <= 1 {
         return (s, [s, s]);
     }
@@ -148,12 +152,12 @@ fn speeds<S: Simd>(distance: Numbers<S>, top: Numbers<S>, time: StepTime<f32>) -
 /// The neutral metric before its eigenvalues are brought within the range.
 #[inline(always)]
 fn neutral<S: Simd>(
-    s: Numbers<S>,
-    [cos, sin]: [Numbers<S>; 2],
-    [vx, vy]: [Numbers<S>; 2],
-    range: [Numbers<S>; 2],
+    s: Floats<S>,
+    [cos, sin]: [Floats<S>; 2],
+    [vx, vy]: [Floats<S>; 2],
+    range: [Floats<S>; 2],
     time: StepTime<f32>,
-) -> [Numbers<S>; 3] {
+) -> [Floats<S>; 3] {
     let g = MotionBounds::<f32>::momentum(time) as f32;
     let along = (s * (1.0 - g) + (vx * cos + vy * sin) * g).max(range[0]);
     let most = along * MotionBounds::<f32>::MAX_LATERAL_RATIO as f32;
@@ -168,26 +172,22 @@ fn neutral<S: Simd>(
 }
 
 #[inline(always)]
-fn magnitude<S: Simd>(number: Numbers<S>) -> Numbers<S> {
+fn magnitude<S: Simd>(number: Floats<S>) -> Floats<S> {
     number.max(number * -1.0)
 }
 
 /// Length and direction of a vector. Clears the bits of the lanes where it has to be scaled first.
 #[inline(always)]
-fn polar<S: Simd>([x, y]: [Numbers<S>; 2], exact: &mut u32) -> (Numbers<S>, [Numbers<S>; 2]) {
+fn polar<S: Simd>([x, y]: [Floats<S>; 2], exact: &mut u32) -> (Floats<S>, [Floats<S>; 2]) {
     let square = x * x + y * y;
-    let zero = square.like(0.0);
-    let usual = square.at_least(square.like(SMALLEST_SQUARE)) & square.like(f32::MAX).at_least(square);
-    *exact &= usual | zero.at_least(magnitude(x).max(magnitude(y)));
+    let usual = lane_bits(square.simd_ge(SMALLEST_SQUARE)) & lane_bits(square.simd_le(f32::MAX));
+    *exact &= usual | lane_bits(magnitude(x).max(magnitude(y)).simd_le(0.0));
     let length = square.sqrt();
     // The zero vector has the direction 0.
-    let direction = [x / length, y / length];
+    let none = square.simd_le(0.0);
     (
         length,
-        [
-            square.zero_unless_positive(direction[0]),
-            square.zero_unless_positive(direction[1]),
-        ],
+        [none.select(square, x / length), none.select(square, y / length)],
     )
 }
 
@@ -195,10 +195,10 @@ fn polar<S: Simd>([x, y]: [Numbers<S>; 2], exact: &mut u32) -> (Numbers<S>, [Num
 /// the angle of its eigenvector.
 #[inline(always)]
 fn axes<S: Simd>(
-    [xx, xy, yy]: [Numbers<S>; 3],
-    [smallest, largest]: [Numbers<S>; 2],
+    [xx, xy, yy]: [Floats<S>; 3],
+    [smallest, largest]: [Floats<S>; 2],
     exact: &mut u32,
-) -> ([Numbers<S>; 2], [Numbers<S>; 2]) {
+) -> ([Floats<S>; 2], [Floats<S>; 2]) {
     let (mean, half) = (xx * 0.5 + yy * 0.5, xx * 0.5 - yy * 0.5);
     let (radius, double) = polar([half, xy], exact);
     let first = (mean + radius).max(smallest).min(largest);
@@ -207,10 +207,16 @@ fn axes<S: Simd>(
 }
 
 #[inline(always)]
-fn within<S: Simd>(matrix: [Numbers<S>; 3], range: [Numbers<S>; 2], exact: &mut u32) -> [Numbers<S>; 3] {
+fn within<S: Simd>(matrix: [Floats<S>; 3], range: [Floats<S>; 2], exact: &mut u32) -> [Floats<S>; 3] {
     let ([first, second], [cos, sin]) = axes(matrix, range, exact);
     let (middle, half) = (first * 0.5 + second * 0.5, first * 0.5 - second * 0.5);
     [middle + half * cos, half * sin, middle - half * cos]
+}
+
+/// Bit l is set where the mask is in lane l.
+#[inline(always)]
+fn lane_bits<S: Simd>(mask: mask32x16<S>) -> u32 {
+    mask.to_bitmask() as u32
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! The expectation, over the noise, of the metric that the output layer emits.
 
-/// Lower bound of the pivots of the expected metric, in m/s.
-const SMALLEST_PIVOT: f32 = 1e-12;
+use crate::forecast::own_frame::SMALLEST_PIVOT;
 
 /// Entries of C = W W^T, the covariance of W n for noise n ~ N(0, I).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -100,11 +100,6 @@ impl MotionNetwork {
             ..self
         })
     }
-
-    /// The weights.
-    pub fn weights(&self) -> &Weights {
-        &self.weights
-    }
 }
 
 fn initial(layout: &Arc<Layout>, seed: u64) -> Weights {

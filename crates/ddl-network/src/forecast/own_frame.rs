@@ -10,8 +10,8 @@ use ddl_data::Position;
 
 /// Closer to its goal than this (metres), a pedestrian's frame has the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
-/// Lower bound of the square of the first pivot, in m/s.
-const SMALLEST_PIVOT: f32 = 1e-12;
+/// Lower bound of the squares of pivots, in m/s.
+pub(super) const SMALLEST_PIVOT: f32 = 1e-12;
 
 /// The frame of one pedestrian in one hypothesis: cosine and sine of its first axis, and its unit of length (m).
 #[derive(Debug, Clone, Copy, PartialEq)]

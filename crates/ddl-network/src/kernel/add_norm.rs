@@ -6,6 +6,7 @@ mod tests;
 
 use crate::kernel::columns::{load, store};
 use ddl_simd::{DEPTH, LANES, Lanes, Simd};
+use fearless_simd::prelude::*;
 pub(super) use rows::Decisions;
 use rows::{Four, USUAL, means};
 
@@ -127,7 +128,7 @@ impl AddNorm {
                     Some((decisions, start)) => decisions.apply(simd, term, start + first + r, column),
                     None => term,
                 };
-                four.set(simd, r, v, simd.add(load(simd, x, column), term));
+                four.set(simd, r, v, load(simd, x, column) + term);
             }
         }
         let scales = self.centre(simd, four);
@@ -135,11 +136,11 @@ impl AddNorm {
             let scale = simd.splat(scales[r]);
             let y = &mut y[r * width..(r + 1) * width];
             for v in 0..vectors {
-                let number = simd.mul(four.get(simd, r, v), scale);
+                let number = four.get(simd, r, v) * scale;
                 four.set(simd, r, v, number);
                 let weight = simd.load(&self.weight[v].0);
                 let bias = simd.load(&self.bias[v].0);
-                store(simd, simd.mul_add(number, weight, bias), y, v * LANES);
+                store(simd, number.mul_add(weight, bias), y, v * LANES);
             }
         }
         if !normal.scales.is_empty() {
@@ -165,9 +166,9 @@ impl AddNorm {
         let mean = simd.spread_each(means(simd, width, four.sums(simd)));
         for r in 0..DEPTH {
             for v in 0..vectors {
-                let mut centred = simd.sub(four.get(simd, r, v), mean[r]);
+                let mut centred = four.get(simd, r, v) - mean[r];
                 if !FIXED {
-                    centred = simd.mul(centred, simd.load(&self.inside[v].0));
+                    centred *= simd.load(&self.inside[v].0);
                 }
                 four.set(simd, r, v, centred);
             }
@@ -232,10 +233,10 @@ impl AddNorm {
                     let number = load(simd, numbers, v * LANES);
                     let of_y = load(simd, gy, v * LANES);
                     normal.set(simd, r, v, number);
-                    gradient.set(simd, r, v, simd.mul(of_y, simd.load(&self.weight[v].0)));
+                    gradient.set(simd, r, v, of_y * simd.load(&self.weight[v].0));
                     let [weight, bias] = &mut sums;
-                    weight.set(simd, 0, v, simd.mul_add(of_y, number, weight.get(simd, 0, v)));
-                    bias.set(simd, 0, v, simd.add(of_y, bias.get(simd, 0, v)));
+                    weight.set(simd, 0, v, of_y.mul_add(number, weight.get(simd, 0, v)));
+                    bias.set(simd, 0, v, of_y + bias.get(simd, 0, v));
                 }
             }
             let mean = simd.spread_each(means(simd, width, gradient.sums(simd)));
@@ -247,9 +248,9 @@ impl AddNorm {
                 let (gx, gt) = (&mut gx[row.clone()], &mut gt[row]);
                 for v in 0..vectors {
                     let column = v * LANES;
-                    let centred = simd.sub(gradient.get(simd, r, v), mean[r]);
-                    let along = simd.mul(normal.get(simd, r, v), product[r]);
-                    let of_sum = simd.mul(simd.sub(centred, along), scale);
+                    let centred = gradient.get(simd, r, v) - mean[r];
+                    let along = normal.get(simd, r, v) * product[r];
+                    let of_sum = (centred - along) * scale;
                     store(simd, of_sum, gx, column);
                     let of_term = match decisions {
                         Some((decisions, start)) => decisions.apply(simd, of_sum, start + first + r, column),
@@ -261,7 +262,7 @@ impl AddNorm {
         }
         for v in 0..vectors {
             for (sum, into) in sums.iter().zip([&mut *of_weight, &mut *of_bias]) {
-                let total = simd.add(load(simd, into, v * LANES), sum.get(simd, 0, v));
+                let total = load(simd, into, v * LANES) + sum.get(simd, 0, v);
                 store(simd, total, into, v * LANES);
             }
         }

@@ -110,7 +110,7 @@ impl Buffer {
     }
 
     /// `count` zeros.
-    pub fn zeros(count: usize) -> Self {
+    pub(crate) fn zeros(count: usize) -> Self {
         let mut buffer = Self::any(count);
         buffer.fill(0.0);
         buffer

@@ -1,7 +1,8 @@
 //! Dropout (Srivastava et al. 2014). A decision is a function of the seed and of the number's index, not of the order
 //! of the work.
 
-use ddl_simd::{Bits, Simd};
+use ddl_simd::Simd;
+use fearless_simd::u32x16;
 
 /// Sets each number to 0 with probability `p` and scales the others by 1 / (1 - p).
 ///
@@ -52,14 +53,14 @@ impl RowKey {
 
     /// 32 random bits for each of the sixteen numbers from `first`, a multiple of 16.
     #[inline(always)]
-    pub(super) fn bits<S: Simd>(self, simd: S, first: usize) -> Bits<S> {
+    pub(super) fn bits<S: Simd>(self, simd: S, first: usize) -> u32x16<S> {
         let [a, b] = self.0;
         // The finaliser of a multiplicative hash (lowbias32, C. Wellons 2018), with the row's second word in the
         // middle.
         let bits = simd.count_from(a ^ first as u32);
-        let bits = simd.mul_low(simd.xor_shift::<16>(bits), 0x7feb_352d);
-        let bits = simd.mul_low(simd.xor(simd.xor_shift::<15>(bits), b), 0x846c_a68b);
-        simd.xor_shift::<16>(bits)
+        let bits = (bits ^ (bits >> 16)) * 0x7feb_352d;
+        let bits = (bits ^ (bits >> 15) ^ b) * 0x846c_a68b;
+        bits ^ (bits >> 16)
     }
 }
 

@@ -1,6 +1,7 @@
 //! The activation of the proposal network: x Φ(x), with Φ the normal distribution (Hendrycks and Gimpel 2016).
 
 use ddl_simd::{Dispatch, Floats, Kernel, LANES, Simd};
+use fearless_simd::prelude::*;
 
 /// erfc(z) = t (a₁ + t (a₂ + …)) exp(−z²) for z ≥ 0, t = 1 / (1 + p z), within 1.5e-7 (Abramowitz and Stegun 7.1.26).
 const P: f32 = 0.327_591_1;
@@ -34,18 +35,18 @@ impl Kernel for Gelu<'_> {
 #[inline(always)]
 fn of_lanes<S: Simd>(simd: S, x: Floats<S>) -> Floats<S> {
     let zero = simd.splat(0.0);
-    let size = simd.max(x, simd.sub(zero, x));
-    let z = simd.mul(size, simd.splat(std::f32::consts::FRAC_1_SQRT_2));
+    let size = x.max(zero - x);
+    let z = size * std::f32::consts::FRAC_1_SQRT_2;
     let one = simd.splat(1.0);
-    let t = simd.div(one, simd.mul_add(z, simd.splat(P), one));
+    let t = one / z.mul_add(simd.splat(P), one);
     let mut polynomial = simd.splat(A[A.len() - 1]);
     for degree in (0..A.len() - 1).rev() {
-        polynomial = simd.mul_add(polynomial, t, simd.splat(A[degree]));
+        polynomial = polynomial.mul_add(t, simd.splat(A[degree]));
     }
-    let exponent = simd.mul(simd.mul(z, z), simd.splat(-std::f32::consts::LOG2_E));
-    let erfc = simd.mul(simd.mul(polynomial, t), simd.exp2(exponent));
-    let half = simd.mul(size, simd.splat(0.5));
-    simd.sub(simd.max(zero, x), simd.mul(half, erfc))
+    let exponent = z * z * (-std::f32::consts::LOG2_E);
+    let erfc = polynomial * t * simd.exp2(exponent);
+    let half = size * 0.5;
+    zero.max(x) - half * erfc
 }
 
 #[cfg(test)]

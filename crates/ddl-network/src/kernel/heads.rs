@@ -1,141 +1,103 @@
-//! The layout of heads in lanes: eight heads of each of two pedestrians, four of their numbers (a quad) at a time.
+//! The layout of heads in lanes: eight heads of each of two pedestrians, and the four numbers of each head.
 
-use ddl_simd::{DEPTH, HALF, HalfQuad, Simd, Vectors};
+use crate::kernel::quads::{HALF, HalfQuad, Quads as _};
+use ddl_simd::{DEPTH, Simd, Vectors};
 
+/// Numbers of a head.
+pub(crate) const HEAD_WIDTH: usize = DEPTH;
+/// Heads in a half of the lanes.
 pub(super) const GROUP: usize = HALF;
+/// 1 / √[`HEAD_WIDTH`], so that the variance of scores does not depend on the width.
+pub(super) const SCALE: f32 = 0.5;
 
-/// Four numbers of each head of a group in one row, a half of a vector at a time.
+/// The numbers of a group of heads in one row, a half of a vector at a time.
 type Halves = [[f32; HALF]; DEPTH];
 const ZERO_HALVES: Halves = HalfQuad::ZERO.0;
 
+/// The number of heads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Heads {
-    pub(super) count: usize,
-    pub(super) width: usize,
-}
+pub(super) struct Heads(usize);
 
 impl Heads {
-    pub(super) fn new(count: usize, width: usize) -> Self {
-        assert!(
-            (1..=256).contains(&count) && width > 0,
-            "{count} heads of width {width}: 1 to 256 heads are needed, of at least one number"
-        );
-        Self { count, width }
+    pub(super) fn new(count: usize) -> Self {
+        assert!((1..=256).contains(&count), "{count} heads: 1 to 256 are needed");
+        Self(count)
     }
 
     pub(super) fn row(self) -> usize {
-        self.count * self.width
+        self.0 * HEAD_WIDTH
     }
 
     pub(super) fn groups(self) -> usize {
-        self.count.div_ceil(GROUP)
-    }
-
-    pub(super) fn quads(self) -> usize {
-        self.width.div_ceil(DEPTH)
-    }
-
-    /// 1 / √width, so that the variance of scores does not depend on the width.
-    pub(super) fn scale(self) -> f32 {
-        (1.0 / (self.width as f64).sqrt()) as f32
+        self.0.div_ceil(GROUP)
     }
 }
 
-/// A part of the numbers of a row: [`GROUP`] heads and [`DEPTH`] numbers of each.
+/// Loads a group of heads of two rows; heads beyond the last and a missing row count as zeros. Vector d holds the d-th
+/// number of each head.
 ///
-/// Heads beyond the last and numbers beyond the width are loaded as 0 and not stored.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct HeadPart {
-    heads: Heads,
-    group: usize,
-    quad: usize,
+/// Lane l holds head `head_of(l)` of the group, from row `row_of(l)`. In this order, transposing pieces of four lanes
+/// is enough.
+#[inline(always)]
+pub(super) fn load<S: Simd>(simd: S, group: usize, first: &[f32], second: Option<&[f32]>) -> Vectors<S> {
+    if let Some(a) = whole(group, first)
+        && let Some(b) = second.map_or(Some(&ZERO_HALVES), |row| whole(group, row))
+    {
+        return loaded(simd, a, b);
+    }
+    let b = second.map_or(ZERO_HALVES, |row| gathered(group, row));
+    loaded(simd, &gathered(group, first), &b)
 }
 
-impl HeadPart {
-    #[inline(always)]
-    pub(super) fn new(heads: Heads, group: usize, quad: usize) -> Self {
-        Self { heads, group, quad }
+#[inline(always)]
+pub(super) fn store<S: Simd>(
+    simd: S,
+    vectors: Vectors<S>,
+    group: usize,
+    first: &mut [f32],
+    second: Option<&mut [f32]>,
+) {
+    let [mut a, mut b] = [HalfQuad::ZERO; 2];
+    simd.write_halves(simd.transpose(vectors), &mut a, &mut b);
+    store_row(&a.0, group, first);
+    if let Some(second) = second {
+        store_row(&b.0, group, second);
     }
+}
 
-    /// Loads the heads of two rows; a missing row counts as zeros. Vector d holds the d-th number of each head.
-    ///
-    /// Lane l holds head `head_of(l)` of the group, from row `row_of(l)`. In this order, transposing pieces of four
-    /// lanes is enough.
-    #[inline(always)]
-    pub(super) fn load<S: Simd>(self, simd: S, first: &[f32], second: Option<&[f32]>) -> Vectors<S> {
-        if let Some(a) = self.whole(first)
-            && let Some(b) = second.map_or(Some(&ZERO_HALVES), |row| self.whole(row))
-        {
-            return loaded(simd, a, b);
-        }
-        let b = second.map_or(ZERO_HALVES, |row| self.gathered(row));
-        loaded(simd, &self.gathered(first), &b)
+/// Stores the sums of the numbers of both rows.
+#[inline(always)]
+pub(super) fn store_sum<S: Simd>(simd: S, vectors: Vectors<S>, group: usize, row: &mut [f32]) {
+    let [mut a, mut b] = [HalfQuad::ZERO; 2];
+    simd.write_halves(simd.transpose(vectors), &mut a, &mut b);
+    for (a, b) in a.0.as_flattened_mut().iter_mut().zip(b.0.as_flattened()) {
+        *a += b;
     }
+    store_row(&a.0, group, row);
+}
 
-    #[inline(always)]
-    pub(super) fn store<S: Simd>(self, simd: S, vectors: Vectors<S>, first: &mut [f32], second: Option<&mut [f32]>) {
-        let [mut a, mut b] = [HalfQuad::ZERO; 2];
-        simd.write_halves(simd.transpose(vectors), &mut a, &mut b);
-        self.store_row(&a.0, first);
-        if let Some(second) = second {
-            self.store_row(&b.0, second);
-        }
+#[inline(always)]
+fn store_row(numbers: &Halves, group: usize, row: &mut [f32]) {
+    let rest = &mut row[group * GROUP * HEAD_WIDTH..];
+    if let Some(whole) = rest.as_chunks_mut().0.first_chunk_mut() {
+        *whole = *numbers;
+    } else {
+        rest.copy_from_slice(&numbers.as_flattened()[..rest.len()]);
     }
+}
 
-    /// Stores the sums of the numbers of both rows.
-    #[inline(always)]
-    pub(super) fn store_sum<S: Simd>(self, simd: S, vectors: Vectors<S>, row: &mut [f32]) {
-        let [mut a, mut b] = [HalfQuad::ZERO; 2];
-        simd.write_halves(simd.transpose(vectors), &mut a, &mut b);
-        for (a, b) in a.0.as_flattened_mut().iter_mut().zip(b.0.as_flattened()) {
-            *a += b;
-        }
-        self.store_row(&a.0, row);
-    }
+/// The numbers of a group that is smaller than the others.
+#[inline(always)]
+fn gathered(group: usize, row: &[f32]) -> Halves {
+    let mut numbers = ZERO_HALVES;
+    let rest = &row[group * GROUP * HEAD_WIDTH..];
+    numbers.as_flattened_mut()[..rest.len()].copy_from_slice(rest);
+    numbers
+}
 
-    #[inline(always)]
-    fn store_row(self, numbers: &Halves, row: &mut [f32]) {
-        if let Some(whole) = self.whole_mut(row) {
-            *whole = *numbers;
-        } else {
-            self.for_each(|place, index| row[index] = numbers.as_flattened()[place]);
-        }
-    }
-
-    #[inline(always)]
-    fn gathered(self, row: &[f32]) -> Halves {
-        let mut numbers = ZERO_HALVES;
-        self.for_each(|place, index| numbers.as_flattened_mut()[place] = row[index]);
-        numbers
-    }
-
-    #[inline(always)]
-    fn whole(self, row: &[f32]) -> Option<&Halves> {
-        if self.heads.width != DEPTH {
-            return None;
-        }
-        row.as_chunks().0.get(self.group * DEPTH..)?.first_chunk()
-    }
-
-    #[inline(always)]
-    fn whole_mut(self, row: &mut [f32]) -> Option<&mut Halves> {
-        if self.heads.width != DEPTH {
-            return None;
-        }
-        row.as_chunks_mut().0.get_mut(self.group * DEPTH..)?.first_chunk_mut()
-    }
-
-    #[inline(always)]
-    fn for_each(self, mut f: impl FnMut(usize, usize)) {
-        let first = self.group * GROUP;
-        let numbers = self.quad * DEPTH..self.heads.width.min((self.quad + 1) * DEPTH);
-        for head in first..self.heads.count.min(first + GROUP) {
-            for number in numbers.clone() {
-                let place = (head - first) * DEPTH + number - self.quad * DEPTH;
-                f(place, head * self.heads.width + number);
-            }
-        }
-    }
+#[inline(always)]
+fn whole(group: usize, row: &[f32]) -> Option<&Halves> {
+    row.as_chunks().0.get(group * DEPTH..)?.first_chunk()
 }
 
 #[inline(always)]

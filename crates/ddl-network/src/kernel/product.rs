@@ -1,13 +1,17 @@
 //! Products of row-major matrices.
 
 use crate::kernel::columns::{MatrixColumns, MatrixColumnsMut, load, store};
-use ddl_simd::{LANES, Lanes, Simd, Tile};
+use ddl_simd::{Floats, LANES, Lanes, Simd};
+use fearless_simd::prelude::*;
 
 /// Columns of a block.
 pub(super) const BLOCK: usize = 2 * LANES;
 /// Steps of a product in one loop. The compiler unrolls a loop of this length, but not one of 32 steps, which takes a
 /// quarter more time.
 const UNROLLED: usize = 8;
+
+/// Accumulators of a product: `R` rows of `V` times sixteen numbers.
+type Tile<S, const R: usize, const V: usize> = [[Floats<S>; V]; R];
 
 /// A matrix in blocks of 32 columns: all rows of the first block, then those of the next; padded with zeros.
 #[derive(Clone, Debug)]
@@ -155,14 +159,14 @@ fn tile<S: Simd, const R: usize, const V: usize>(
         for r in 0..R {
             let of_a = simd.splat(of_a[r][t]);
             for v in 0..V {
-                sum[r][v] = simd.mul_add(of_a, simd.load(&of_b[part + v].0), sum[r][v]);
+                sum[r][v] = of_a.mul_add(simd.load(&of_b[part + v].0), sum[r][v]);
             }
         }
     }
     for r in 0..R {
         for v in 0..V {
             if let End::Relu = end {
-                sum[r][v] = simd.max(simd.splat(0.0), sum[r][v]);
+                sum[r][v] = simd.splat(0.0).max(sum[r][v]);
             }
             store(simd, sum[r][v], y.row_mut(row + r), (vector + v) * LANES);
         }
@@ -192,7 +196,7 @@ fn add_block<S: Simd, const R: usize, const V: usize>(
             for r in 0..R {
                 let of_a = simd.splat(of_a[r][t]);
                 for v in 0..V {
-                    sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+                    sum[r][v] = of_a.mul_add(of_b[v], sum[r][v]);
                 }
             }
         }
@@ -251,7 +255,7 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
             for v in 0..V {
                 // Added at the end, because partial sums have smaller rounding errors than one long sum.
                 let column = first + v * LANES;
-                let total = simd.add(load(simd, into, column), sum[r][v]);
+                let total = load(simd, into, column) + sum[r][v];
                 store(simd, total, into, column);
             }
         }
@@ -276,7 +280,7 @@ fn add_outer_product<S: Simd, const R: usize, const V: usize>(
     for r in 0..R {
         let of_a = simd.splat(of_a[r]);
         for v in 0..V {
-            sum[r][v] = simd.mul_add(of_a, of_b[v], sum[r][v]);
+            sum[r][v] = of_a.mul_add(of_b[v], sum[r][v]);
         }
     }
     sum
@@ -288,9 +292,9 @@ pub(super) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut 
     for column in (0..sums.len()).step_by(LANES) {
         let mut sum = simd.splat(0.0);
         for row in 0..rows.rows() {
-            sum = simd.add(sum, load(simd, rows.row(row), column));
+            sum += load(simd, rows.row(row), column);
         }
-        let total = simd.add(load(simd, sums, column), sum);
+        let total = load(simd, sums, column) + sum;
         store(simd, total, sums, column);
     }
 }

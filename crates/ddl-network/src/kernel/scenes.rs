@@ -35,7 +35,7 @@ impl SeenKey {
 
 /// The visibility in some of the frames of [`Scenes`].
 #[derive(Clone, Copy, Debug)]
-pub struct Frames<'a> {
+pub(crate) struct Frames<'a> {
     scenes: &'a Scenes,
     first: usize,
     count: usize,
@@ -71,7 +71,7 @@ impl Scenes {
     /// # Panics
     /// If there is no scene, or an empty one. If `seen` does not have a whole number of frames (at least one). If a
     /// pedestrian does not see itself. If indices are not ascending or not in the scene.
-    pub fn new(sizes: &[usize], seen: impl IntoIterator<Item = Vec<u32>>) -> Self {
+    pub(crate) fn new(sizes: &[usize], seen: impl IntoIterator<Item = Vec<u32>>) -> Self {
         assert!(!sizes.is_empty(), "at least one scene is needed");
         assert!(
             sizes.iter().all(|&size| size > 0),
@@ -132,7 +132,7 @@ impl Scenes {
     }
 
     /// Number of pedestrians in all scenes.
-    pub fn pedestrians(&self) -> usize {
+    pub(crate) fn pedestrians(&self) -> usize {
         self.ranges.last().map_or(0, |last| last.end)
     }
 
@@ -165,7 +165,7 @@ impl Scenes {
     ///
     /// # Panics
     /// If the range is empty or a frame does not exist.
-    pub fn during(&self, frames: Range<usize>) -> Frames<'_> {
+    pub(crate) fn during(&self, frames: Range<usize>) -> Frames<'_> {
         assert!(
             frames.start < frames.end && frames.end <= self.frames,
             "frames {frames:?} of {}",

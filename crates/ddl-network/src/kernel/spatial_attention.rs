@@ -60,9 +60,9 @@ impl Attended {
 }
 
 impl SpatialAttention {
-    pub(crate) fn new(heads: usize, head_width: usize) -> Self {
+    pub(crate) fn new(heads: usize) -> Self {
         Self {
-            heads: Heads::new(heads, head_width),
+            heads: Heads::new(heads),
             dispatch: Dispatch::detect(),
         }
     }
@@ -157,7 +157,7 @@ impl SpatialAttention {
     }
 
     fn work(&self, frames: Frames<'_>, entries: usize) -> usize {
-        frames.pairs(entries) * self.heads.groups() * self.heads.quads() * WORK_OF_A_PAIR
+        frames.pairs(entries) * self.heads.groups() * WORK_OF_A_PAIR
     }
 
     fn normalisers(&self, frames: Frames<'_>) -> usize {

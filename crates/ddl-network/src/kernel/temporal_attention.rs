@@ -42,9 +42,9 @@ pub(crate) struct TemporalGradients<'a, 'b> {
 }
 
 impl TemporalAttention {
-    pub(crate) fn new(heads: usize, head_width: usize) -> Self {
+    pub(crate) fn new(heads: usize) -> Self {
         Self {
-            heads: Heads::new(heads, head_width),
+            heads: Heads::new(heads),
             dispatch: Dispatch::detect(),
         }
     }
@@ -74,7 +74,6 @@ impl TemporalAttention {
         let chunks = mixed.chunks_mut(chunk).enumerate();
         let jobs: Vec<TemporalForward<'_>> = chunks
             .map(|(i, mixed)| TemporalForward {
-                heads: self.heads,
                 first: i * chunk,
                 query,
                 cache,
@@ -116,7 +115,6 @@ impl TemporalAttention {
             let count = chunk.min(query.len() - first);
             let tokens = token_gradients.iter_mut();
             jobs.push(TemporalBackward {
-                heads: self.heads,
                 first,
                 query,
                 cache,

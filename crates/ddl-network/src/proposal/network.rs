@@ -21,7 +21,6 @@ const CHUNK: usize = 64;
 #[derive(Debug)]
 pub struct ProposalNetwork {
     config: ProposalConfig,
-    layers: ProposalLayers,
     weights: Weights,
     members: Vec<MemberKernels>,
 }
@@ -51,30 +50,13 @@ impl ProposalNetwork {
         let layout = Arc::new(layout);
         let weights = read(&layout)?;
         weights.check_layout(&layout)?;
+        let members = 0..config.members as usize;
+        let members = members.map(|member| MemberKernels::new(&config, &layers, &weights, member));
         Ok(Self {
-            members: members(&config, &layers, &weights),
+            members: members.collect(),
             config,
-            layers,
             weights,
         })
-    }
-
-    /// The same network with other weights.
-    ///
-    /// # Errors
-    /// [`NetworkError::Shape`] if they have another layout.
-    pub fn with_weights(self, weights: Weights) -> Result<Self, NetworkError> {
-        weights.check_layout(self.weights.layout())?;
-        Ok(Self {
-            members: members(&self.config, &self.layers, &weights),
-            weights,
-            ..self
-        })
-    }
-
-    /// The weights.
-    pub fn weights(&self) -> &Weights {
-        &self.weights
     }
 
     fn propose_chunk(&self, views: &[PedestrianView]) -> Vec<ProposedEndpoints> {
@@ -144,10 +126,4 @@ impl ProposeEndpoints for ProposalNetwork {
         let chunks = views.par_chunks(CHUNK);
         Ok(chunks.flat_map_iter(|views| self.propose_chunk(views)).collect())
     }
-}
-
-fn members(config: &ProposalConfig, layers: &ProposalLayers, weights: &Weights) -> Vec<MemberKernels> {
-    (0..config.members as usize)
-        .map(|member| MemberKernels::new(config, layers, weights, member))
-        .collect()
 }

@@ -1,10 +1,12 @@
 //! The SHA-256 of the numbers in a weights file. It detects flipped bits, after which most weights are still finite and
 //! plausible.
 
+use crate::NetworkError;
 use safetensors::SafeTensors;
 use safetensors::tensor::TensorView;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// SHA-256, in hexadecimal, of the name, type, shape and bytes of each tensor, in the order of the names.
 pub fn tensors_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView<'a>)>) -> String {
@@ -28,28 +30,19 @@ pub fn tensors_digest<'a>(tensors: impl IntoIterator<Item = (&'a str, TensorView
     })
 }
 
-/// The numbers of a file are not those that were written. The message continues a sentence that begins with the name of
-/// the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run the same \
-     training again"
-)]
-pub struct DigestMismatch;
-
-/// Checks the numbers of a file against the digest in its header.
+/// Checks the numbers of the file at `path` against the digest in its header.
 ///
 /// # Errors
-/// [`DigestMismatch`] if they differ. Files of earlier versions have no digest and are accepted.
-pub fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>) -> Result<(), DigestMismatch> {
-    let Some(expected) = expected else {
-        return Ok(());
-    };
+/// [`NetworkError::Checkpoint`] if they differ. Files of earlier versions have no digest and are accepted.
+pub fn check_digest(file: &SafeTensors<'_>, expected: Option<&str>, path: &Path) -> Result<(), NetworkError> {
     let tensors = file.tensors();
-    let digest = tensors_digest(tensors.iter().map(|(name, view)| (name.as_str(), view.clone())));
-    if digest == expected {
-        Ok(())
-    } else {
-        Err(DigestMismatch)
+    let digest = || tensors_digest(tensors.iter().map(|(name, view)| (name.as_str(), view.clone())));
+    match expected {
+        Some(expected) if digest() != expected => Err(NetworkError::checkpoint(
+            path,
+            "is damaged: the SHA-256 of its numbers is not the one in its header; copy it again, or delete it and run \
+             the same training again",
+        )),
+        _ => Ok(()),
     }
 }

@@ -193,7 +193,7 @@ pub fn read_tensors(path: &Path, most_bytes: u64, origin: &Origin) -> Result<Vec
         )));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_digest(&file, digest.as_deref()).map_err(|error| bad(error.to_string()))?;
+    check_digest(&file, digest.as_deref(), path)?;
     file.iter()
         .map(|(name, view)| {
             let numbers = match view.dtype() {

@@ -94,7 +94,7 @@ impl Weights {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{MotionNetwork, StarConfig, Variant};
+    use crate::{ForecastWindows as _, MotionNetwork, StarConfig, Variant};
     use proptest::prelude::*;
 
     fn weights() -> Weights {
@@ -102,7 +102,7 @@ mod tests {
             feed_forward_width: 8,
             ..StarConfig::published(Variant::Full)
         };
-        MotionNetwork::new(config, 1).unwrap().weights().clone()
+        MotionNetwork::new(config, 1).unwrap().copy_weights().unwrap()
     }
 
     #[test]

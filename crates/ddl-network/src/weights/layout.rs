@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// The initial values of a tensor.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Initial {
+pub(crate) enum Initial {
     /// Uniform in ±`bound`, then multiplied by `scale`.
     Uniform {
         /// Largest absolute value drawn.
@@ -106,7 +106,7 @@ pub struct EncoderLayer {
 
 impl EncoderLayer {
     /// The range of its numbers among all weights.
-    pub fn span(self) -> Range<usize> {
+    pub(crate) fn span(self) -> Range<usize> {
         self.first..self.first + self.sizes.count()
     }
 }
@@ -133,7 +133,7 @@ impl Layout {
     }
 
     /// Declares a tensor and returns its index.
-    pub fn tensor(&mut self, name: String, shape: &[usize], initial: Initial) -> usize {
+    pub(crate) fn tensor(&mut self, name: String, shape: &[usize], initial: Initial) -> usize {
         self.tensors.push(TensorLayout {
             name,
             shape: shape.to_vec(),
@@ -146,12 +146,12 @@ impl Layout {
     }
 
     /// Declares a tensor with initial values uniform in ±`bound`.
-    pub fn uniform(&mut self, name: String, shape: &[usize], bound: f64) -> usize {
+    pub(crate) fn uniform(&mut self, name: String, shape: &[usize], bound: f64) -> usize {
         self.tensor(name, shape, Initial::Uniform { bound, scale: 1.0 })
     }
 
     /// Declares a tensor whose initial values are all `value`.
-    pub fn constant(&mut self, name: String, shape: &[usize], value: f64) -> usize {
+    pub(crate) fn constant(&mut self, name: String, shape: &[usize], value: f64) -> usize {
         self.tensor(name, shape, Initial::Constant(value))
     }
 

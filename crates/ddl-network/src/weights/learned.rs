@@ -23,7 +23,7 @@ impl Weights {
     }
 
     /// Initial weights, drawn in the order of the tensors; the same on every machine.
-    pub fn initial(layout: &Arc<Layout>, rng: ChaCha8Rng) -> Self {
+    pub(crate) fn initial(layout: &Arc<Layout>, rng: ChaCha8Rng) -> Self {
         let numbers = layout.initial(rng).into_iter().map(|x| x as f32);
         Self::new(Arc::clone(layout), numbers.collect())
     }
@@ -50,7 +50,7 @@ impl Weights {
     }
 
     /// Number of weights.
-    pub fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.numbers.len()
     }
 

@@ -77,6 +77,7 @@ fn configurations_out_of_range_are_refused() {
         StarConfig::check,
         &[
             (|c| c.heads = 5, "heads = 5"),
+            (|c| c.heads = 4, "a quarter of model_width"),
             (|c| (c.model_width, c.heads) = (512, 512), "heads = 512"),
             (|c| c.model_width = 65_536, "at most 2^24 weights"),
             (|c| c.spatial_layers = 65, "at most 64"),
@@ -90,7 +91,7 @@ fn configurations_out_of_range_are_refused() {
     );
     check_all(
         &TrainingConfig::published(),
-        TrainingConfig::check,
+        |config| config.check(Variant::Full),
         &[
             (|c| c.epochs = usize::MAX, "epochs"),
             (|c| c.learning_rate = f64::NAN, "learning_rate"),
@@ -112,11 +113,10 @@ fn configurations_out_of_range_are_refused() {
 
 #[test]
 fn weights_of_another_network_are_refused() {
-    let others = network(Variant::Star).weights().clone();
+    let others = network(Variant::Star).copy_weights().unwrap();
     let refused = network(Variant::Full).with_weights(others.clone());
     let error = refused.unwrap_err();
     assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
-    let proposals = ProposalNetwork::new(ProposalConfig::default(), 1).unwrap();
-    let error = proposals.with_weights(others).unwrap_err();
+    let error = ProposalNetwork::reading(ProposalConfig::default(), |_| Ok(others)).unwrap_err();
     assert!(matches!(error, NetworkError::Shape { .. }), "{error}");
 }

@@ -1,6 +1,9 @@
 //! Numbers of weights.
 
-use ddl_network::{BackboneKind, MotionNetwork, ProposalConfig, ProposalNetwork, StarConfig, Variant};
+use ddl_network::{
+    BackboneKind, ForecastWindows as _, MotionNetwork, ProposalConfig, ProposalNetwork, ProposeEndpoints as _,
+    StarConfig, Variant,
+};
 
 fn check(least: u64, count: usize) {
     let range = least..=20 * least + 1000;
@@ -11,9 +14,9 @@ fn check(least: u64, count: usize) {
 fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
     let published = StarConfig::published(Variant::Full);
     let network = MotionNetwork::new(published.clone(), 1).unwrap();
-    assert_eq!(network.weights().count(), 827_443);
+    assert_eq!(network.copy_weights().unwrap().numbers().len(), 827_443);
     for [model_width, heads, feed_forward_width, layers] in
-        [[32, 8, 128, 2], [1, 1, 1, 1], [16, 4, 512, 5], [64, 2, 1, 1]]
+        [[32, 8, 128, 2], [4, 1, 1, 1], [16, 4, 512, 5], [64, 16, 1, 1]]
     {
         for backbone in BackboneKind::ALL {
             let config = StarConfig {
@@ -25,7 +28,10 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
                 ..published.clone()
             };
             let network = MotionNetwork::new(config.clone(), 1).unwrap();
-            check(config.min_weight_count(), network.weights().count());
+            check(
+                config.min_weight_count(),
+                network.copy_weights().unwrap().numbers().len(),
+            );
         }
     }
     for [members, ends, width, layers, neighbour_width] in
@@ -40,7 +46,13 @@ fn weights_are_as_many_as_published_and_at_least_the_lower_bound() {
             ..ProposalConfig::default()
         };
         let network = ProposalNetwork::new(config.clone(), 1).unwrap();
-        assert_eq!(config.parameter_count(), network.weights().count());
-        check(config.min_weight_count(), network.weights().count());
+        assert_eq!(
+            config.parameter_count(),
+            network.copy_weights().unwrap().numbers().len()
+        );
+        check(
+            config.min_weight_count(),
+            network.copy_weights().unwrap().numbers().len(),
+        );
     }
 }

@@ -4,7 +4,8 @@ use ddl_network::weights::{
     Origin, StoredTensor, TensorData, Weights, load_weights, read_tensors, save_weights, tensors_digest, write_tensors,
 };
 use ddl_network::{
-    ForecastWindows as _, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, StarConfig, Variant,
+    ForecastWindows as _, MotionNetwork, NetworkError, ProposalConfig, ProposalNetwork, ProposeEndpoints as _,
+    StarConfig, Variant,
 };
 use safetensors::SafeTensors;
 use safetensors::tensor::{Dtype, TensorView};
@@ -16,6 +17,10 @@ fn network(variant: Variant, seed: u64) -> MotionNetwork {
         ..StarConfig::published(variant)
     };
     MotionNetwork::new(config, seed).unwrap()
+}
+
+fn weights(variant: Variant, seed: u64) -> Weights {
+    network(variant, seed).copy_weights().unwrap()
 }
 
 fn origin() -> Origin {
@@ -48,8 +53,7 @@ fn refuse(bytes: &[u8], expected: &str) {
     let folder = tempfile::tempdir().unwrap();
     let broken = folder.path().join("broken.safetensors");
     std::fs::write(&broken, bytes).unwrap();
-    let network = network(Variant::Full, 2);
-    let error = load_weights(network.weights().layout(), &origin(), &broken).unwrap_err();
+    let error = load_weights(weights(Variant::Full, 2).layout(), &origin(), &broken).unwrap_err();
     assert!(matches!(error, NetworkError::Checkpoint { .. }), "{error}");
     assert!(error.to_string().contains(expected), "{expected}: {error}");
     assert!(error.to_string().contains("broken.safetensors"), "{error}");
@@ -72,18 +76,19 @@ fn weights_survive_the_file() {
         assert_eq!(&loaded, weights);
     };
     for variant in Variant::ALL {
-        check(network(variant, 1).weights());
+        check(&weights(variant, 1));
     }
-    check(ProposalNetwork::new(ProposalConfig::default(), 1).unwrap().weights());
-    let one = network(Variant::Full, 1);
-    assert_ne!(one.weights(), network(Variant::Full, 2).weights());
-    let again = network(Variant::Full, 2).with_weights(one.weights().clone()).unwrap();
-    assert_eq!(again.weights(), one.weights());
+    let proposals = ProposalNetwork::new(ProposalConfig::default(), 1).unwrap();
+    check(&proposals.copy_weights().unwrap());
+    let one = weights(Variant::Full, 1);
+    assert_ne!(one, weights(Variant::Full, 2));
+    let again = network(Variant::Full, 2).with_weights(one.clone()).unwrap();
+    assert_eq!(again.copy_weights().unwrap(), one);
 }
 
 #[test]
 fn broken_files_are_refused() {
-    let whole = saved(network(Variant::Full, 1).weights(), &origin());
+    let whole = saved(&weights(Variant::Full, 1), &origin());
     for length in [0, 7, 100, whole.len() / 2, whole.len() - 1] {
         refuse(&whole[..length], "not a complete safetensors file");
     }
@@ -112,17 +117,16 @@ fn broken_files_are_refused() {
 #[test]
 fn files_of_another_network_or_run_are_refused() {
     let network = network(Variant::Full, 1);
-    let star = self::network(Variant::Star, 2);
     let shape = "output_layer.weight has shape";
-    refuse(&saved(star.weights(), &origin()), shape);
+    refuse(&saved(&weights(Variant::Star, 2), &origin()), shape);
     let shallow = StarConfig {
         spatial_layers: 1,
         ..network.config().clone()
     };
-    let shallow = saved(MotionNetwork::new(shallow, 1).unwrap().weights(), &origin());
-    refuse(&shallow, "it was written for another configuration");
+    let shallow = MotionNetwork::new(shallow, 1).unwrap().copy_weights().unwrap();
+    refuse(&saved(&shallow, &origin()), "it was written for another configuration");
     let elsewhere = Origin::from_iter([("fold", "plaza"), ("seed", "7")]);
-    let elsewhere = saved(network.weights(), &elsewhere);
+    let elsewhere = saved(&network.copy_weights().unwrap(), &elsewhere);
     refuse(&elsewhere, "its fold is plaza, not corridor");
     let file = SafeTensors::deserialize(&elsewhere).unwrap();
     let foreign = safetensors::serialize(file.iter(), None).unwrap();
@@ -157,8 +161,8 @@ fn tensors_of_either_precision_are_kept_as_they_are() {
 fn a_file_that_cannot_be_written_leaves_the_old_one() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("model.safetensors");
-    let network = network(Variant::Full, 1);
-    save_weights(network.weights(), &origin(), &path).unwrap();
+    let weights = weights(Variant::Full, 1);
+    save_weights(&weights, &origin(), &path).unwrap();
     let before = std::fs::read(&path).unwrap();
     let impossible = double(&[4], vec![1.0; 3]);
     write_tensors(&[impossible], &origin(), &path).unwrap_err();
@@ -167,7 +171,7 @@ fn a_file_that_cannot_be_written_leaves_the_old_one() {
     assert_eq!(left.len(), 1, "{left:?}");
 
     let nowhere = |path: &Path| {
-        let error = save_weights(network.weights(), &origin(), path).unwrap_err();
+        let error = save_weights(&weights, &origin(), path).unwrap_err();
         assert!(matches!(error, NetworkError::Io { .. }), "{error}");
     };
     nowhere(&folder.path().join("no such folder").join("model.safetensors"));

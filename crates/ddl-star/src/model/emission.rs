@@ -1,5 +1,6 @@
 //! The output layer and its noise.
 
+use crate::model::goal_frame::SMALLEST_PIVOT;
 use crate::model::tensor_backend::TensorBackend;
 use ddl_network::weights::Linear;
 use tch::Tensor;
@@ -109,6 +110,3 @@ impl NoiseCovariance {
         Tensor::cat(&[first, below, second], -1)
     }
 }
-
-/// Lower bound of the pivots of the expected metric, in m/s.
-const SMALLEST_PIVOT: f64 = 1e-12;

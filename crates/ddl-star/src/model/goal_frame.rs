@@ -8,7 +8,7 @@ use tch::Tensor;
 /// Closer to its goal than this (metres), a pedestrian uses the axes of the world.
 const SMALLEST_DISTANCE: f64 = 1e-6;
 /// Lower bound of the squares of pivots, in m/s.
-const SMALLEST_PIVOT: f64 = 1e-12;
+pub(super) const SMALLEST_PIVOT: f64 = 1e-12;
 
 /// The first axis of every pedestrian in every hypothesis, as cosine and sine, and its unit. Shapes: `[G, P, 1]`; the
 /// unit `[1, P, 1]` is a dimensionless factor (metres in a unit).

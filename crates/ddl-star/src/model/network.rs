@@ -43,7 +43,12 @@ impl TorchNetwork {
     ///
     /// # Errors
     /// [`StarError::Network`] when the configuration is out of range.
-    pub fn with_precision(config: StarConfig, seed: u64, device: ComputeDevice, kind: Kind) -> Result<Self, StarError> {
+    pub(crate) fn with_precision(
+        config: StarConfig,
+        seed: u64,
+        device: ComputeDevice,
+        kind: Kind,
+    ) -> Result<Self, StarError> {
         let seeded = (seed, device, kind);
         match config.backbone {
             BackboneKind::Star => Self::with_backbone(config, seeded, Star::new),
@@ -83,7 +88,7 @@ impl TorchNetwork {
     }
 
     /// Size and constants.
-    pub fn config(&self) -> &StarConfig {
+    pub(crate) fn config(&self) -> &StarConfig {
         &self.layers.config
     }
 

@@ -1,7 +1,9 @@
 //! The learned tensors, by name and in order.
 
 use crate::StarError;
-use ddl_network::weights::{Layout, TensorLayout, Weights};
+#[cfg(test)]
+use ddl_network::weights::TensorLayout;
+use ddl_network::weights::{Layout, Weights};
 use std::sync::Arc;
 use tch::{Device, Kind, Tensor};
 
@@ -45,13 +47,15 @@ impl Parameters {
     }
 
     /// Names and tensors, in order.
+    #[cfg(test)]
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &Tensor)> {
         let names = self.layout.tensors().iter().map(TensorLayout::name);
         names.zip(&self.tensors)
     }
 
     /// The tensor of that name.
-    pub fn get(&self, name: &str) -> Option<&Tensor> {
+    #[cfg(test)]
+    pub(crate) fn get(&self, name: &str) -> Option<&Tensor> {
         self.iter()
             .find(|(candidate, _)| *candidate == name)
             .map(|(_, tensor)| tensor)

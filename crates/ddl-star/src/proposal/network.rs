@@ -74,7 +74,7 @@ impl TorchProposals {
     }
 
     /// The shape of the network.
-    pub fn config(&self) -> &ProposalConfig {
+    pub(crate) fn config(&self) -> &ProposalConfig {
         &self.config
     }
 
@@ -98,7 +98,7 @@ impl TorchProposals {
     ///
     /// # Errors
     /// [`StarError::Torch`] when libtorch fails, for example for lack of memory.
-    pub fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, StarError> {
+    fn propose(&self, views: &[PedestrianView]) -> Result<Vec<ProposedEndpoints>, StarError> {
         let _guard = tch::no_grad_guard();
         let mut proposed = Vec::with_capacity(views.len());
         for chunk in views.chunks(CHUNK) {

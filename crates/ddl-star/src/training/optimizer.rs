@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn it_agrees_with_the_paper() {
         let mut layout = Layout::default();
-        layout.uniform("weight".to_owned(), &[4, 3], 1.0);
+        layout.linear("layer", 3, 3);
         let initial = layout.initial(stream(1, Stage::Weights, 0));
         let parameters = Parameters::new(layout, &initial, Device::Cpu, Kind::Double);
         let mut adam = Adam::new(&parameters);

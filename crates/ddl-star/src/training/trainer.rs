@@ -37,60 +37,28 @@ pub struct Trainer {
 }
 
 impl Trainer {
-    /// Prepares training of `network` on `windows`, each with its future.
-    ///
-    /// # Errors
-    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] when no window has a future.
-    pub fn new(network: TorchNetwork, windows: Vec<Window>, config: TrainingConfig) -> Result<Self, StarError> {
-        let with_future = windows.into_iter().filter(Window::has_future).collect();
-        Self::of(network, with_future, None, config)
-    }
-
-    /// Prepares training of `network` on `windows`, with `goals` instead of the true endpoints.
+    /// Prepares training of `network` on `windows`, with `goals` instead of the true endpoints if there are any.
+    /// Windows without a future are left out.
     ///
     /// # Shapes
     /// `goals[w][i]` is the goal of pedestrian i of window w, metres.
     ///
     /// # Errors
-    /// As [`new`](Self::new); [`NetworkError::Shape`] when the goals do not fit the windows.
-    pub fn towards(
+    /// [`StarError::Network`] for a bad configuration, [`StarError::NoTrainingWindows`] when no window has a future,
+    /// [`NetworkError::Shape`] when the goals do not fit the windows.
+    pub fn new(
         network: TorchNetwork,
-        windows: Vec<Window>,
-        goals: Vec<Vec<Position>>,
+        mut windows: Vec<Window>,
+        mut goals: Option<Vec<Vec<Position>>>,
         config: TrainingConfig,
     ) -> Result<Self, StarError> {
-        let pedestrians: Vec<usize> = windows.iter().map(Window::len).collect();
-        let given: Vec<usize> = goals.iter().map(Vec::len).collect();
-        if given != pedestrians {
-            let first = pedestrians.iter().zip(&given).position(|(a, b)| a != b);
-            let (expected, got) = match first {
-                Some(w) => (
-                    format!("{} goals for window {w}, one for each pedestrian", pedestrians[w]),
-                    format!("{}", given[w]),
-                ),
-                None => (
-                    format!("goals of {} windows", pedestrians.len()),
-                    format!("goals of {} windows", given.len()),
-                ),
-            };
-            return Err(NetworkError::shape("training", expected, got).into());
+        if let Some(goals) = &mut goals {
+            check_goals(&windows, goals)?;
+            let mut of_windows = windows.iter();
+            goals.retain(|_| of_windows.next().is_some_and(Window::has_future));
         }
-        let (windows, goals) = windows
-            .into_iter()
-            .zip(goals)
-            .filter(|(window, _)| window.has_future())
-            .unzip();
-        Self::of(network, windows, Some(goals), config)
-    }
-
-    fn of(
-        network: TorchNetwork,
-        windows: Vec<Window>,
-        goals: Option<Vec<Vec<Position>>>,
-        config: TrainingConfig,
-    ) -> Result<Self, StarError> {
-        config.check()?;
-        config.check_for(network.config().variant)?;
+        windows.retain(Window::has_future);
+        config.check(network.config().variant)?;
         let schedule = Schedule::new(&windows, &config);
         if schedule.is_empty() {
             return Err(StarError::NoTrainingWindows);
@@ -114,23 +82,12 @@ impl Trainer {
         })
     }
 
-    /// The network with its current weights.
-    pub fn network(&self) -> &TorchNetwork {
-        &self.network
-    }
-
     /// A copy of the current weights.
     ///
     /// # Errors
     /// [`StarError::Torch`] when they cannot be fetched from their device.
     pub fn weights(&self) -> Result<Weights, StarError> {
         self.network.parameters().to_weights()
-    }
-
-    /// Ends training and returns the network.
-    #[must_use]
-    pub fn into_network(self) -> TorchNetwork {
-        self.network
     }
 
     /// Whether all epochs are done.
@@ -287,6 +244,25 @@ impl Trainer {
             steps_per_epoch,
             loss,
             finished_epoch,
+        }
+    }
+}
+
+/// Checks that there is one goal for each pedestrian of each window.
+fn check_goals(windows: &[Window], goals: &[Vec<Position>]) -> Result<(), NetworkError> {
+    if goals.len() != windows.len() {
+        let [expected, got] = [windows.len(), goals.len()].map(|count| format!("goals of {count} windows"));
+        return Err(NetworkError::shape("training", expected, got));
+    }
+    let counts = windows.iter().map(Window::len).zip(goals.iter().map(Vec::len));
+    match counts
+        .enumerate()
+        .find(|(_, (pedestrians, goals))| pedestrians != goals)
+    {
+        None => Ok(()),
+        Some((w, (pedestrians, goals))) => {
+            let expected = format!("{pedestrians} goals for window {w}, one for each pedestrian");
+            Err(NetworkError::shape("training", expected, goals.to_string()))
         }
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     };
     let [step] = pool.install(|| {
         let device = ComputeDevice::open(DeviceChoice::Cpu)?;
-        let mut trainer = Trainer::new(TorchNetwork::new(star, 1, device)?, windows, training)?;
+        let mut trainer = Trainer::new(TorchNetwork::new(star, 1, device)?, windows, None, training)?;
         let work: &mut dyn FnMut() -> Result<()> = &mut || Ok(trainer.step().map(drop)?);
         side_by_side(clock, turns, [work])
     })?;

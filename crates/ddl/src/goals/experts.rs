@@ -72,7 +72,7 @@ pub(crate) fn load(origin: &Origin, tracks: usize, path: &Path) -> Result<Expert
         ));
     }
     let file = SafeTensors::deserialize(&bytes).map_err(broken)?;
-    check_digest(&file, digest.as_deref()).map_err(|error| DdlError::run(path, error.to_string()))?;
+    check_digest(&file, digest.as_deref(), path)?;
     let view = file
         .tensor(TRACKS)
         .map_err(|error| DdlError::run(path, format!("has no tracks ({error}); {REMEDY}")))?;

@@ -70,7 +70,7 @@ impl Ddl {
         Ok(Self {
             goals,
             device,
-            parameters: network.copy_weights()?.count(),
+            parameters: network.copy_weights()?.numbers().len(),
             network,
             clearance: None,
         })

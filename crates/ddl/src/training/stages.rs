@@ -102,8 +102,7 @@ fn training_windows(request: &TrainingRequest, fold: &Fold<'_>, rule: WindowRule
 
 fn check(request: &TrainingRequest) -> Result<(), DdlError> {
     request.star.check()?;
-    request.training.check()?;
-    request.training.check_for(request.star.variant)?;
+    request.training.check(request.star.variant)?;
     request.goals.check()?;
     if (0.0..1.0).contains(&request.validation) {
         Ok(())
@@ -200,15 +199,12 @@ fn trainer(
     goals: &GoalModel,
     network: TorchNetwork,
 ) -> Result<Trainer, DdlError> {
-    let training = config.training.clone();
-    Ok(match training.objective {
-        Objective::NextStep => Trainer::new(network, windows, training)?,
-        Objective::Walk => {
-            let with_future: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
-            let training_goals = goals.training_goals(&with_future)?;
-            Trainer::towards(network, with_future, training_goals, training)?
-        }
-    })
+    let windows: Vec<Window> = windows.into_iter().filter(Window::has_future).collect();
+    let training_goals = match config.training.objective {
+        Objective::NextStep => None,
+        Objective::Walk => Some(goals.training_goals(&windows)?),
+    };
+    Ok(Trainer::new(network, windows, training_goals, config.training.clone())?)
 }
 
 /// Checks that the record is complete: the best epoch is chosen from it.

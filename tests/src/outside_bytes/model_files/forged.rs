@@ -92,7 +92,9 @@ const EDITS: [(&str, Edit); 15] = [
     ("not finite", |parts| {
         parts.matrix().bytes[..2].copy_from_slice(&0x7e00_u16.to_le_bytes());
     }),
-    ("wider network", |parts| parts.configure("/star/model_width", json!(4))),
+    ("wider network", |parts| {
+        parts.configure("/star/feed_forward_width", json!(2))
+    }),
     ("huge network", |parts| {
         parts.configure("/star/model_width", json!(1_u64 << 40));
     }),

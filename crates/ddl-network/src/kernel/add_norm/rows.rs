@@ -2,6 +2,7 @@
 
 use crate::kernel::dropout::{Dropout, RowKey, Threshold, mixed};
 use ddl_simd::{DEPTH, Floats, Lanes, Simd, Vectors};
+use fearless_simd::prelude::*;
 
 /// The usual width of a row, in vectors. Loops over it are unrolled.
 pub(super) const USUAL: usize = 2;
@@ -54,7 +55,7 @@ impl<const FIXED: bool> Four<FIXED> {
         let mut sums = [simd.splat(0.0); DEPTH];
         for r in 0..DEPTH {
             for v in 0..self.vectors() {
-                sums[r] = simd.add(sums[r], self.get(simd, r, v));
+                sums[r] += self.get(simd, r, v);
             }
         }
         sums
@@ -66,7 +67,7 @@ impl<const FIXED: bool> Four<FIXED> {
         for r in 0..DEPTH {
             for v in 0..self.vectors() {
                 let (a, b) = (self.get(simd, r, v), other.get(simd, r, v));
-                sums[r] = simd.mul_add(a, b, sums[r]);
+                sums[r] = a.mul_add(b, sums[r]);
             }
         }
         sums
@@ -78,8 +79,8 @@ impl<const FIXED: bool> Four<FIXED> {
 pub(super) fn means<S: Simd>(simd: S, width: usize, sums: Vectors<S>) -> Floats<S> {
     // Lane 4 i + k holds a part of the sum of row k.
     let [a, b, c, d] = simd.transpose(sums);
-    let parts = simd.add(simd.add(a, b), simd.add(c, d));
-    simd.mul(simd.sum_of_quarters(parts), simd.splat(1.0 / width as f32))
+    let parts = a + b + (c + d);
+    simd.sum_of_quarters(parts) * (1.0 / width as f32)
 }
 
 /// Decides which numbers of t are dropped: a function of only (seed, row, column), with 24 random bits.
@@ -104,6 +105,6 @@ impl Decisions {
     #[inline(always)]
     pub(super) fn apply<S: Simd>(self, simd: S, numbers: Floats<S>, row: usize, column: usize) -> Floats<S> {
         let bits = RowKey::new(self.seed, row as u64).bits(simd, column);
-        simd.mul(simd.keep(numbers, bits, self.least), simd.splat(self.scale))
+        simd.keep(numbers, bits, self.least) * self.scale
     }
 }

@@ -4,6 +4,7 @@ use crate::kernel::add_norm::AddNorm;
 use crate::kernel::affine::Affine;
 use crate::kernel::dropout::Dropout;
 use crate::kernel::feed_forward::FeedForward;
+use crate::kernel::heads::HEAD_WIDTH;
 use crate::kernel::spatial_attention::SpatialAttention;
 use crate::kernel::temporal_attention::TemporalAttention;
 use ddl_simd::Dispatch;
@@ -39,10 +40,7 @@ pub(crate) struct Dropouts {
 impl EncoderKernel {
     pub(crate) fn zeros(sizes: Sizes) -> Self {
         let Sizes { width, heads, hidden } = sizes;
-        assert!(
-            heads > 0 && width.is_multiple_of(heads),
-            "{heads} heads of a width of {width}"
-        );
+        assert!(width == heads * HEAD_WIDTH, "{heads} heads of a width of {width}");
         Self {
             sizes,
             projections: [0; 3].map(|_| Affine::new(width, width)),
@@ -50,8 +48,8 @@ impl EncoderKernel {
             norm1: AddNorm::new(width),
             norm2: AddNorm::new(width),
             feed_forward: FeedForward::zeros(width, hidden),
-            spatial: SpatialAttention::new(heads, width / heads),
-            temporal: TemporalAttention::new(heads, width / heads),
+            spatial: SpatialAttention::new(heads),
+            temporal: TemporalAttention::new(heads),
             dispatch: Dispatch::detect(),
         }
     }
@@ -94,7 +92,7 @@ impl EncoderKernel {
 pub struct Sizes {
     /// Width of a token.
     pub width: usize,
-    /// Attention heads, a divisor of the width.
+    /// Attention heads, a quarter of the width.
     pub heads: usize,
     /// Hidden units of the feed-forward block.
     pub hidden: usize,
@@ -104,7 +102,7 @@ const PIECES: usize = 12;
 
 impl Sizes {
     /// Number of weights.
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         self.lengths().iter().sum()
     }
 

@@ -5,7 +5,7 @@ use crate::kernel::dropout::Dropout;
 use crate::kernel::encoder_layer::{CachedKeyValues, Dropouts, EncoderKernel, Sizes};
 use crate::kernel::scenes::Scenes;
 use crate::kernel::tests::numbers::{Numbers, bits, lists};
-use ddl_simd::InstructionSet;
+use ddl_simd::{Dispatch, InstructionSet};
 use rayon::ThreadPoolBuilder;
 
 fn star(hidden: usize) -> Sizes {
@@ -136,7 +136,7 @@ fn gradients_are_slopes() {
     for (over, p) in [(false, 0.0), (false, 0.2), (true, 0.0), (true, 0.2)] {
         let case = LayerCase::new(11, star(64), &scenes, p);
         let run = |case: &LayerCase| {
-            let layer = case.layer(InstructionSet::detect());
+            let layer = case.layer(Dispatch::detect().instruction_set());
             if over {
                 case.temporal(&layer)
             } else {

@@ -12,6 +12,7 @@ use crate::kernel::feed_forward::layer::{FeedForward, ROWS_AT_ONCE};
 use crate::kernel::product::{BLOCK, End, Start, add_transposed_product, multiply, sum_of_rows};
 use crate::kernel::threads::run_each;
 use ddl_simd::{LANES, Simd, TiledKernel};
+use fearless_simd::prelude::*;
 
 const GROUPS: usize = 8;
 /// Number of rows after which the groups' gx are added: these rows fit the second-level cache.
@@ -164,8 +165,8 @@ impl TiledKernel for UnitsBackward<'_, '_> {
 fn deactivate<S: Simd>(simd: S, hidden: &[f32], scale: f32, gradient: &mut [f32]) {
     let scale = simd.splat(scale);
     for first in (0..gradient.len()).step_by(LANES) {
-        let scaled = simd.mul(load(simd, gradient, first), scale);
-        let changed = simd.zero_unless_positive(load(simd, hidden, first), scaled);
+        let scaled = load(simd, gradient, first) * scale;
+        let changed = load(simd, hidden, first).simd_le(0.0).select(simd.splat(0.0), scaled);
         store(simd, changed, gradient, first);
     }
 }

@@ -37,11 +37,11 @@ impl UnitDecisions {
         for (row, key) in rows.iter_mut().zip(&self.rows[first..]) {
             let bits = key.bits(simd, block * LANES);
             let (halves, _) = row.as_chunks_mut();
-            let lower = simd.shift_left::<16>(bits);
+            let lower = bits << 16;
             let lower = simd.keep(simd.load(&halves[0]), lower, self.least);
-            simd.store(simd.mul(lower, scale), &mut halves[0]);
+            simd.store(lower * scale, &mut halves[0]);
             let upper = simd.keep(simd.load(&halves[1]), bits, self.least);
-            simd.store(simd.mul(upper, scale), &mut halves[1]);
+            simd.store(upper * scale, &mut halves[1]);
         }
     }
 }

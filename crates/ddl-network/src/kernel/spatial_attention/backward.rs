@@ -4,10 +4,11 @@
 //! and drop factors `d_ij`: `dv_j = Σ_i d_ij w_ij g_i`, and the gradient of the score of (i, j) is `w_ij (d_ij g_i ·
 //! v_j − g_i · mixed_i)`. The powers are computed again from the scores, which is faster than to store and load them.
 
-use crate::kernel::heads::HeadPart;
-use crate::kernel::spatial_attention::queries::{SceneBuffers, SceneTask, UNSEEN, dot};
+use crate::kernel::heads;
+use crate::kernel::quads::{Quads as _, ZERO_QUAD};
+use crate::kernel::spatial_attention::queries::{SceneBuffers, SceneTask, UNSEEN};
 use crate::kernel::threads::Buffered;
-use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors, ZERO_QUAD};
+use ddl_simd::{DEPTH, Kernel, Lanes, Simd, Vectors};
 
 pub(super) struct SceneBackward<'a> {
     pub(super) task: SceneTask<'a>,
@@ -26,12 +27,10 @@ impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
         let task = self.job.task.clone();
         self.buffers.load_codes(&task);
         for group in 0..task.heads.groups() {
-            // The usual number of quads is a constant, so that the compiler unrolls the loops over quads.
-            match (task.heads.quads(), task.decisions.is_some()) {
-                (1, false) => self.group::<S, false>(simd, group, 1),
-                (1, true) => self.group::<S, true>(simd, group, 1),
-                (quads, false) => self.group::<S, false>(simd, group, quads),
-                (quads, true) => self.group::<S, true>(simd, group, quads),
+            if task.decisions.is_some() {
+                self.group::<S, true>(simd, group);
+            } else {
+                self.group::<S, false>(simd, group);
             }
         }
     }
@@ -39,67 +38,53 @@ impl Kernel for Buffered<'_, SceneBackward<'_>, SceneBuffers> {
 
 impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
     #[inline(always)]
-    fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize, quads: usize) {
+    fn group<S: Simd, const DROP: bool>(&mut self, simd: S, group: usize) {
         let task = self.job.task.clone();
         let row = task.heads.row();
-        self.buffers.load(simd, &task, self.job.inputs, group, quads);
-        self.load_gradients(simd, group, quads);
+        self.buffers.load(simd, &task, self.job.inputs, group);
+        self.load_gradients(simd, group);
         let buffers = &mut *self.buffers;
         let [query_gradients, key_gradients, value_gradients] = &mut self.job.gradients;
         let rows = key_gradients.chunks_exact_mut(row);
         for (key, (key_gradient, value_gradient)) in rows.zip(value_gradients.chunks_exact_mut(row)).enumerate() {
-            weigh::<S, DROP>(simd, buffers, &task, key, quads);
-            for quad in 0..quads {
-                let (of_key, of_value) = spread(simd, buffers, key, quad, quads);
-                let part = HeadPart::new(task.heads, group, quad);
-                // Undoes the scaling of the queries, which makes scores exponents of two.
-                let of_key = simd.scaled(of_key, simd.splat(std::f32::consts::LN_2));
-                part.store_sum(simd, of_key, key_gradient);
-                part.store_sum(simd, of_value, value_gradient);
-            }
+            weigh::<S, DROP>(simd, buffers, &task, key);
+            let (of_key, of_value) = spread(simd, buffers, key);
+            // Undoes the scaling of the queries, which makes scores exponents of two.
+            let of_key = simd.scaled(of_key, simd.splat(std::f32::consts::LN_2));
+            heads::store_sum(simd, of_key, group, key_gradient);
+            heads::store_sum(simd, of_value, group, value_gradient);
         }
-        let scale = simd.splat(task.heads.scale());
-        let gradients = buffers.query_gradients.chunks_exact(quads);
-        for (two, gradients) in query_gradients.chunks_mut(2 * row).zip(gradients) {
+        let scale = simd.splat(heads::SCALE);
+        for (two, gradient) in query_gradients.chunks_mut(2 * row).zip(&buffers.query_gradients) {
             let (first, second) = two.split_at_mut(row);
-            let mut second = (!second.is_empty()).then_some(second);
-            for (quad, gradient) in gradients.iter().enumerate() {
-                let part = HeadPart::new(task.heads, group, quad);
-                let gradient = simd.scaled(simd.read(gradient), scale);
-                part.store(simd, gradient, first, second.as_deref_mut());
-            }
+            let second = (!second.is_empty()).then_some(second);
+            let gradient = simd.scaled(simd.read(gradient), scale);
+            heads::store(simd, gradient, group, first, second);
         }
     }
 
     /// Loads gradients of mixed values and normalisers into lanes, and sets the gradients of queries to 0.
     #[inline(always)]
-    fn load_gradients<S: Simd>(&mut self, simd: S, group: usize, quads: usize) {
+    fn load_gradients<S: Simd>(&mut self, simd: S, group: usize) {
         let (job, buffers) = (&self.job, &mut *self.buffers);
-        let (heads, row) = (job.task.heads, job.task.heads.row());
+        let row = job.task.heads.row();
         let twos = job.task.scene.pedestrians.div_ceil(2);
         buffers.weights.resize(twos, Lanes::ZERO);
         buffers.score_gradients.resize(twos, Lanes::ZERO);
         buffers.inner.resize(twos, [Lanes::ZERO; 2]);
-        buffers.mixed_gradients.resize(twos * quads, ZERO_QUAD);
+        buffers.mixed_gradients.resize(twos, ZERO_QUAD);
         buffers.query_gradients.clear();
-        buffers.query_gradients.resize(twos * quads, ZERO_QUAD);
+        buffers.query_gradients.resize(twos, ZERO_QUAD);
         let rows = job.mixed_gradient.chunks(2 * row).zip(job.mixed.chunks(2 * row));
-        let normalisers = job.normalisers.chunks_exact(heads.groups());
+        let normalisers = job.normalisers.chunks_exact(job.task.heads.groups());
         let rows = rows.zip(normalisers.map(|groups| &groups[group]));
-        let results = buffers.mixed_gradients.chunks_exact_mut(quads);
-        let results = results.zip(&mut buffers.inner);
-        for (((gradient, mixed), [largest, share]), (gradients, inner)) in rows.zip(results) {
-            let share = simd.load(&share.0);
-            let mut product = simd.splat(0.0);
-            let (first, first_mixed) = (&gradient[..row], &mixed[..row]);
-            let (second, second_mixed) = (gradient.get(row..2 * row), mixed.get(row..2 * row));
-            for (quad, result) in gradients.iter_mut().enumerate() {
-                let part = HeadPart::new(heads, group, quad);
-                let gradient = simd.scaled(part.load(simd, first, second), share);
-                let mixed = part.load(simd, first_mixed, second_mixed);
-                product = simd.dot(gradient, mixed, product);
-                simd.write(gradient, result);
-            }
+        let results = buffers.mixed_gradients.iter_mut().zip(&mut buffers.inner);
+        for (((gradient, mixed), [largest, share]), (result, inner)) in rows.zip(results) {
+            let [gradient, mixed] =
+                [gradient, mixed].map(|two| heads::load(simd, group, &two[..row], two.get(row..2 * row)));
+            let gradient = simd.scaled(gradient, simd.load(&share.0));
+            let product = simd.dot(gradient, mixed, simd.splat(0.0));
+            simd.write(gradient, result);
             inner[0] = *largest;
             simd.store(product, &mut inner[1].0);
         }
@@ -108,63 +93,50 @@ impl Buffered<'_, SceneBackward<'_>, SceneBuffers> {
 
 /// For one key: the queries' weights times their sum, and the gradients of the scores.
 #[inline(always)]
-fn weigh<S: Simd, const DROP: bool>(
-    simd: S,
-    buffers: &mut SceneBuffers,
-    task: &SceneTask<'_>,
-    key: usize,
-    quads: usize,
-) {
-    let first = key * quads;
-    let (keys, values) = (&buffers.keys[first..][..quads], &buffers.values[first..][..quads]);
+fn weigh<S: Simd, const DROP: bool>(simd: S, buffers: &mut SceneBuffers, task: &SceneTask<'_>, key: usize) {
+    let (keys, values) = (
+        simd.read_twice(&buffers.keys[key]),
+        simd.read_twice(&buffers.values[key]),
+    );
     let codes = buffers.codes.chunks_exact(task.scene.pedestrians);
-    let queries = buffers.queries.chunks_exact(quads);
-    let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
+    let queries = buffers.queries.iter().zip(&buffers.mixed_gradients);
     let queries = queries.zip(buffers.inner.iter().zip(codes));
     let results = buffers.weights.iter_mut().zip(&mut buffers.score_gradients);
     for (two, (((query, gradient), ([largest, inner], codes)), (weight, score_gradient))) in
         queries.zip(results).enumerate()
     {
         let unseen = simd.load(&UNSEEN[usize::from(codes[key] & 3)].0);
-        let score = dot(simd, query, keys, unseen);
-        let power = simd.exp2(simd.sub(score, simd.load(&largest.0)));
-        let taken = dot(simd, gradient, values, simd.splat(0.0));
+        let score = simd.dot(simd.read(query), keys, unseen);
+        let power = simd.exp2(score - simd.load(&largest.0));
+        let taken = simd.dot(simd.read(gradient), values, simd.splat(0.0));
         let inner = simd.load(&inner.0);
         let (taking, change) = match task.decisions {
             Some(decisions) if DROP => {
                 let factors = decisions.factors(&buffers.bits[two], task.scene.first + key);
                 let factors = simd.load(&factors.0);
-                let change = simd.sub(simd.mul(factors, taken), inner);
-                (simd.mul(power, factors), change)
+                let change = factors * taken - inner;
+                (power * factors, change)
             }
-            _ => (power, simd.sub(taken, inner)),
+            _ => (power, taken - inner),
         };
         simd.store(taking, &mut weight.0);
-        simd.store(simd.mul(power, change), &mut score_gradient.0);
+        simd.store(power * change, &mut score_gradient.0);
     }
 }
 
 /// Adds to the gradients of all queries. Returns those of a key and its value, separately for even and odd queries.
 #[inline(always)]
-fn spread<S: Simd>(
-    simd: S,
-    buffers: &mut SceneBuffers,
-    key: usize,
-    quad: usize,
-    quads: usize,
-) -> (Vectors<S>, Vectors<S>) {
+fn spread<S: Simd>(simd: S, buffers: &mut SceneBuffers, key: usize) -> (Vectors<S>, Vectors<S>) {
     let (mut of_key, mut of_value) = ([simd.splat(0.0); DEPTH], [simd.splat(0.0); DEPTH]);
-    let key = simd.read_twice(&buffers.keys[key * quads + quad]);
-    let queries = buffers.queries.chunks_exact(quads);
-    let queries = queries.zip(buffers.mixed_gradients.chunks_exact(quads));
-    let results = buffers.query_gradients.chunks_exact_mut(quads);
+    let key = simd.read_twice(&buffers.keys[key]);
+    let queries = buffers.queries.iter().zip(&buffers.mixed_gradients);
+    let results = &mut buffers.query_gradients;
     let weights = buffers.weights.iter().zip(&buffers.score_gradients);
     for (((query, gradient), of_query), (weight, score_gradient)) in queries.zip(results).zip(weights) {
         let score_gradient = simd.load(&score_gradient.0);
-        let (query, gradient) = (simd.read(&query[quad]), simd.read(&gradient[quad]));
+        let (query, gradient) = (simd.read(query), simd.read(gradient));
         of_key = simd.accumulate(of_key, score_gradient, query);
         of_value = simd.accumulate(of_value, simd.load(&weight.0), gradient);
-        let of_query = &mut of_query[quad];
         let sum = simd.accumulate(simd.read(of_query), score_gradient, key);
         simd.write(sum, of_query);
     }

@@ -1,10 +1,11 @@
 //! Shared parts of the forward and the backward kernel: a scene's rows in lanes, and buffers.
 
-use crate::kernel::heads::{GROUP, HeadPart, Heads, row_of};
+use crate::kernel::heads::{self, GROUP, Heads, row_of};
+use crate::kernel::quads::{HalfQuad, Quad, Quads as _, ZERO_QUAD};
 use crate::kernel::scenes::SceneView;
 use crate::kernel::spatial_attention::dropout::{LaneBits, WeightDecisions};
 use crate::kernel::threads::JobBuffers;
-use ddl_simd::{Floats, HalfQuad, LANES, Lanes, Quad, Simd, ZERO_QUAD};
+use ddl_simd::{LANES, Lanes, Simd};
 use std::cell::Cell;
 use std::ops::Range;
 use std::thread::LocalKey;
@@ -55,11 +56,11 @@ pub(super) const TWOS_AT_ONCE: usize = 256;
 /// operation combines two queries with a key, and there are no sums across lanes.
 #[derive(Clone, Debug, Default)]
 pub(super) struct SceneBuffers {
-    /// For each pair of queries and quad of the head's numbers; scaled so that scores are exponents of two.
+    /// For each pair of queries; scaled so that scores are exponents of two.
     pub(super) queries: Vec<Quad>,
     pub(super) keys: Vec<HalfQuad>,
     pub(super) values: Vec<HalfQuad>,
-    /// For each pair of queries and quad: gradient of the mixed values, over the sum of the weights.
+    /// For each pair of queries: gradient of the mixed values, over the sum of the weights.
     pub(super) mixed_gradients: Vec<Quad>,
     pub(super) query_gradients: Vec<Quad>,
     /// For each pair of queries: largest score, and the product of mixed values and their gradient, over the sum of the
@@ -113,33 +114,25 @@ impl SceneBuffers {
         task: &SceneTask<'_>,
         [query, key, value]: [&[f32]; 3],
         group: usize,
-        quads: usize,
     ) {
         let row = task.heads.row();
         let (asking, keys) = (task.queries(), task.keys.clone());
-        let scale = simd.splat(task.heads.scale() * std::f32::consts::LOG2_E);
-        self.queries.resize(task.twos.len() * quads, ZERO_QUAD);
+        let scale = simd.splat(heads::SCALE * std::f32::consts::LOG2_E);
+        self.queries.resize(task.twos.len(), ZERO_QUAD);
         // Two keys are loaded at once; a missing one is stored as zeros.
-        let count = keys.len().next_multiple_of(2) * quads;
+        let count = keys.len().next_multiple_of(2);
         self.keys.resize(count, HalfQuad::ZERO);
         self.values.resize(count, HalfQuad::ZERO);
         let twos = query[row * asking.start..row * asking.end].chunks(2 * row);
-        for (two, queries) in twos.zip(self.queries.chunks_exact_mut(quads)) {
-            let (first, second) = (&two[..row], two.get(row..2 * row));
-            for (quad, query) in queries.iter_mut().enumerate() {
-                let loaded = HeadPart::new(task.heads, group, quad).load(simd, first, second);
-                simd.write(simd.scaled(loaded, scale), query);
-            }
+        for (two, query) in twos.zip(&mut self.queries) {
+            let loaded = heads::load(simd, group, &two[..row], two.get(row..2 * row));
+            simd.write(simd.scaled(loaded, scale), query);
         }
         for (input, results) in [(key, &mut self.keys), (value, &mut self.values)] {
             let twos = input[row * keys.start..row * keys.end].chunks(2 * row);
-            for (two, result) in twos.zip(results.chunks_exact_mut(2 * quads)) {
-                let (first, second) = (&two[..row], two.get(row..2 * row));
-                let (low, high) = result.split_at_mut(quads);
-                for quad in 0..quads {
-                    let loaded = HeadPart::new(task.heads, group, quad).load(simd, first, second);
-                    simd.write_halves(loaded, &mut low[quad], &mut high[quad]);
-                }
+            for (two, [low, high]) in twos.zip(results.as_chunks_mut().0) {
+                let loaded = heads::load(simd, group, &two[..row], two.get(row..2 * row));
+                simd.write_halves(loaded, low, high);
             }
         }
         self.bits.clear();
@@ -151,14 +144,4 @@ impl SceneBuffers {
             }
         }
     }
-}
-
-/// `start` + Σ a b over all quads.
-#[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, a: &[Quad], b: &[HalfQuad], start: Floats<S>) -> Floats<S> {
-    let mut sum = start;
-    for (a, b) in a.iter().zip(b) {
-        sum = simd.dot(simd.read(a), simd.read_twice(b), sum);
-    }
-    sum
 }

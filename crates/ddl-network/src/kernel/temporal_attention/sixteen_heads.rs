@@ -1,10 +1,12 @@
-//! The layout of sixteen heads in lanes, in sequence across rows, four of their numbers (a quad) at a time.
+//! The layout of sixteen heads in lanes, in sequence across rows, with the four numbers of each head.
 //!
 //! Rows and heads are one index here, because every row has a separate cache. Scores and weights, one for each head,
 //! are in the order that transposing pieces of four lanes gives: head 4 k + i in lane 4 i + k.
 
+use crate::kernel::heads::HEAD_WIDTH;
 use crate::kernel::threads::JobBuffers;
-use ddl_simd::{DEPTH, Floats, LANES, Lanes, Quad, Simd, Vectors, ZERO_QUAD};
+use ddl_simd::{DEPTH, Floats, LANES, Lanes, Simd, Vectors};
+use fearless_simd::prelude::*;
 use std::cell::Cell;
 use std::thread::LocalKey;
 
@@ -54,12 +56,6 @@ pub(super) fn are_prefetched(cache: &[KeyValue<'_>]) -> bool {
 /// Buffers for sixteen heads, reused by the next group.
 #[derive(Clone, Debug, Default)]
 pub(super) struct TemporalBuffers {
-    /// The query, one entry for each quad; scaled so that scores are exponents of two.
-    pub(super) query: Vec<Quad>,
-    /// For each quad.
-    pub(super) mixed_gradient: Vec<Quad>,
-    /// For each quad.
-    pub(super) query_gradient: Vec<Quad>,
     /// For each token: scores, then powers.
     pub(super) powers: Vec<Lanes>,
     /// For each token: the product of its value and the gradient of the mixed values.
@@ -73,132 +69,127 @@ impl JobBuffers for TemporalBuffers {
     }
 }
 
+/// The numbers of sixteen heads.
+pub(super) const GROUP_NUMBERS: usize = LANES * HEAD_WIDTH;
+
 /// The position of sixteen heads in a slice: `numbers` from `first` on. The last group may have fewer heads.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SixteenHeads {
-    pub(super) first: usize,
-    pub(super) numbers: usize,
-    pub(super) width: usize,
+    first: usize,
+    numbers: usize,
 }
 
 impl SixteenHeads {
     /// The group at index `group` of a piece of `length` numbers that begins at `first` in the whole slice.
     #[inline(always)]
-    pub(super) fn new(first: usize, group: usize, length: usize, width: usize) -> Self {
+    pub(super) fn new(first: usize, group: usize, length: usize) -> Self {
         Self {
             first: first + group,
-            numbers: (length - group).min(LANES * width),
-            width,
+            numbers: (length - group).min(GROUP_NUMBERS),
         }
     }
 
-    /// Loads the numbers of a quad; missing numbers are 0. A slice that is too short is repeated.
+    /// Loads the numbers; missing ones are 0. A slice that is too short is repeated.
     #[inline(always)]
-    pub(super) fn load<S: Simd>(self, simd: S, from: &[f32], quad: usize) -> Vectors<S> {
+    pub(super) fn load<S: Simd>(self, simd: S, from: &[f32]) -> Vectors<S> {
         let first = if self.first < from.len() {
             self.first
         } else {
             self.first % from.len()
         };
         if self.whole()
-            && let Some(numbers) = from[first..].first_chunk::<{ LANES * DEPTH }>()
+            && let Some(numbers) = from[first..].first_chunk()
         {
-            let parts = numbers.as_chunks().0;
-            let mut result = [simd.splat(0.0); DEPTH];
-            for part in 0..DEPTH {
-                result[part] = simd.load(&parts[part]);
-            }
-            return result;
+            return loaded(simd, numbers);
         }
-        let mut gathered = ZERO_QUAD;
-        if self.width == DEPTH && self.numbers <= from.len() - first {
-            // A group of fewer heads, contiguous in the slice.
-            let numbers = from[first..][..self.numbers].chunks(LANES);
-            for (part, numbers) in gathered.iter_mut().zip(numbers) {
-                part.0[..numbers.len()].copy_from_slice(numbers);
-            }
-        } else {
-            self.for_each(quad, |index, part, lane| {
-                gathered[part].0[lane] = from[(self.first + index) % from.len()];
-            });
+        let mut numbers = [0.0; GROUP_NUMBERS];
+        let contiguous = self.numbers.min(from.len() - first);
+        numbers[..contiguous].copy_from_slice(&from[first..][..contiguous]);
+        for index in contiguous..self.numbers {
+            numbers[index] = from[(first + index) % from.len()];
         }
-        simd.read(&gathered)
+        loaded(simd, &numbers)
     }
 
     /// Prefetches the numbers of a later group.
     #[inline(always)]
     fn prefetch<S: Simd>(self, simd: S, from: &[f32]) {
-        let ahead = from.get(self.first + AHEAD * LANES * DEPTH..);
-        if let Some(group) = ahead.and_then(|from| from.first_chunk::<{ LANES * DEPTH }>()) {
+        let ahead = from.get(self.first + AHEAD * GROUP_NUMBERS..);
+        if let Some(group) = ahead.and_then(|from| from.first_chunk::<GROUP_NUMBERS>()) {
             for part in 0..DEPTH {
                 simd.prefetch(&group[part * LANES]);
             }
         }
     }
 
-    /// Adds to the numbers of a quad. The slice begins with the group.
+    /// Adds to the numbers. The slice begins with the group.
     #[inline(always)]
-    pub(super) fn add<S: Simd>(self, simd: S, sum: Vectors<S>, into: &mut [f32], quad: usize) {
+    pub(super) fn add<S: Simd>(self, simd: S, terms: Vectors<S>, into: &mut [f32]) {
         if self.whole()
-            && let Some(numbers) = into.first_chunk_mut::<{ LANES * DEPTH }>()
+            && let Some(numbers) = into.first_chunk_mut()
         {
-            let numbers = numbers.as_chunks_mut().0;
+            let mut sums = loaded(simd, numbers);
             for part in 0..DEPTH {
-                let before = simd.load(&numbers[part]);
-                simd.store(simd.add(before, sum[part]), &mut numbers[part]);
+                sums[part] += terms[part];
             }
+            stored(simd, sums, numbers);
         } else {
-            let mut numbers = ZERO_QUAD;
-            simd.write(sum, &mut numbers);
-            self.for_each(quad, |index, part, lane| into[index] += numbers[part].0[lane]);
+            let mut numbers = [0.0; GROUP_NUMBERS];
+            stored(simd, terms, &mut numbers);
+            for (sum, term) in into.iter_mut().zip(&numbers[..self.numbers]) {
+                *sum += term;
+            }
         }
     }
 
-    /// Stores the numbers of a quad. The slice begins with the group.
+    /// Stores the numbers. The slice begins with the group.
     #[inline(always)]
-    pub(super) fn store<S: Simd>(self, simd: S, values: Vectors<S>, into: &mut [f32], quad: usize) {
+    pub(super) fn store<S: Simd>(self, simd: S, values: Vectors<S>, into: &mut [f32]) {
         if self.whole()
-            && let Some(numbers) = into.first_chunk_mut::<{ LANES * DEPTH }>()
+            && let Some(numbers) = into.first_chunk_mut()
         {
-            let numbers = numbers.as_chunks_mut().0;
-            for part in 0..DEPTH {
-                simd.store(values[part], &mut numbers[part]);
-            }
+            stored(simd, values, numbers);
         } else {
-            let mut numbers = ZERO_QUAD;
-            simd.write(values, &mut numbers);
-            self.for_each(quad, |index, part, lane| into[index] = numbers[part].0[lane]);
+            let mut numbers = [0.0; GROUP_NUMBERS];
+            stored(simd, values, &mut numbers);
+            into[..self.numbers].copy_from_slice(&numbers[..self.numbers]);
         }
     }
 
-    /// Whether the numbers of the sixteen heads have the layout of a single quad.
+    /// Whether there are sixteen heads.
     #[inline(always)]
     fn whole(self) -> bool {
-        self.width == DEPTH && self.numbers == LANES * DEPTH
-    }
-
-    /// Calls `f` with the index of each number after the first, and its position in a quad.
-    #[inline(always)]
-    fn for_each(self, quad: usize, mut f: impl FnMut(usize, usize, usize)) {
-        let numbers = quad * DEPTH..self.width.min((quad + 1) * DEPTH);
-        for head in 0..self.numbers / self.width {
-            for number in numbers.clone() {
-                let stands = head * DEPTH + number - quad * DEPTH;
-                f(head * self.width + number, stands / LANES, stands % LANES);
-            }
-        }
+        self.numbers == GROUP_NUMBERS
     }
 }
 
-/// Σ a b over the numbers of each head, added to `start`.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: Floats<S>) -> Floats<S> {
+fn loaded<S: Simd>(simd: S, numbers: &[f32; GROUP_NUMBERS]) -> Vectors<S> {
+    let parts = numbers.as_chunks().0;
+    let mut vectors = [simd.splat(0.0); DEPTH];
+    for part in 0..DEPTH {
+        vectors[part] = simd.load(&parts[part]);
+    }
+    vectors
+}
+
+#[inline(always)]
+fn stored<S: Simd>(simd: S, vectors: Vectors<S>, numbers: &mut [f32; GROUP_NUMBERS]) {
+    let parts = numbers.as_chunks_mut().0;
+    for part in 0..DEPTH {
+        simd.store(vectors[part], &mut parts[part]);
+    }
+}
+
+/// Σ a b over the numbers of each head.
+#[inline(always)]
+pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>) -> Floats<S> {
     let mut products = a;
     for part in 0..DEPTH {
-        products[part] = simd.mul(a[part], b[part]);
+        products[part] = a[part] * b[part];
     }
     let [a, b, c, d] = simd.transpose(products);
-    simd.add(start, simd.add(simd.add(a, b), simd.add(c, d)))
+    a + b + (c + d)
 }
 
 /// `sum` + `weight` of each head · its numbers.
@@ -206,7 +197,7 @@ pub(super) fn dot<S: Simd>(simd: S, a: Vectors<S>, b: Vectors<S>, start: Floats<
 pub(super) fn accumulate<S: Simd>(simd: S, sum: Vectors<S>, weight: Floats<S>, numbers: Vectors<S>) -> Vectors<S> {
     let (mut sum, weights) = (sum, simd.spread_each(weight));
     for part in 0..DEPTH {
-        sum[part] = simd.mul_add(weights[part], numbers[part], sum[part]);
+        sum[part] = weights[part].mul_add(numbers[part], sum[part]);
     }
     sum
 }
@@ -216,7 +207,7 @@ pub(super) fn accumulate<S: Simd>(simd: S, sum: Vectors<S>, weight: Floats<S>, n
 pub(super) fn weighted<S: Simd>(simd: S, weight: Floats<S>, numbers: Vectors<S>) -> Vectors<S> {
     let (mut result, weights) = (numbers, simd.spread_each(weight));
     for part in 0..DEPTH {
-        result[part] = simd.mul(weights[part], numbers[part]);
+        result[part] = weights[part] * numbers[part];
     }
     result
 }
@@ -226,7 +217,7 @@ pub(super) fn weighted<S: Simd>(simd: S, weight: Floats<S>, numbers: Vectors<S>)
 pub(super) fn soften<S: Simd>(
     simd: S,
     place: SixteenHeads,
-    query: &[Quad],
+    query: Vectors<S>,
     cache: &[KeyValue<'_>],
     newest: KeyValue<'_>,
     powers: &mut Vec<Lanes>,
@@ -239,18 +230,15 @@ pub(super) fn soften<S: Simd>(
             place.prefetch(simd, token.key);
             place.prefetch(simd, token.value);
         }
-        let mut score = simd.splat(0.0);
-        for (quad, query) in query.iter().enumerate() {
-            score = dot(simd, simd.read(query), place.load(simd, token.key, quad), score);
-        }
-        largest = simd.max(largest, score);
+        let score = dot(simd, query, place.load(simd, token.key));
+        largest = largest.max(score);
         simd.store(score, &mut power.0);
     }
     let mut sum = simd.splat(0.0);
     for power in powers {
-        let value = simd.exp2(simd.sub(simd.load(&power.0), largest));
-        sum = simd.add(sum, value);
+        let value = simd.exp2(simd.load(&power.0) - largest);
+        sum += value;
         simd.store(value, &mut power.0);
     }
-    simd.div(simd.splat(1.0), sum)
+    simd.splat(1.0) / sum
 }

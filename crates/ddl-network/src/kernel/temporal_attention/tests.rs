@@ -1,14 +1,15 @@
 //! Comparison with the formula in double precision.
 
+use crate::kernel::heads::HEAD_WIDTH;
 use crate::kernel::temporal_attention::{KeyValue, KeyValueMut, TemporalAttention, TemporalGradients};
 use crate::kernel::tests::attention::Attention;
 use crate::kernel::tests::numbers::{Numbers, assert_close, bits, wide};
-use ddl_simd::InstructionSet;
+use ddl_simd::{Dispatch, InstructionSet};
 use proptest::prelude::*;
 
 /// Tokens are keys and values, the oldest first and the newest token last.
 struct TemporalCase {
-    heads: (usize, usize),
+    heads: usize,
     query: Vec<f32>,
     tokens: Vec<[Vec<f32>; 2]>,
     gradient: Vec<f32>,
@@ -24,9 +25,9 @@ struct TemporalResults<T> {
 const BEFORE: f32 = 0.25;
 
 impl TemporalCase {
-    fn new(seed: u64, heads: (usize, usize), rows: usize, cached: usize, bound: f32) -> Self {
+    fn new(seed: u64, heads: usize, rows: usize, cached: usize, bound: f32) -> Self {
         let mut numbers = Numbers(seed);
-        let count = rows * heads.0 * heads.1;
+        let count = rows * heads * HEAD_WIDTH;
         let mut two = || [numbers.even(count, bound), numbers.even(count, bound)];
         Self {
             heads,
@@ -37,7 +38,7 @@ impl TemporalCase {
     }
 
     fn run(&self, set: InstructionSet) -> TemporalResults<f32> {
-        let attention = TemporalAttention::new(self.heads.0, self.heads.1);
+        let attention = TemporalAttention::new(self.heads);
         let attention = attention.with_instructions(set).unwrap();
         let tokens = self.tokens.iter().map(|[key, value]| KeyValue { key, value });
         let mut cache: Vec<KeyValue<'_>> = tokens.collect();
@@ -60,7 +61,7 @@ impl TemporalCase {
     }
 
     fn expected(&self) -> TemporalResults<f64> {
-        let width = self.heads.1;
+        let width = HEAD_WIDTH;
         let (query, gradient) = (wide(&self.query), wide(&self.gradient));
         let tokens: Vec<[Vec<f64>; 2]> = self
             .tokens
@@ -120,13 +121,13 @@ impl TemporalCase {
 
 #[test]
 fn bears_big_scores() {
-    TemporalCase::new(3, (8, 4), 9, 8, 20.0).check(2e-4);
+    TemporalCase::new(3, 8, 9, 8, 20.0).check(2e-4);
 }
 
 #[test]
 fn a_memory_of_fewer_rows_is_repeated() {
     for rows in [1, 5, 25, 64] {
-        let mut case = TemporalCase::new(4, (8, 4), rows * 20, 6, 1.5);
+        let mut case = TemporalCase::new(4, 8, rows * 20, 6, 1.5);
         let short = rows * 32;
         for [key, value] in &mut case.tokens[..3] {
             for numbers in [key, value] {
@@ -134,7 +135,7 @@ fn a_memory_of_fewer_rows_is_repeated() {
                 *numbers = first.repeat(20);
             }
         }
-        let whole = case.run(InstructionSet::detect()).mixed;
+        let whole = case.run(Dispatch::detect().instruction_set()).mixed;
         let tokens = case.tokens.iter().enumerate().map(|(token, [key, value])| {
             let length = if token < 3 { short } else { key.len() };
             KeyValue {
@@ -145,7 +146,7 @@ fn a_memory_of_fewer_rows_is_repeated() {
         let mut cache: Vec<KeyValue<'_>> = tokens.collect();
         let newest = cache.pop().unwrap();
         let mut mixed = vec![0.0; whole.len()];
-        TemporalAttention::new(8, 4).forward(&case.query, &cache, newest, &mut mixed);
+        TemporalAttention::new(8).forward(&case.query, &cache, newest, &mut mixed);
         assert!(bits(&mixed) == bits(&whole), "{rows} rows");
     }
 }
@@ -155,7 +156,7 @@ proptest! {
 
     #[test]
     fn values_and_gradients_are_those_of_the_formula(
-        heads in prop::sample::select(vec![(8, 4), (8, 4), (1, 1), (3, 4), (8, 5), (16, 4), (2, 16), (9, 3)]),
+        heads in prop::sample::select(vec![8, 8, 1, 3, 16]),
         seed: u64,
         rows in prop_oneof![1_usize..40, 60_usize..70, Just(266)],
         cached in 0_usize..21,

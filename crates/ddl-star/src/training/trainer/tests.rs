@@ -28,7 +28,7 @@ fn of_parts(star: &StarConfig, training: &TrainingConfig, kind: Kind) -> Trainer
         batch_pedestrians: 3 * PART,
         ..training.clone()
     };
-    Trainer::new(network, windows, training).unwrap()
+    Trainer::new(network, windows, None, training).unwrap()
 }
 
 #[test]
@@ -125,4 +125,31 @@ fn an_impossible_state_is_refused() {
     );
     refused(&|trainer| trainer.progress.steps = 15, "0..=14");
     refused(&|trainer| trainer.progress.steps = u64::MAX, "0..=14");
+}
+
+#[test]
+fn a_loss_that_is_not_finite_stops_the_run_and_names_the_batch() {
+    let star = StarConfig::published(Variant::Full);
+    // NaN at the end of the network, and at its beginning, from which it must pass through the kernels.
+    for bias in [
+        "output_layer.bias",
+        "input_embedding_layer_temporal.bias",
+        "input_embedding_layer_spatial.bias",
+        "fusion_layer.bias",
+    ] {
+        let [mut trainer, mut undisturbed] = [0; 2].map(|_| of_parts(&star, &TrainingConfig::published(), Kind::Float));
+        let _guard = tch::no_grad_guard();
+        let mut bias = trainer.network.parameters().get(bias).unwrap().shallow_clone();
+        let before = bias.copy();
+        let _ = bias.fill_(f64::NAN);
+        let error = tch::with_grad(|| trainer.step()).unwrap_err();
+        assert!(matches!(error, StarError::NonFinite { .. }), "{error}");
+        let said = error.to_string();
+        assert!(said.contains("epoch 1, batch 0") && said.contains('@'), "{said}");
+        // Nothing else has changed.
+        bias.copy_(&before);
+        let again = tch::with_grad(|| [&mut trainer, &mut undisturbed].map(|trainer| trainer.step().unwrap().loss));
+        assert!(again[0].to_bits() == again[1].to_bits(), "{again:?}");
+        assert_eq!(state(&trainer), state(&undisturbed));
+    }
 }
