@@ -93,7 +93,7 @@ const EDITS: [(&str, Edit); 15] = [
         parts.matrix().bytes[..2].copy_from_slice(&0x7e00_u16.to_le_bytes());
     }),
     ("wider network", |parts| {
-        parts.configure("/star/feed_forward_width", json!(2))
+        parts.configure("/star/feed_forward_width", json!(2));
     }),
     ("huge network", |parts| {
         parts.configure("/star/model_width", json!(1_u64 << 40));
@@ -102,7 +102,7 @@ const EDITS: [(&str, Edit); 15] = [
         parts.configure("/goals/proposal/network/width", json!(1_u64 << 40));
     }),
     ("negative width", |parts| {
-        parts.configure("/star/model_width", json!(-1))
+        parts.configure("/star/model_width", json!(-1));
     }),
     ("null", |parts| parts.configure("/star", Value::Null)),
     ("configuration not JSON", |parts| parts.entry["config"] = "{".into()),
