@@ -141,8 +141,8 @@ impl Report {
         Self::new(read.title, read.rows)
     }
 
-    /// The names and contents of its files: `report.md`, `report.tex` and `report.json`. `report.tex` holds the tables for
-    /// a paper, to be included with `\input`; they need `booktabs` and `adjustbox`.
+    /// The names and contents of its files: `report.md`, `report.tex` and `report.json`. `report.tex` holds the tables
+    /// for a paper, to be included with `\input`; they need `booktabs` and `adjustbox`.
     ///
     /// # Errors
     /// As [`Report::to_json`].

@@ -22,8 +22,8 @@ impl GoalCase {
     /// A pedestrian and its goals, with the tracks of the expert library that the goals come from, in any order.
     ///
     /// # Shapes
-    /// `track` and each expert: 20 positions (m), 8 observed and 12 true future ones, in the coordinates of `goals`. The
-    /// experts are transformed to this pedestrian; their last 12 positions are drawn.
+    /// `track` and each expert: 20 positions (m), 8 observed and 12 true future ones, in the coordinates of `goals`.
+    /// The experts are transformed to this pedestrian; their last 12 positions are drawn.
     ///
     /// # Errors
     /// Not 20 positions; a position or goal that is not finite or more than 1000 km from the last observed position;

@@ -13,9 +13,9 @@ use std::borrow::Borrow;
 /// A forecaster for a live stream of frames, 0.4 s apart or faster, that keeps the observed tracks itself.
 ///
 /// Every [`push`](Self::push) forecasts all pedestrians that have been observed at 8 consecutive time steps, or as a
-/// [`Completion`](ddl_data::Completion) allows. The forecast has the bits of [`Forecaster::forecast`] on the window that
-/// [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With a memory,
-/// this window also holds the recalled tracks. Adaptive regions are the only other difference. For gaps, see
+/// [`Completion`](ddl_data::Completion) allows. The forecast has the bits of [`Forecaster::forecast`] on the window
+/// that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With a
+/// memory, this window also holds the recalled tracks. Adaptive regions are the only other difference. For gaps, see
 /// [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`, one model serves several
 /// places.
 ///
