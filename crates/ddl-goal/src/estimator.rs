@@ -64,8 +64,9 @@ impl GoalEstimator {
     /// Creates an estimator and its search index.
     ///
     /// # Errors
-    /// [`GoalError::Params`] for invalid parameters; [`GoalError::TooFewTracks`] if the frame is [`RetrievalFrame::World`] and the library is smaller than the number
-    /// of experts. Also for a library whose velocities exceed the range of `f64`.
+    /// [`GoalError::Params`] for invalid parameters; [`GoalError::TooFewTracks`] if the frame is
+    /// [`RetrievalFrame::World`] and the library is smaller than the number of experts. Also for a library whose
+    /// velocities exceed the range of `f64`.
     pub fn new(params: GoalEstimatorParams, library: ExpertLibrary) -> Result<Self, GoalError> {
         params.check()?;
         let method = match params.frame {

@@ -5,7 +5,8 @@
 //! The recursion runs on R = exp(−r/γ), where the smoothed minimum is a sum. A cell needs one exponential, off the
 //! critical path, and no logarithm. R is stored as a significand with a separate integer exponent, so no range of costs
 //! underflows. All terms are positive, so nothing cancels. [`SoftDtw`] states a bound of the error, and
-//! `src/laws/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last bit.
+//! `src/laws/precision.rs` compares results with values of 60 decimal digits. `D(x, y)` equals `D(y, x)` to the last
+//! bit.
 //!
 //! Eight rows advance together along antidiagonals. The loops are compiled for each instruction set, and all give the
 //! same bits: products are fused everywhere, in software (slowly) on processors without the instruction. If costs are

@@ -28,9 +28,9 @@ pub struct Interval {
 /// The unweighted mean over the folds of the mean error of each fold, with its 95 % percentile interval over resampled
 /// blocks, m.
 ///
-/// `folds[f]` are the blocks of fold f, and `metric` is a sum of errors of a block, m. In each of 10,000 resamples every fold draws as many of its blocks as it
-/// has, with replacement; its mean is that of the pedestrians in them. `None` without folds, or with a fold of fewer
-/// than 10.
+/// `folds[f]` are the blocks of fold f, and `metric` is a sum of errors of a block, m. In each of 10,000 resamples
+/// every fold draws as many of its blocks as it has, with replacement; its mean is that of the pedestrians in them.
+/// `None` without folds, or with a fold of fewer than 10.
 pub fn mean_interval(folds: &[&[BlockErrors]], metric: fn(&BlockErrors) -> f64) -> Option<Interval> {
     let folds: Vec<Vec<PartialSum>> = folds
         .iter()
