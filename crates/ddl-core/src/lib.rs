@@ -11,6 +11,7 @@ mod region_table;
 mod representative;
 mod weighted_goals;
 mod window;
+mod work_done;
 
 pub use error::{ForecastError, ForecastShapeError, WindowError};
 pub use forecast::Forecast;
@@ -24,3 +25,4 @@ pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};
 pub use weighted_goals::WeightedGoals;
 pub use window::{CompletionCounts, RememberedTrack, Window};
+pub use work_done::WorkDone;

@@ -27,7 +27,7 @@ pub use adaptive::AdaptiveRegions;
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
     /// [standard deviation](Self::std_dev).
-    pub fn region_score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
+    pub(crate) fn region_score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
         let std_dev = self.std_dev(i, t)?;
         let heaviest = self.weight(i, self.most_likely(i));
         let of_hypothesis = |k: usize| {

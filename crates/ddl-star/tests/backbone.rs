@@ -94,7 +94,7 @@ fn windows() -> Vec<Window> {
 fn torch(kind: Kind) -> TorchNetwork {
     ddl_star::set_threads(1);
     let cpu = ComputeDevice::open(DeviceChoice::Cpu).unwrap();
-    TorchNetwork::with_backbone(config(), (7, cpu, kind), Recurrent::new).unwrap()
+    TorchNetwork::with_backbone(config(), 7, cpu, kind, Recurrent::new).unwrap()
 }
 
 fn forecasts(network: &dyn ForecastWindows) -> Result<Vec<WindowRollout>, NetworkError> {

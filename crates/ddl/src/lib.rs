@@ -32,8 +32,6 @@ mod training;
 mod trust;
 #[cfg(any(feature = "report", feature = "torch"))]
 mod windows;
-#[cfg(any(feature = "report", feature = "training"))]
-mod work_done;
 
 pub use ddl_data as data;
 pub use ddl_dynamics as dynamics;
@@ -48,7 +46,7 @@ pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
 
-pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable, WeightedGoals};
+pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable, WeightedGoals, WorkDone};
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare};
 pub use error::DdlError;
@@ -76,8 +74,6 @@ pub use trust::familiarity::UNFAMILIAR_THRESHOLD;
 
 #[cfg(any(feature = "report", feature = "torch"))]
 pub use windows::{split::Split, test_set::test_set_name};
-#[cfg(any(feature = "report", feature = "training"))]
-pub use work_done::WorkDone;
 
 /// What the feature `report` adds.
 #[cfg(feature = "report")]

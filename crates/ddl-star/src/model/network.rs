@@ -49,10 +49,9 @@ impl TorchNetwork {
         device: ComputeDevice,
         kind: Kind,
     ) -> Result<Self, StarError> {
-        let seeded = (seed, device, kind);
         match config.backbone {
-            BackboneKind::Star => Self::with_backbone(config, seeded, Star::new),
-            BackboneKind::Perceptron => Self::with_backbone(config, seeded, Perceptron::new),
+            BackboneKind::Star => Self::with_backbone(config, seed, device, kind, Star::new),
+            BackboneKind::Perceptron => Self::with_backbone(config, seed, device, kind, Perceptron::new),
         }
     }
 
@@ -62,7 +61,9 @@ impl TorchNetwork {
     /// [`StarError::Network`] when the configuration is out of range.
     pub fn with_backbone<T>(
         config: StarConfig,
-        (seed, device, kind): (u64, ComputeDevice, Kind),
+        seed: u64,
+        device: ComputeDevice,
+        kind: Kind,
         make: impl FnOnce(&mut Layout, &StarConfig) -> T,
     ) -> Result<Self, StarError>
     where

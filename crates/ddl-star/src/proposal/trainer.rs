@@ -10,6 +10,7 @@ use crate::proposal::network::TorchProposals;
 use crate::training::GENERATOR;
 use crate::training::checkpoint::{self, Extra};
 use crate::training::optimizer::Adam;
+use ddl_core::WorkDone;
 use ddl_network::seed::{Stage, stream};
 use ddl_network::weights::Origin;
 use ddl_network::{LearningRateSchedule, ProposalExample, ProposalStep, ProposalTraining};
@@ -84,16 +85,19 @@ impl ProposalTrainer {
         })
     }
 
-    /// Steps done, and steps in total.
-    pub fn steps(&self) -> (u64, u64) {
+    /// Steps of both parts.
+    pub fn steps(&self) -> WorkDone {
         let memory = self.network.config().memory.as_ref();
         let of_memory = memory.map_or(0, |_| self.training.memory.steps);
-        (self.progress.steps, self.training.steps + of_memory)
+        WorkDone {
+            done: self.progress.steps,
+            total: self.training.steps + of_memory,
+        }
     }
 
     /// Whether all steps are done.
     pub fn is_finished(&self) -> bool {
-        let (done, total) = self.steps();
+        let WorkDone { done, total } = self.steps();
         done >= total
     }
 
@@ -129,7 +133,7 @@ impl ProposalTrainer {
             progress: vec![0.0; 2],
             vectors: vec![(AVERAGED, &self.average)],
         };
-        let (parameters, (_, most)) = (self.network.parameters(), self.steps());
+        let (parameters, most) = (self.network.parameters(), self.steps().total);
         let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, most, origin, path)?;
         if let Some(of_memory) = steps.checked_sub(self.training.steps) {
             self.adam.set_steps(of_memory);

@@ -34,7 +34,7 @@ impl Adam {
     ///
     /// # Numerics
     /// m / (1 - b1^n) / (sqrt(v / (1 - b2^n)) + e) is computed as c m / (sqrt(v) + e'), with both corrections in the
-    /// scalars: nine passes over the numbers in total, without reading from the device.
+    /// scalars.
     pub(crate) fn step(
         &mut self,
         parameters: &Parameters,

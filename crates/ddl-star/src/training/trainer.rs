@@ -9,6 +9,7 @@ use crate::training::gradient;
 use crate::training::optimizer::Adam;
 use crate::training::prepared::{PreparedBatches, TrainingBatch};
 use crate::training::schedule::Schedule;
+use ddl_core::WorkDone;
 use ddl_data::{Position, Window};
 use ddl_network::backend::Kernels;
 use ddl_network::weights::{Origin, Weights};
@@ -100,10 +101,12 @@ impl Trainer {
         (self.progress.steps / self.schedule.steps_per_epoch() as u64) as usize
     }
 
-    /// Steps done, over all epochs, and steps in total.
-    pub fn steps(&self) -> (u64, u64) {
-        let total = self.schedule.steps_per_epoch() * self.config.epochs;
-        (self.progress.steps, total as u64)
+    /// Steps over all epochs.
+    pub fn steps(&self) -> WorkDone {
+        WorkDone {
+            done: self.progress.steps,
+            total: (self.schedule.steps_per_epoch() * self.config.epochs) as u64,
+        }
     }
 
     /// Saves weights, optimiser and progress to one file.
@@ -128,7 +131,7 @@ impl Trainer {
     /// # Errors
     /// [`NetworkError::Checkpoint`] when the file is of another origin, or not a complete state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        let (_, total) = self.steps();
+        let total = self.steps().total;
         let parameters = self.network.parameters();
         let mut extra = Extra {
             progress: vec![0.0; 3],
@@ -157,7 +160,7 @@ impl Trainer {
         let norm = gradient.norm();
         let loss = loss.double_value(&[]);
         self.ensure_finite([("loss", loss), ("gradient norm", norm.double_value(&[]))])?;
-        let (_, total) = self.steps();
+        let total = self.steps().total;
         let config = &self.config;
         let rate = config.learning_rate * config.learning_rate_schedule.factor(step, total);
         let parameters = self.network.parameters();

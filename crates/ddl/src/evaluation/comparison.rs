@@ -3,6 +3,7 @@
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
 use crate::windows::test_set::TestSet;
+use ddl_core::WorkDone;
 use ddl_data::{Dataset, Window};
 use ddl_eval::Protocol;
 use ddl_eval::significance::{BlockErrors, PairedDifference, block_errors, paired_difference};
@@ -55,17 +56,19 @@ pub fn compare_on_validation(
     run: &Ddl,
     other: &Ddl,
     dataset: &Dataset,
-    mut observe: impl FnMut(usize, usize) -> ControlFlow<()>,
+    mut observe: impl FnMut(WorkDone) -> ControlFlow<()>,
 ) -> Result<Comparison, DdlError> {
     let windows = TestSet::kept_by(run.goal_model(), dataset, None)?.windows;
-    let total = 2 * windows.len();
-    let mut done = 0;
+    let mut progress = WorkDone {
+        done: 0,
+        total: 2 * windows.len() as u64,
+    };
     let mut measured = |model: &Ddl| -> Result<Vec<BlockErrors>, DdlError> {
         let mut forecasts = Vec::new();
         for some in windows.chunks(WINDOWS_AT_ONCE) {
             forecasts.extend(Protocol::Fair.forecast(model, some)?);
-            done += some.len();
-            if observe(done, total).is_break() {
+            progress.done += some.len() as u64;
+            if observe(progress).is_break() {
                 return Err(DdlError::Interrupted);
             }
         }

@@ -12,7 +12,7 @@ use crate::model::ddl::Ddl;
 use crate::run::words;
 use crate::windows::split::Split;
 use crate::windows::test_set::TestSet;
-use crate::work_done::WorkDone;
+use ddl_core::WorkDone;
 use ddl_core::{Forecast, ForecastError, Forecaster as _, WeightedGoals};
 use ddl_data::{Dataset, Window};
 use ddl_eval::{Protocol, ResultRow};

@@ -6,6 +6,7 @@ use crate::goals::remembering::remembering;
 use crate::goals::views;
 use crate::run::directory::{RunDirectory, SAVE_EVERY};
 use crate::run::goal_recipe::ProposalRecipe;
+use ddl_core::WorkDone;
 use ddl_data::{Recording, Window};
 use ddl_goal::GoalError;
 use ddl_memory::Playback;
@@ -32,7 +33,7 @@ pub(crate) fn train(
     recordings: &[&Recording],
     start: Option<Weights>,
     choose: impl FnOnce(Weights) -> Result<Weights, DdlError>,
-    mut observe: impl FnMut((u64, u64), &ProposalStep) -> ControlFlow<()>,
+    mut observe: impl FnMut(WorkDone, &ProposalStep) -> ControlFlow<()>,
 ) -> Result<(), DdlError> {
     let (run, origin, device) = (stage.run, &stage.origin, stage.device);
     if !run.experts().is_file() {

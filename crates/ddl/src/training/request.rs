@@ -4,7 +4,7 @@ use crate::run::directory::RunDirectory;
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
 use crate::run::track_units::TrackUnits;
-use crate::work_done::WorkDone;
+use ddl_core::WorkDone;
 use ddl_network::{DeviceChoice, ProposalStep, StarConfig, StepReport, TrainingConfig, Variant};
 
 /// What to train, and the directory for it.
@@ -97,8 +97,7 @@ pub struct TrainingProgress {
 impl TrainingProgress {
     /// The progress after `step`, at these steps of the stage: done, and in total.
     #[cfg(feature = "torch")]
-    pub(crate) fn at((done, total): (u64, u64), step: TrainingStep) -> Self {
-        let steps = WorkDone { done, total };
+    pub(crate) fn at(steps: WorkDone, step: TrainingStep) -> Self {
         Self { steps, step }
     }
 }

@@ -297,7 +297,7 @@ impl NetworkStage<'_> {
         let Some(stopping) = stopping else {
             return Ok(epochs);
         };
-        if stopping.first_epoch() == 0 && trainer.steps().0 == 0 {
+        if stopping.first_epoch() == 0 && trainer.steps().done == 0 {
             save_weights(&trainer.weights()?, &self.config.network_origin(), &run.epoch(0))?;
             epochs = vec![EpochReport {
                 epoch: 0,

@@ -110,8 +110,8 @@ pub(super) fn compare_with_builtin(
     let run = Ddl::load(request.out.path(), request.device)?;
     let builtin = Ddl::builtin(BuiltinModel::default(), request.device)?;
     let progress = Progress::new("compare", reporting.telling.progress);
-    let compared = ddl::compare_on_validation(&run, &builtin, dataset, |done, total| {
-        progress.tell(done as u64, total as u64, "windows of the validation part");
+    let compared = ddl::compare_on_validation(&run, &builtin, dataset, |windows| {
+        progress.tell(windows.done, windows.total, "windows of the validation part");
         interrupt.flow()
     })?;
     Ok((compared.pedestrians > 0).then_some(compared))

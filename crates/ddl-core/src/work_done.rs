@@ -1,6 +1,6 @@
 //! How much of a long work is done.
 
-/// Steps or pedestrians done, and in total.
+/// Steps, windows or pedestrians done, and in total.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkDone {
     /// Done so far.
