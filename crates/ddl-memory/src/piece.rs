@@ -24,7 +24,7 @@ const REACH: f64 = 30.0;
 
 /// A pedestrian's motion over 8 positions: present position (m), late and early velocity in units of their scales.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Motion {
+pub(crate) struct FirstMotion {
     now: Position,
     velocities: [f32; VELOCITIES],
 }
@@ -34,7 +34,7 @@ pub(crate) fn is_remembered(position: Position) -> bool {
     position.iter().all(|x| x.abs() <= COORDINATE_LIMIT)
 }
 
-impl Motion {
+impl FirstMotion {
     pub(crate) fn of(observed: &[Position; OBSERVED]) -> Self {
         let velocity = |from: usize, scale: f64, axis: usize| {
             let way = observed[from + 3][axis] - observed[from][axis];
@@ -134,17 +134,17 @@ impl Piece {
     }
 
     /// The motion of the segment of a lane.
-    fn motion(&self, lane: usize) -> Motion {
-        Motion::of(&std::array::from_fn(|t| self.path[lane + t]))
+    fn motion(&self, lane: usize) -> FirstMotion {
+        FirstMotion::of(&std::array::from_fn(|t| self.path[lane + t]))
     }
 
     /// The motion of its first segment.
-    pub(crate) fn first_motion(&self) -> Option<Motion> {
+    pub(crate) fn first_motion(&self) -> Option<FirstMotion> {
         (self.len() > 0).then(|| self.motion(0))
     }
 
     /// Whether one of its segments lies within [`ALIKE`] of a motion.
-    pub(crate) fn is_alike(&self, motion: &Motion) -> bool {
+    pub(crate) fn is_alike(&self, motion: &FirstMotion) -> bool {
         self.nearest(motion) < ALIKE
     }
 
@@ -156,7 +156,7 @@ impl Piece {
 
     /// Squared distance of each segment from a motion; infinite or NaN for lanes without a segment.
     #[inline]
-    fn distances(&self, motion: &Motion) -> [f32; LANES] {
+    fn distances(&self, motion: &FirstMotion) -> [f32; LANES] {
         let origin = self.path.get(NOW).copied().unwrap_or_default();
         let wanted = motion.from(origin);
         let mut distances = [0.0; LANES];
@@ -171,7 +171,7 @@ impl Piece {
 
     /// The smallest of the distances.
     #[inline]
-    pub(crate) fn nearest(&self, motion: &Motion) -> f32 {
+    pub(crate) fn nearest(&self, motion: &FirstMotion) -> f32 {
         let mut least = self.distances(motion);
         // Halves are compared, so that the minimum takes a few vector instructions.
         for half in [4, 2, 1] {
@@ -184,7 +184,7 @@ impl Piece {
     }
 
     /// The first of the segments nearest to a motion.
-    pub(crate) fn nearest_lane(&self, motion: &Motion) -> usize {
+    pub(crate) fn nearest_lane(&self, motion: &FirstMotion) -> usize {
         let distances = self.distances(motion);
         (1..self.len()).fold(0, |least, lane| {
             if distances[lane] < distances[least] {

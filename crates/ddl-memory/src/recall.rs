@@ -3,7 +3,7 @@
 use ddl_data::{OBSERVED, PedestrianId, Position, RememberedTrack};
 
 use crate::memory::SceneMemory;
-use crate::piece::{Motion, Piece};
+use crate::piece::{FirstMotion, Piece};
 
 /// Squared distance from which segments are ignored.
 const MAX_SQUARED_DISTANCE: f32 = 60.0;
@@ -27,7 +27,7 @@ impl SceneMemory {
         own: Option<PedestrianId>,
         count: usize,
     ) -> Vec<RememberedTrack> {
-        let motion = Motion::of(observed);
+        let motion = FirstMotion::of(observed);
         let running = self.running.iter().filter(|(id, _)| Some(**id) != own);
         let running = running.map(|(_, running)| &running.track);
         let mut near: Vec<(f32, usize, &Piece)> = Vec::new();

@@ -3,7 +3,7 @@
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};
 
-use crate::piece::{Motion, Piece, SHARED};
+use crate::piece::{FirstMotion, Piece, SHARED};
 
 /// A track ends after this many steps of 0.4 s (3.2 s) without a position. If the same id returns later, a new track
 /// begins.
@@ -25,7 +25,7 @@ impl Track {
 
     /// The piece with the segment nearest to a motion (the first if several are equally near), and its squared
     /// distance.
-    pub(crate) fn nearest(&self, motion: &Motion) -> Option<(f32, &Piece)> {
+    pub(crate) fn nearest(&self, motion: &FirstMotion) -> Option<(f32, &Piece)> {
         let distances = self.pieces.iter();
         let distances = distances.map(|piece| (piece.nearest(motion), piece));
         distances.reduce(|least, next| if next.0 < least.0 { next } else { least })

@@ -195,13 +195,13 @@ pub(crate) fn value_and_gradient(
 type Work = Box<dyn FnOnce() -> Result<Vec<Vec<Neighbour>>, SearchError> + Send>;
 
 /// A search index with a number of components that is known at run time.
-trait Search: Send + Sync {
+trait IndexOfAnyDimension: Send + Sync {
     /// The search for the `n` nearest of each query.
     fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work>;
     fn len(&self) -> usize;
 }
 
-impl<const D: usize> Search for Arc<Index<D>> {
+impl<const D: usize> IndexOfAnyDimension for Arc<Index<D>> {
     fn prepared(&self, queries: &[PyReadonlyArray2<'_, f64>], components: usize, n: usize) -> PyResult<Work> {
         let queries = all_steps::<D>(queries, components, "queries")?;
         let index = Arc::clone(self);
@@ -239,7 +239,7 @@ fn components_of(arrays: &[PyReadonlyArray2<'_, f64>], name: &str) -> PyResult<u
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
 pub(crate) struct SearchIndex {
-    index: Box<dyn Search>,
+    index: Box<dyn IndexOfAnyDimension>,
     components: usize,
 }
 
@@ -251,10 +251,10 @@ impl SearchIndex {
         let dtw = distance(gamma, cost)?;
         let arrays = sequences(&candidates, "candidates")?;
         let components = components_of(&arrays, "candidates")?;
-        let index: Box<dyn Search> = in_dimension!(components, D => {
+        let index: Box<dyn IndexOfAnyDimension> = in_dimension!(components, D => {
             let candidates = all_steps::<D>(&arrays, components, "candidates")?;
             let built = run(py, move |_| Index::build(&dtw, &candidates))?;
-            let built: Box<dyn Search> = Box::new(Arc::new(built.map_err(of_any)?));
+            let built: Box<dyn IndexOfAnyDimension> = Box::new(Arc::new(built.map_err(of_any)?));
             Ok(built)
         })?;
         Ok(Self { index, components })

@@ -28,7 +28,7 @@ const UNIT: f64 = 1.0 / (1u64 << 24) as f64;
 const WIDEST_MARGIN: f64 = 0.25;
 
 #[derive(Clone, Copy, Debug)]
-struct Format {
+struct FloatFormat {
     longest: usize,
     cost_limit: f64,
     /// The number that is added to a sum of predecessors, or to its product.
@@ -39,7 +39,7 @@ struct Format {
     headroom: f64,
 }
 
-const F32: Format = Format {
+const F32: FloatFormat = FloatFormat {
     longest: 32,
     cost_limit: COST_LIMIT as f64,
     floor: UNFUSED_FLOOR as f64,
@@ -47,7 +47,7 @@ const F32: Format = Format {
     headroom: 24.0,
 };
 
-const F64: Format = Format {
+const F64: FloatFormat = FloatFormat {
     longest: 180,
     cost_limit: COST_LIMIT_64,
     floor: FLOOR_64,
@@ -58,7 +58,7 @@ const F64: Format = Format {
 /// The range of the recursion for a query of n steps against candidates of up to m steps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Range {
-    format: Format,
+    format: FloatFormat,
     /// log2 of the number of warping paths (a Delannoy number), which bounds Z / start.
     paths_log2: f64,
     /// log2 of the number of paths from a cell to the last one, summed over all cells.
@@ -76,14 +76,14 @@ impl Range {
             _ => FUSED_FLOOR,
         };
         let floor = f64::from(floor);
-        Self::of(Format { floor, ..F32 }, n, m)
+        Self::of(FloatFormat { floor, ..F32 }, n, m)
     }
 
     pub(crate) fn of_f64(n: usize, m: usize) -> Option<Self> {
         Self::of(F64, n, m)
     }
 
-    fn of(format: Format, n: usize, m: usize) -> Option<Self> {
+    fn of(format: FloatFormat, n: usize, m: usize) -> Option<Self> {
         if n.max(m) > format.longest {
             return None;
         }

@@ -27,7 +27,7 @@ pub use network::TorchNetwork;
 pub(crate) use numbers::{numbers, tensor};
 pub use parameters::Parameters;
 pub(crate) use rollout::ForecastSteps;
-pub(crate) use tensor_backend::{KernelPass, Pass};
+pub(crate) use tensor_backend::{Engine, KernelPass};
 
 #[cfg(test)]
 mod published_tests;

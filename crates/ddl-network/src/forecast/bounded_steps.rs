@@ -99,11 +99,8 @@ fn step<S: Simd>(simd: S, rows: &[Lanes; INPUTS], (sigma, time): (f32, StepTime<
     for i in 0..3 {
         mixed[i] = neutral[i] + (mixed[i] - neutral[i]) * share;
     }
-    let ([first, second], [cos, sin]) = axes(mixed, range, &mut exact);
-    let ahead = cos.simd_ge(zero);
-    let x = ahead.select(cos + 1.0, sin);
-    let y = ahead.select(sin, simd.splat(1.0) - cos);
-    let (_, axis) = polar([x, y], &mut exact);
+    let ([first, second], double) = axes(mixed, range, &mut exact);
+    let axis = half_angle(simd, double, &mut exact);
     let stretch = (first - second).max(zero).sqrt();
     let [x, y] = [axis[0] * stretch, axis[1] * stretch];
 
@@ -204,6 +201,15 @@ fn axes<S: Simd>(
     let first = (mean + radius).max(smallest).min(largest);
     let second = (mean - radius).max(smallest).min(largest);
     ([first, second], double)
+}
+
+/// Cosine and sine of half the angle with this cosine and sine.
+#[inline(always)]
+fn half_angle<S: Simd>(simd: S, [cos, sin]: [Floats<S>; 2], exact: &mut u32) -> [Floats<S>; 2] {
+    let ahead = cos.simd_ge(simd.splat(0.0));
+    let x = ahead.select(cos + 1.0, sin);
+    let y = ahead.select(sin, simd.splat(1.0) - cos);
+    polar([x, y], exact).1
 }
 
 #[inline(always)]

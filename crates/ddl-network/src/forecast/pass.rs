@@ -5,7 +5,7 @@ use crate::backbone::Backbone;
 use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
 use crate::forecast::batch::{BatchRollout, ForecastBatch};
 use crate::forecast::emission::NoiseSpread;
-use crate::forecast::rollout_state::{Observation, RolloutState};
+use crate::forecast::rollout_state::{ObservedSteps, RolloutState};
 use crate::kernel::KeepBuffers;
 use crate::weights::Linear;
 use ddl_data::{HORIZON, OBSERVED};
@@ -31,7 +31,7 @@ pub(super) struct Pass<'a> {
     layers: PassLayers<'a>,
     kernels: &'a Arc<Kernels>,
     batch: &'a ForecastBatch<'a>,
-    observation: Observation<'a>,
+    observation: ObservedSteps<'a>,
     noise_width: usize,
     /// Output of the backbone's spatial encoder at the observed time steps, `[8, P, width]`.
     scene: Buffer,
@@ -41,7 +41,7 @@ pub(super) struct Pass<'a> {
 type Observed = (Memory<KernelBackend>, Rc<Rows>);
 
 /// Some hypotheses of a pass, rolled out on one thread.
-struct Part<'a> {
+struct HypothesisPart<'a> {
     pass: &'a Pass<'a>,
     backend: KernelBackend,
     hypotheses: Range<usize>,
@@ -54,7 +54,7 @@ impl<'a> Pass<'a> {
         batch: &'a ForecastBatch<'a>,
         config: &'a StarConfig,
     ) -> Self {
-        let observation = Observation::new(batch, config);
+        let observation = ObservedSteps::new(batch, config);
         let seen = observation.seen(0..OBSERVED);
         let centred = observation.centred();
         let backend = KernelBackend::forward_only(Arc::clone(kernels));
@@ -77,7 +77,7 @@ impl<'a> Pass<'a> {
             .collect::<Vec<usize>>()
             .into_par_iter()
             .map_init(KeepBuffers::new, |_, first| {
-                let part = Part {
+                let part = HypothesisPart {
                     pass: self,
                     backend: KernelBackend::forward_only(Arc::clone(self.kernels)),
                     hypotheses: first..hypotheses.min(first + at_once),
@@ -109,7 +109,7 @@ fn joined(parts: &[BatchRollout], pedestrians: usize) -> BatchRollout {
     }
 }
 
-impl Part<'_> {
+impl HypothesisPart<'_> {
     fn roll_out(&self) -> BatchRollout {
         let Pass { observation, batch, .. } = self.pass;
         // If goals are not an input, the observed time steps are the same for all hypotheses.

@@ -19,7 +19,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// The observation of a batch in metres, the same for all hypotheses.
-pub(super) struct Observation<'a> {
+pub(super) struct ObservedSteps<'a> {
     config: &'a StarConfig,
     /// `[8, P]`.
     observed: Vec<[f32; 2]>,
@@ -35,7 +35,7 @@ pub(super) struct Observation<'a> {
 
 /// The state of a rollout of some hypotheses, in metres.
 pub(super) struct RolloutState<'a> {
-    observation: &'a Observation<'a>,
+    observation: &'a ObservedSteps<'a>,
     /// Origins of the positions that the temporal encoders read, `[E, P]`: the goals (E = G), or the last observed
     /// positions (E = 1).
     references: Vec<[f32; 2]>,
@@ -51,7 +51,7 @@ pub(super) struct RolloutState<'a> {
     sums: Vec<[f32; 2]>,
 }
 
-impl<'a> Observation<'a> {
+impl<'a> ObservedSteps<'a> {
     pub(super) fn new(batch: &ForecastBatch<'_>, config: &'a StarConfig) -> Self {
         let pedestrians = batch.pedestrians();
         let tracks = || tracks(batch);
@@ -138,7 +138,7 @@ impl<'a> Observation<'a> {
 
 impl<'a> RolloutState<'a> {
     /// The state before the first forecast step, for some hypotheses. A single goal is used for all hypotheses.
-    pub(super) fn new(observation: &'a Observation<'_>, batch: &ForecastBatch<'_>, hypotheses: Range<usize>) -> Self {
+    pub(super) fn new(observation: &'a ObservedSteps<'_>, batch: &ForecastBatch<'_>, hypotheses: Range<usize>) -> Self {
         let config = observation.config;
         let count = hypotheses.len();
         let used = if batch.goals.len() == 1 { 0..1 } else { hypotheses };
@@ -250,7 +250,7 @@ impl<'a> RolloutState<'a> {
     }
 
     fn follow(&mut self, factors: &mut [[f32; 3]], (done, left): (usize, usize)) {
-        let Observation { config, bounds, .. } = self.observation;
+        let ObservedSteps { config, bounds, .. } = self.observation;
         let (sigma, dt) = (config.sigma as f32, self.observation.time_step());
         let time = StepTime { done, left, dt };
         if let Some(frames) = &self.frames {

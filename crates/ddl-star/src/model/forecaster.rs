@@ -7,7 +7,7 @@ use crate::model::emission::NoiseInput;
 use crate::model::network::TorchNetwork;
 use crate::model::numbers::{numbers, tensor};
 use crate::model::rollout::{ForecastSteps, Rollout};
-use crate::model::tensor_backend::Pass;
+use crate::model::tensor_backend::Engine;
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
@@ -47,7 +47,7 @@ impl TorchNetwork {
             }
         };
         let torch = TorchBackend::new(self.parameters(), Mode::Evaluate);
-        let pass = Pass::Torch(&torch);
+        let pass = Engine::Torch(&torch);
         let steps = ForecastSteps {
             horizon: HORIZON,
             rule: batch.rule,

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use crate::device::ComputeDevice;
-use crate::model::{ForecastSteps, NoiseInput, Pass, TorchBackend, TorchNetwork, WindowBatch};
+use crate::model::{Engine, ForecastSteps, NoiseInput, TorchBackend, TorchNetwork, WindowBatch};
 use crate::training::mean_squared_distance;
 use ddl_data::{PedestrianId, Window};
 use ddl_network::backend::Mode;
@@ -127,7 +127,7 @@ fn agrees(kind: Kind, tolerance: f64) {
     let goal = reference.tensor("/true_goal", &[pedestrians, 2], kind);
     let forecast = network
         .layers()
-        .teacher_forced(&batch, &goal, &noise, Pass::Torch(&torch));
+        .teacher_forced(&batch, &goal, &noise, Engine::Torch(&torch));
     let expected = reference.tensor("/train_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&forecast, &expected);
     assert!(
@@ -157,7 +157,7 @@ fn agrees(kind: Kind, tolerance: f64) {
     };
     let rollout = network
         .layers()
-        .roll_out(&batch, &goal, &noise, steps, Pass::Torch(&torch));
+        .roll_out(&batch, &goal, &noise, steps, Engine::Torch(&torch));
     let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&rolled, &expected.narrow(0, 7, 12));

@@ -7,7 +7,7 @@ use crate::model::goal_frame::GoalFrame;
 use crate::model::guidance::Guidance;
 use crate::model::network::Layers;
 use crate::model::own_motion;
-use crate::model::tensor_backend::{Pass, TensorBackend};
+use crate::model::tensor_backend::{Engine, TensorBackend};
 use ddl_data::OBSERVED;
 use ddl_network::backbone::Backbone;
 use ddl_network::backend::Memory;
@@ -50,15 +50,15 @@ impl Layers {
         batch: &WindowBatch,
         goals: &Tensor,
         noise: &NoiseInput,
-        pass: Pass<'_>,
+        pass: Engine<'_>,
     ) -> Tensor {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Pass::Torch(backend) => {
+            Engine::Torch(backend) => {
                 let backbone = &*self.on_tensors;
                 self.teacher_forced_by(batch, goals, noise, &BackbonePass { backend, backbone })
             }
-            Pass::Kernels(pass) => {
+            Engine::Kernels(pass) => {
                 let backbone = &*self.on_rows;
                 self.teacher_forced_by(
                     batch,
@@ -122,15 +122,15 @@ impl Layers {
         goals: &Tensor,
         noise: &NoiseInput,
         steps: ForecastSteps,
-        pass: Pass<'_>,
+        pass: Engine<'_>,
     ) -> Rollout {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Pass::Torch(backend) => {
+            Engine::Torch(backend) => {
                 let backbone = &*self.on_tensors;
                 self.roll_out_by(batch, goals, noise, steps, &BackbonePass { backend, backbone })
             }
-            Pass::Kernels(pass) => {
+            Engine::Kernels(pass) => {
                 let backbone = &*self.on_rows;
                 self.roll_out_by(
                     batch,

@@ -8,14 +8,14 @@ use std::hint::black_box;
 const CACHES: usize = 256 << 20;
 
 #[derive(Clone, Copy)]
-pub(crate) enum Clock {
+pub(crate) enum MeasuredTime {
     /// Processor time of all threads of the process.
     Processor,
     #[cfg(feature = "torch")]
     Wall,
 }
 
-impl Clock {
+impl MeasuredTime {
     fn now(self) -> f64 {
         let time = clock_gettime(match self {
             Self::Processor => ClockId::ProcessCPUTime,
@@ -35,7 +35,7 @@ impl Clock {
 /// Seconds of each piece of work, as the median of the turns. The caches are emptied before each piece; the first turn
 /// does not count.
 pub(crate) fn side_by_side<const N: usize>(
-    clock: Clock,
+    clock: MeasuredTime,
     turns: usize,
     mut works: [&mut dyn FnMut() -> Result<()>; N],
 ) -> Result<[f64; N]> {

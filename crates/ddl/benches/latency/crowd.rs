@@ -1,7 +1,7 @@
 //! The cost of a forecast as a function of the number of pedestrians, at constant density.
 
 use crate::Result;
-use crate::clock::Clock;
+use crate::clock::MeasuredTime;
 use ddl::data::{OBSERVED, PedestrianId, Position, TIME_STEP, Window};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, ForecastError, Forecaster, LiveForecaster};
 use rand::{RngExt as _, SeedableRng as _};
@@ -97,7 +97,7 @@ fn seconds(pedestrians: usize, mut work: impl FnMut() -> Result<()>) -> Result<f
     let repetitions = (400 / pedestrians).max(1);
     let mut least = f64::INFINITY;
     for _ in 0..3 {
-        let spent = Clock::Processor.seconds(|| (0..repetitions).try_for_each(|_| work()))?;
+        let spent = MeasuredTime::Processor.seconds(|| (0..repetitions).try_for_each(|_| work()))?;
         least = least.min(spent / repetitions as f64);
         if spent > LONG {
             break;

@@ -14,7 +14,7 @@ mod scene;
 #[cfg(feature = "torch")]
 mod step;
 
-use clock::{Clock, side_by_side};
+use clock::{MeasuredTime, side_by_side};
 use ddl::data::{Dataset, Position, Window};
 use ddl::memory::SceneMemory;
 use ddl::network::{BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule};
@@ -108,7 +108,7 @@ fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<Strin
         &mut || Ok(roll_out(&transformer).map(drop)?),
         &mut || Ok(roll_out(&perceptron).map(drop)?),
     ];
-    let times = side_by_side(Clock::Processor, turns, parts)?;
+    let times = side_by_side(MeasuredTime::Processor, turns, parts)?;
     let [with_memory, whole, goals, transformer, perceptron] = times.map(|seconds| 1e3 * seconds);
     Ok(format!(
         "{} pedestrians, 20 hypotheses, one thread, processor time\n\

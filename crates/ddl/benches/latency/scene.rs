@@ -1,3 +1,5 @@
+//! The crowd that is forecast.
+
 use crate::Result;
 use ddl::data::{Dataset, Window};
 

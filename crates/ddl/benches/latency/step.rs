@@ -1,5 +1,7 @@
+//! One step of training.
+
 use crate::Result;
-use crate::clock::{Clock, side_by_side};
+use crate::clock::{MeasuredTime, side_by_side};
 use ddl::data::{Dataset, Window, WindowRule};
 use ddl::network::{StarConfig, TrainingConfig};
 use ddl::star::{ComputeDevice, TorchNetwork, Trainer};
@@ -15,9 +17,9 @@ pub(crate) fn measured(dataset: &Dataset, threads: usize, turns: usize) -> Resul
     let star = StarConfig::published(Variant::Full);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let (clock, time) = if threads == 1 {
-        (Clock::Processor, "processor time")
+        (MeasuredTime::Processor, "processor time")
     } else {
-        (Clock::Wall, "wall-clock time")
+        (MeasuredTime::Wall, "wall-clock time")
     };
     let [step] = pool.install(|| {
         let device = ComputeDevice::open(DeviceChoice::Cpu)?;

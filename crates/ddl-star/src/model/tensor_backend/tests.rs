@@ -64,7 +64,7 @@ enum By {
 }
 
 /// A loss and its gradient, in double precision.
-fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'_>) -> Tensor) -> (f64, Tensor) {
+fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Engine<'_>) -> Tensor) -> (f64, Tensor) {
     let kind = match by {
         By::Kernels => Kind::Float,
         By::Torch => Kind::Double,
@@ -75,12 +75,12 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'
     assert_eq!(kernels.is_some(), matches!(by, By::Kernels), "{by:?}");
     let (loss, gradient) = if let Some(kernels) = kernels {
         let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_noise_weight());
-        let loss = loss(&network, Pass::Kernels(&pass));
+        let loss = loss(&network, Engine::Kernels(&pass));
         let gradient = pass.gradient(&loss, network.layers(), parameters.count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
     } else {
         let torch = TorchBackend::new(parameters, Mode::Evaluate);
-        let loss = loss(&network, Pass::Torch(&torch));
+        let loss = loss(&network, Engine::Torch(&torch));
         let gradient = parameters.gradient_of(&loss).unwrap();
         (loss, gradient)
     };
@@ -88,7 +88,7 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Pass<'
 }
 
 /// The mean square of single steps from true positions.
-fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) -> Tensor {
+fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor {
     let kind = network.kind();
     let batch = batch(windows, kind);
     let ones = Tensor::ones([1, 16], (kind, tch::Device::Cpu));
@@ -99,7 +99,7 @@ fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) ->
     (forecast - truth).square().mean(None::<Kind>)
 }
 
-fn walk(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) -> Tensor {
+fn walk(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor {
     let batch = batch(windows, network.kind());
     let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
     let noise = NoiseInput::Expected;
@@ -113,7 +113,7 @@ fn walk(windows: &[Window], network: &TorchNetwork, pass: Pass<'_>) -> Tensor {
 }
 
 /// A loss, with the largest relative errors of it and of its gradient.
-type Compared = (fn(&[Window], &TorchNetwork, Pass<'_>) -> Tensor, [f64; 2]);
+type Compared = (fn(&[Window], &TorchNetwork, Engine<'_>) -> Tensor, [f64; 2]);
 
 #[test]
 fn kernels_and_tape_give_the_gradients_of_libtorch() {
