@@ -6,7 +6,7 @@ use serde_json::Value;
 
 fn with_recordings() -> Place {
     let place = Place::empty();
-    own_tracks::write_recordings(&place);
+    place.write_recordings();
     place
 }
 
@@ -109,7 +109,7 @@ fn errors_with_own_recordings_give_advice() {
 #[test]
 fn each_recording_of_a_folder_has_a_row() {
     let place = Place::empty();
-    own_tracks::write_clips(&place, 300, 3);
+    place.write_clips(300, 3);
     let words = place.ok("evaluate --data clips --protocol fair --threads 1 --out report");
     assert!(words.contains("3 recordings, clip0 to clip2"), "{words}");
     assert!(!words.contains("clip0+"), "{words}");

@@ -203,7 +203,7 @@ fn files_and_options_override_the_rate_of_a_run() {
 #[test]
 fn rate_and_homography_of_a_run_are_used() {
     let place = Place::with_model();
-    own_tracks::write_film(&place);
+    place.write_film();
     let units = "--fps 23.98 --homography film/H.txt";
     let finished = place.run(&format!("data film {units}"));
     let note = "note: 3 recordings: 0.4 s is 9.592 frames: positions are interpolated";

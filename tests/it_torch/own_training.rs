@@ -12,13 +12,13 @@ const ALONE: &str = "--from none --epochs 3";
 
 fn with_recordings() -> Place {
     let place = Place::empty();
-    own_tracks::write_recordings(&place);
+    place.write_recordings();
     place
 }
 
 fn with_clips(frames: i64, count: i64) -> Place {
     let place = Place::empty();
-    own_tracks::write_clips(&place, frames, count);
+    place.write_clips(frames, count);
     place
 }
 
@@ -233,7 +233,7 @@ fn an_empty_validation_part_is_an_error() {
 #[test]
 fn a_run_remembers_rate_and_homography() {
     let place = Place::empty();
-    own_tracks::write_film(&place);
+    place.write_film();
     let units = "--fps 23.98 --homography film/H.txt";
     let train = format!("train --data film --validation 0.3 {units} --epochs 1 --out run {SMALL}");
     let _ = place.ok(&train);

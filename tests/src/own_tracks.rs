@@ -1,7 +1,6 @@
 //! Tracks like those of a user of the program, as CSV.
 
 use crate::crowd;
-use crate::place::Place;
 use ddl_data::{PedestrianId, Position};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -66,36 +65,6 @@ pub fn frames(rows: &[Row]) -> BTreeMap<i64, Vec<(PedestrianId, Position)>> {
         frames.entry(frame).or_default().push((PedestrianId(id), [x, y]));
     }
     frames
-}
-
-/// The folder `film`: three recordings in pixels at 23.98 frames per second, and their homography.
-pub fn write_film(place: &Place) {
-    for (name, scene) in [("hall", "corridor"), ("lobby", "plaza"), ("yard", "crossing")] {
-        // A frame of the crowd is 0.04 s, one of the film 1 / 23.98 s: nearly the same.
-        let mut rows = of_scene(scene, 0..900);
-        for (.., x, y) in &mut rows {
-            (*x, *y) = (50.0 * *x, 50.0 * *y);
-        }
-        place.write_tracks(&format!("film/{name}.csv"), &rows);
-    }
-    // A file beside the recordings that is not a recording.
-    place.write("film/H.txt", "0.02 0 0\n0 0.02 0\n0 0 1\n");
-}
-
-/// The folder `mine`: two recordings of a minute, as CSV, and a file that is not a recording.
-pub fn write_recordings(place: &Place) {
-    for (name, scene) in [("lobby", "corridor"), ("yard", "plaza")] {
-        place.write_tracks(&format!("mine/{name}.csv"), &of_scene(scene, 0..1500));
-    }
-    place.write("mine/README.md", "not a recording");
-}
-
-/// The folder `clips`: a simulated crowd cut into `count` clips of `frames` frames (10 per step).
-pub fn write_clips(place: &Place, frames: i64, count: i64) {
-    for clip in 0..count {
-        let rows = of_scene("plaza", clip * frames..(clip + 1) * frames);
-        place.write_tracks(&format!("clips/clip{clip}.csv"), &rows);
-    }
 }
 
 /// The rows in the TrajNet++ format.

@@ -57,6 +57,36 @@ impl Place {
         self.write(name, own_tracks::csv(rows));
     }
 
+    /// The folder `film`: three recordings in pixels at 23.98 frames per second, and their homography.
+    pub fn write_film(&self) {
+        for (name, scene) in [("hall", "corridor"), ("lobby", "plaza"), ("yard", "crossing")] {
+            // A frame of the crowd is 0.04 s, one of the film 1 / 23.98 s: nearly the same.
+            let mut rows = own_tracks::of_scene(scene, 0..900);
+            for (.., x, y) in &mut rows {
+                (*x, *y) = (50.0 * *x, 50.0 * *y);
+            }
+            self.write_tracks(&format!("film/{name}.csv"), &rows);
+        }
+        // A file beside the recordings that is not a recording.
+        self.write("film/H.txt", "0.02 0 0\n0 0.02 0\n0 0 1\n");
+    }
+
+    /// The folder `mine`: two recordings of a minute, as CSV, and a file that is not a recording.
+    pub fn write_recordings(&self) {
+        for (name, scene) in [("lobby", "corridor"), ("yard", "plaza")] {
+            self.write_tracks(&format!("mine/{name}.csv"), &own_tracks::of_scene(scene, 0..1500));
+        }
+        self.write("mine/README.md", "not a recording");
+    }
+
+    /// The folder `clips`: a simulated crowd cut into `count` clips of `frames` frames (10 per step).
+    pub fn write_clips(&self, frames: i64, count: i64) {
+        for clip in 0..count {
+            let rows = own_tracks::of_scene("plaza", clip * frames..(clip + 1) * frames);
+            self.write_tracks(&format!("clips/clip{clip}.csv"), &rows);
+        }
+    }
+
     /// The bytes of a file.
     pub fn read(&self, name: &str) -> Vec<u8> {
         std::fs::read(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
