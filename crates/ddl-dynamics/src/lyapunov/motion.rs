@@ -3,7 +3,7 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use super::Violation;
+use crate::lyapunov::Violation;
 use crate::{attractor::Attractor, motion_bounds::MotionBounds, real::Real};
 
 /// Relative tolerance of a bound for rounding.

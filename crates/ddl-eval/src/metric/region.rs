@@ -54,7 +54,7 @@ pub(crate) fn weight_log_loss(scene: &ScoredWindow<'_>, i: usize) -> Option<f64>
 }
 
 /// The radius (m) of a disc with the area of the region, measured on a grid.
-pub fn equivalent_radius(region: &[Disc]) -> f64 {
+pub(crate) fn equivalent_radius(region: &[Disc]) -> f64 {
     let bound = |axis: usize, side: f64| {
         let ends = region.iter().map(|disc| disc.centre[axis] + side * disc.radius);
         ends.reduce(if side < 0.0 { f64::min } else { f64::max })

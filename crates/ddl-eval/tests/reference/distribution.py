@@ -1,7 +1,7 @@
 # Writes distribution.json: log densities of scipy.stats.gaussian_kde with weights (scipy 1.17.1), and
 # Mahalanobis distances and largest eigenvalues with numpy 2.4.6. `python3 distribution.py` in this folder.
 # Also prints the end that a Kalman filter with whole matrices expects (src/category/kalman.rs), and the
-# numbers of the hand example (tests/hand_example.rs).
+# numbers of the hand example (tests/it/hand_example.rs).
 import json
 
 import numpy as np
