@@ -14,6 +14,8 @@ pub enum ParamsError {
     NoClusters,
     #[error("restarts is 0: k-means must be run at least once (the published code runs it 10 times)")]
     NoRestarts,
+    #[error("clusters is {clusters}, of at most {limit}: one goal is estimated for each")]
+    ManyClusters { clusters: usize, limit: usize },
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
     InvalidGamma { gamma: f64 },
     #[error("query is published-future and frame is heading: the query that reads the future requires frame world")]

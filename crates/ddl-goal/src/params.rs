@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use crate::error::ParamsError;
 use crate::span::QuerySpan;
 
+/// Largest number of goals for a pedestrian; a forecast has 20.
+const MOST_CLUSTERS: usize = 1 << 16;
+
 /// Coordinates in which pedestrians are compared and endpoints are transferred.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -95,6 +98,12 @@ impl GoalEstimatorParams {
         if self.clusters == 0 {
             return Err(ParamsError::NoClusters);
         }
+        if self.clusters > MOST_CLUSTERS {
+            return Err(ParamsError::ManyClusters {
+                clusters: self.clusters,
+                limit: MOST_CLUSTERS,
+            });
+        }
         if self.restarts == 0 {
             return Err(ParamsError::NoRestarts);
         }
@@ -110,7 +119,7 @@ impl GoalEstimatorParams {
 
 #[cfg(test)]
 mod tests {
-    use super::{GoalEstimatorParams, RetrievalFrame};
+    use super::{GoalEstimatorParams, MOST_CLUSTERS, RetrievalFrame};
     use crate::error::ParamsError;
 
     #[test]
@@ -127,6 +136,19 @@ mod tests {
             ..default()
         };
         assert_eq!(refused(clusters), ParamsError::NoClusters);
+        // More than memory holds, as a damaged file may ask for.
+        let clusters = GoalEstimatorParams {
+            clusters: 1 << 40,
+            ..default()
+        };
+        let (clusters_of_it, limit) = (1 << 40, MOST_CLUSTERS);
+        assert_eq!(
+            refused(clusters),
+            ParamsError::ManyClusters {
+                clusters: clusters_of_it,
+                limit
+            }
+        );
         let restarts = GoalEstimatorParams {
             restarts: 0,
             ..default()

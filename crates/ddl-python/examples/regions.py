@@ -2,10 +2,10 @@
 
     python regions.py measure STAR_FOLDER [FOLDER=FPS ...]
 
-prints the tables of docs/regions.md, and draws the curves of its figure as regions.svg. The folder of the convention ``star`` holds
-the recordings of ETH/UCY; each is forecast by the model of its fold. The other folders hold csv files (frame,
-pedestrian, x, y in metres), forecast by the default model. On these, and on the two recordings that no fold tests, the
-constants were chosen.
+prints the tables of docs/regions.md, and draws the curves of its figure as regions.svg. The folder of the convention
+``star`` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The other folders hold csv files
+(frame, pedestrian, x, y in metres), forecast by the default model. On these, and on the two recordings that no fold
+tests, the constants were chosen.
 
     python regions.py calibrate FOLDER=FPS ...
 

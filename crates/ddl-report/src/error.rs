@@ -21,6 +21,8 @@ pub enum ReportError {
     Format { found: u32, supported: u32 },
     #[error("not a report: {0}")]
     Json(#[source] serde_json::Error),
+    #[error("{path}: {source}; evaluate the run again", path = path.display())]
+    Unreadable { path: PathBuf, source: Box<ReportError> },
     #[error("cannot be written as JSON: {0}")]
     Write(#[from] serde_json::Error),
     #[error("{path}: {source}", path = path.display())]

@@ -165,6 +165,9 @@ impl Report {
             source,
         };
         let text = std::fs::read_to_string(path).map_err(in_file)?;
-        Self::from_json(&text)
+        Self::from_json(&text).map_err(|source| ReportError::Unreadable {
+            path: path.to_owned(),
+            source: Box::new(source),
+        })
     }
 }

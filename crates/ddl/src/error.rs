@@ -86,7 +86,7 @@ pub enum DdlError {
     #[error("{}: {source}", path.display())]
     Io { path: PathBuf, source: std::io::Error },
     /// The caller asked to stop. Training keeps its saved steps; an evaluation starts again from the beginning.
-    #[error("interrupted; saved training steps are kept, and the same command continues from them")]
+    #[error("interrupted; a training keeps its saved steps, and the same command continues from them")]
     Interrupted,
 }
 

@@ -1,6 +1,8 @@
 //! `ddl baselines`: scores of the baselines alone.
 
+use crate::command::test_windows::NO_WINDOW;
 use crate::command::{RecordingsAt, Reporting, at_least_one};
+use anyhow::ensure;
 use clap::Args;
 use ddl::data::{Convention, Dataset};
 use ddl::report::Report;
@@ -49,6 +51,7 @@ impl Baselines {
             commit: self.reporting.commit.clone(),
         };
         let report = measure(&dataset, &request)?;
+        ensure!(!report.rows().is_empty(), NO_WINDOW);
         let rest = match &self.out {
             Some(folder) => {
                 Results::new(report.clone(), Vec::new()).save(folder)?;

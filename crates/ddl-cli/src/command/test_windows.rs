@@ -5,6 +5,10 @@ use anyhow::bail;
 use clap::Args;
 use ddl::data::{Convention, Recording, Window, WindowRule};
 
+/// Why there is nothing to measure.
+pub(crate) const NO_WINDOW: &str = "no pedestrian in these recordings was observed at 20 consecutive time steps; are \
+                                    they cut short, or at another rate?";
+
 /// The test windows of a fold.
 #[derive(Debug, Args)]
 pub(crate) struct TestWindows {

@@ -1,8 +1,9 @@
 //! `ddl windows`: the observed test windows for another program.
 
 use crate::command::RecordingsAt;
-use crate::command::test_windows::TestWindows;
+use crate::command::test_windows::{NO_WINDOW, TestWindows};
 use crate::output::write_output;
+use anyhow::ensure;
 use clap::Args;
 use ddl::eval::external;
 use std::path::PathBuf;
@@ -27,6 +28,7 @@ pub(crate) struct WindowsCommand {
 impl WindowsCommand {
     pub(crate) fn run(self) -> anyhow::Result<()> {
         let (_, windows) = self.windows.windows(&self.recordings)?;
+        ensure!(!windows.is_empty(), NO_WINDOW);
         let mut text = Vec::new();
         external::write_windows(&windows, &mut text)?;
         write_output(self.output.as_deref(), std::str::from_utf8(&text)?)
