@@ -63,7 +63,7 @@ impl Default for LiveTracks {
     }
 }
 
-#[expect(clippy::len_without_is_empty, reason = "nobody asks whether tracks are empty")]
+#[expect(clippy::len_without_is_empty, reason = "no caller needs is_empty")]
 impl LiveTracks {
     /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart.
     #[must_use]

@@ -141,14 +141,11 @@ mod tests {
             clusters: 1 << 40,
             ..default()
         };
-        let (clusters_of_it, limit) = (1 << 40, MOST_CLUSTERS);
-        assert_eq!(
-            refused(clusters),
-            ParamsError::ManyClusters {
-                clusters: clusters_of_it,
-                limit
-            }
-        );
+        let many = ParamsError::ManyClusters {
+            clusters: 1 << 40,
+            limit: MOST_CLUSTERS,
+        };
+        assert_eq!(refused(clusters), many);
         let restarts = GoalEstimatorParams {
             restarts: 0,
             ..default()
