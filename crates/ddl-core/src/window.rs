@@ -2,27 +2,10 @@
 
 use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
 use crate::error::WindowError;
 use crate::pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 use crate::position::{OBSERVED, Position, WINDOW, is_finite, is_frame, is_frame_step};
-
-/// How many of the 8 observed positions of a pedestrian were filled in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub struct CompletionCounts {
-    /// Positions at the start, before the pedestrian was seen.
-    pub padded: usize,
-    /// Positions in gaps.
-    pub filled: usize,
-}
-
-impl CompletionCounts {
-    /// How many positions were seen.
-    pub fn seen(self) -> usize {
-        OBSERVED - self.padded - self.filled
-    }
-}
+use crate::quality::ObservationQuality;
 
 /// 20 positions of an earlier pedestrian of the same place that moved like the one to forecast.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,10 +43,12 @@ pub struct Window {
     names: PedestrianNames,
     /// Pedestrian-major: pedestrian i has `positions[i * T..(i + 1) * T]`.
     positions: Vec<Position>,
-    /// One entry per pedestrian, or empty if nothing was filled in.
-    completion_counts: Vec<CompletionCounts>,
+    /// One entry per pedestrian, or empty if nothing was estimated.
+    qualities: Vec<ObservationQuality>,
     /// One list per pedestrian, or empty if nothing is remembered.
     remembered: Vec<Vec<RememberedTrack>>,
+    /// Pedestrians that were observed too, but have no future here.
+    bystanders: Option<Box<Window>>,
 }
 
 #[expect(clippy::len_without_is_empty, reason = "a window holds at least one pedestrian")]
@@ -142,8 +127,9 @@ impl Window {
             pedestrians,
             names: PedestrianNames::default(),
             positions,
-            completion_counts: Vec::new(),
+            qualities: Vec::new(),
             remembered: Vec::new(),
+            bystanders: None,
         }
     }
 
@@ -164,30 +150,44 @@ impl Window {
         ids.position(|&id| self.names.names(id, name))
     }
 
-    /// The same window with the numbers of positions that were filled in, `[N]`, or empty for none.
+    /// The same window with the quality of each observation, `[N]`, or empty where nothing was estimated.
     ///
     /// # Panics
-    /// When there is another number of counts than of pedestrians.
+    /// When there is another number of qualities than of pedestrians.
     #[must_use]
-    pub fn with_completion_counts(mut self, counts: Vec<CompletionCounts>) -> Self {
+    pub fn with_qualities(mut self, qualities: Vec<ObservationQuality>) -> Self {
         assert!(
-            counts.is_empty() || counts.len() == self.len(),
-            "{} counts",
-            counts.len()
+            qualities.is_empty() || qualities.len() == self.len(),
+            "{} qualities",
+            qualities.len()
         );
-        let whole = counts.iter().all(|counts| *counts == CompletionCounts::default());
-        self.completion_counts = if whole { Vec::new() } else { counts };
+        let measured = qualities.iter().all(|quality| *quality == ObservationQuality::default());
+        self.qualities = if measured { Vec::new() } else { qualities };
         self
     }
 
-    /// The numbers of positions of the i-th pedestrian that were filled in; zero unless they are
-    /// [given](Self::with_completion_counts).
+    /// How well the i-th pedestrian was observed; nothing was estimated unless qualities are
+    /// [given](Self::with_qualities).
     ///
     /// # Panics
     /// If `i >= len()`.
-    pub fn completion_counts(&self, i: usize) -> CompletionCounts {
+    pub fn quality(&self, i: usize) -> ObservationQuality {
         assert!(i < self.len(), "pedestrian {i} of {}", self.len());
-        self.completion_counts.get(i).copied().unwrap_or_default()
+        self.qualities.get(i).copied().unwrap_or_default()
+    }
+
+    /// The same window with bystanders: other pedestrians of the same 8 steps, whose futures are not known. A
+    /// forecaster sees them, [behind](Self::without_future) the pedestrians of the window; nobody scores them.
+    ///
+    /// # Panics
+    /// When the bystanders have other observed frames.
+    #[must_use]
+    pub fn with_bystanders(self, bystanders: Option<Window>) -> Self {
+        let bystanders = bystanders.map(|window| Box::new(window.without_future()));
+        if let Some(window) = &bystanders {
+            assert_eq!(window.frames, self.frames[..OBSERVED], "frames of bystanders");
+        }
+        Self { bystanders, ..self }
     }
 
     /// The same window with remembered tracks of similar earlier pedestrians of the place, given by pedestrian index.
@@ -279,17 +279,19 @@ impl Window {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
     }
 
-    /// The observation alone, as known when a forecast is made.
+    /// The observation alone, as known when a forecast is made: the pedestrians of the window, then its
+    /// [bystanders](Self::with_bystanders).
     #[must_use]
     pub fn without_future(&self) -> Window {
-        let observed = (0..self.len()).flat_map(|i| self.observed(i));
-        let frames = self.frames[..OBSERVED].to_vec();
-        let window = self.of_same(frames, self.pedestrians.clone(), observed.copied().collect());
-        let remembered = self.remembered.clone();
-        Self {
-            remembered,
-            ..window.with_completion_counts(self.completion_counts.clone())
-        }
+        let scene = || std::iter::once(self).chain(self.bystanders.as_deref());
+        let indices = || scene().flat_map(|window| (0..window.len()).map(move |i| (window, i)));
+        let pedestrians = indices().map(|(window, i)| window.pedestrians[i]).collect();
+        let observed = indices().flat_map(|(window, i)| window.observed(i)).copied().collect();
+        let window = self.of_same(self.frames[..OBSERVED].to_vec(), pedestrians, observed);
+        let mut remembered = indices().map(|(window, i)| window.remembered(i).to_vec());
+        window
+            .with_qualities(indices().map(|(window, i)| window.quality(i)).collect())
+            .with_remembered(|_| remembered.next().unwrap_or_default())
     }
 
     fn of_same(&self, frames: Vec<i64>, pedestrians: Vec<PedestrianId>, positions: Vec<Position>) -> Self {
@@ -308,12 +310,14 @@ impl Window {
         let pedestrians = indices.iter().map(|&i| self.pedestrians[i]).collect();
         let positions = indices.iter().flat_map(|&i| self.track(i)).copied().collect();
         let window = self.of_same(self.frames.clone(), pedestrians, positions);
-        let window = window.with_completion_counts(indices.iter().map(|&i| self.completion_counts(i)).collect());
-        Some(window.with_remembered(|i| self.remembered(indices[i]).to_vec()))
+        let window = window.with_qualities(indices.iter().map(|&i| self.quality(i)).collect());
+        let window = window.with_remembered(|i| self.remembered(indices[i]).to_vec());
+        let bystanders = self.bystanders.clone();
+        Some(Self { bystanders, ..window })
     }
 
     /// The window with every position replaced by `f(i, step, position)`: pedestrian index, step from 0, position (m).
-    /// The results of `f` are not checked; they must be finite. Remembered tracks are unchanged.
+    /// The results of `f` are not checked; they must be finite. Remembered tracks and bystanders are unchanged.
     #[must_use]
     pub fn map_positions(&self, mut f: impl FnMut(usize, usize, Position) -> Position) -> Window {
         let mut mapped = self.clone();
@@ -325,10 +329,10 @@ impl Window {
     }
 
     /// The window in reversed time: every pedestrian walks its track from the end to the start, at the same frames.
-    /// Remembered tracks are dropped, because they would lie in the future.
+    /// Remembered tracks and bystanders are dropped, because they would lie in the future.
     #[must_use]
     pub fn reversed(&self) -> Window {
-        let mut reversed = self.clone().with_remembered(|_| Vec::new());
+        let mut reversed = self.clone().with_remembered(|_| Vec::new()).with_bystanders(None);
         for track in reversed.positions.chunks_exact_mut(self.steps()) {
             track.reverse();
         }

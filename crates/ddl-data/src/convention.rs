@@ -55,7 +55,8 @@ impl Convention {
             Self::SocialGan => WindowRule::SocialGan {
                 min_pedestrians: SOCIAL_GAN_FEWEST,
             },
-            Self::Simulated | Self::Own => WindowRule::Complete,
+            Self::Simulated => WindowRule::Complete,
+            Self::Own => WindowRule::Observed,
         }
     }
 

@@ -2,33 +2,35 @@
 //!
 //! ## Tracks of a camera
 //!
-//! Tracks at another frame rate, in pixels, or with missing observations are converted to the windows that a forecast
-//! needs:
+//! Tracks at any frame rate, in pixels, or with missing rows are converted to the windows that a forecast needs:
 //!
 //! ```rust
-//! use ddl_data::{Completion, Format, Homography, LiveTracks, FrameReader, parse_recording};
+//! use ddl_data::{Clock, Completeness, Format, FrameReader, Homography, LiveTracks, parse_recording};
 //!
-//! // Pixels of a camera at 10 frames a second, 100 a metre: a pedestrian at 1.2 m/s who is lost for a moment.
+//! // Pixels of a camera at 7 frames a second, 100 a metre: a pedestrian at 1.4 m/s who is lost for a moment.
 //! let mut film = String::from("frame,pedestrian,x,y\n");
 //! for t in (0..13).chain(17..40) {
-//!     film += &format!("{t},7,{},50\n", 12 * t);
+//!     film += &format!("{t},7,{},50\n", 20 * t);
 //! }
 //! let ground: Homography = "0.01 0 0\n0 0.01 0\n0 0 1".parse()?;
 //! let recording = ground.to_ground(&parse_recording(film.as_bytes(), "film.csv", Format::Table)?)?;
-//! let steps = recording.resampled_to_steps(0.1)?.recording; // 4 frames a step
-//! let windows = steps.completed_windows(Completion::DEFAULT);
+//! let clock = Clock::with_frame_time(1.0 / 7.0)?; // a step of 0.4 s is 2.8 frames
+//! let recording = recording.on_clock(clock)?;
+//! let tracks = recording.live_tracks().with_completeness(Completeness::Partial);
+//! let windows = recording.observe(tracks).windows;
 //! let last = windows.last().ok_or("no window")?;
-//! assert!((last.observed(0)[0][0] - 0.12 * (39.0 - 28.0)).abs() < 1e-9);
-//! assert_eq!(last.completion_counts(0).filled, 1); // frame 15, on the way from 12 to 17
+//! assert!((last.observed(0)[0][0] - 0.2 * (39.0 - 7.0 * 2.8)).abs() < 0.02);
+//! assert_eq!(last.quality(0).age, 0.0);
 //!
-//! // The same tracks frame by frame, as from a live tracker.
-//! let mut tracks = LiveTracks::with_frame_step(4)?.with_completion(Completion::DEFAULT);
+//! // The same tracks frame by frame, as from a live tracker: the same windows.
+//! let mut tracks = LiveTracks::with_clock(clock).with_completeness(Completeness::Partial);
 //! let mut frames = FrameReader::new(film.as_bytes(), "camera");
+//! let mut live = Vec::new();
 //! while let Some(frame) = frames.next_frame()? {
-//!     if let Some(window) = tracks.push(frame.number, frame.pedestrians)? {
-//!         assert_eq!(window.frames()[7], frame.number);
-//!     }
+//!     let seen = frame.pedestrians.into_iter().map(|(id, pixel)| (id, pixel.map(|pixel| 0.01 * pixel)));
+//!     live.extend(tracks.push(frame.number, seen)?);
 //! }
+//! assert_eq!(live.len(), windows.len());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -60,26 +62,29 @@
 //! | `Published` | the windows of the published STAR and DDL code, with its quirks |
 //! | `Complete` | every pedestrian with all 20 steps, from every annotated frame |
 //! | `SocialGan` | 20 annotated frames in a row, with a minimum number of pedestrians |
+//! | `Observed` | what a live stream would see at each frame, also on other clocks: for own recordings |
 //!
 //! [`Fold::training_split`] keeps the last part of each training recording for validation. With the fraction 0.2 the
 //! windows are those of the published folders `train` and `val` of Social-GAN.
 
 mod atomic_file;
 mod augment;
-mod completion;
+mod clock;
 mod convention;
 mod dataset;
 mod error;
 mod fold;
 mod format;
+mod future;
 mod homography;
 mod live;
 mod locate;
 mod neighbours;
 mod observation;
+mod observe;
 mod plausibility;
-mod rate;
 mod recording;
+mod replay;
 mod rule;
 mod scene_name;
 mod simulate;
@@ -89,24 +94,26 @@ mod windows;
 
 pub use atomic_file::{remove_temporary_files, write_atomically};
 pub use augment::Rotation;
-pub use completion::Completion;
+pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
 pub use convention::Convention;
 pub use dataset::Dataset;
 pub use ddl_core::{
-    CompletionCounts, HORIZON, OBSERVED, PedestrianId, PedestrianName, PedestrianNames, Position, RememberedTrack,
+    HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, PedestrianNames, Position, RememberedTrack,
     TIME_STEP, WINDOW, Window, WindowError,
 };
 pub use error::{DataError, FormatError, RecordingError};
 pub use fold::{Fold, TrainingSplit};
 pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
+pub use future::Futures;
 pub use homography::{Homography, HomographyError};
-pub use live::{LiveError, LiveTracks, checked_frame};
+pub use live::{Completeness, LiveError, LiveTracks, checked_frame};
 pub use locate::locate;
 pub use neighbours::{Neighbours, SpatialIndex};
 pub use observation::{COORDINATE_LIMIT, Observation};
+pub use observe::{Arrival, RecordingNoise};
 pub use plausibility::{Fastest, PlausibilityWarning};
-pub use rate::{RateError, ResampledRecording, whole_frame_step};
 pub use recording::Recording;
+pub use replay::ObservedRecording;
 pub use rule::WindowRule;
 pub use scene_name::SceneName;
 pub use summary::{Gap, Summary};

@@ -1,27 +1,42 @@
 //! Tracks that grow frame by frame, as a tracker on a robot delivers them.
 
-use std::collections::VecDeque;
 use std::sync::Arc;
 
-use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, Window, is_finite, is_frame, is_frame_step};
+use ddl_core::{
+    OBSERVED, ObservationQuality, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_finite, is_frame,
+};
 use thiserror::Error;
 
-use crate::completion::Completion;
+use crate::clock::{Clock, ClockError};
+use crate::observe::{Arrival, ObservedTrack, RecordingNoise};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
+/// Shortest part of an interval between two moments that is taken for the whole: clocks jitter.
+const INTERVAL_TOLERANCE: f64 = 0.995;
 
-/// The last positions of all pedestrians, updated one frame at a time.
+/// Which pedestrians are observed well enough for a window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Completeness {
+    /// Those tracked for all 8 steps, 2.8 s.
+    Whole,
+    /// Those with two rows or more; earlier positions continue their motion backwards.
+    Partial,
+}
+
+/// The tracks of all pedestrians up to the last frame.
 ///
-/// After every frame, [`window`](Self::window) is the window that
-/// [`Recording::observed_windows`](crate::Recording::observed_windows) would cut from all frames so far and that ends
-/// at this frame.
+/// After every frame, [`window`](Self::window) holds what was observed up to then, and nothing later: for each
+/// pedestrian 8 positions, at the frame and every 0.4 s before. Rows of a pedestrian at these times pass unchanged.
+/// Otherwise the positions are estimated from all its rows so far: a Kalman filter and smoother of a motion with random
+/// accelerations, whose noise is [measured](Self::noise).
 ///
-/// - Frames may be one step (0.4 s) apart, further apart, or closer together if the tracker is faster.
-/// - A pedestrian not seen at one of the 8 steps is not in the window, unless a [`Completion`] is
-///   [requested](Self::with_completion).
-/// - A pedestrian that is absent for a step (0.4 s) is forgotten; if gaps are filled, one that is absent for longer
-///   than the longest gap.
+/// - Each pedestrian has its own clock: rows may come at any times, also at other times than those of other
+///   pedestrians.
+/// - A pedestrian whose last row is less than [0.4 s](Self::with_max_age) old is carried on to the frame.
+/// - A position where a pedestrian cannot be is left out, and [told](Self::arrivals). If the next rows agree with it,
+///   the track begins anew there, and also after 2 s without a row.
+/// - A pedestrian without a row for 2 s is forgotten.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
 /// - After a frame far ahead, earlier frames are refused; [`clear`](Self::clear) starts again.
 ///
@@ -43,18 +58,27 @@ const NAME: &str = "live";
 pub struct LiveTracks {
     name: Arc<str>,
     names: PedestrianNames,
-    frame_step: i64,
-    completion: Completion,
+    clock: Clock,
+    completeness: Completeness,
+    /// In ticks.
+    max_age: f64,
+    /// Least time between two windows, in ticks.
+    interval: f64,
+    /// Ticks.
     last_frame: Option<i64>,
+    last_moment: Option<i64>,
+    noise: RecordingNoise,
     pedestrians: Vec<LivePedestrian>,
+    arrivals: Vec<(PedestrianId, Arrival)>,
 }
 
-/// A pedestrian that is in the last frame, or may be in a later window.
+/// A pedestrian seen within the last 2 s.
 #[derive(Debug, Clone, PartialEq)]
 struct LivePedestrian {
     id: PedestrianId,
-    /// Raw frames and positions, oldest first; never empty.
-    seen: VecDeque<(i64, Position)>,
+    /// Tick of its last row, wrong or not.
+    last_row: i64,
+    track: ObservedTrack,
 }
 
 impl Default for LiveTracks {
@@ -65,16 +89,31 @@ impl Default for LiveTracks {
 
 #[expect(clippy::len_without_is_empty, reason = "no caller needs is_empty")]
 impl LiveTracks {
-    /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart.
+    /// Age (s) from which on a pedestrian without a new row is not in the window.
+    pub const DEFAULT_MAX_AGE: f64 = TIME_STEP;
+
+    /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart. Windows hold only
+    /// [whole](Completeness::Whole) observations.
     #[must_use]
     pub fn new() -> Self {
+        Self::with_clock(Clock::STEPS)
+    }
+
+    /// Empty tracks whose frames are counted by this clock.
+    #[must_use]
+    pub fn with_clock(clock: Clock) -> Self {
         Self {
             name: NAME.into(),
             names: PedestrianNames::default(),
-            frame_step: 1,
-            completion: Completion::NONE,
+            clock,
+            completeness: Completeness::Whole,
+            max_age: clock.frame_step() as f64,
+            interval: 0.0,
             last_frame: None,
+            last_moment: None,
+            noise: RecordingNoise::default(),
             pedestrians: Vec::new(),
+            arrivals: Vec::new(),
         }
     }
 
@@ -82,55 +121,79 @@ impl LiveTracks {
     /// second.
     ///
     /// # Errors
-    /// [`LiveError::FrameStep`] if the step is outside 1..=2^31.
-    pub fn with_frame_step(frame_step: i64) -> Result<Self, LiveError> {
-        if !is_frame_step(frame_step) {
-            return Err(LiveError::FrameStep { found: frame_step });
-        }
-        Ok(Self {
-            frame_step,
-            ..Self::new()
-        })
+    /// [`ClockError::FrameStep`] if the step is outside 1..=2^31.
+    pub fn with_frame_step(frame_step: i64) -> Result<Self, ClockError> {
+        Ok(Self::with_clock(Clock::with_frame_step(frame_step)?))
     }
 
     pub(crate) fn of(recording: &Recording) -> Self {
         Self {
             name: recording.shared_name(),
             names: recording.names().clone(),
-            frame_step: recording.frame_step(),
-            ..Self::new()
+            ..Self::with_clock(recording.tick_clock())
         }
     }
 
-    /// The same tracks, with incomplete observations filled in as the completion allows.
+    /// The same tracks, with windows of the pedestrians observed so well.
     #[must_use]
-    pub fn with_completion(self, completion: Completion) -> Self {
-        Self { completion, ..self }
+    pub fn with_completeness(self, completeness: Completeness) -> Self {
+        Self { completeness, ..self }
+    }
+
+    /// The same tracks, in which pedestrians are carried on until their last row is so old (s). NaN and negative
+    /// numbers count as 0: only pedestrians of the frame itself.
+    #[must_use]
+    pub fn with_max_age(self, seconds: f64) -> Self {
+        let max_age = self.ticks(seconds);
+        Self { max_age, ..self }
+    }
+
+    /// The same tracks, with windows at least so long apart (s); 0 for one at every frame.
+    #[must_use]
+    pub fn with_interval(self, seconds: f64) -> Self {
+        let interval = INTERVAL_TOLERANCE * self.ticks(seconds);
+        Self { interval, ..self }
+    }
+
+    fn ticks(&self, seconds: f64) -> f64 {
+        seconds.max(0.0) / TIME_STEP * self.clock.frame_step() as f64
     }
 
     /// Forgets all pedestrians and the last frame. Any frame may come next, as after a restart of the tracker.
     pub fn clear(&mut self) {
         self.last_frame = None;
+        self.last_moment = None;
         self.pedestrians.clear();
+        self.arrivals.clear();
     }
 
-    /// Raw frames per step of 0.4 s.
-    pub fn frame_step(&self) -> i64 {
-        self.frame_step
+    /// How frames are counted.
+    pub fn clock(&self) -> Clock {
+        self.clock
     }
 
-    /// The last frame pushed.
+    /// The tick of the last frame pushed.
     pub fn last_frame(&self) -> Option<i64> {
         self.last_frame
     }
 
-    /// Number of pedestrians remembered: those of the last frame, and those seen shortly before.
+    /// Number of pedestrians remembered: those seen within the last 2 s.
     pub fn len(&self) -> usize {
         self.pedestrians.len()
     }
 
+    /// How exact the positions are, as measured so far.
+    pub fn noise(&self) -> &RecordingNoise {
+        &self.noise
+    }
+
+    /// The pedestrians of the last frame whose row was left out, or began the track anew.
+    pub fn arrivals(&self) -> &[(PedestrianId, Arrival)] {
+        &self.arrivals
+    }
+
     /// Adds one frame, with the positions (m) of all pedestrians in any order, and returns the window that ends there.
-    /// `None` until a pedestrian has been seen at 8 steps in a row, or as often as the completion requires.
+    /// `None` without a pedestrian that is observed well enough, or too soon after the last window.
     ///
     /// # Errors
     /// As [`after`](Self::after); the tracks are then unchanged.
@@ -146,113 +209,112 @@ impl LiveTracks {
     /// A copy of the tracks with one more frame; `self` stays unchanged.
     ///
     /// # Errors
-    /// As [`checked_frame`].
+    /// As [`checked_frame`], and for a frame number that the clock cannot divide.
     pub fn after(
         &self,
         frame: i64,
         positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
-        let positions = checked_frame(frame, self.last_frame, positions)?;
+        let tick = self.clock.tick(frame)?;
+        let positions = checked_frame(tick, self.last_frame, positions)?;
+        let mut next = Self {
+            last_frame: Some(tick),
+            pedestrians: Vec::with_capacity(positions.len()),
+            arrivals: Vec::new(),
+            ..self.clone_without_pedestrians()
+        };
+        let step = self.clock.frame_step() as f64;
         let mut earlier = self.pedestrians.iter().peekable();
-        let mut pedestrians = Vec::with_capacity(positions.len());
         for (id, position) in positions {
             while let Some(absent) = earlier.next_if(|pedestrian| pedestrian.id < id) {
-                pedestrians.extend(self.remembered(absent, frame));
+                next.keep(absent);
             }
-            let before = earlier.next_if(|pedestrian| pedestrian.id == id);
-            let mut pedestrian = before
-                .and_then(|pedestrian| self.remembered_before(pedestrian, frame))
-                .unwrap_or_else(|| LivePedestrian::unseen(id));
-            pedestrian.seen.push_back((frame, position));
-            pedestrians.push(pedestrian);
+            let track = match earlier.next_if(|pedestrian| pedestrian.id == id) {
+                None => ObservedTrack::beginning(tick as f64, position),
+                Some(before) => {
+                    let mut track = before.track.clone();
+                    let arrival = track.push(tick as f64, position, self.tick_time(), &mut next.noise);
+                    track.forget_before(tick as f64, step);
+                    if matches!(arrival, Arrival::Wrong(_) | Arrival::Jumped(_)) {
+                        next.arrivals.push((id, arrival));
+                    }
+                    track
+                }
+            };
+            let last_row = tick;
+            next.pedestrians.push(LivePedestrian { id, last_row, track });
         }
-        pedestrians.extend(earlier.filter_map(|absent| self.remembered(absent, frame)));
-        Ok(Self {
+        for absent in earlier {
+            next.keep(absent);
+        }
+        if next.is_due() {
+            next.last_moment = Some(tick);
+        }
+        Ok(next)
+    }
+
+    fn clone_without_pedestrians(&self) -> Self {
+        Self {
             name: Arc::clone(&self.name),
             names: self.names.clone(),
-            frame_step: self.frame_step,
-            completion: self.completion,
-            last_frame: Some(frame),
-            pedestrians,
-        })
-    }
-
-    fn remembered(&self, absent: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
-        self.remembered_before(absent, frame + 1)
-    }
-
-    /// The observations that may be in the same window as one at `frame`; `None` if there are none.
-    fn remembered_before(&self, pedestrian: &LivePedestrian, frame: i64) -> Option<LivePedestrian> {
-        let (last, _) = *pedestrian.seen.back()?;
-        let gap = self.completion.longest_gap() as i64;
-        if frame - last > (gap + 1) * self.frame_step {
-            return None;
+            noise: self.noise.clone(),
+            pedestrians: Vec::new(),
+            arrivals: Vec::new(),
+            ..*self
         }
-        // A gap at the start of the window may begin before the window.
-        let oldest = frame - (OBSERVED as i64 + gap) * self.frame_step;
-        let forgotten = pedestrian.seen.partition_point(|(seen, _)| *seen <= oldest);
-        let seen = pedestrian.seen.range(forgotten..).copied().collect();
-        let id = pedestrian.id;
-        Some(LivePedestrian { id, seen })
     }
 
-    /// The window that ends at the last frame: the pedestrians of that frame that have a position, observed or
-    /// completed, at each of the last 8 steps.
+    fn keep(&mut self, absent: &LivePedestrian) {
+        let now = self.last_frame.unwrap_or(absent.last_row);
+        if (now - absent.last_row) as f64 * self.tick_time() <= Arrival::LONGEST_GAP {
+            self.pedestrians.push(absent.clone());
+        }
+    }
+
+    fn tick_time(&self) -> f64 {
+        TIME_STEP / self.clock.frame_step() as f64
+    }
+
+    /// Whether the last frame is long enough after the last window.
+    fn is_due(&self) -> bool {
+        match (self.last_frame, self.last_moment) {
+            (Some(now), Some(last)) => now == last || (now - last) as f64 >= self.interval,
+            _ => true,
+        }
+    }
+
+    /// The window that ends at the last frame: the pedestrians observed well enough; `None` if there are none, or too
+    /// soon after the last window.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
-        let last = self.last_frame?;
-        let (mut ids, mut positions, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-        for pedestrian in self.pedestrians.iter().filter(|pedestrian| pedestrian.is_at(last)) {
-            let seen = pedestrian.seen.iter().copied();
-            if let Some((observed, missed)) = self.completion.observation(seen, self.frame_step) {
-                ids.push(pedestrian.id);
-                positions.extend(observed);
-                counts.push(missed);
+        let last = self.last_frame.filter(|_| self.is_due())?;
+        let (time, step) = (last as f64, self.clock.frame_step());
+        let (mut ids, mut positions, mut qualities) = (Vec::new(), Vec::new(), Vec::new());
+        for LivePedestrian { id, last_row, track } in &self.pedestrians {
+            let age = time - track.last_time();
+            // A wrong position says that the pedestrian is there.
+            let is_present = age == 0.0 || age < self.max_age || (*last_row == last && age <= self.max_age);
+            let observed = if is_present {
+                track.observed(time, step as f64, self.tick_time(), &self.noise)
+            } else {
+                None
+            };
+            if let Some(observed) = observed.filter(|observed| self.is_enough(observed.quality)) {
+                ids.push(*id);
+                positions.extend(observed.positions);
+                qualities.push(observed.quality);
             }
         }
         if ids.is_empty() {
             return None;
         }
-        let frames = (1 - OBSERVED as i64..=0).map(|t| last + t * self.frame_step);
-        let (step, frames) = (self.frame_step, frames.collect());
+        let frames = (1 - OBSERVED as i64..=0).map(|t| last + t * step).collect();
         let window = Window::cut(Arc::clone(&self.name), step, frames, ids, positions);
-        let names = self.names.clone();
-        Some(window.with_names(names).with_completion_counts(counts))
-    }
-}
-
-impl Recording {
-    /// The windows to forecast from: [`OBSERVED`] frames without a future, one window for every frame at which some
-    /// pedestrian has been seen for that many steps in a row.
-    #[must_use]
-    pub fn observed_windows(&self) -> Vec<Window> {
-        self.completed_windows(Completion::NONE)
+        Some(window.with_names(self.names.clone()).with_qualities(qualities))
     }
 
-    /// The [`observed_windows`](Self::observed_windows) with incomplete observations filled in as the completion
-    /// allows; [`Window::completion_counts`] counts the filled-in positions.
-    #[must_use]
-    pub fn completed_windows(&self, completion: Completion) -> Vec<Window> {
-        let mut tracks = LiveTracks::of(self).with_completion(completion);
-        let mut windows = Vec::new();
-        for &frame in self.frames() {
-            let positions = self.at(frame).iter();
-            let positions = positions.map(|seen| (seen.pedestrian, seen.position));
-            // Cannot fail: the invariants of a recording exclude every error of live tracks.
-            windows.extend(tracks.push(frame, positions).ok().flatten());
-        }
-        windows
-    }
-}
-
-impl LivePedestrian {
-    fn unseen(id: PedestrianId) -> Self {
-        let seen = VecDeque::new();
-        Self { id, seen }
-    }
-
-    fn is_at(&self, frame: i64) -> bool {
-        self.seen.back().is_some_and(|(last, _)| *last == frame)
+    fn is_enough(&self, quality: ObservationQuality) -> bool {
+        self.completeness == Completeness::Partial || quality.is_whole()
     }
 }
 
@@ -297,8 +359,8 @@ pub fn checked_frame(
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages say what the fields are")]
 pub enum LiveError {
-    #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
-    FrameStep { found: i64 },
+    #[error(transparent)]
+    Clock(#[from] ClockError),
     #[error("frame {frame} is not below 2^53 in size")]
     FrameOutOfRange { frame: i64 },
     #[error(

@@ -28,9 +28,3 @@ impl Observation {
         }
     }
 }
-
-/// The point at `frame` of the straight line between two observations.
-pub(crate) fn between(before: (i64, Position), after: (i64, Position), frame: i64) -> Position {
-    let share = (frame - before.0) as f64 / (after.0 - before.0) as f64;
-    [0, 1].map(|axis| before.1[axis] + share * (after.1[axis] - before.1[axis]))
-}

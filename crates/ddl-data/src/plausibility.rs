@@ -6,6 +6,7 @@ use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP};
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::future::position_at;
 use crate::observation::Observation;
 use crate::recording::Recording;
 
@@ -125,10 +126,8 @@ impl Recording {
         for track in tracks.values() {
             let first = speeds.len();
             speeds.extend(track.iter().filter_map(|seen| {
-                let before = track
-                    .binary_search_by_key(&(seen.frame - step), |other| other.frame)
-                    .ok()?;
-                Some((speed(track[before].position, seen.position), *seen))
+                let before = position_at(track, seen.frame - step, step)?;
+                Some((speed(before, seen.position), *seen))
             }));
             if way(track) > FAR {
                 walking.extend(speeds[first..].iter().map(|(speed, _)| *speed));

@@ -4,12 +4,16 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-use ddl_core::{
-    HORIZON, OBSERVED, PedestrianId, PedestrianNames, Position, Window, is_finite, is_frame, is_frame_step,
-};
+use ddl_core::{PedestrianId, PedestrianNames, is_finite, is_frame, is_frame_step};
 
+use crate::clock::{Clock, ClockError, TimeUnit};
 use crate::error::RecordingError;
 use crate::observation::Observation;
+
+/// Spacing of the rows of a pedestrian (s) above which they no longer show the course of a track.
+const SLOWEST: f64 = 1.2;
+/// With more frames than so many times those of one clock, pedestrians have clocks of their own.
+const CROWDED: f64 = 1.5;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
@@ -24,6 +28,7 @@ pub struct Recording {
     /// `starts[k]..starts[k + 1]` are the observations of `frames[k]`.
     starts: Vec<usize>,
     rate: Option<f64>,
+    time_unit: Option<TimeUnit>,
     names: PedestrianNames,
 }
 
@@ -87,20 +92,20 @@ impl Recording {
             frames,
             starts,
             rate: None,
+            time_unit: None,
             names: PedestrianNames::default(),
         })
     }
 
-    /// Creates a recording whose frame step is the most common difference between successive frames (the smaller of two
-    /// equally common ones; 1 if there is only one frame).
+    /// Creates a recording whose frame step is the most common difference between successive rows of a pedestrian (the
+    /// smaller of two equally common ones; 1 if nobody has two rows).
     ///
     /// # Errors
     /// As [`Recording::new`].
     pub fn in_usual_step(name: impl Into<Arc<str>>, observations: Vec<Observation>) -> Result<Self, RecordingError> {
         let recording = Self::new(name, 1, observations)?;
         let mut counts = BTreeMap::<i64, usize>::new();
-        for pair in recording.frames.windows(2) {
-            let difference = pair[1] - pair[0];
+        for difference in recording.differences() {
             if is_frame_step(difference) {
                 *counts.entry(difference).or_default() += 1;
             }
@@ -114,6 +119,81 @@ impl Recording {
         })
     }
 
+    /// The differences of frame numbers between successive rows of each pedestrian.
+    fn differences(&self) -> Vec<i64> {
+        let tracks = self.tracks();
+        let differences = tracks.values().flat_map(|track| {
+            track.array_windows().map(|[before, row]| row.frame - before.frame)
+        });
+        differences.collect()
+    }
+
+    /// Median difference of frame numbers between successive rows of a pedestrian; `None` if nobody has two rows.
+    pub fn usual_spacing(&self) -> Option<i64> {
+        let mut differences = self.differences();
+        differences.sort_unstable();
+        differences.get(differences.len() / 2).copied()
+    }
+
+    /// Whether pedestrians are seen at common frames, or each on a clock of its own.
+    pub fn has_common_frames(&self) -> bool {
+        let span = self.frames[self.frames.len() - 1] - self.frames[0];
+        let expected = self.usual_spacing().map_or(f64::INFINITY, |spacing| 1.0 + span as f64 / spacing as f64);
+        self.frames.len() as f64 <= CROWDED * expected
+    }
+
+    /// The recording in ticks of a clock, of which [`frame_step`](Self::frame_step) make 0.4 s.
+    ///
+    /// # Errors
+    /// [`ClockError`] where frame numbers are too large, or the rows of a pedestrian are more than 1.2 s apart.
+    pub fn on_clock(&self, clock: Clock) -> Result<Self, ClockError> {
+        let apart = self.usual_spacing().unwrap_or(0) as f64 / clock.frames_a_second();
+        if apart > SLOWEST {
+            return Err(ClockError::TooSlow { apart });
+        }
+        let mut recording = Self {
+            frame_step: clock.frame_step(),
+            ..self.clone()
+        };
+        for frame in &mut recording.frames {
+            *frame = clock.tick(*frame)?;
+        }
+        for row in &mut recording.observations {
+            row.frame = clock.tick(row.frame)?;
+        }
+        Ok(recording)
+    }
+
+    /// The clock that the file states: its time stamps, or the frames per second of TrajNet++ scenes.
+    ///
+    /// # Errors
+    /// [`ClockError`] for a rate that is out of range.
+    pub fn stated_clock(&self) -> Option<Result<Clock, ClockError>> {
+        match self.time_unit {
+            Some(unit) => Some(Ok(Clock::with_stamps(unit))),
+            None => Some(Clock::with_frame_time(self.stated_frame_time()?)),
+        }
+    }
+
+    /// Seconds per frame number according to the [`rate`](Self::rate) of the file.
+    pub fn stated_frame_time(&self) -> Option<f64> {
+        Some(1.0 / (self.rate? * self.frame_step as f64))
+    }
+
+    /// What its column of times counts; `None` for frame numbers.
+    pub fn time_unit(&self) -> Option<TimeUnit> {
+        self.time_unit
+    }
+
+    pub(crate) fn with_time_unit(self, time_unit: Option<TimeUnit>) -> Self {
+        Self { time_unit, ..self }
+    }
+
+    /// The clock of its frame numbers, which are ticks.
+    pub(crate) fn tick_clock(&self) -> Clock {
+        Clock::of_ticks(self.frame_step)
+    }
+
     pub(crate) fn with_observations(
         &self,
         frame_step: i64,
@@ -121,6 +201,7 @@ impl Recording {
     ) -> Result<Self, RecordingError> {
         Ok(Self {
             rate: self.rate,
+            time_unit: self.time_unit,
             names: self.names.clone(),
             ..Self::new(self.shared_name(), frame_step, observations)?
         })
@@ -241,35 +322,5 @@ impl Recording {
         #[expect(clippy::cast_sign_loss, reason = "a share of a count is not negative")]
         let cut = ((1.0 - fraction) * self.frames.len() as f64).floor() as usize;
         cut.min(self.frames.len())
-    }
-
-    /// The positions of each pedestrian after an observed window, up to [`HORIZON`](crate::HORIZON) of them, ending
-    /// before the first step at which the pedestrian was not seen.
-    ///
-    /// ```
-    /// use ddl_data::{Observation, PedestrianId, Recording};
-    ///
-    /// let walk = (0..10).map(|t| Observation::new(10 * t, PedestrianId(1), [t as f64, 0.0])).collect();
-    /// let recording = Recording::new("yard", 10, walk)?;
-    /// let first = &recording.observed_windows()[0];
-    /// assert_eq!(recording.futures_of(first), [[[8.0, 0.0], [9.0, 0.0]]]);
-    /// # Ok::<(), ddl_data::RecordingError>(())
-    /// ```
-    #[must_use]
-    pub fn futures_of(&self, window: &Window) -> Vec<Vec<Position>> {
-        let last = window.frames()[OBSERVED - 1];
-        let position = |pedestrian: PedestrianId, step: i64| {
-            let here = self.at(last + step * window.frame_step());
-            let index = here.binary_search_by_key(&pedestrian, |seen| seen.pedestrian);
-            index.ok().map(|index| here[index].position)
-        };
-        let pedestrians = window.pedestrians().iter();
-        pedestrians
-            .map(|&pedestrian| {
-                (1..=HORIZON as i64)
-                    .map_while(|step| position(pedestrian, step))
-                    .collect()
-            })
-            .collect()
     }
 }

@@ -13,7 +13,7 @@ pub(crate) const SOCIAL_GAN_FEWEST: usize = 2;
 /// Which stretches of 20 steps count as windows, and which pedestrians belong to them.
 ///
 /// Under every rule a pedestrian belongs to a window if it is present at each of the 20 steps. Pedestrians that arrive
-/// or leave meanwhile are left out.
+/// or leave meanwhile are left out; under `Observed` they are seen beside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
@@ -32,6 +32,11 @@ pub enum WindowRule {
         /// Smallest number of pedestrians per window: 2 in the original code, 1 in much later work.
         min_pedestrians: usize,
     },
+    /// What a live stream would have observed at each moment, on any clock, with the pedestrians tracked for all 20
+    /// steps; the others are [bystanders](ddl_core::Window::with_bystanders), which a forecaster sees. Observed
+    /// positions are estimates from rows up to the moment ([`LiveTracks`](crate::LiveTracks)); true positions may lie
+    /// between two rows.
+    Observed,
 }
 
 impl fmt::Display for WindowRule {
@@ -39,6 +44,7 @@ impl fmt::Display for WindowRule {
         match self {
             Self::Published => f.write_str("published"),
             Self::Complete => f.write_str("complete"),
+            Self::Observed => f.write_str("observed"),
             Self::SocialGan { min_pedestrians } => {
                 write!(f, "social-gan (at least {min_pedestrians} pedestrians)")
             }
@@ -46,7 +52,7 @@ impl fmt::Display for WindowRule {
     }
 }
 
-/// `published`, `complete`, `social-gan` (at least 2 pedestrians), or `social-gan-N` for at least N.
+/// `published`, `complete`, `observed`, `social-gan` (at least 2 pedestrians), or `social-gan-N` for at least N.
 impl FromStr for WindowRule {
     type Err = UnknownName;
 
@@ -54,6 +60,7 @@ impl FromStr for WindowRule {
         let fewest = match word {
             "published" => return Ok(Self::Published),
             "complete" => return Ok(Self::Complete),
+            "observed" => return Ok(Self::Observed),
             "social-gan" => Some(SOCIAL_GAN_FEWEST),
             _ => word.strip_prefix("social-gan-").and_then(|number| number.parse().ok()),
         };
@@ -63,7 +70,7 @@ impl FromStr for WindowRule {
             .ok_or_else(|| UnknownName {
                 kind: "window rule",
                 found: word.to_owned(),
-                expected: "published, complete, social-gan (at least 2 pedestrians), social-gan-1",
+                expected: "published, complete, observed, social-gan (at least 2 pedestrians), social-gan-1",
             })
     }
 }

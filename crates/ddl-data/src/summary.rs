@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP};
 use serde::Serialize;
 
-use crate::completion::Completion;
+use crate::live::Completeness;
 use crate::observation::Observation;
 use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
 use crate::recording::Recording;
@@ -56,16 +56,15 @@ pub struct Summary {
     pub fastest: Option<Fastest>,
     /// The 90 % quantile of the step speeds of tracks that end more than 2 m from their start, m/s.
     pub brisk_speed: Option<f64>,
-    /// Share of missing positions between the first and last frame of each pedestrian, counted over annotated frames.
+    /// Share of missing rows between the first and last of each pedestrian, by the usual time between two rows.
     pub unseen: f64,
     /// Number of gaps: a pedestrian was not seen for some steps and then again.
     pub holes: usize,
     /// The longest gap.
     pub longest_hole: Option<Gap>,
-    /// Number of observations from which a pedestrian can be forecast, seen at 2 or more of 8 steps
-    /// ([`Completion::DEFAULT`]).
+    /// Number of observations from which a pedestrian can be forecast, from two rows on ([`Completeness::Partial`]).
     pub to_forecast: usize,
-    /// Of these, the number seen at all 8 steps.
+    /// Of these, the number tracked for all 8 steps.
     pub seen_whole: usize,
     /// Windows of 20 steps in a row ([`WindowRule::Complete`]).
     pub windows: usize,
@@ -109,12 +108,12 @@ impl Summary {
 
 impl Recording {
     fn unseen(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> f64 {
-        // Every frame of a track is a frame of the recording.
-        let index = |frame| self.frames().binary_search(&frame).unwrap_or_else(|place| place);
-        let spans = tracks
-            .values()
-            .map(|track| index(track[track.len() - 1].frame) - index(track[0].frame) + 1);
-        1.0 - self.observations().len() as f64 / spans.sum::<usize>() as f64
+        let Some(spacing) = self.usual_spacing() else {
+            return 0.0;
+        };
+        let span = |track: &Vec<&Observation>| (track[track.len() - 1].frame - track[0].frame) as f64;
+        let expected: f64 = tracks.values().map(|track| 1.0 + (span(track) / spacing as f64).round()).sum();
+        (1.0 - self.observations().len() as f64 / expected).max(0.0)
     }
 
     /// A summary of the recording.
@@ -140,7 +139,10 @@ impl Recording {
             })
         };
         let (first, last) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
-        let windows = self.windows(WindowRule::Complete);
+        let windows = self.windows(WindowRule::Observed);
+        let observed = self.observe(self.live_tracks().with_completeness(Completeness::Partial));
+        let qualities = observed.windows.iter().flat_map(|window| (0..window.len()).map(|i| window.quality(i)));
+        let whole = qualities.filter(|quality| quality.is_whole());
         Summary {
             recording: self.name().to_owned(),
             frames: self.frames().len(),
@@ -160,8 +162,8 @@ impl Recording {
             unseen: self.unseen(&tracks),
             holes: gaps.len(),
             longest_hole: gaps.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
-            to_forecast: pedestrians(&self.completed_windows(Completion::DEFAULT)),
-            seen_whole: pedestrians(&self.observed_windows()),
+            to_forecast: pedestrians(&observed.windows),
+            seen_whole: whole.count(),
             windows: windows.len(),
             to_learn_from: pedestrians(&windows),
         }

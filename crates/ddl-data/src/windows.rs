@@ -15,6 +15,9 @@ impl Recording {
     /// frame, which a *fold* leaves out ([`Fold::test_windows`](crate::Fold::test_windows)).
     #[must_use]
     pub fn windows(&self, rule: WindowRule) -> Vec<Window> {
+        if rule == WindowRule::Observed {
+            return self.windows_with_futures();
+        }
         let links = Links::new(self, rule);
         let starts = 0..self.frames().len();
         starts.filter_map(|index| links.window(index)).collect()
@@ -56,7 +59,7 @@ impl<'a> Links<'a> {
 
     fn frame_after(&self, index: usize) -> Range<usize> {
         match self.rule {
-            WindowRule::Published | WindowRule::Complete => self
+            WindowRule::Published | WindowRule::Complete | WindowRule::Observed => self
                 .recording
                 .range_at(self.recording.frames()[index] + self.recording.frame_step()),
             WindowRule::SocialGan { .. } if index + 1 < self.recording.frames().len() => {
@@ -105,7 +108,7 @@ impl<'a> Links<'a> {
             .collect();
         let fewest = match self.rule {
             WindowRule::SocialGan { min_pedestrians } => min_pedestrians.max(1),
-            WindowRule::Published | WindowRule::Complete => 1,
+            WindowRule::Published | WindowRule::Complete | WindowRule::Observed => 1,
         };
         if first.len() < fewest || !self.may_start(index) {
             return None;

@@ -19,9 +19,8 @@ const OLDEST: usize = 8;
 
 /// The tracks that one camera has observed.
 ///
-/// A *segment* is 20 positions of one pedestrian, one step of 0.4 s apart, all of them observed. If frames come faster
-/// than steps, a track uses the positions at whole steps after its first frame, or after the first frame after a gap.
-/// A segment contains only positions of observed frames.
+/// A *segment* is 20 positions of one pedestrian, one step of 0.4 s apart: those at whole steps after its first row, or
+/// after the first row after a gap. If rows lie between these steps, the positions lie between two rows.
 ///
 /// - A missing step ends a run of segments. A track ends after more than 8 steps (3.2 s) without a position; if the
 ///   same id returns later, a new track begins.

@@ -8,6 +8,8 @@ use crate::piece::{FirstMotion, Piece, SHARED};
 /// A track ends after this many steps of 0.4 s (3.2 s) without a position. If the same id returns later, a new track
 /// begins.
 const MAX_ABSENCE_STEPS: i64 = 8;
+/// Rows further apart than so many steps (1.2 s) are not joined.
+const LONGEST_JOINED: i64 = 3;
 /// Largest number of runs of 8 segments kept per pedestrian, the latest ones: 102 s of a pedestrian that walks about.
 pub(crate) const MAX_RUNS: usize = 32;
 
@@ -87,6 +89,9 @@ pub(crate) struct RunningTrack {
     /// The frame of its last position.
     pub(crate) last: i64,
     pub(crate) track: Track,
+    /// Its last row, which may lie between two steps.
+    #[serde(skip)]
+    latest: Option<(i64, Position)>,
 }
 
 impl RunningTrack {
@@ -95,6 +100,7 @@ impl RunningTrack {
         Self {
             last: frame,
             track: Track { pieces },
+            latest: Some((frame, position)),
         }
     }
 
@@ -103,12 +109,31 @@ impl RunningTrack {
         frame - self.last > MAX_ABSENCE_STEPS * step
     }
 
-    /// Adds a position, unless it lies between two steps. Returns the numbers of segments added and removed.
+    /// Adds a row. Rows between two steps add the positions at the steps that lie between them, on straight lines.
+    /// Returns the numbers of segments added and removed.
     pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
-        let due = self.last + step;
-        if frame < due {
-            return (0, 0);
+        let (mut new, mut gone) = (0, 0);
+        let before = self.latest.replace((frame, position));
+        let before = before.filter(|(before, _)| frame - before <= LONGEST_JOINED * step);
+        while let Some((from, start)) = before
+            && frame > self.last + step
+            && (frame - self.last) % step != 0
+        {
+            let due = self.last + step;
+            let share = (due - from) as f64 / (frame - from) as f64;
+            let between = [0, 1].map(|axis| start[axis] + share * (position[axis] - start[axis]));
+            let (added, removed) = self.add(due, between, step);
+            (new, gone) = (new + added, gone + removed);
         }
+        if frame < self.last + step {
+            return (new, gone);
+        }
+        let (added, removed) = self.add(frame, position, step);
+        (new + added, gone + removed)
+    }
+
+    fn add(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
+        let due = self.last + step;
         self.last = frame;
         let next = match self.track.pieces.last_mut() {
             Some(piece) if frame == due => match piece.push(position) {

@@ -82,8 +82,9 @@ impl AdaptiveRegions {
             .pending
             .back()
             .map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
+        let previous = self.pending.back().map(|last| last.frame);
         let judged = self.pending.iter();
-        let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window)).collect();
+        let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window, previous)).collect();
         learned.learn(&outcomes, share);
         let forecast = forecast.with_regions(learned.table());
         let over = |pending: &Pending| now - pending.frame >= HORIZON as i64 * step;
@@ -104,18 +105,25 @@ impl Pending {
         }
     }
 
-    /// The scores of the pedestrians of the window at its last observed frame; `None` if that is not one of the
-    /// forecast steps, or no pedestrian is in both.
-    fn outcomes(&self, window: &Window) -> Option<Outcomes> {
-        let after = window.frames()[OBSERVED - 1] - self.frame;
-        let steps = after / window.frame_step();
-        if after % window.frame_step() != 0 || !(1..=HORIZON as i64).contains(&steps) {
+    /// The scores of the pedestrians of the window at the last step of the forecast up to its last observed frame;
+    /// `None` if an earlier window has shown that step, or no pedestrian is in both.
+    fn outcomes(&self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
+        let (now, frame_step) = (window.frames()[OBSERVED - 1], window.frame_step());
+        let after = now - self.frame;
+        let (steps, back) = (after / frame_step, after % frame_step);
+        // Between two windows less than a step apart.
+        let is_new = back == 0 || previous.is_some_and(|previous| previous > now - frame_step && previous < now - back);
+        if !(is_new && (1..=HORIZON as i64).contains(&steps)) {
             return None;
         }
         let step = steps as usize - 1;
         let position = |id: &PedestrianId| -> Option<Position> {
             let i = window.pedestrians().iter().position(|other| other == id)?;
-            Some(window.observed(i)[OBSERVED - 1])
+            let [.., before, last] = *window.observed(i) else {
+                return None;
+            };
+            let share = back as f64 / frame_step as f64;
+            Some([0, 1].map(|axis| last[axis] + share * (before[axis] - last[axis])))
         };
         let scores: Vec<f64> = self
             .pedestrians

@@ -1,6 +1,7 @@
 //! Text with one observation per line, its columns separated by tabs or blanks: `social-gan`, and the `obsmat` of the
 //! ETH recordings.
 
+use crate::clock::TimeUnit;
 use crate::error::FormatError;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::FilePlace;
@@ -13,11 +14,14 @@ const OBSMAT: &str = "frame, pedestrian, x, z, y, v_x, v_z, v_y";
 pub(super) fn parse(
     text: &str,
     origin: &str,
-    row: fn(&str, usize, &str) -> Result<TrackRow, FormatError>,
+    row: fn(&str, usize, &str, Option<TimeUnit>) -> Result<TrackRow, FormatError>,
 ) -> Result<Vec<TrackRow>, FormatError> {
     // Blank lines are an error between observations, but allowed after the last one.
-    let lines = text.trim_end().lines().enumerate();
-    lines.map(|(index, line)| row(line, index + 1, origin)).collect()
+    let lines = || text.trim_end().lines();
+    let mut times = lines().filter_map(|line| line.split_ascii_whitespace().next());
+    let unit = times.any(field::has_fraction).then_some(TimeUnit::Seconds);
+    let lines = lines().enumerate();
+    lines.map(|(index, line)| row(line, index + 1, origin, unit)).collect()
 }
 
 fn fields<'a, const COUNT: usize>(
@@ -32,15 +36,25 @@ fn fields<'a, const COUNT: usize>(
     fields.map_err(|_| FilePlace::line(line).wrong(origin, field_count(COUNT, found, names)))
 }
 
-pub(super) fn social_gan(text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
+pub(super) fn social_gan(
+    text: &str,
+    line: usize,
+    origin: &str,
+    unit: Option<TimeUnit>,
+) -> Result<TrackRow, FormatError> {
     let [frame, pedestrian, x, y] = fields(text, line, origin, FIELDS)?;
-    TrackRow::of(line, origin, [(1, frame), (2, pedestrian), (3, x), (4, y)])
+    TrackRow::of(line, origin, unit, [(1, frame), (2, pedestrian), (3, x), (4, y)])
 }
 
-pub(super) fn obsmat(text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
+pub(super) fn obsmat(
+    text: &str,
+    line: usize,
+    origin: &str,
+    unit: Option<TimeUnit>,
+) -> Result<TrackRow, FormatError> {
     let [frame, pedestrian, x, z, y, v_x, v_z, v_y] = fields(text, line, origin, OBSMAT)?;
     let place = |field: usize| FilePlace::field(line, field);
-    let row = TrackRow::of(line, origin, [(1, frame), (2, pedestrian), (3, x), (5, y)])?;
+    let row = TrackRow::of(line, origin, unit, [(1, frame), (2, pedestrian), (3, x), (5, y)])?;
     // Pedestrians are floats in this format, never words.
     let number = place(2).read(origin, field::integer(pedestrian, "pedestrian"))?;
     // Height and velocities are not used. Checking that they are numbers confirms the order of the columns.

@@ -3,8 +3,11 @@
 use std::borrow::Cow;
 
 use ddl_core::{FRAME_LIMIT, PedestrianName, is_frame};
+use time::format_description::well_known::Iso8601;
+use time::{OffsetDateTime, PrimitiveDateTime};
 
-use crate::format::problem::{not_finite, not_integer};
+use crate::clock::{STAMPS_A_SECOND, TimeUnit};
+use crate::format::problem::{not_a_time, not_finite, not_integer};
 use crate::observation::COORDINATE_LIMIT;
 
 /// Longest piece of a file that an error message quotes, in characters.
@@ -20,6 +23,57 @@ pub(super) fn integer(text: &str, name: &str) -> Result<i64, String> {
     });
     let number = number.filter(|number| is_frame(*number));
     number.ok_or_else(|| not_integer(name, &quoted(text)))
+}
+
+/// A frame number or, with a unit, a time in microseconds.
+pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i64, String> {
+    match unit {
+        None => integer(text, name),
+        Some(unit) => time(text.trim(), unit),
+    }
+}
+
+fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
+    let Some(a_second) = unit.a_second() else {
+        let wanted = "a date with a time such as 2026-05-31T12:00:00.4Z";
+        return date(text).ok_or_else(|| not_a_time("time", &quoted(text), wanted));
+    };
+    let scale = STAMPS_A_SECOND as f64 / a_second;
+    // Whole nanoseconds since 1970 have more digits than an `f64`.
+    let whole = text.parse::<i64>().ok().filter(|_| scale < 1.0);
+    let stamp = match whole {
+        Some(number) => Some(number.div_euclid((1.0 / scale) as i64) as f64),
+        None => text.parse::<f64>().ok().map(|number| (number * scale).round()),
+    };
+    let stamp = stamp.filter(|stamp| stamp.is_finite());
+    let stamp = stamp.ok_or_else(|| not_a_time("time", &quoted(text), "a time"))?;
+    if stamp.abs() >= FRAME_LIMIT as f64 {
+        let finer = "after the year 2250; if it counts milliseconds, call the column time_ms, or time_us or time_ns";
+        return Err(format!("time {} is {finer}", quoted(text)));
+    }
+    Ok(stamp as i64)
+}
+
+/// Microseconds since 1970 of a date with a time.
+fn date(text: &str) -> Option<i64> {
+    let text = text.replacen(' ', "T", 1);
+    let zoned = OffsetDateTime::parse(&text, &Iso8601::PARSING).ok();
+    let date = zoned.or_else(|| Some(PrimitiveDateTime::parse(&text, &Iso8601::PARSING).ok()?.assume_utc()))?;
+    i64::try_from(date.unix_timestamp_nanos().div_euclid(1000)).ok()
+}
+
+/// The unit of a column of times without a unit in its name, by its first value.
+pub(super) fn unit_of(text: &str) -> TimeUnit {
+    if text.trim().parse::<f64>().is_err() && date(text.trim()).is_some() {
+        TimeUnit::Dates
+    } else {
+        TimeUnit::Seconds
+    }
+}
+
+/// Whether a text is a number with a fraction, which is a time and no frame number.
+pub(super) fn has_fraction(text: &str) -> bool {
+    text.contains('.') && text.trim().parse::<f64>().is_ok_and(|number| number.fract().abs() > 0.0)
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

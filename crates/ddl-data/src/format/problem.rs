@@ -2,15 +2,32 @@
 
 use std::fmt::Display;
 
+use crate::clock::{Clock, TimeUnit};
+
 pub(super) const EMPTY: &str = "the file holds no observation; is it empty or cut off?";
+pub(super) const MIXED_TIMES: &str =
+    "the time is of another kind than that of the first row; give all rows frame numbers, seconds, or dates";
 pub(super) const NOT_UTF8: &str = "the text is not UTF-8; export the file as plain UTF-8 or ASCII text";
 
 pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String {
     format!("{found} fields where {expected} are expected ({names})")
 }
 
-pub(super) fn duplicate(pedestrian: impl Display, frame: i64, first_line: usize) -> String {
-    format!("pedestrian {pedestrian} is in frame {frame} already (line {first_line}); keep one row")
+pub(super) fn duplicate(pedestrian: impl Display, when: &str, first_line: usize) -> String {
+    format!("pedestrian {pedestrian} is in {when} already (line {first_line}); keep one row")
+}
+
+/// A frame, or a time in microseconds, in words.
+pub(super) fn when(frame: i64, unit: Option<TimeUnit>) -> String {
+    match unit {
+        None => format!("frame {frame}"),
+        Some(unit) => format!("time {}", Clock::with_stamps(unit).number(frame)),
+    }
+}
+
+pub(super) fn not_a_time(name: &str, found: &str, wanted: &str) -> String {
+    let advice = advice_on_number(found);
+    format!("{name} must be {wanted}, found {found:?}{advice}")
 }
 
 pub(super) fn not_integer(name: &str, found: &str) -> String {
@@ -20,7 +37,7 @@ pub(super) fn not_integer(name: &str, found: &str) -> String {
     };
     let is_number = found.parse::<f64>().is_ok_and(f64::is_finite);
     let advice = match name {
-        "frame" if is_number && found.contains('.') => "; is it a time? Count frames instead: 0, 1, 2, and so on",
+        "frame" if is_number && found.contains('.') => "; if it is a time in seconds, call the column time",
         _ => advice_on_number(found),
     };
     format!("{name} must be {wanted}, found {found:?}{advice}")

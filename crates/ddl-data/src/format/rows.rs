@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use ddl_core::{PedestrianId, PedestrianNames, Position};
 
+use crate::clock::TimeUnit;
 use crate::error::{DataError, FormatError};
 use crate::format::field::{self, PedestrianField};
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
-use crate::format::problem::{EMPTY, duplicate};
+use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate, when};
 use crate::observation::Observation;
 use crate::recording::Recording;
 use crate::scene_name::SceneName;
@@ -19,7 +20,10 @@ pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 pub(super) struct TrackRow {
     /// The scene that the line names, if it does.
     pub(super) scene: Option<SceneName>,
+    /// A frame number, or microseconds.
     pub(super) frame: i64,
+    /// What the field of the time counts; `None` for frame numbers.
+    pub(super) unit: Option<TimeUnit>,
     pub(super) pedestrian: PedestrianField,
     pub(super) position: Position,
     pub(super) place: FilePlace,
@@ -28,16 +32,18 @@ pub(super) struct TrackRow {
 type Placed = (Observation, FilePlace);
 
 impl TrackRow {
-    /// The observation in frame, pedestrian, x and y of a line, each given with the number of its field.
+    /// The observation in frame (or time), pedestrian, x and y of a line, each given with the number of its field.
     pub(super) fn of(
         line: usize,
         origin: &str,
+        unit: Option<TimeUnit>,
         [(f, frame), (p, pedestrian), (i, x), (j, y)]: [(usize, &str); 4],
     ) -> Result<Self, FormatError> {
         let place = |field: usize| FilePlace::field(line, field);
         Ok(Self {
             scene: None,
-            frame: place(f).read(origin, field::integer(frame, "frame"))?,
+            frame: place(f).read(origin, field::frame(frame, "frame", unit))?,
+            unit,
             pedestrian: place(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
             position: [
                 place(i).read(origin, field::coordinate(x, "x"))?,
@@ -58,15 +64,19 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
                        file of each scene without the column";
         return Err(row.place.wrong(origin, problem).into());
     }
+    let unit = rows[0].unit;
+    if let Some(row) = rows.iter().find(|row| row.unit != unit) {
+        return Err(row.place.wrong(origin, MIXED_TIMES).into());
+    }
     let (mut placed, names) = numbered(rows);
-    refuse_duplicates(&mut placed, &names, origin)?;
+    refuse_duplicates(&mut placed, &names, unit, origin)?;
     let observations = placed.into_iter().map(|(seen, _)| seen).collect();
     let recording = Recording::in_usual_step(origin, observations);
     let recording = recording.map_err(|source| DataError::Recording {
         name: origin.to_owned(),
         source,
     })?;
-    Ok(recording.with_names(names))
+    Ok(recording.with_names(names).with_time_unit(unit))
 }
 
 /// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
@@ -93,7 +103,12 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
 }
 
 /// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
-fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, origin: &str) -> Result<(), FormatError> {
+fn refuse_duplicates(
+    rows: &mut [Placed],
+    names: &PedestrianNames,
+    unit: Option<TimeUnit>,
+    origin: &str,
+) -> Result<(), FormatError> {
     let key = |(seen, _): &Placed| (seen.frame, seen.pedestrian);
     rows.sort_unstable_by_key(|row| (key(row), row.1));
     let pairs = rows.windows(2).filter(|pair| key(&pair[0]) == key(&pair[1]));
@@ -101,7 +116,7 @@ fn refuse_duplicates(rows: &mut [Placed], names: &PedestrianNames, origin: &str)
         None => Ok(()),
         Some(pair) => {
             let (frame, pedestrian) = key(&pair[1]);
-            let problem = duplicate(names.of(pedestrian), frame, pair[0].1.line);
+            let problem = duplicate(names.of(pedestrian), &when(frame, unit), pair[0].1.line);
             Err(pair[1].1.wrong(origin, problem))
         }
     }

@@ -43,6 +43,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         Ok(TrackRow {
             scene: None,
             frame,
+            unit: None,
             pedestrian: PedestrianField::Number(pedestrian, None),
             position: [x, y],
             place: place(2),

@@ -9,12 +9,13 @@ use std::time::{Duration, Instant};
 
 use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position};
 
+use crate::clock::TimeUnit;
 use crate::error::{DataError, FormatError};
-use crate::format::field::PedestrianField;
+use crate::format::field::{self, PedestrianField};
 use crate::format::kind::Format;
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
-use crate::format::problem::{NOT_UTF8, duplicate};
+use crate::format::problem::{MIXED_TIMES, NOT_UTF8, duplicate, when};
 use crate::format::rows::TrackRow;
 use crate::format::table::TrackColumns;
 use crate::format::{blanks, trajnet};
@@ -39,7 +40,7 @@ pub struct Frame {
     pub scene: Option<SceneName>,
     /// Whether this is the first frame of the scene, or the first since the scene was forgotten.
     pub is_first: bool,
-    /// The raw frame number.
+    /// The raw frame number, or the time stamp in microseconds.
     pub number: i64,
     /// Pedestrians and their positions (m), in the order of the lines.
     pub pedestrians: Vec<(PedestrianId, Position)>,
@@ -78,12 +79,19 @@ pub struct FrameReader<R> {
     left: VecDeque<Frame>,
     /// The scene of the last line.
     spoken_of: Option<SceneName>,
-    /// Whether the first observation names a scene, and its line.
-    named: Option<(bool, usize)>,
+    first: Option<FirstRow>,
     /// Number of pedestrians in incomplete frames.
     unfinished: usize,
     idle_timeout: Duration,
     ended: bool,
+}
+
+/// What the first observation shows of all.
+#[derive(Debug, Clone, Copy)]
+struct FirstRow {
+    is_named: bool,
+    unit: Option<TimeUnit>,
+    line: usize,
 }
 
 #[derive(Debug)]
@@ -136,7 +144,7 @@ impl<R: BufRead> FrameReader<R> {
             scenes: BTreeMap::new(),
             left: VecDeque::new(),
             spoken_of: None,
-            named: None,
+            first: None,
             unfinished: 0,
             idle_timeout: IDLE_TIMEOUT,
             ended: false,
@@ -191,7 +199,12 @@ impl<R: BufRead> FrameReader<R> {
 
     /// Whether the observations so far name scenes.
     pub fn names_scenes(&self) -> bool {
-        self.named.is_some_and(|(named, _)| named)
+        self.first.is_some_and(|first| first.is_named)
+    }
+
+    /// What the time stamps of the lines count; `None` for frame numbers. Time stamps are given in microseconds.
+    pub fn time_unit(&self) -> Option<TimeUnit> {
+        self.first?.unit
     }
 
     /// Frames per second, if a line so far states it: the `fps` of TrajNet++ scenes.
@@ -247,7 +260,12 @@ impl<R: BufRead> FrameReader<R> {
 
     fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
         let (line, origin) = (self.lines, self.origin.as_str());
-        let Some(kind) = &self.kind else {
+        let first_field = || text.split_ascii_whitespace().next().unwrap_or_default();
+        let unit = match &self.first {
+            Some(first) => first.unit,
+            None => field::has_fraction(first_field()).then_some(TimeUnit::Seconds),
+        };
+        let Some(kind) = &mut self.kind else {
             let kind = match Format::guess("".as_ref(), text.as_bytes()) {
                 Format::TrajNet => Kind::TrajNet,
                 Format::SocialGan => Kind::SocialGan,
@@ -262,15 +280,15 @@ impl<R: BufRead> FrameReader<R> {
         };
         match kind {
             Kind::Table(columns) => columns.row_of_line(text, line, origin).map(Some),
-            Kind::SocialGan => blanks::social_gan(text, line, origin).map(Some),
-            Kind::Obsmat => blanks::obsmat(text, line, origin).map(Some),
+            Kind::SocialGan => blanks::social_gan(text, line, origin, unit).map(Some),
+            Kind::Obsmat => blanks::obsmat(text, line, origin, unit).map(Some),
             Kind::TrajNet => trajnet::observation(text, line, origin, &mut self.rate),
         }
     }
 
     /// Adds an observation. If it begins a new frame of its scene, returns the previous frame of the scene.
     fn add(&mut self, seen: TrackRow) -> Result<Option<Frame>, FormatError> {
-        self.refuse_mixed(seen.scene.is_some())?;
+        self.refuse_mixed(&seen)?;
         self.hear(&seen.scene)?;
         self.spoken_of.clone_from(&seen.scene);
         let name = seen.scene.clone();
@@ -282,15 +300,15 @@ impl<R: BufRead> FrameReader<R> {
         if let Some(&first_line) = growing.and_then(|growing| growing.lines.get(&pedestrian)) {
             let word = word.map(|word| PedestrianName::Word(word.to_string()));
             let name = word.unwrap_or(pedestrian.into());
-            return Err(self.wrong(duplicate(name, seen.frame, first_line)));
+            return Err(self.wrong(duplicate(name, &when(seen.frame, seen.unit), first_line)));
         }
         // A returned frame makes room for a pedestrian.
         if self.unfinished == limit {
             let frames = match name {
-                None => format!("frame {}", seen.frame),
+                None => when(seen.frame, seen.unit),
                 Some(scene) => format!(
-                    "the incomplete frames, one of them frame {} of scene {scene}",
-                    seen.frame
+                    "the incomplete frames, one of them {} of scene {scene}",
+                    when(seen.frame, seen.unit)
                 ),
             };
             let problem = format!("more than {limit} pedestrians in {frames}; does the frame number increase?");
@@ -317,6 +335,7 @@ impl<R: BufRead> FrameReader<R> {
 
     /// Checks that the frame is not before the last one of the scene. If it is a new one, returns the previous frame.
     fn begin_frame(&mut self, name: &Option<SceneName>, frame: i64) -> Result<Option<Frame>, FormatError> {
+        let unit = self.time_unit();
         let scene = self.scenes.entry(name.clone()).or_insert_with(SceneProgress::unseen);
         let reached = scene.current.as_ref().map(|growing| growing.frame.number);
         if let Some(last) = reached.or(scene.last)
@@ -325,20 +344,26 @@ impl<R: BufRead> FrameReader<R> {
             let of_scene = name
                 .as_ref()
                 .map_or_else(String::new, |scene| format!(" of scene {scene}"));
+            let (now, last) = (when(frame, unit), when(last, unit));
             return Err(self.wrong(format!(
-                "frame {frame}{of_scene} comes after frame {last}; a stream of tracks must be in order of time"
+                "{now}{of_scene} comes after {last}; a stream of tracks must be in order of time"
             )));
         }
         Ok(if reached == Some(frame) { None } else { self.whole(name) })
     }
 
-    /// Refuses a stream in which only some lines name a scene.
-    fn refuse_mixed(&mut self, named: bool) -> Result<(), FormatError> {
-        let (first, first_line) = *self.named.get_or_insert((named, self.lines));
-        if first == named {
+    /// Refuses a stream in which only some lines name a scene, or whose times change their kind.
+    fn refuse_mixed(&mut self, row: &TrackRow) -> Result<(), FormatError> {
+        let (is_named, unit, line) = (row.scene.is_some(), row.unit, self.lines);
+        let first = *self.first.get_or_insert(FirstRow { is_named, unit, line });
+        if first.unit != unit {
+            return Err(self.wrong(MIXED_TIMES));
+        }
+        if first.is_named == is_named {
             return Ok(());
         }
-        let here = if named {
+        let first_line = first.line;
+        let here = if is_named {
             "a scene is named here, but not"
         } else {
             "track.scene is missing here, but present"

@@ -2,6 +2,7 @@
 
 use csv::{ErrorKind, StringRecord};
 
+use crate::clock::TimeUnit;
 use crate::error::FormatError;
 use crate::format::field;
 use crate::format::place::FilePlace;
@@ -38,14 +39,15 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let header = reader.headers().map_err(|e| table_error(&e, origin))?;
-    let columns = TrackColumns::of(header, 1, origin)?;
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.map_err(|e| table_error(&e, origin))?;
+    let mut columns = TrackColumns::of(header, 1, origin)?;
+    let records: Result<Vec<StringRecord>, _> = reader.records().collect();
+    let records = records.map_err(|e| table_error(&e, origin))?;
+    columns.look_at(&records);
+    let rows = records.iter().map(|record| {
         let line = record.position().map_or(1, |p| p.line() as usize);
-        rows.push(columns.row(&record, line, origin)?);
-    }
-    Ok(rows)
+        columns.row(record, line, origin)
+    });
+    rows.collect()
 }
 
 #[derive(Debug)]
@@ -53,6 +55,30 @@ pub(super) struct TrackColumns {
     places: [usize; 4],
     scene: Option<usize>,
     count: usize,
+    time: TimeColumn,
+}
+
+/// What the first column counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum TimeColumn {
+    /// Frames, unless a value has a fraction: then seconds.
+    Frame,
+    /// Seconds or dates, as the first value says.
+    Time,
+    Known(TimeUnit),
+}
+
+impl TimeColumn {
+    fn named(name: &str) -> Option<Self> {
+        match name.to_ascii_lowercase().as_str() {
+            "time" | "timestamp" | "t" => Some(Self::Time),
+            "time_s" | "seconds" => Some(Self::Known(TimeUnit::Seconds)),
+            "time_ms" | "timestamp_ms" | "milliseconds" => Some(Self::Known(TimeUnit::Milliseconds)),
+            "time_us" | "timestamp_us" | "microseconds" => Some(Self::Known(TimeUnit::Microseconds)),
+            "time_ns" | "timestamp_ns" | "nanoseconds" => Some(Self::Known(TimeUnit::Nanoseconds)),
+            _ => None,
+        }
+    }
 }
 
 impl TrackColumns {
@@ -60,24 +86,36 @@ impl TrackColumns {
         Self::of(&record(text, line, origin)?, line, origin)
     }
 
-    pub(super) fn row_of_line(&self, text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
+    pub(super) fn row_of_line(&mut self, text: &str, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
         let record = record(text, line, origin)?;
         if record.len() != self.count {
             return Err(FilePlace::line(line).wrong(origin, wrong_count(self.count, record.len())));
         }
+        self.look_at(std::slice::from_ref(&record));
         self.row(&record, line, origin)
+    }
+
+    /// Finds out what the column of the time counts, if these rows show it.
+    fn look_at(&mut self, records: &[StringRecord]) {
+        let mut fields = records.iter().filter_map(|record| record.get(self.places[0]));
+        let unit = match self.time {
+            TimeColumn::Known(_) => return,
+            TimeColumn::Time => fields.next().map(field::unit_of),
+            TimeColumn::Frame => fields.any(field::has_fraction).then_some(TimeUnit::Seconds),
+        };
+        self.time = unit.map_or(self.time, TimeColumn::Known);
     }
 
     fn of(header: &StringRecord, line: usize, origin: &str) -> Result<Self, FormatError> {
         let wrong = |field: Option<usize>, detail: String| {
-            let rule = "the header must name the columns frame, pedestrian, x and y, each once";
+            let rule = "the header must name the columns frame (or time), pedestrian, x and y, each once";
             FilePlace { line, field }.wrong(origin, format!("{rule}: {detail}"))
         };
         if header.iter().all(|name| name.parse::<f64>().is_ok()) {
             let detail = "found numbers; put the line frame,pedestrian,x,y above them".to_owned();
             return Err(wrong(None, detail));
         }
-        let (mut places, mut scene) = ([None; 4], None);
+        let (mut places, mut scene, mut time) = ([None; 4], None, TimeColumn::Frame);
         let mut unknown = Vec::new();
         for (index, name) in header.iter().enumerate() {
             // Spreadsheets may write column names in capitals.
@@ -85,7 +123,10 @@ impl TrackColumns {
                 scene = Some(index);
                 continue;
             }
+            let named = TimeColumn::named(name);
+            time = named.unwrap_or(time);
             let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
+            let column = column.or(named.map(|_| 0));
             let Some(column) = column else {
                 unknown.push((
                     index + 1,
@@ -94,7 +135,12 @@ impl TrackColumns {
                 continue;
             };
             if places[column].replace(index).is_some() {
-                return Err(wrong(Some(index + 1), format!("column {name} appears twice")));
+                let again = if column == 0 && header.iter().any(|name| name.eq_ignore_ascii_case(COLUMNS[0])) {
+                    "is beside a column of times or frames; leave one of the two out"
+                } else {
+                    "appears twice"
+                };
+                return Err(wrong(Some(index + 1), format!("column {name} {again}")));
             }
         }
         if let Some(&(first, _)) = unknown.first() {
@@ -112,12 +158,17 @@ impl TrackColumns {
             places: columns,
             scene,
             count: header.len(),
+            time,
         })
     }
 
     fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
         let field = |column: usize| (column + 1, record.get(column).unwrap_or_default());
-        let row = TrackRow::of(line, origin, self.places.map(field))?;
+        let unit = match self.time {
+            TimeColumn::Known(unit) => Some(unit),
+            TimeColumn::Frame | TimeColumn::Time => None,
+        };
+        let row = TrackRow::of(line, origin, unit, self.places.map(field))?;
         let Some(column) = self.scene else {
             return Ok(row);
         };
@@ -138,7 +189,6 @@ fn advice(name: &str, header: &StringRecord) -> String {
     let meant = match plain.as_str() {
         "id" | "ped" | "pedid" | "pedestrianid" | "agent" | "agentid" | "track" | "trackid" | "person" | "personid"
         | "object" | "objectid" => Some("pedestrian"),
-        "t" | "time" | "timestamp" => return "rename it to frame, and count frames".to_owned(),
         "observeduntil" => {
             return "this is a table of forecasts; give the tracks that they were made from".to_owned();
         }

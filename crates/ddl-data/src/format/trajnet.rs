@@ -8,9 +8,11 @@ use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use serde_json::value::RawValue;
 
+use crate::clock::TimeUnit;
 use crate::error::FormatError;
 use crate::format::field::{self, PedestrianField};
 use crate::format::place::FilePlace;
+use crate::format::problem::when;
 use crate::format::rows::TrackRow;
 use crate::scene_name::SceneName;
 
@@ -38,9 +40,10 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRat
             Some(&(known, first_line)) => {
                 // The debug format prints as many digits as distinguish the two.
                 let problem = format!(
-                    "pedestrian {} is in frame {frame} at {position:?}, but on line {first_line} at {known:?}; \
-                     overlapping scenes must agree",
-                    key.written()
+                    "pedestrian {} is in {} at {position:?}, but on line {first_line} at {known:?}; overlapping scenes \
+                     must agree",
+                    key.written(),
+                    when(frame, row.unit)
                 );
                 return Err(place.wrong(origin, problem));
             }
@@ -104,6 +107,9 @@ struct TrackFields {
     scene: Option<Value>,
     #[serde(default, deserialize_with = "as_written")]
     f: Option<Value>,
+    /// A time in seconds or a date, instead of a frame.
+    #[serde(default)]
+    t: Option<Value>,
     #[serde(default, deserialize_with = "as_written")]
     p: Option<Value>,
     #[serde(default, deserialize_with = "as_written")]
@@ -154,7 +160,18 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
         // As written in the file: the digits of a number, or a text with its quotes, which is then refused as a number.
         Some(value) => Ok(value.to_string()),
     };
-    let frame = field::integer(&text(track.f, "track.f")?, "track.f")?;
+    let unit = match (&track.t, &track.f) {
+        (Some(Value::String(_)), None) => Some(TimeUnit::Dates),
+        (Some(_), None) => Some(TimeUnit::Seconds),
+        (Some(_), Some(_)) => return Err("track.f and track.t: give a frame or a time".to_owned()),
+        (None, _) => None,
+    };
+    let when = match track.t {
+        Some(Value::String(date)) => date,
+        Some(time) => time.to_string(),
+        None => text(track.f, "track.f")?,
+    };
+    let frame = field::frame(&when, "track.f", unit)?;
     let pedestrian = match track.p {
         // A quoted pedestrian is a word, even if it holds only digits.
         Some(Value::String(word)) if !word.trim().is_empty() => PedestrianField::Word(word.trim().into()),
@@ -177,6 +194,7 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     Ok(Some(TrackRow {
         scene,
         frame,
+        unit,
         pedestrian,
         position: [x, y],
         place,

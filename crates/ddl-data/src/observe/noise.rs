@@ -1,0 +1,148 @@
+//! How exact the positions of a tracker are, measured by how far they lie from where they were expected.
+
+use ddl_core::Position;
+
+use crate::observe::motion::{Motion, Walk};
+
+/// The standard deviations (m, on each axis) among which the noise is chosen.
+const NOISE: [f64; 12] = [0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4];
+/// The spectral densities of accelerations (m²/s³) among which the agility is chosen. The likelihood of the tracks of
+/// nine recordings, of 2.5 to 30 rows a second, has its maximum between 0.02 and 0.05; who walks straight has less.
+const AGILITY: [f64; 3] = [0.005, 0.02, 0.08];
+/// Number of pairs of the two.
+const LEVELS: usize = NOISE.len() * AGILITY.len();
+/// What the ETH/UCY recordings have, which the models were trained on (m).
+const USUAL: f64 = 0.02;
+/// Agility without measurements.
+const USUAL_AGILITY: f64 = 0.02;
+/// Weight of the usual noise against measurements: some ten rows.
+const CERTAINTY: f64 = 10.0;
+/// Noise up to which positions are taken as they are (m): the networks know it from their training.
+const TRUSTED: f64 = 0.035;
+/// Degrees of freedom of the distribution of innovations (Student's t): people turn and stop.
+const TAILS: f64 = 4.0;
+/// First rows of a track, which show its velocity.
+const FIRST: usize = 3;
+/// Number of rows after which a recording's older rows lose their weight: a tracker may change.
+const MEMORY: f64 = 5000.0;
+/// Number of rows of the recording that weigh as much as one's own.
+const OTHERS: f64 = 200.0;
+
+/// Log-likelihood of each level.
+type Evidence = [f64; LEVELS];
+
+/// The noise of all tracks of a recording or stream so far.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordingNoise {
+    evidence: Evidence,
+    rows: f64,
+}
+
+/// The noise of one track: a filter for each level.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TrackNoise {
+    evidence: Evidence,
+    motions: [Motion; LEVELS],
+    rows: usize,
+}
+
+/// One of the levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct NoiseLevel(usize);
+
+impl NoiseLevel {
+    pub(super) fn walk(self) -> Walk {
+        Walk {
+            noise: NOISE[self.0 % NOISE.len()],
+            agility: AGILITY[self.0 / NOISE.len()],
+        }
+    }
+
+    /// Whether positions are taken as they are.
+    pub(super) fn is_trusted(self) -> bool {
+        self.walk().noise <= TRUSTED
+    }
+
+    /// The level of the ETH/UCY recordings.
+    pub(super) fn usual() -> Self {
+        likeliest(&[0.0; LEVELS])
+    }
+
+    fn all() -> [Self; LEVELS] {
+        std::array::from_fn(Self)
+    }
+}
+
+impl Default for RecordingNoise {
+    fn default() -> Self {
+        Self {
+            evidence: [0.0; LEVELS],
+            rows: 0.0,
+        }
+    }
+}
+
+impl RecordingNoise {
+    /// Standard deviation of a coordinate (m).
+    #[must_use]
+    pub fn metres(&self) -> f64 {
+        likeliest(&self.evidence).walk().noise
+    }
+}
+
+impl TrackNoise {
+    pub(super) fn of_first(position: Position) -> Self {
+        Self {
+            evidence: [0.0; LEVELS],
+            motions: NoiseLevel::all().map(|level| Motion::first_seen(position, level.walk())),
+            rows: 1,
+        }
+    }
+
+    /// The motion at the last row, at a level.
+    pub(super) fn motion(&self, level: NoiseLevel) -> &Motion {
+        &self.motions[level.0]
+    }
+
+    /// The likeliest level, by this track and the recording it is in.
+    pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {
+        let share = (OTHERS / recording.rows).min(1.0);
+        likeliest(&std::array::from_fn(|level| {
+            self.evidence[level] + share * recording.evidence[level]
+        }))
+    }
+
+    /// Adds a row, some seconds after the last, to this track and its recording.
+    pub(super) fn add(&mut self, position: Position, seconds: f64, recording: &mut RecordingNoise) {
+        self.rows += 1;
+        let counts = self.rows > FIRST;
+        if counts {
+            let keep = 1.0 - 1.0 / MEMORY;
+            recording.rows = recording.rows * keep + 1.0;
+            recording.evidence = recording.evidence.map(|evidence| evidence * keep);
+        }
+        for level in 0..LEVELS {
+            let Walk { noise, .. } = NoiseLevel(level).walk();
+            let expected = self.motions[level].expected_after(seconds);
+            if counts {
+                let variance = expected.variance + noise * noise;
+                let distance = expected.distance(position);
+                let likelihood =
+                    -(TAILS + 2.0) / 2.0 * (distance * distance / (variance * TAILS)).ln_1p() - variance.ln();
+                self.evidence[level] += likelihood;
+                recording.evidence[level] += likelihood;
+            }
+            self.motions[level] = expected.corrected(position, noise);
+        }
+    }
+}
+
+fn likeliest(evidence: &Evidence) -> NoiseLevel {
+    let with_prior = |level: usize| {
+        let Walk { noise, agility } = NoiseLevel(level).walk();
+        let unusual = [CERTAINTY * (noise / USUAL).ln().powi(2), (agility / USUAL_AGILITY).ln().powi(2)];
+        evidence[level] - unusual.iter().sum::<f64>()
+    };
+    let best = (0..LEVELS).max_by(|&a, &b| with_prior(a).total_cmp(&with_prior(b)));
+    NoiseLevel(best.unwrap_or_default())
+}

@@ -1,0 +1,214 @@
+//! Observations estimated from the rows of a track.
+
+use ddl_data::{Arrival, Observed, ObservedTrack, Position, RecordingNoise};
+use proptest::prelude::*;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution as _, Normal};
+
+/// The track of rows at times in seconds, the noise measured, and how each row after the first arrived.
+fn track(rows: &[(f64, Position)]) -> (ObservedTrack, RecordingNoise, Vec<Arrival>) {
+    let mut noise = RecordingNoise::default();
+    let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
+    let arrivals = rows[1..].iter().map(|&(time, position)| {
+        track.forget_before(time, 0.4);
+        track.push(time, position, 1.0, &mut noise)
+    });
+    let arrivals = arrivals.collect();
+    (track, noise, arrivals)
+}
+
+fn observed(rows: &[(f64, Position)], time: f64) -> Observed {
+    let (track, noise, _) = track(rows);
+    track.observed(time, 0.4, 1.0, &noise).unwrap()
+}
+
+fn walk(times: impl Iterator<Item = f64>) -> Vec<(f64, Position)> {
+    times.map(|time| (time, [1.3 * time, 2.0 - 0.4 * time])).collect()
+}
+
+fn noisy(rows: &[(f64, Position)], deviation: f64, seed: u64) -> Vec<(f64, Position)> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let normal = Normal::new(0.0, deviation).unwrap();
+    let moved = rows
+        .iter()
+        .map(|&(time, position)| (time, position.map(|coordinate| coordinate + normal.sample(&mut random))));
+    moved.collect()
+}
+
+fn farthest(a: &[Position], b: &[Position]) -> f64 {
+    let distances = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+    distances.fold(0.0, f64::max)
+}
+
+/// The posterior of a Gaussian process whose velocity is a Wiener process (spectral density 0.02, variance 2 at the
+/// first row, noise 0.02), solved as one system of equations with numpy 2.3.
+#[test]
+fn an_estimate_is_the_posterior_of_a_gaussian_process() {
+    let times = [0.0, 0.1, 0.35, 0.8, 1.3, 1.7, 2.25, 2.7, 3.0];
+    let x = [0.0, 0.15, 0.4, 1.05, 1.7, 2.2, 2.9, 3.4, 3.85];
+    let y = [0.0, 0.0, 0.02, 0.01, 0.1, 0.22, 0.35, 0.6, 0.75];
+    let rows: Vec<(f64, Position)> = (0..9).map(|row| (times[row], [x[row], y[row]])).collect();
+    let expected = [
+        [0.250_129_6, 0.003_389_75],
+        [0.768_303_3, 0.013_830_82],
+        [1.302_242_91, 0.049_519_75],
+        [1.823_233_29, 0.125_367_79],
+        [2.328_134_17, 0.228_523_53],
+        [2.822_110_05, 0.357_876_25],
+        [3.311_620_08, 0.538_673_39],
+    ];
+    let deviations = [
+        0.011_671_52,
+        0.014_650_57,
+        0.015_090_58,
+        0.014_220_98,
+        0.015_013_67,
+        0.015_213_87,
+        0.014_156_87,
+    ];
+    let estimate = observed(&rows, 3.0);
+    assert!(farthest(&estimate.positions[..7], &expected) < 1e-6, "{estimate:?}");
+    for (place, deviation) in deviations.into_iter().enumerate() {
+        assert!((estimate.deviations[place] - deviation).abs() < 1e-5, "{estimate:?}");
+    }
+    // The last row lies on its step, and passes unchanged.
+    assert_eq!(estimate.positions[7], rows[8].1);
+}
+
+/// A hundred walkers at 10 rows a second: the noise that is measured is the noise that was added.
+#[test]
+fn noise_is_measured() {
+    for (added, measured) in [
+        (0.0, 0.005..0.021),
+        (0.05, 0.04..0.06),
+        (0.1, 0.09..0.15),
+        (0.2, 0.14..0.29),
+    ] {
+        let mut noise = RecordingNoise::default();
+        for seed in 0..100 {
+            let rows = noisy(&walk((0..30).map(|k| 0.1 * f64::from(k))), added, seed);
+            let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
+            for &(time, position) in &rows[1..] {
+                track.push(time, position, 1.0, &mut noise);
+            }
+        }
+        assert!(measured.contains(&noise.metres()), "{added}: {}", noise.metres());
+    }
+}
+
+/// Noise of 20 cm at 10 rows a second: the estimate is less than half as wrong as the rows at the steps.
+#[test]
+fn noise_is_averaged() {
+    let (mut of_rows, mut of_estimate) = (0.0, 0.0);
+    for seed in 0..50 {
+        let clean = walk((0..60).map(|k| 0.1 * f64::from(k)));
+        let rows = noisy(&clean, 0.2, seed);
+        let estimate = observed(&rows, rows[59].0);
+        for place in 0..8 {
+            let index = 59 - 4 * (7 - place);
+            of_rows += farthest(&[rows[index].1], &[clean[index].1]);
+            of_estimate += farthest(&[estimate.positions[place]], &[clean[index].1]);
+        }
+    }
+    assert!(of_estimate < 0.5 * of_rows, "{of_estimate} {of_rows}");
+}
+
+#[test]
+fn a_wrong_position_is_left_out_and_told() {
+    for rate in [2.5, 10.0, 25.0] {
+        for off in [1.1, 2.0, 5.0, 30.0] {
+            let clean = walk((0..=(4.0 * rate) as u32).map(|k| f64::from(k) / rate));
+            let mut rows = clean.clone();
+            let last = rows.len() - 1;
+            rows[last].1[1] += off;
+            let (track, noise, arrivals) = track(&rows);
+            assert!(
+                matches!(arrivals[last - 1], Arrival::Wrong(by) if (by - off).abs() < 0.1),
+                "{arrivals:?}"
+            );
+            assert!(arrivals[..last - 1].iter().all(|arrival| *arrival == Arrival::Expected));
+            let estimate = track.observed(rows[last].0, 0.4, 1.0, &noise).unwrap();
+            assert!(
+                farthest(&estimate.positions[7..], &[clean[last].1]) < 0.05,
+                "{rate} {off}: {estimate:?}"
+            );
+            assert!(estimate.age > 0.9 / rate);
+        }
+    }
+}
+
+/// Two pedestrians three metres apart exchange their numbers: each track begins anew.
+#[test]
+fn an_exchange_of_ids_begins_a_track() {
+    let mut rows = walk((0..40).map(|k| 0.1 * f64::from(k)));
+    for row in &mut rows[30..] {
+        row.1[1] += 3.0;
+    }
+    let (track, noise, arrivals) = track(&rows);
+    assert!(matches!(arrivals[29], Arrival::Wrong(_)));
+    assert!(
+        matches!(arrivals[30], Arrival::Jumped(by) if (by - 3.0).abs() < 0.1),
+        "{arrivals:?}"
+    );
+    let estimate = track.observed(rows[39].0, 0.4, 1.0, &noise).unwrap();
+    let straight = walk((0..8).map(|k| rows[39].0 - 0.4 * f64::from(7 - k)));
+    let moved: Vec<Position> = straight.iter().map(|row| [row.1[0], row.1[1] + 3.0]).collect();
+    assert!(farthest(&estimate.positions, &moved) < 0.1, "{estimate:?}");
+}
+
+#[test]
+fn one_row_is_no_observation() {
+    let track = ObservedTrack::beginning(0.0, [1.0, 2.0]);
+    assert_eq!(track.observed(0.0, 0.4, 1.0, &RecordingNoise::default()), None);
+}
+
+proptest! {
+    /// Exact rows at the steps pass to the bit, with or without rows between them.
+    #[test]
+    fn rows_at_the_steps_pass_unchanged(
+        velocity in prop::array::uniform2(-1.5..1.5),
+        bend in -0.2..0.2,
+        between in 1_usize..12,
+    ) {
+        let rows: Vec<(f64, Position)> = (0..=8 * between)
+            .map(|k| {
+                let t = k as f64 / between as f64 * 0.4;
+                (t, [velocity[0] * t + bend * t * t, velocity[1] * t])
+            })
+            .collect();
+        let last = rows.len() - 1;
+        let estimate = observed(&rows, rows[last].0);
+        for place in 0..8 {
+            prop_assert_eq!(estimate.positions[place], rows[last - between * (7 - place)].1);
+        }
+        prop_assert_eq!(estimate.age, 0.0);
+    }
+
+    /// A turned and moved track has a turned and moved estimate, at any clock.
+    #[test]
+    fn estimates_move_with_their_track(
+        gaps in prop::collection::vec(0.02..0.9, 5..30),
+        steps in prop::collection::vec(prop::array::uniform2(-0.3..0.3), 30),
+        angle in 0.0..6.3_f64,
+        offset in prop::array::uniform2(-50.0..50.0),
+        age in 0.01..0.3,
+    ) {
+        let (mut time, mut position) = (0.0, [0.0, 0.0]);
+        let rows: Vec<(f64, Position)> = gaps.iter().zip(&steps).map(|(gap, step)| {
+            time += gap;
+            position = [position[0] + gap + step[0] * gap, position[1] + step[1] * gap];
+            (time, position)
+        }).collect();
+        let (sin, cos) = angle.sin_cos();
+        let turn = |p: Position| [cos * p[0] - sin * p[1] + offset[0], sin * p[0] + cos * p[1] + offset[1]];
+        let turned: Vec<_> = rows.iter().map(|&(time, position)| (time, turn(position))).collect();
+        let (here, there) = (observed(&rows, time + age), observed(&turned, time + age));
+        prop_assert!(farthest(&here.positions.map(turn), &there.positions) < 1e-9);
+        for place in 0..8 {
+            prop_assert!((here.deviations[place] - there.deviations[place]).abs() < 1e-9);
+        }
+        // The longer ago, the less certain.
+        prop_assert!(observed(&rows, time + age + 0.1).deviations[7] > here.deviations[7]);
+    }
+}

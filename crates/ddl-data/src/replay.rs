@@ -1,0 +1,77 @@
+//! A recording, observed frame by frame as a live stream would be.
+
+use ddl_core::{HORIZON, PedestrianId, TIME_STEP, WINDOW, Window};
+
+use crate::live::{Completeness, LiveTracks};
+use crate::observe::{Arrival, RecordingNoise};
+use crate::recording::Recording;
+
+/// What was observed of a recording, in order of time.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ObservedRecording {
+    /// The windows to forecast from: 8 positions without a future.
+    pub windows: Vec<Window>,
+    /// How exact the positions are.
+    pub noise: RecordingNoise,
+    /// The rows that were left out, or began a track anew: tick, pedestrian, and how it arrived.
+    pub arrivals: Vec<(i64, PedestrianId, Arrival)>,
+}
+
+impl Recording {
+    /// Empty tracks with the name and clock of this recording. Their windows are at least 0.4 s apart where each
+    /// pedestrian has a [clock of its own](Self::has_common_frames), else there is one at every frame.
+    #[must_use]
+    pub fn live_tracks(&self) -> LiveTracks {
+        let interval = if self.has_common_frames() { 0.0 } else { TIME_STEP };
+        LiveTracks::of(self).with_interval(interval)
+    }
+
+    /// The windows that these tracks, empty until now, make of the recording.
+    #[must_use]
+    pub fn observe(&self, mut tracks: LiveTracks) -> ObservedRecording {
+        let (mut windows, mut arrivals) = (Vec::new(), Vec::new());
+        for &frame in self.frames() {
+            let rows = self.at(frame).iter();
+            let rows = rows.map(|row| (row.pedestrian, row.position));
+            // Cannot fail: the invariants of a recording exclude every error of live tracks.
+            windows.extend(tracks.push(frame, rows).ok().flatten());
+            arrivals.extend(tracks.arrivals().iter().map(|&(pedestrian, arrival)| (frame, pedestrian, arrival)));
+        }
+        let noise = tracks.noise().clone();
+        ObservedRecording {
+            windows,
+            noise,
+            arrivals,
+        }
+    }
+
+    /// The windows of pedestrians that were tracked for all 8 steps.
+    #[must_use]
+    pub fn observed_windows(&self) -> Vec<Window> {
+        self.observe(self.live_tracks()).windows
+    }
+
+    /// The observed windows with the futures of the pedestrians that were tracked for all 20 steps; the others are
+    /// bystanders.
+    pub(crate) fn windows_with_futures(&self) -> Vec<Window> {
+        let futures = self.futures();
+        let observed = self.observe(self.live_tracks().with_completeness(Completeness::Partial));
+        let with_future = |window: Window| {
+            let future = futures.of(&window);
+            let is_known = |i: usize| window.quality(i).is_whole() && future[i].len() == HORIZON;
+            let scored = window.filter_pedestrians(is_known)?;
+            let (first, step) = (window.start_frame(), window.frame_step());
+            let tracks = (0..window.len()).filter(|&i| is_known(i));
+            let positions = tracks.flat_map(|i| window.observed(i).iter().chain(&future[i]).copied());
+            let frames = (0..WINDOW as i64).map(|t| first + t * step).collect();
+            let pedestrians = scored.pedestrians().to_vec();
+            let whole = Window::cut(self.shared_name(), step, frames, pedestrians, positions.collect());
+            let qualities = (0..scored.len()).map(|i| scored.quality(i)).collect();
+            let whole = whole.with_names(self.names().clone()).with_qualities(qualities);
+            Some(whole.with_bystanders(window.filter_pedestrians(|i| !is_known(i))))
+        };
+        observed.windows.into_iter().filter_map(with_future).collect()
+    }
+}
+
