@@ -2,7 +2,7 @@
 //! the top speed and arrives, every certificate holds with its bounds, and no forecast is worse than straight lines to
 //! the same goals.
 
-use ddl::data::{Completion, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
+use ddl::data::{Completeness, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
 use ddl::{BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Variant};
 use ddl_tests::{bits, crowd, drawn_model};
@@ -201,7 +201,7 @@ fn straight_pedestrians_of_every_speed_are_forecast_as_well_as_by_straight_lines
 /// single forecast leads to the median of the goals.
 #[test]
 fn filled_in_positions_are_not_evidence() {
-    let mut tracks = LiveTracks::new().with_completion(Completion::DEFAULT);
+    let mut tracks = LiveTracks::new().with_completeness(Completeness::Partial);
     let pedestrian = PedestrianId(7);
     assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);
     let window = tracks.push(1, [(pedestrian, [0.1, 0.0])]).unwrap().unwrap();

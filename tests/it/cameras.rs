@@ -1,7 +1,7 @@
 //! Many cameras in one process: the forecasts of each are the same as if it were alone.
 
 use crate::live::Live;
-use ddl::data::{Completion, LiveTracks, PedestrianId, Position, SceneName, Window};
+use ddl::data::{Completeness, LiveTracks, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::memory::SceneMemory;
 use ddl::{DdlError, Forecast, ForecastError, Forecaster, LiveForecaster, LiveScenes, Variant};
@@ -23,7 +23,7 @@ fn name(scene: &str) -> SceneName {
 type Answers = Vec<(i64, Vec<u64>)>;
 
 fn alone(model: &impl Forecaster, frames: &[Seen]) -> Answers {
-    let mut live = LiveForecaster::with_tracks(model, LiveTracks::new().with_completion(Completion::DEFAULT));
+    let mut live = LiveForecaster::with_tracks(model, LiveTracks::new().with_completeness(Completeness::Partial));
     let answers = frames.iter().filter_map(|(frame, people)| {
         let now = live.push(*frame, people.iter().copied()).unwrap()?;
         Some((now.window.frames()[7], bits::of(&now.forecast)))
@@ -59,7 +59,7 @@ fn check_interleaved(
 ) -> Result<(), TestCaseError> {
     let names = ["hall", "yard", "gate"].map(name);
     let mut queues: Vec<VecDeque<&Seen>> = frames.iter().map(|it| it.iter().collect()).collect();
-    let mut scenes = LiveScenes::new(LiveTracks::new().with_completion(Completion::DEFAULT));
+    let mut scenes = LiveScenes::new(LiveTracks::new().with_completeness(Completeness::Partial));
     let mut latest = scenes.clone().latest_only();
     let mut answers = BTreeMap::<SceneName, Answers>::new();
     let mut answers_of_latest = answers.clone();

@@ -260,6 +260,16 @@ impl Forecast {
         }
     }
 
+    /// The forecasts of the first pedestrians of the window, without its
+    /// [bystanders](crate::Window::with_bystanders).
+    #[must_use]
+    pub fn without_bystanders(self, pedestrians: usize) -> Self {
+        if self.pedestrians <= pedestrians {
+            return self;
+        }
+        self.of_pedestrians(&(0..pedestrians).collect::<Vec<_>>())
+    }
+
     fn pair(&self, i: usize, k: usize) -> usize {
         assert!(
             i < self.pedestrians && k < self.hypotheses,

@@ -190,6 +190,11 @@ impl Window {
         Self { bystanders, ..self }
     }
 
+    /// Its [bystanders](Self::with_bystanders), if there are any.
+    pub fn bystanders(&self) -> Option<&Window> {
+        self.bystanders.as_deref()
+    }
+
     /// The same window with remembered tracks of similar earlier pedestrians of the place, given by pedestrian index.
     ///
     /// All of them must have been observed by the last observed frame of the window, or in another recording of the

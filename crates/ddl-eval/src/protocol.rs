@@ -128,8 +128,9 @@ impl Protocol {
         forecaster: &(impl Forecaster + ?Sized),
         windows: &[Window],
     ) -> Result<Vec<Forecast>, ForecastError> {
-        let forecasts = forecaster.forecast_all(&self.visible(windows))?;
-        self.admit(forecasts, &forecaster.name())
+        let forecasts = forecaster.forecast_all(&self.visible(windows))?.into_iter();
+        let scored = forecasts.zip(windows).map(|(forecast, window)| forecast.without_bystanders(window.len()));
+        self.admit(scored.collect(), &forecaster.name())
     }
 
     /// Limits forecasts of [visible](Self::visible) windows to the allowed number of hypotheses: `single` keeps the

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
-use ddl_data::{LiveTracks, PedestrianId, Position, checked_frame};
+use ddl_data::{Clock, LiveError, PedestrianId, Position, checked_frame};
 use serde::{Deserialize, Serialize};
 
 use crate::error::MemoryError;
@@ -88,8 +88,7 @@ impl SceneMemory {
     /// # Errors
     /// [`MemoryError::Frame`] or [`MemoryError::Capacity`] for a number that is out of range.
     pub fn new(frame_step: i64, capacity: usize) -> Result<Self, MemoryError> {
-        // The rules are those of live tracks, whose frames a memory accepts.
-        LiveTracks::with_frame_step(frame_step)?;
+        Clock::with_frame_step(frame_step).map_err(LiveError::from)?;
         if !(1..=LARGEST_CAPACITY).contains(&capacity) {
             return Err(MemoryError::Capacity {
                 capacity,

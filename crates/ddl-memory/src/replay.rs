@@ -79,7 +79,9 @@ impl SceneMemory {
         };
         let remembered: Vec<_> = (0..window.len()).map(recall).collect();
         let mut remembered = remembered.into_iter();
-        window.with_remembered(|_| remembered.next().unwrap_or_default())
+        let bystanders = window.bystanders().map(|window| self.recalling(window.clone(), count));
+        let window = window.with_remembered(|_| remembered.next().unwrap_or_default());
+        window.with_bystanders(bystanders)
     }
 
     /// Observes a whole recording, and ends all tracks.

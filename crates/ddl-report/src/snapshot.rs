@@ -3,7 +3,7 @@
 use std::fmt;
 
 use ddl_core::{Forecast, average_displacement, medoid};
-use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position, Window};
+use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position, Window};
 use ddl_eval::metric::stability::RolloutStability;
 use ddl_eval::{EvaluationError, ScoredWindow, WindowProblem};
 use serde::{Deserialize, Serialize};
@@ -47,9 +47,9 @@ pub struct SnapshotPedestrian {
     pub observed: Vec<Position>,
     /// True future: 12 positions, m, or only the first of them if the pedestrian was not observed longer.
     pub truth: Vec<Position>,
-    /// Number of observed positions that were filled in; `None` if all were measured.
+    /// How well it was observed; `None` if nothing was estimated.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub made_up: Option<CompletionCounts>,
+    pub quality: Option<ObservationQuality>,
     /// Similarity of the observed motion to the training data, 0 to 1; `None` if the forecaster does not give it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub familiarity: Option<f64>,
@@ -213,12 +213,12 @@ fn pedestrian(window: &Window, forecast: &Forecast, truth: &[Position], i: usize
             certified: forecast.certified(i, k),
         }
     };
-    let counts = window.completion_counts(i);
+    let quality = window.quality(i);
     SnapshotPedestrian {
         pedestrian: window.name(i),
         observed: positions(window.observed(i)),
         truth: positions(truth),
-        made_up: (counts != CompletionCounts::default()).then_some(counts),
+        quality: (quality != ObservationQuality::default()).then_some(quality),
         familiarity: forecast.familiarity(i).map(round),
         hypotheses: (0..forecast.hypotheses()).map(hypothesis).collect(),
     }

@@ -13,7 +13,7 @@
 use std::error::Error;
 use std::fmt::Write as _;
 
-use ddl::data::{Completion, Format, HORIZON, parse_recording};
+use ddl::data::{Completeness, Format, HORIZON, parse_recording};
 use ddl::{BuiltinModel, Ddl, DeviceChoice};
 
 fn pavement() -> String {
@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let recording = parse_recording(&table, name, Format::Table)?;
     // Pedestrians with short or incomplete observations are forecast as well.
-    let windows = recording.completed_windows(Completion::DEFAULT);
+    let windows = recording.completed_windows(Completeness::Partial);
     let window = windows.last().ok_or("no pedestrian was observed twice")?;
 
     ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread is enough

@@ -1,6 +1,6 @@
 //! Frames with arbitrary numbers, pushed as by a program.
 
-use ddl_data::{Completion, LiveTracks, PedestrianId, Position};
+use ddl_data::{Completeness, LiveTracks, PedestrianId, Position};
 
 use super::edits::{below, byte};
 use arbitrary::Unstructured;
@@ -9,12 +9,12 @@ use arbitrary::Unstructured;
 /// of any bits.
 pub(super) fn read(bytes: &[u8]) {
     let mut choices = Unstructured::new(bytes);
-    let completion = [Completion::NONE, Completion::DEFAULT][below(&mut choices, 2)];
+    let completion = [Completeness::Whole, Completeness::Partial][below(&mut choices, 2)];
     let step = 1 + below(&mut choices, 12) as i64;
     let Ok(tracks) = LiveTracks::with_frame_step(step) else {
         panic!("a step of {step} is allowed");
     };
-    let mut tracks = tracks.with_completion(completion);
+    let mut tracks = tracks.with_completeness(completion);
     let mut frame: i64 = byte(&mut choices).into();
     let mut people_of_late: Vec<(i64, usize)> = Vec::new();
     while !choices.is_empty() {

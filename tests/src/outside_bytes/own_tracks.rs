@@ -1,6 +1,6 @@
 //! A user's own tracks, as in `ddl forecast`: format guessed, rate given, windows cut.
 
-use ddl_data::{COORDINATE_LIMIT, Completion, Format, OBSERVED, Recording, WindowRule, parse_recording};
+use ddl_data::{COORDINATE_LIMIT, Completeness, Format, OBSERVED, Recording, WindowRule, parse_recording};
 
 use super::tracks::bounded;
 
@@ -31,8 +31,8 @@ pub(super) fn read(bytes: &[u8]) {
 
 fn cut(recording: &Recording) {
     let last = recording.frames().last().copied();
-    let whole = recording.completed_windows(Completion::NONE);
-    let completed = recording.completed_windows(Completion::DEFAULT);
+    let whole = recording.completed_windows(Completeness::Whole);
+    let completed = recording.completed_windows(Completeness::Partial);
     assert!(whole.len() <= completed.len() && completed.len() <= recording.frames().len());
     for window in &completed {
         assert_eq!(window.steps(), OBSERVED);

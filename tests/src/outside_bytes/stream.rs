@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::BufReader;
 
-use ddl_data::{Completion, Frame, FrameReader, LiveTracks};
+use ddl_data::{Completeness, Frame, FrameReader, LiveTracks};
 
 /// The first byte chooses the size of the pieces in which the other bytes arrive.
 pub(super) fn read(bytes: &[u8]) {
@@ -15,7 +15,7 @@ pub(super) fn read(bytes: &[u8]) {
     assert_eq!(answers(FrameReader::new(pieces, "tracker"), text.len()), whole);
     let mut scenes = BTreeMap::new();
     for frame in whole.iter().flatten() {
-        let unseen = || LiveTracks::new().with_completion(Completion::DEFAULT);
+        let unseen = || LiveTracks::new().with_completeness(Completeness::Partial);
         let tracks = scenes.entry(&frame.scene).or_insert_with(unseen);
         let last = tracks.last_frame();
         assert!(last < Some(frame.number), "{frame:?} after {last:?}");

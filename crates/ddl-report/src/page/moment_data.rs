@@ -10,12 +10,12 @@
 //! familiarity                       thousandths; absent where unknown
 //! representative                    index of the representative hypothesis
 //! falls, certified                  one letter for each hypothesis: y, n, - (unknown)
-//! made_up                           number of observed positions that were filled in; absent where it is 0
+//! quality                           how well it was observed; absent where nothing was estimated
 //! ```
 //!
 //! Positions of moments are whole millimetres, so the encoding is exact: `x / 1000` is the original number.
 
-use ddl_data::{CompletionCounts, HORIZON, OBSERVED, PedestrianName, Position};
+use ddl_data::{HORIZON, OBSERVED, ObservationQuality, PedestrianName, Position};
 use serde::Serialize;
 
 use crate::error::ReportError;
@@ -49,7 +49,7 @@ struct PedestrianData<'a> {
     falls: String,
     certified: String,
     #[serde(skip_serializing_if = "Option::is_none")]
-    made_up: Option<CompletionCounts>,
+    quality: Option<ObservationQuality>,
 }
 
 pub(super) fn to_json(moments: &[ForecastSnapshot]) -> Result<String, ReportError> {
@@ -100,7 +100,7 @@ impl<'a> PedestrianData<'a> {
             representative: pedestrian.representative(),
             falls: letters(|h| h.decreasing),
             certified: letters(|h| h.certified),
-            made_up: pedestrian.made_up,
+            quality: pedestrian.quality,
         }
     }
 }

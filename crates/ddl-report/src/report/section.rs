@@ -45,6 +45,7 @@ fn describe_rule(rule: WindowRule) -> String {
     match rule {
         WindowRule::Published => "the windows of the published STAR and DDL code".to_owned(),
         WindowRule::Complete => "every pedestrian with all 20 frames, every start".to_owned(),
+        WindowRule::Observed => "every moment; pedestrians with all 20 steps, and all others as neighbours".to_owned(),
         WindowRule::SocialGan { min_pedestrians } => {
             format!("as Social-GAN cuts them, windows of at least {min_pedestrians} pedestrians")
         }

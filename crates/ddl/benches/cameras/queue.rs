@@ -2,7 +2,7 @@
 
 use crate::Result;
 use crate::cameras::{Camera, FRAME};
-use ddl::data::{Completion, LiveTracks, OBSERVED, SceneName};
+use ddl::data::{Completeness, LiveTracks, OBSERVED, SceneName};
 use ddl::{Ddl, LiveScenes};
 use rustix::time::{ClockId, clock_gettime};
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(T, f64)> {
 /// Cameras after 7 frames: from the next frame on, all their pedestrians have 8 observations and can be forecast.
 fn watched(cameras: usize) -> Result<(Vec<Camera>, LiveScenes)> {
     let mut cameras: Vec<Camera> = (0..cameras).map(Camera::new).collect::<Result<_>>()?;
-    let mut scenes = LiveScenes::new(LiveTracks::new().with_completion(Completion::DEFAULT)).latest_only();
+    let mut scenes = LiveScenes::new(LiveTracks::new().with_completeness(Completeness::Partial)).latest_only();
     for camera in &mut cameras {
         for frame in 0..OBSERVED as i64 - 1 {
             let seen = camera.frame(frame);

@@ -332,10 +332,14 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 })
                 .map_or(rest.len(), |last| last + 1);
             let some = forecast_some(&protocol.visible(&rest[..count]))?;
+            let scored = |some: Vec<Forecast>| {
+                let pairs = some.into_iter().zip(rest);
+                pairs.map(|(forecast, window)| forecast.without_bystanders(window.len()))
+            };
             for (forecasts, some) in forecasts.model.iter_mut().zip(some.model) {
-                forecasts.extend(some);
+                forecasts.extend(scored(some));
             }
-            forecasts.lines.extend(some.lines);
+            forecasts.lines.extend(scored(some.lines));
             done += count;
             self.report(rest[..count].iter().map(Window::len).sum(), protocol)?;
         }

@@ -32,7 +32,7 @@ pub(crate) fn with_central_only(windows: &[Window], sets: &[Vec<GoalSet>]) -> Ve
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
         let pedestrians = sets.iter().enumerate();
         pedestrians
-            .map(|(i, set)| set.with_central_only(&window.observed(i)[window.completion_counts(i).padded..]))
+            .map(|(i, set)| set.with_central_only(&window.observed(i)[window.quality(i).unseen..]))
             .collect()
     };
     windows.iter().zip(sets).map(of_window).collect()

@@ -142,8 +142,7 @@ impl Trial {
     /// Each pedestrian counts once, when first observed at 8 consecutive time steps.
     fn look_at(&mut self, window: &Window) {
         for (i, &id) in window.pedestrians().iter().enumerate() {
-            let whole = window.completion_counts(i).seen() == OBSERVED;
-            if !whole || self.tried.len() >= TRIED || !self.tried.insert(id) {
+            if !window.quality(i).is_whole() || self.tried.len() >= TRIED || !self.tried.insert(id) {
                 continue;
             }
             let observed: Option<&[Position; OBSERVED]> = window.observed(i).first_chunk();

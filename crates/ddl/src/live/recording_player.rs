@@ -43,8 +43,9 @@ impl RecordingPlayer<'_> {
         frame: impl Fn(i64) -> i64,
     ) -> Result<String, DdlError> {
         let (model, recording, shown) = (self.model, self.recording, self.shown());
+        let futures = recording.futures();
         let moments = shown.iter().zip(forecasts).map(|(window, forecast)| {
-            let seen = recording.futures_of(window);
+            let seen = futures.of(window);
             let mut moment = ForecastSnapshot::under_way(model.name(), window, forecast, &seen)?;
             moment.frame = frame(window.frames()[OBSERVED - 1]);
             Ok(moment)

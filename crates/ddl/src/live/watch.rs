@@ -25,7 +25,7 @@ impl Watch {
     /// # Errors
     /// When the model has no memory branch, or the memory has another number of raw frames per step.
     pub(crate) fn remember(&mut self, model: &Ddl, memory: Option<SceneMemory>) -> Result<(), DdlError> {
-        let camera = self.tracks.frame_step();
+        let camera = self.tracks.clock().frame_step();
         let memory = match memory {
             Some(memory) => memory,
             None => SceneMemory::new(camera, SceneMemory::DEFAULT_CAPACITY)?,
@@ -62,7 +62,7 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            place.observe(frame, pedestrians, made.as_ref().map(|(window, _)| window))?;
+            place.observe(tracks.last_frame().unwrap_or(frame), pedestrians, made.as_ref().map(|(window, _)| window))?;
         }
         self.tracks = tracks;
         Ok(made)

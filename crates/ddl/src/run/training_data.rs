@@ -8,6 +8,7 @@ use sha2::{Digest as _, Sha256};
 pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     match convention {
         Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },
+        Convention::Own => WindowRule::Observed,
         _ => WindowRule::Complete,
     }
 }

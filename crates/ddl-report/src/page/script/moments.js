@@ -45,7 +45,7 @@ function decodePedestrian(data) {
     observed: walked([0, 0], data.observed),
     // The true future as far as it was observed: up to 12 positions.
     truth: walked(last, data.truth),
-    madeUp: data.made_up ?? { padded: 0, filled: 0 },
+    quality: data.quality ?? { unseen: 0, age: 0, deviation: 0 },
     hypotheses,
     familiarity: data.familiarity === undefined ? null : data.familiarity / 1000,
     representative: data.representative,

@@ -42,14 +42,14 @@ function makePlayer(moments) {
     return `${moment.recording}${fold}${who}`;
   }
 
-  // Observed steps that were filled in.
-  function madeUpWords(who) {
-    const { padded, filled } = who.madeUp;
-    if (padded + filled === 0) return "";
+  // How well the pedestrian was observed.
+  function qualityWords(who) {
+    const { unseen, age, deviation } = who.quality;
     const parts = [];
-    if (padded > 0) parts.push(`${padded} before its first observation`);
-    if (filled > 0) parts.push(`${filled} in gaps`);
-    return `Of its ${OBSERVED} observed steps ${padded + filled} were filled in (${parts.join(", ")}). `;
+    if (unseen > 0) parts.push(`${unseen} of its ${OBSERVED} observed steps lie before its first observation`);
+    if (age >= 0.05) parts.push(`last seen ${age.toFixed(1)} s before`);
+    if (deviation >= 0.01) parts.push(`position known to ${(100 * deviation).toFixed(0)} cm`);
+    return parts.length === 0 ? "" : `Observation: ${parts.join(", ")}. `;
   }
 
   // Similarity of the observed motion to the forecaster's training data.
@@ -142,7 +142,7 @@ function makePlayer(moments) {
       ? `Not measured: observed for ${who.truth.length} of the ${HORIZON} forecast steps. `
       : `${best}; from positions rounded to the millimetre. `;
     byId("convention-words").textContent =
-      measured + madeUpWords(who) + familiarityWords(who) +
+      measured + qualityWords(who) + familiarityWords(who) +
       `Forecast by ${moment.forecaster}; ${moment.recording}, frame ${moment.frame}.`;
     canvas.setAttribute(
       "aria-label",

@@ -200,7 +200,7 @@ function drawChosen(context, view, pedestrian, state, palette) {
   stroke(context, toPixels(trail(pedestrian.observed, pedestrian.truth, 0, Math.min(time, now))), palette.ink, 1.2, 0.5);
   pedestrian.observed.forEach((place, frame) => {
     // A pedestrian that appeared late has no earlier positions.
-    if (frame < pedestrian.madeUp.padded) ring(context, view.px(place), 2.2, palette.ink, 1, frame <= time ? 0.6 : 0.25);
+    if (frame < pedestrian.quality.unseen) ring(context, view.px(place), 2.2, palette.ink, 1, frame <= time ? 0.6 : 0.25);
     else dot(context, view.px(place), 2.6, palette.ink, frame <= time ? 1 : 0.25);
   });
 
