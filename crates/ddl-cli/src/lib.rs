@@ -1,7 +1,6 @@
 //! The program `ddl` as a library, for programs that embed it. It parses arguments and prints; the crate `ddl` does the
 //! work.
 
-mod clock;
 mod command;
 mod interrupt;
 mod output;

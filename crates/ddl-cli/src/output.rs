@@ -35,7 +35,7 @@ pub(crate) fn print(text: &str) -> anyhow::Result<()> {
         .context("cannot write to standard output")
 }
 
-/// A coordinate in tables, rounded to 0.1 mm.
+/// A coordinate in tables, rounded to 0.1 mm; or a time, rounded to 0.1 ms.
 pub(crate) fn table_metres(metres: f64) -> f64 {
     // no `-0`
     (1e4 * metres).round() / 1e4 + 0.0

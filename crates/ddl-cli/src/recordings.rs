@@ -3,7 +3,7 @@
 use crate::telling::{self, tell};
 use crate::units::{ReadRecording, Units};
 use anyhow::{Context as _, bail};
-use ddl::data::PlausibilityWarning;
+use ddl::data::{Arrival, Clock, PedestrianId, PlausibilityWarning, Recording};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
@@ -117,9 +117,65 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
     let warnings = read.iter().filter_map(|read| {
         let warning = read.recording.speed_warning()?;
-        Some((read.recording.name(), words(&read.clock.of_warning(warning))))
+        Some((read.recording.name(), words(&in_frames(read.clock, warning))))
     });
     tell_grouped("warning", warnings);
+}
+
+/// The warning with frame numbers of the file.
+pub(crate) fn in_frames(clock: Clock, warning: PlausibilityWarning) -> PlausibilityWarning {
+    match warning {
+        PlausibilityWarning::Jump(mut fastest) => {
+            fastest.frame = clock.number(fastest.frame).nearest();
+            PlausibilityWarning::Jump(fastest)
+        }
+        PlausibilityWarning::NoSteps { frame_step } => PlausibilityWarning::NoSteps {
+            frame_step: clock.number(frame_step).nearest(),
+        },
+        other => other,
+    }
+}
+
+/// Warns of rows that were left out, or began a track anew.
+pub(crate) fn warn_of_arrivals(recording: &Recording, clock: Clock, arrivals: &[(i64, PedestrianId, Arrival)]) {
+    for words in words_of_arrivals(recording, clock, arrivals) {
+        tell(format_args!("warning: {words}"));
+    }
+}
+
+pub(crate) fn words_of_arrivals(
+    recording: &Recording,
+    clock: Clock,
+    arrivals: &[(i64, PedestrianId, Arrival)],
+) -> Vec<String> {
+    let first = |(tick, pedestrian, off): &(i64, PedestrianId, f64)| {
+        let name = recording.names().of(*pedestrian);
+        format!("first that of pedestrian {name} at frame {}, {off:.1} m off", clock.number(*tick))
+    };
+    let (mut wrong, mut jumped) = (Vec::new(), Vec::new());
+    for &(tick, pedestrian, arrival) in arrivals {
+        match arrival {
+            Arrival::Wrong(off) => wrong.push((tick, pedestrian, off)),
+            Arrival::Jumped(off) => jumped.push((tick, pedestrian, off)),
+            _ => {}
+        }
+    }
+    let left_out = wrong.first().map(|row| {
+        format!(
+            "{}, where the pedestrian cannot be, {} left out: {}",
+            telling::many(wrong.len(), "position", "positions"),
+            if wrong.len() == 1 { "is" } else { "are" },
+            first(row)
+        )
+    });
+    let begun = jumped.first().map(|row| {
+        format!(
+            "{} after a jump, as of another pedestrian: {}",
+            telling::many(jumped.len(), "track begins anew", "tracks begin anew"),
+            first(row)
+        )
+    });
+    left_out.into_iter().chain(begun).collect()
 }
 
 pub(crate) fn warn_of(warning: &PlausibilityWarning) {

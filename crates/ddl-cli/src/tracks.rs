@@ -1,21 +1,27 @@
 //! The options that choose tracks, and the windows cut from them.
 
-use crate::clock::{Clock, FrameNumber};
 use crate::recordings;
 use crate::telling::tell;
 use crate::units::{ReadRecording, Units};
 use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
-use ddl::data::{Completion, CompletionCounts, OBSERVED, Observation, PlausibilityWarning, Recording, Window};
-use std::io::IsTerminal as _;
+use ddl::data::{
+    Arrival, Clock, Completeness, LiveTracks, OBSERVED, Observation, ObservationQuality, PedestrianId,
+    PlausibilityWarning, Recording, Window,
+};
 use std::path::{Path, PathBuf};
+
+/// Noise (m) from which on observed paths are smoothed.
+const NOISY: f64 = 0.04;
+/// Largest age and interval: tracks begin anew after a longer time without a row.
+const MOST_SECONDS: f64 = 2.0;
 
 /// The tracks to read, and their units. A command that needs them requires `file`.
 #[derive(Debug, Args)]
 pub(crate) struct TrackOptions {
-    /// Tracks: csv with the header frame,pedestrian,x,y in metres; the rows of a pedestrian are 0.4 s apart unless
-    /// --fps or --dt is given
+    /// Tracks: csv with the header frame,pedestrian,x,y in metres (or time, in seconds, instead of frame); the rows of a
+    /// pedestrian are 0.4 s apart unless --fps or --dt is given
     ///
     /// Also TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, recognised by extension and first
     /// lines. `ddl forecast -` reads the lines of a live tracker.
@@ -23,23 +29,22 @@ pub(crate) struct TrackOptions {
     file: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) units: Units,
-    /// Only pedestrians observed at each of the last 8 time steps
+    /// Only pedestrians tracked for all 8 observed steps, 2.8 s
     ///
-    /// By default, pedestrians observed at 2 or more of them are forecast too. Gaps of up to 2 steps are filled on a
-    /// straight line; positions before the first observation are padded at the mean observed velocity. The columns
-    /// `padded` and `filled` count such positions.
+    /// By default, pedestrians with 2 or more rows are forecast too. Their motion is continued backwards before the first
+    /// row; the column `unseen` counts such steps.
     #[arg(long, requires = "file")]
     whole: bool,
+    /// Carry pedestrians on until their last row is so old; 0: only those with a row at the moment
+    #[arg(long, requires = "file", value_name = "SECONDS", default_value_t = LiveTracks::DEFAULT_MAX_AGE)]
+    #[arg(value_parser = seconds, allow_negative_numbers = true)]
+    max_age: f64,
+    /// Least time between two forecasts [default: 0, every frame; 0.4 in files where each pedestrian has its own clock]
+    #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    every: Option<f64>,
     /// Only the last frame with a forecast, instead of every frame
     #[arg(long, requires = "file")]
     last: bool,
-}
-
-fn frames(count: FrameNumber) -> String {
-    match count {
-        FrameNumber::Whole(1) => "1 frame".to_owned(),
-        count => format!("{count} frames"),
-    }
 }
 
 #[derive(Debug)]
@@ -49,6 +54,9 @@ pub(crate) struct ObservedTracks {
     pub(crate) clock: Clock,
     /// A fault that the speeds suggest, such as wrong units or a wrong rate, which give meaningless forecasts.
     pub(crate) warning: Option<PlausibilityWarning>,
+    /// Rows that were left out, or began a track anew.
+    arrivals: Vec<(i64, PedestrianId, Arrival)>,
+    noise: f64,
     whole: bool,
 }
 
@@ -65,11 +73,22 @@ impl TrackOptions {
         self.file.is_some()
     }
 
-    pub(crate) fn completion(&self) -> Completion {
-        if self.whole {
-            Completion::NONE
+    /// Whether not every frame is forecast.
+    pub(crate) fn are_thinned(&self) -> bool {
+        self.every.is_some()
+    }
+
+    /// These tracks with the options' windows.
+    pub(crate) fn windows_of(&self, tracks: LiveTracks) -> LiveTracks {
+        let completeness = if self.whole {
+            Completeness::Whole
         } else {
-            Completion::DEFAULT
+            Completeness::Partial
+        };
+        let tracks = tracks.with_completeness(completeness).with_max_age(self.max_age);
+        match self.every {
+            None => tracks,
+            Some(every) => tracks.with_interval(every),
         }
     }
 
@@ -80,43 +99,35 @@ impl TrackOptions {
         Ok(self.units.or_those_of(run))
     }
 
-    /// Windows of 8 observed steps, one for each frame with pedestrians to forecast, for a run.
+    /// Windows of 8 observed steps, one for each moment with pedestrians to forecast, for a run.
     pub(crate) fn observed(&self, run: &RunConfig) -> anyhow::Result<ObservedTracks> {
         let ReadRecording {
             recording,
             clock,
-            guessed,
             notes,
         } = self.units.or_those_of(run).read(self.file())?;
         for note in notes {
             tell(format_args!("note: {note}"));
         }
-        let mut windows = recording.completed_windows(self.completion());
+        let observed = recording.observe(self.windows_of(recording.live_tracks()));
+        let mut windows = observed.windows;
         if windows.is_empty() {
             bail!(
-                "{}: no pedestrian was observed {} (a step of 0.4 s is taken as {}); give --fps or --frame-step if \
-                 frame numbers are not 0.4 s apart",
+                "{}: no pedestrian {} (a step of 0.4 s is taken as {} frames); give --fps or --frame-step if frame \
+                 numbers are not 0.4 s apart",
                 self.file().display(),
                 if self.whole {
-                    "at 8 consecutive time steps, 3.2 s"
+                    "was tracked for 8 steps, 2.8 s"
                 } else {
-                    "at 2 consecutive time steps"
+                    "has two rows at most 2 s apart"
                 },
-                frames(clock.number(recording.frame_step()))
+                clock.number(recording.frame_step())
             );
-        }
-        // The note is shown only on a terminal, where the user may be trying the tracks for the first time.
-        if guessed && std::io::stderr().is_terminal() {
-            tell(format_args!(
-                "note: a step of 0.4 s is taken as {}, the most common difference of two rows; give --fps, --dt or \
-                 --frame-step if this is wrong",
-                frames(clock.number(recording.frame_step()))
-            ));
         }
         let warning = recording
             .speed_warning()
             .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
-            .map(|warning| clock.of_warning(warning));
+            .map(|warning| recordings::in_frames(clock, warning));
         if let Some(warning) = &warning {
             recordings::warn_of(warning);
         }
@@ -128,27 +139,37 @@ impl TrackOptions {
             windows,
             clock,
             warning,
+            arrivals: observed.arrivals,
+            noise: observed.noise.metres(),
             whole: self.whole,
         })
     }
 }
 
 impl ObservedTracks {
-    /// Reports incomplete observations, because a forecast from two positions looks like any other.
-    pub(crate) fn tell_what_is_made_up(&self) {
+    /// Reports what was estimated and left out, because a forecast from two positions looks like any other.
+    pub(crate) fn tell_what_was_estimated(&self) {
         let windows = self.windows.iter();
-        let counts_of_all: Vec<CompletionCounts> = windows
-            .flat_map(|window| (0..window.len()).map(|i| window.completion_counts(i)))
+        let qualities: Vec<ObservationQuality> = windows
+            .flat_map(|window| (0..window.len()).map(|i| window.quality(i)))
             .collect();
-        let late = counts_of_all.iter().filter(|counts| counts.padded > 0).count();
-        let gaps = counts_of_all.iter().filter(|counts| counts.filled > 0).count();
-        if late + gaps > 0 {
+        let late = qualities.iter().filter(|quality| !quality.is_whole()).count();
+        let carried = qualities.iter().filter(|quality| quality.age > 0.0).count();
+        if late + carried > 0 {
             tell(format_args!(
-                "note: of {} forecasts {late} are of pedestrians observed at fewer than {OBSERVED} time steps, and \
-                 {gaps} over filled gaps (columns padded and filled); --whole leaves them out",
-                counts_of_all.len()
+                "note: of {} forecasts {late} are of pedestrians tracked for less than {OBSERVED} steps, and {carried} \
+                 of pedestrians last seen a little before (columns unseen and age); --whole and --max-age leave them \
+                 out",
+                qualities.len()
             ));
         }
+        if self.noise >= NOISY {
+            tell(format_args!(
+                "note: the positions are noisy, {:.0} cm on each axis: observed paths are smoothed",
+                100.0 * self.noise
+            ));
+        }
+        recordings::warn_of_arrivals(&self.recording, self.clock, &self.arrivals);
         if !self.whole {
             self.tell_who_is_missing();
         }
@@ -159,15 +180,25 @@ impl ObservedTracks {
             return;
         };
         let last = window.frames()[OBSERVED - 1];
-        let there = |seen: &&Observation| seen.frame == last;
-        let present = self.recording.observations().iter().filter(there).count();
-        let missing = present.saturating_sub(window.len());
+        let rows = self.recording.at(last);
+        let is_missing = |row: &&Observation| !window.pedestrians().contains(&row.pedestrian);
+        let missing = rows.iter().filter(is_missing).count();
         if missing > 0 {
-            let frame = self.clock.number(last);
             tell(format_args!(
-                "note: {missing} of the {present} pedestrians at frame {frame} were observed at too few of the last \
-             {OBSERVED} time steps and are not forecast"
+                "note: {missing} of the {} pedestrians at frame {} are not forecast: it is their first row, or their \
+                 position is doubtful",
+                rows.len(),
+                self.clock.number(last)
             ));
         }
+    }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
+    if (0.0..=MOST_SECONDS).contains(&number) {
+        Ok(number)
+    } else {
+        Err(format!("must be a number from 0 to {MOST_SECONDS}"))
     }
 }

@@ -1,25 +1,25 @@
 //! The units of tracks: the frame rate, and the homography of pixels.
 
-use crate::clock::Clock;
 use crate::output::shell_word;
+use crate::telling::many;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::{Format, Homography, Recording, TIME_STEP, parse_recording, whole_frame_step};
+use ddl::data::{Clock, Format, Homography, Recording, TIME_STEP, parse_recording};
 use ddl::{RunConfig, TrackUnits};
 use std::path::{Path, PathBuf};
 
 /// The units of frame numbers and positions: from options, else from the file, else from the run.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Units {
-    /// Frame numbers per second, such as 25: positions are resampled if 0.4 s is no whole number of frames [default:
-    /// the rate in TrajNet++ files, else that of the run's training]
+    /// Frame numbers per second, such as 25 or 23.976 [default: the rate in TrajNet++ files, else that of the run's
+    /// training]
     #[arg(long, conflicts_with_all = ["dt", "frame_step"], value_parser = positive, allow_negative_numbers = true)]
     fps: Option<f64>,
     /// Seconds between consecutive frame numbers, such as 0.1
     #[arg(long, conflicts_with = "frame_step", value_name = "SECONDS")]
     #[arg(value_parser = positive, allow_negative_numbers = true)]
     dt: Option<f64>,
-    /// Frame numbers in 0.4 s [default: the most common difference between two rows]
+    /// Frame numbers in 0.4 s [default: the most common difference between two rows of a pedestrian]
     #[arg(long, value_parser = clap::value_parser!(i64).range(1..=1 << 31), allow_negative_numbers = true)]
     frame_step: Option<i64>,
     /// Positions are in pixels: file with the homography to metres, three lines of three numbers; `none` for metres
@@ -35,8 +35,6 @@ pub(crate) struct Units {
 pub(crate) struct ReadRecording {
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
-    /// Whether the frame rate was neither given nor in the file.
-    pub(crate) guessed: bool,
     /// Notes on its rate, for [`tell_notes`](crate::recordings::tell_notes).
     pub(crate) notes: Vec<String>,
 }
@@ -75,6 +73,11 @@ impl Units {
         has_rate(&self.rate()) || self.homography.is_some()
     }
 
+    /// The option that gives the rate, with its value.
+    pub(crate) fn rate_given(&self) -> Option<String> {
+        rate_option(&self.rate())
+    }
+
     pub(crate) fn as_options(&self) -> String {
         let homography = self.homography.as_ref();
         let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
@@ -93,49 +96,38 @@ impl Units {
         (homography.is_some() && homography == place(file)) || self.remembered.homography.is_some_and(says)
     }
 
-    /// Reads the recording in the file, in metres and steps of 0.4 s. The format is recognised. The file is read once,
-    /// so that it may be a pipe.
+    /// Reads the recording in the file, in metres and ticks of its clock. The format is recognised. The file is read
+    /// once, so that it may be a pipe.
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ReadRecording> {
         let recording = self.in_metres(file)?;
-        let stated_frame_time = recording.stated_frame_time();
+        let place = || file.display().to_string();
+        let stated = recording.stated_clock().transpose().with_context(place)?;
+        if let (Some(option), Some(_)) = (self.rate_given(), recording.time_unit()) {
+            bail!("{}: the rows have times, and {option} gives a rate: leave it out", place());
+        }
         let notes = self.note_of_rate(&recording).into_iter();
-        let mut notes: Vec<String> = notes.chain(self.note_of_run(stated_frame_time.is_none())).collect();
-        let rate = match stated_frame_time {
-            _ if has_rate(&self.rate()) => self.rate(),
-            Some(frame_time) => TrackUnits {
-                dt: Some(frame_time),
-                ..TrackUnits::default()
-            },
-            None => self.remembered,
+        let mut notes: Vec<String> = notes.chain(self.note_of_run(stated.is_none())).collect();
+        let given = clock_of(&self.rate())?;
+        let clock = match given.or(stated) {
+            Some(clock) => Some(clock),
+            None => clock_of(&self.remembered)?,
         };
-        let Some(frame_time) = frame_time(&rate) else {
-            let recording = match rate.frame_step {
-                None => recording,
-                Some(step) => recording.with_frame_step(step)?,
-            };
-            return Ok(ReadRecording {
-                recording,
-                clock: Clock::WHOLE,
-                guessed: !has_rate(&rate),
-                notes,
-            });
-        };
-        let steps = recording
-            .resampled_to_steps(frame_time)
-            .with_context(|| file.display().to_string())?;
-        if steps.resampled {
-            let reason = match whole_frame_step(frame_time) {
-                Some(step) => format!("frames are not {step} apart, which is 0.4 s"),
-                None => format!("0.4 s is {} frames", rounded(TIME_STEP / frame_time)),
-            };
+        let guessed = clock.is_none();
+        let clock = clock.map_or_else(|| Clock::with_frame_step(recording.frame_step()), Ok)?;
+        if guessed {
             notes.push(format!(
-                "{reason}: positions are interpolated linearly, every 0.4 s back from the last frame"
+                "a step of 0.4 s is taken as {}, the most common difference of two rows of a pedestrian; give --fps, \
+                 --dt or --frame-step if this is wrong",
+                many_frames(recording.frame_step())
             ));
         }
+        let recording = recording.on_clock(clock).with_context(place)?;
+        if !recording.has_common_frames() {
+            notes.push("each pedestrian has a clock of its own: forecasts are at least 0.4 s apart (--every)".to_owned());
+        }
         Ok(ReadRecording {
-            recording: steps.recording,
-            clock: Clock::of_parts(steps.parts),
-            guessed: false,
+            recording,
+            clock,
             notes,
         })
     }
@@ -212,19 +204,18 @@ impl Units {
         Ok(Some(homography))
     }
 
-    /// Frame step of live tracks (frame numbers in 0.4 s), if options give it.
-    pub(crate) fn live_frame_step(&self) -> anyhow::Result<Option<i64>> {
-        live_step_of(&self.rate())
+    /// The clock of live tracks, if options give it.
+    pub(crate) fn live_clock(&self) -> anyhow::Result<Option<Clock>> {
+        clock_of(&self.rate())
     }
 
-    /// The frame step from the run, with its description.
-    pub(crate) fn remembered_live_frame_step(&self) -> anyhow::Result<Option<(i64, String)>> {
+    /// The clock from the run, with its description.
+    pub(crate) fn remembered_live_clock(&self) -> anyhow::Result<Option<(Clock, String)>> {
         let Some(rate) = rate_option(&self.remembered) else {
             return Ok(None);
         };
-        let step = live_step_of(&self.remembered);
-        let step = step.with_context(|| format!("the run was trained with {rate}"))?;
-        Ok(step.map(|step| (step, format!("as in the run's training ({rate})"))))
+        let clock = clock_of(&self.remembered)?;
+        Ok(clock.map(|clock| (clock, format!("as in the run's training ({rate})"))))
     }
 }
 
@@ -244,23 +235,17 @@ fn rate_option(rate: &TrackUnits) -> Option<String> {
     dt.or(fps).or(step)
 }
 
-fn live_step_of(rate: &TrackUnits) -> anyhow::Result<Option<i64>> {
-    match frame_time(rate) {
-        None => Ok(rate.frame_step),
-        Some(frame_time) => live_step(frame_time).map(Some),
-    }
+fn clock_of(rate: &TrackUnits) -> anyhow::Result<Option<Clock>> {
+    let clock = match (frame_time(rate), rate.frame_step) {
+        (Some(frame_time), _) => Clock::with_frame_time(frame_time)?,
+        (None, Some(step)) => Clock::with_frame_step(step)?,
+        (None, None) => return Ok(None),
+    };
+    Ok(Some(clock))
 }
 
-/// Frame step of live tracks, from the seconds between consecutive frame numbers.
-pub(crate) fn live_step(frame_time: f64) -> anyhow::Result<i64> {
-    let Some(step) = whole_frame_step(frame_time) else {
-        bail!(
-            "0.4 s is {} frames, but live tracks are not resampled; give a rate for which 0.4 s is a whole number of \
-             frames, or count frames in finer parts",
-            rounded(TIME_STEP / frame_time)
-        );
-    };
-    Ok(step)
+pub(crate) fn many_frames(count: i64) -> String {
+    many(count as usize, "frame", "frames")
 }
 
 fn rounded(number: f64) -> f64 {

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::position::{HORIZON, TIME_STEP};
+
 /// How well a pedestrian was observed. The default is that of a row at each of the 8 steps: nothing was estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct ObservationQuality {
@@ -19,6 +21,11 @@ impl ObservationQuality {
     /// Whether the pedestrian has been tracked for all 8 steps.
     pub fn is_whole(self) -> bool {
         self.unseen == 0
+    }
+
+    /// Standard deviation of a coordinate (m) that the observation adds at the end of a forecast, after 4.8 s.
+    pub fn uncertainty(self) -> f64 {
+        self.deviation_after(HORIZON as f64 * TIME_STEP)
     }
 
     /// Standard deviation of a coordinate (m) that the observation adds to a forecast `seconds` ahead.

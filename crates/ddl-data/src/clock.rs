@@ -129,7 +129,8 @@ impl Clock {
     }
 
     /// Time stamps, given in microseconds; printed in the unit of their column.
-    pub(crate) fn with_stamps(unit: TimeUnit) -> Self {
+    #[must_use]
+    pub fn with_stamps(unit: TimeUnit) -> Self {
         Self {
             count: Count::Stamps(unit),
             frame_step: (TIME_STEP * STAMPS_A_SECOND as f64) as i64,
@@ -202,6 +203,15 @@ impl FrameNumber {
             Self::Whole(tick / ticks)
         } else {
             Self::Between(tick as f64 / ticks as f64)
+        }
+    }
+
+    /// The nearest whole number; seconds since 1970 for a date.
+    pub fn nearest(self) -> i64 {
+        match self {
+            Self::Whole(frame) => frame,
+            Self::Between(frame) => frame.round() as i64,
+            Self::Date(date) => date.unix_timestamp(),
         }
     }
 

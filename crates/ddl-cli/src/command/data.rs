@@ -2,14 +2,13 @@
 
 mod place_memory;
 
-use crate::clock::Clock;
 use crate::command::Telling;
 use crate::telling::{many, tell};
 use crate::units::Units;
 use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
-use ddl::data::{Recording, Summary, WindowRule};
+use ddl::data::{Clock, Recording, Summary, WindowRule};
 use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -84,7 +83,7 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
     let model = BuiltinModel::default();
     let (mut all, mut unfamiliar) = (0, 0);
     for recording in recordings {
-        let familiarity = model.familiarity(&recording.windows(WindowRule::Complete))?;
+        let familiarity = model.familiarity(&recording.windows(WindowRule::Observed))?;
         let familiarity = familiarity.concat();
         all += familiarity.len();
         unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR_THRESHOLD).count();
@@ -143,7 +142,7 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     facts["file"] = file.display().to_string().into();
     let warnings = summary.warnings().into_iter();
     facts["doubts"] = warnings
-        .map(|warning| recordings::words(&clock.of_warning(warning)))
+        .map(|warning| recordings::words(&recordings::in_frames(clock, warning)))
         .collect();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
@@ -168,7 +167,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
             "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
             fastest.speed,
             fastest.pedestrian,
-            clock.nearest(fastest.frame)
+            clock.number(fastest.frame)
         ),
         _ => "unknown: no successive positions".to_owned(),
     };
@@ -177,7 +176,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
             ", the longest {:.1} s (pedestrian {}, after frame {})",
             gap.seconds,
             gap.pedestrian,
-            clock.nearest(gap.after)
+            clock.number(gap.after)
         )
     });
     let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
@@ -194,8 +193,8 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         many(s.pedestrians, "pedestrian", "pedestrians"),
         many(s.observations, "position", "positions"),
         s.seconds,
-        clock.nearest(s.first_frame),
-        clock.nearest(s.last_frame),
+        clock.number(s.first_frame),
+        clock.number(s.last_frame),
         clock.number(s.frame_step),
         s.low[0],
         s.high[0],
@@ -208,7 +207,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         many(s.windows, "window", "windows"),
     )?;
     for warning in s.warnings() {
-        writeln!(out, "  doubtful     {}", recordings::words(&clock.of_warning(warning)))?;
+        writeln!(out, "  doubtful     {}", recordings::words(&recordings::in_frames(clock, warning)))?;
     }
     Ok(())
 }

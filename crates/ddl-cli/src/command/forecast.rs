@@ -60,7 +60,7 @@ impl ForecastCommand {
         let text = self.text(&model, windows, observed.clock, &mut StreamState::default())?;
         write_output(self.output.as_deref(), &text)?;
         self.warn_of_flood(&text);
-        observed.tell_what_is_made_up();
+        observed.tell_what_was_estimated();
         Ok(())
     }
 

@@ -1,12 +1,11 @@
 //! `ddl goals`: goals of pedestrians, and their quality.
 
-use crate::clock::FrameNumber;
 use crate::command::{Machine, ModelChoice, Telling, convention_of, dataset};
 use crate::output::{ensure_not_input, table_metres, write_output};
 use crate::tracks::{ObservedTracks, TrackOptions};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
-use ddl::data::{OBSERVED, PedestrianName};
+use ddl::data::{FrameNumber, OBSERVED, PedestrianName};
 use ddl::goal::GoalSet;
 use ddl::{GoalEvaluation, Remembering, Split};
 use serde::Serialize;
@@ -72,8 +71,9 @@ struct GoalRow {
     weight: f64,
     x: f64,
     y: f64,
-    padded: usize,
-    filled: usize,
+    unseen: usize,
+    age: f64,
+    uncertainty: f64,
 }
 
 impl Goals {
@@ -97,7 +97,7 @@ impl Goals {
                 let observed = tracks.observed(model.config())?;
                 let goals = model.goals(&observed.windows)?;
                 let text = csv(&observed, &goals)?;
-                observed.tell_what_is_made_up();
+                observed.tell_what_was_estimated();
                 text
             }
             None => bail!("give a file of TRACKS to estimate goals for, or --measure test"),
@@ -137,7 +137,7 @@ fn csv(observed: &ObservedTracks, sets: &[Vec<GoalSet>]) -> anyhow::Result<Strin
     for (window, sets) in observed.windows.iter().zip(sets) {
         let last = observed.clock.number(window.frames()[OBSERVED - 1]);
         for (i, set) in sets.iter().enumerate() {
-            let counts = window.completion_counts(i);
+            let quality = window.quality(i);
             for (goal, (position, weight)) in set.goals().iter().zip(set.weights()).enumerate() {
                 let [x, y] = position.map(table_metres);
                 writer.serialize(GoalRow {
@@ -147,8 +147,9 @@ fn csv(observed: &ObservedTracks, sets: &[Vec<GoalSet>]) -> anyhow::Result<Strin
                     weight: *weight,
                     x,
                     y,
-                    padded: counts.padded,
-                    filled: counts.filled,
+                    unseen: quality.unseen,
+                    age: table_metres(quality.age),
+                    uncertainty: table_metres(quality.uncertainty()),
                 })?;
             }
         }

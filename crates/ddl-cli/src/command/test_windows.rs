@@ -20,8 +20,8 @@ pub(crate) struct TestWindows {
     /// own: the name of a file without its extension [default for own: all])
     #[arg(long)]
     pub(crate) fold: Option<String>,
-    /// Window rule: published, complete, social-gan (at least 2 pedestrians) or social-gan-1 [default: that of the
-    /// convention's headline tables: published, social-gan, complete]
+    /// Window rule: published, complete, observed, social-gan (at least 2 pedestrians) or social-gan-1 [default: that of the
+    /// convention's headline tables: published, social-gan, complete, observed]
     #[arg(long)]
     window_rule: Option<WindowRule>,
 }
@@ -36,7 +36,7 @@ impl TestWindows {
 
     pub(crate) fn ensure_no_rule_for_own(&self) -> anyhow::Result<()> {
         if self.window_rule.is_some() {
-            bail!("own recordings are evaluated on every complete window of 20 steps: leave out --window-rule");
+            bail!("own recordings are evaluated as a live stream sees them (rule observed): leave out --window-rule");
         }
         Ok(())
     }

@@ -123,7 +123,10 @@ impl Walked<'_> {
         let pairs = goals.zip(self.weights.chunks_exact(hypotheses)).enumerate();
         let spread = pairs
             .flat_map(|(i, (goals, weights))| {
-                calibration.spread(self.window.observed(i), goals, weights, self.config.time_step)
+                let time_step = self.config.time_step;
+                let spread = calibration.spread(self.window.observed(i), goals, weights, time_step);
+                let quality = self.window.quality(i);
+                (1..).zip(spread).map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
             })
             .collect();
         Ok(forecast.with_std_dev(spread, Calibration::shared_regions())?)

@@ -220,6 +220,11 @@ impl LiveScenes {
         self.scene(&scene.cloned())?.watch.remember(model, memory)
     }
 
+    /// The tracks of a scene.
+    pub fn tracks(&self, scene: Option<&SceneName>) -> Option<&LiveTracks> {
+        Some(&self.scenes.get(&scene.cloned())?.watch.tracks)
+    }
+
     /// The place of a scene, if it [has a memory](Self::remember).
     pub fn place(&self, scene: Option<&SceneName>) -> Option<&PlaceMemory> {
         self.scenes.get(&scene.cloned())?.watch.place.as_ref()

@@ -1,13 +1,12 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
-use crate::clock::Clock;
 use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::forecast::{json_lines, table};
 use crate::command::{KeepClear, Machine, ModelChoice};
 use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use clap::{Args, ValueEnum};
-use ddl::data::Window;
+use ddl::data::{Clock, Window};
 use ddl::{Ddl, Forecaster as _};
 use std::path::PathBuf;
 

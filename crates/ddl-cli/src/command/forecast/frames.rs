@@ -1,6 +1,6 @@
 //! Frames of standard input, read on a separate thread, so that forecasts do not wait for input.
 
-use ddl::data::{DataError, Frame, FrameReader};
+use ddl::data::{DataError, Frame, FrameReader, TimeUnit};
 use std::io::{BufRead, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
@@ -8,9 +8,24 @@ use std::thread;
 /// Number of frames that are read ahead. When they are full, the thread waits, and so does the writer of the stream.
 const AHEAD: usize = 64;
 
+/// What the lines so far state about time.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StatedTime {
+    pub(super) frames_a_second: Option<f64>,
+    pub(super) time_unit: Option<TimeUnit>,
+}
+
+impl StatedTime {
+    fn by<R: BufRead>(frames: &FrameReader<R>) -> Self {
+        Self {
+            frames_a_second: frames.rate(),
+            time_unit: frames.time_unit(),
+        }
+    }
+}
+
 pub(super) enum Incoming {
-    /// A frame, and the frames per second if the lines so far state them.
-    Frame(Frame, Option<f64>),
+    Frame(Frame, StatedTime),
     /// An invalid line, which is left out.
     Wrong(DataError),
     /// The error that ends the stream. Earlier frames have been sent.
@@ -46,11 +61,11 @@ fn read<R: BufRead>(mut frames: FrameReader<R>, to: &SyncSender<Incoming>) {
     loop {
         let incoming = match frames.next_frame() {
             Ok(None) => return,
-            Ok(Some(frame)) => Incoming::Frame(frame, frames.rate()),
+            Ok(Some(frame)) => Incoming::Frame(frame, StatedTime::by(&frames)),
             Err(error @ DataError::Format(_)) if frames.names_scenes() => Incoming::Wrong(error),
             Err(error) => {
                 while let Some(frame) = frames.unfinished() {
-                    if to.send(Incoming::Frame(frame, frames.rate())).is_err() {
+                    if to.send(Incoming::Frame(frame, StatedTime::by(&frames))).is_err() {
                         return;
                     }
                 }

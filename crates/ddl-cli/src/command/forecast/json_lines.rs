@@ -1,8 +1,7 @@
 //! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads.
 
-use crate::clock::FrameNumber;
 use crate::command::forecast::moment::Moment;
-use ddl::data::{HORIZON, PedestrianName, SceneName};
+use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName};
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
@@ -12,9 +11,12 @@ struct PedestrianLine<'a> {
     scene: Option<&'a SceneName>,
     observed_until: FrameNumber,
     pedestrian: PedestrianName,
-    /// Numbers of positions padded before the first observation, and filled in gaps.
-    padded: usize,
-    filled: usize,
+    /// Number of positions before its first row.
+    unseen: usize,
+    /// Time since its last row, s.
+    age: f64,
+    /// Standard deviation that the observation adds at the end of the forecast, m.
+    uncertainty: f64,
     frames: Vec<FrameNumber>,
     /// Familiarity of the observed motion, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,13 +95,14 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
                     certificate: moment.certificate(i, k).map(Certificate::of),
                 })
                 .collect();
-            let counts = moment.window.completion_counts(i);
+            let quality = moment.window.quality(i);
             let line = PedestrianLine {
                 scene: moment.scene,
                 observed_until: moment.observed_until(),
                 pedestrian: moment.window.name(i),
-                padded: counts.padded,
-                filled: counts.filled,
+                unseen: quality.unseen,
+                age: quality.age,
+                uncertainty: quality.uncertainty(),
                 frames: moment.frames(),
                 familiarity: forecast.familiarity(i),
                 spread: (0..HORIZON).filter_map(|t| forecast.std_dev(i, t)).collect(),

@@ -12,6 +12,10 @@ const PAUSE: Duration = Duration::from_secs(10);
 pub(super) struct LeftOut {
     wrong: Seldom,
     dropped: Seldom,
+    doubtful: Seldom,
+    /// Rows, and forecasts of pedestrians.
+    rows: usize,
+    forecast: usize,
 }
 
 /// Counts events, and limits the rate of messages about them.
@@ -47,6 +51,32 @@ impl LeftOut {
             tell(format_args!(
                 "error: {}{others}; this is left out, and the stream goes on",
                 words(error)
+            ));
+        }
+    }
+
+    /// Reports rows of a frame that were left out, or began a track anew.
+    pub(super) fn doubtful(&mut self, rows: usize, doubts: &[String]) {
+        self.rows += rows;
+        self.doubtful.count += doubts.len() as u64;
+        if let (Some(last), Some(new)) = (doubts.last(), self.doubtful.take_due()) {
+            let others = if new == 1 { String::new() } else { format!(" (the last of {new} such)") };
+            tell(format_args!("warning: {last}{others}"));
+        }
+    }
+
+    /// Counts forecasts of pedestrians.
+    pub(super) fn forecast(&mut self, pedestrians: usize) {
+        self.forecast += pedestrians;
+    }
+
+    /// Says why most pedestrians were not forecast, if so.
+    pub(super) fn tell_if_few(&self) {
+        if 2 * self.forecast < self.rows {
+            tell(format_args!(
+                "warning: only {} of {} positions were forecast from: a pedestrian needs two rows, at most 2 s apart, \
+                 under one name; is the rate right, and does the tracker keep its names?",
+                self.forecast, self.rows
             ));
         }
     }

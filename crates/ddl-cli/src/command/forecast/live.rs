@@ -1,18 +1,18 @@
 //! `ddl forecast -`: reads tracks from standard input and forecasts every frame.
 
-use crate::clock::Clock;
 use crate::command::forecast::arguments::ForecastCommand;
-use crate::command::forecast::frames::{Incoming, IncomingFrames};
+use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
 use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::interrupt::Interrupt;
 use crate::recordings;
 use crate::telling::{tell, words};
-use crate::units::{Units, live_step};
+use crate::units::{Units, many_frames};
 use anyhow::{Context as _, bail};
 use ddl::data::{
-    CompletionCounts, Frame, Homography, LiveTracks, Observation, PlausibilityWarning, Recording, SceneName, Window,
+    Arrival, Clock, Frame, FrameNumber, Homography, LiveTracks, Observation, PlausibilityWarning, Recording, SceneName,
+    Window,
 };
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
@@ -62,14 +62,16 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
     if let Some(note) = units.note_of_run(false) {
         tell(format_args!("note: {note}"));
     }
-    if let Some(step) = units.live_frame_step()? {
-        begin(forecast, model, watching, step)?;
+    let clock = units.live_clock()?;
+    if let Some(clock) = clock {
+        begin(forecast, model, watching, clock)?;
     }
     let mut stream = Stream {
         forecast,
         model,
         watching,
         homography,
+        clock,
         early: Vec::new(),
         output: ForecastOutput::open(forecast.output.as_deref())?,
         state: StreamState::default(),
@@ -80,6 +82,9 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
         answered: 0,
     };
     stream.follow(&IncomingFrames::of_standard_input()?, &units)?;
+    if !forecast.latest && !forecast.tracks.are_thinned() {
+        stream.left_out.tell_if_few();
+    }
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
         bail!(
@@ -96,10 +101,9 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
     Ok(())
 }
 
-/// Creates the scenes, as soon as the frame step is known.
-fn begin(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>, step: i64) -> anyhow::Result<()> {
-    let tracks = LiveTracks::with_frame_step(step)?.with_completion(forecast.tracks.completion());
-    let scenes = LiveScenes::new(tracks);
+/// Creates the scenes, as soon as the clock is known.
+fn begin(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>, clock: Clock) -> anyhow::Result<()> {
+    let scenes = LiveScenes::new(forecast.tracks.windows_of(LiveTracks::with_clock(clock)));
     let scenes = if forecast.latest { scenes.latest_only() } else { scenes };
     let mut watching = lock(watching);
     let WatchedStream { scenes: to, memory } = &mut *watching;
@@ -113,7 +117,7 @@ fn begin(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream
 
 /// The scenes of the stream, and their memories.
 struct WatchedStream {
-    /// `None` until the frame step is known.
+    /// `None` until the clock is known.
     scenes: Option<LiveScenes>,
     memory: Option<KeptMemory>,
 }
@@ -173,7 +177,9 @@ struct Stream<'a> {
     model: &'a Ddl,
     watching: &'a Mutex<WatchedStream>,
     homography: Option<Homography>,
-    /// The first frame of each scene, until the frame step is known.
+    /// `None` until it is known.
+    clock: Option<Clock>,
+    /// The first frame of each scene, until the clock is known.
     early: Vec<Frame>,
     output: ForecastOutput,
     state: StreamState,
@@ -208,8 +214,8 @@ impl Stream<'_> {
             };
             match incoming {
                 None => self.answer_batch()?,
-                Some(Incoming::Frame(frame, rate)) => {
-                    if let Err(error) = self.take(frame, rate, units) {
+                Some(Incoming::Frame(frame, stated)) => {
+                    if let Err(error) = self.take(frame, stated, units) {
                         break Some(error);
                     }
                 }
@@ -229,26 +235,36 @@ impl Stream<'_> {
         watching.scenes.as_ref().map_or(0, LiveScenes::waiting)
     }
 
-    /// Adds a frame. `rate`: frames per second, if the input states it.
-    fn take(&mut self, frame: Frame, rate: Option<f64>, units: &Units) -> anyhow::Result<()> {
+    /// Adds a frame.
+    fn take(&mut self, frame: Frame, stated: StatedTime, units: &Units) -> anyhow::Result<()> {
         if std::mem::take(&mut self.is_empty)
             && let Some(memory) = &lock(self.watching).memory
         {
             memory.ensure_fits(frame.scene.as_ref())?;
         }
         self.taken += 1;
-        if lock(self.watching).scenes.is_none() {
+        if self.clock.is_none() {
             let mut early = self.early.iter();
-            let Some(first) = early.find(|early| early.scene == frame.scene) else {
+            let first = early.find(|early| early.scene == frame.scene);
+            let apart = first.map(|first| frame.number - first.number);
+            let Some((clock, reason)) = clock_of(units, apart, &stated)? else {
                 self.early.push(frame);
                 return Ok(());
             };
-            let (step, reason) = step(units, frame.number - first.number, rate)?;
-            tell(format_args!(
-                "note: frame numbers are assumed to be {step} apart in 0.4 s, {reason}; give --fps or --frame-step if \
-                 this is wrong"
-            ));
-            begin(self.forecast, self.model, self.watching, step)?;
+            if let Some(reason) = reason {
+                tell(format_args!(
+                    "note: a step of 0.4 s is taken as {}, {reason}; give --fps or --frame-step if this is wrong",
+                    match clock.number(clock.frame_step()) {
+                        FrameNumber::Whole(step) => many_frames(step),
+                        step => format!("{step} frames"),
+                    }
+                ));
+            }
+            begin(self.forecast, self.model, self.watching, clock)?;
+            self.clock = Some(clock);
+        }
+        if let (Some(option), Some(_)) = (units.rate_given(), stated.time_unit) {
+            bail!("standard input: the rows have times, and {option} gives a rate: leave it out");
         }
         let early = std::mem::take(&mut self.early).into_iter();
         for frame in early.chain([frame]) {
@@ -273,7 +289,26 @@ impl Stream<'_> {
         for scene in idle {
             self.state.forget(&scene);
         }
-        watching.observe(frame, self.model).and(ended)
+        let (scene, rows, number) = (frame.scene.clone(), frame.pedestrians.len(), frame.number);
+        let names = frame.names.clone();
+        let observed = watching.observe(frame, self.model);
+        let tracks = watching.scenes.as_ref().and_then(|scenes| scenes.tracks(scene.as_ref()));
+        if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
+            let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
+            let doubts = tracks.arrivals().iter().filter_map(|&(pedestrian, arrival)| {
+                let (off, then) = match arrival {
+                    Arrival::Wrong(off) => (off, "it is left out"),
+                    Arrival::Jumped(off) => (off, "the track begins anew, as of another pedestrian"),
+                    _ => return None,
+                };
+                let (name, frame) = (names.of(pedestrian), tracks.clock().number(tracks.last_frame().unwrap_or(number)));
+                Some(format!(
+                    "pedestrian {name}{place} at frame {frame} is {off:.1} m from where it can be: {then}"
+                ))
+            });
+            self.left_out.doubtful(rows, &doubts.collect::<Vec<_>>());
+        }
+        observed.and(ended)
     }
 
     fn answer_batch(&mut self) -> anyhow::Result<()> {
@@ -293,7 +328,7 @@ impl Stream<'_> {
             }
         }
         match self.text(&batch.windows, &batch.scenes) {
-            Ok(text) => return self.write(&text, batch.windows.len()),
+            Ok(text) => return self.write(&text, &batch.windows),
             // The error does not name its window, so the windows are forecast one by one.
             Err(_) if batch.windows.len() > 1 => {}
             Err(error) => return self.failed(error, batch.scenes.iter().any(Option::is_some)),
@@ -301,7 +336,7 @@ impl Stream<'_> {
         for (window, scene) in batch.windows.iter().zip(&batch.scenes) {
             let one = (std::slice::from_ref(window), std::slice::from_ref(scene));
             match self.text(one.0, one.1) {
-                Ok(text) => self.write(&text, 1)?,
+                Ok(text) => self.write(&text, one.0)?,
                 Err(error) => self.failed(error, scene.is_some())?,
             }
         }
@@ -310,7 +345,8 @@ impl Stream<'_> {
 
     fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
         let windows = SceneWindows { windows, scenes };
-        self.forecast.text(self.model, windows, Clock::WHOLE, &mut self.state)
+        self.forecast
+            .text(self.model, windows, self.clock.unwrap_or(Clock::STEPS), &mut self.state)
     }
 
     /// Leaves out a failed forecast of a named scene. Before the first forecast it is an error, because the arguments
@@ -323,7 +359,9 @@ impl Stream<'_> {
         Ok(())
     }
 
-    fn write(&mut self, text: &str, frames: usize) -> anyhow::Result<()> {
+    fn write(&mut self, text: &str, windows: &[Window]) -> anyhow::Result<()> {
+        let frames = windows.len();
+        self.left_out.forecast(windows.iter().map(Window::len).sum());
         self.answered += frames as u64;
         self.output.write(text).with_context(|| match &self.forecast.output {
             Some(path) => format!(
@@ -376,7 +414,7 @@ impl ForecastOutput {
 
 /// Warns if the speeds in the first complete window look wrong; returns whether it warned.
 fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
-    let whole = (0..window.len()).filter(|&i| window.completion_counts(i) == CompletionCounts::default());
+    let whole = (0..window.len()).filter(|&i| window.quality(i).is_whole());
     let seen: Vec<Observation> = whole
         .flat_map(|i| {
             let pedestrian = window.pedestrians()[i];
@@ -406,18 +444,29 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
     Ok(frame)
 }
 
-/// The frame step if no option gives it, with the reason. `apart`: difference of the first two frame numbers.
-fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, String)> {
-    if let Some(rate) = rate {
-        let step = live_step(1.0 / (rate * apart as f64)).with_context(|| {
+/// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame. `apart`: difference
+/// of the first two frame numbers of a scene.
+fn clock_of(
+    units: &Units,
+    apart: Option<i64>,
+    stated: &StatedTime,
+) -> anyhow::Result<Option<(Clock, Option<String>)>> {
+    if let Some(unit) = stated.time_unit {
+        return Ok(Some((Clock::with_stamps(unit), None)));
+    }
+    let Some(apart) = apart else {
+        return Ok(None);
+    };
+    if let Some(rate) = stated.frames_a_second {
+        let clock = Clock::with_frame_time(1.0 / (rate * apart as f64)).with_context(|| {
             format!(
                 "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} apart"
             )
         })?;
-        return Ok((step, format!("from the fps of the scenes, {rate}")));
+        return Ok(Some((clock, Some(format!("from the fps of the scenes, {rate}")))));
     }
-    if let Some(remembered) = units.remembered_live_frame_step()? {
-        return Ok(remembered);
+    if let Some((clock, reason)) = units.remembered_live_clock()? {
+        return Ok(Some((clock, Some(reason))));
     }
     if apart > LONGEST_STEP {
         bail!(
@@ -425,5 +474,6 @@ fn step(units: &Units, apart: i64, rate: Option<f64>) -> anyhow::Result<(i64, St
              --frame-step"
         );
     }
-    Ok((apart, "the difference of the first two frames".to_owned()))
+    let clock = Clock::with_frame_step(apart)?;
+    Ok(Some((clock, Some("the difference of the first two frames".to_owned()))))
 }

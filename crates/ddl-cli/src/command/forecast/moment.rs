@@ -1,8 +1,7 @@
 //! The forecasts of some frames, and the state that one group of frames passes on to the next.
 
-use crate::clock::{Clock, FrameNumber};
 use crate::telling::tell;
-use ddl::data::{HORIZON, OBSERVED, SceneName, Window};
+use ddl::data::{Clock, FrameNumber, HORIZON, OBSERVED, SceneName, Window};
 use ddl::dynamics::LyapunovCertificate;
 use ddl::{AdaptiveRegions, CertifiedForecast};
 use std::collections::BTreeMap;

@@ -1,10 +1,9 @@
 //! Forecasts as csv: one row for each position.
 
-use crate::clock::FrameNumber;
 use crate::command::forecast::moment::Moment;
 use crate::output::{table_metres, table_share};
 use anyhow::Context as _;
-use ddl::data::PedestrianName;
+use ddl::data::{FrameNumber, PedestrianName};
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -19,13 +18,14 @@ struct Row {
     frame: FrameNumber,
     x: f64,
     y: f64,
-    padded: usize,
-    filled: usize,
+    unseen: usize,
+    age: f64,
+    uncertainty: f64,
     /// Empty if the model has no familiarity.
     familiarity: Option<f64>,
 }
 
-const COLUMNS: [&str; 12] = [
+const COLUMNS: [&str; 13] = [
     "observed_until",
     "pedestrian",
     "hypothesis",
@@ -35,8 +35,9 @@ const COLUMNS: [&str; 12] = [
     "frame",
     "x",
     "y",
-    "padded",
-    "filled",
+    "unseen",
+    "age",
+    "uncertainty",
     "familiarity",
 ];
 /// An additional first column, if the tracks name scenes.
@@ -62,7 +63,7 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
         // One field if the tracks name scenes, otherwise no field.
         let scene = Vec::from_iter(moment.scene);
         for i in 0..moment.window.len() {
-            let counts = moment.window.completion_counts(i);
+            let quality = moment.window.quality(i);
             for hypothesis in 0..moment.forecast.hypotheses() {
                 let certificate = moment.certificate(i, hypothesis);
                 let holds = certificate.is_some_and(|certificate| certificate.verify().is_ok());
@@ -83,8 +84,9 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
                         frame: frame.rounded(),
                         x,
                         y,
-                        padded: counts.padded,
-                        filled: counts.filled,
+                        unseen: quality.unseen,
+                        age: table_metres(quality.age),
+                        uncertainty: table_metres(quality.uncertainty()),
                         familiarity: moment.forecast.familiarity(i).map(table_share),
                     };
                     let radius = |&level: &f64| {
