@@ -53,7 +53,7 @@ pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<ReadR
     all_read(errors, files.len())?;
     Ok(read
         .into_iter()
-        .map(|(_, resampled_to_steps)| resampled_to_steps)
+        .map(|(_, recording)| recording)
         .collect())
 }
 
@@ -90,7 +90,7 @@ pub(crate) fn read_each<'f>(
     let mut errors = Vec::new();
     for file in files {
         match units.read(file) {
-            Ok(resampled_to_steps) => read.push((file.as_path(), resampled_to_steps)),
+            Ok(recording) => read.push((file.as_path(), recording)),
             Err(error) => errors.push(error),
         }
     }

@@ -105,7 +105,7 @@ impl Units {
         if let (Some(option), Some(_)) = (self.rate_given(), recording.time_unit()) {
             bail!("{}: the rows have times, and {option} gives a rate: leave it out", place());
         }
-        let notes = self.note_of_rate(&recording).into_iter();
+        let notes = recording.notes().iter().cloned().chain(self.note_of_rate(&recording));
         let mut notes: Vec<String> = notes.chain(self.note_of_run(stated.is_none())).collect();
         let given = clock_of(&self.rate())?;
         let clock = match given.or(stated) {

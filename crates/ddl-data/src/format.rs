@@ -71,18 +71,21 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let mut rate = None;
+    let (mut rate, mut notes) = (None, Vec::new());
     let rows = match format {
         Format::StarCsv => star_csv::parse(text, origin),
         Format::SocialGan => blanks::parse(text, origin, blanks::social_gan),
-        Format::Table => table::parse(text, origin),
+        Format::Table => table::parse(text, origin).map(|(rows, of_columns)| {
+            notes = of_columns;
+            rows
+        }),
         Format::TrajNet => trajnet::parse(text, origin).map(|(rows, stated)| {
             rate = stated.frames_a_second;
             rows
         }),
         Format::Obsmat => blanks::parse(text, origin, blanks::obsmat),
     }?;
-    Ok(rows::into_recording(rows, origin)?.with_rate(rate))
+    Ok(rows::into_recording(rows, origin)?.with_rate(rate).with_notes(notes))
 }
 
 /// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.

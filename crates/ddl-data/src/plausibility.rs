@@ -24,6 +24,9 @@ const JUMP: f64 = 12.0;
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
+/// Time without any motion (s) that people do not reach, even standing, and speed before it (m/s), of a frozen track.
+const FROZEN: f64 = 4.0;
+const WALKING: f64 = 0.3;
 /// A warning is given from this share of missing positions on, counted between the first and last frame of each
 /// pedestrian.
 const OFTEN: f64 = 0.03;
@@ -52,8 +55,8 @@ pub enum PlausibilityWarning {
     )]
     Still { farthest: f64 },
     #[error(
-        "pedestrians have no position in {:.0} % of the frames between their first and last; a forecast needs a \
-         position at exactly each step, so let the tracker fill short gaps if it can",
+        "{:.0} % of the rows between the first and the last of each pedestrian are missing; positions there are \
+         estimated",
         100.0 * .share
     )]
     Unseen { share: f64 },
@@ -65,7 +68,16 @@ pub enum PlausibilityWarning {
         .0.speed
     )]
     Jump(Fastest),
-    #[error("no pedestrian was seen at 20 steps in a row: these tracks cannot be used for training or evaluation")]
+    #[error(
+        "the frame numbers begin again {count} times in the file, so its parts lie over each other; make a file of each"
+    )]
+    Restarted { count: usize },
+    #[error(
+        "{count} tracks walk and then repeat one position for 4 s or longer, to their end; does the tracker repeat the \
+         last position of pedestrians that it has lost?"
+    )]
+    Frozen { count: usize },
+    #[error("no pedestrian was tracked for 20 steps: these tracks cannot be used for training or evaluation")]
     NothingToLearnFrom,
 }
 
@@ -113,10 +125,11 @@ impl Speeds {
 }
 
 impl Recording {
-    /// The first warning about speeds in [the summary](Self::summary), computed without the rest of the summary.
+    /// The first warning about frame numbers and speeds in [the summary](Self::summary), computed without the rest of
+    /// the summary.
     #[must_use]
     pub fn speed_warning(&self) -> Option<PlausibilityWarning> {
-        self.speeds(&self.tracks()).warning()
+        restarted(self.restarts()).or_else(|| self.speeds(&self.tracks()).warning())
     }
 
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {
@@ -148,6 +161,25 @@ impl Recording {
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
         }
     }
+}
+
+pub(crate) fn restarted(count: usize) -> Option<PlausibilityWarning> {
+    (count > 0).then_some(PlausibilityWarning::Restarted { count })
+}
+
+pub(crate) fn frozen(count: usize) -> Option<PlausibilityWarning> {
+    (count > 0).then_some(PlausibilityWarning::Frozen { count })
+}
+
+/// Whether a track walks, and then repeats one position to its end.
+pub(crate) fn is_frozen(track: &[&Observation], step: i64) -> bool {
+    let last = track[track.len() - 1];
+    let same = |row: &&&Observation| row.position.map(f64::to_bits) == last.position.map(f64::to_bits);
+    let frozen = track.iter().rev().take_while(same).count();
+    let start = track[track.len() - frozen];
+    let before = position_at(track, start.frame - step, step);
+    let is_long = (last.frame - start.frame) as f64 * TIME_STEP >= FROZEN * step as f64;
+    is_long && before.is_some_and(|before| speed(before, start.position) > WALKING)
 }
 
 pub(crate) fn unseen(share: f64) -> Option<PlausibilityWarning> {

@@ -29,6 +29,8 @@ pub struct Recording {
     starts: Vec<usize>,
     rate: Option<f64>,
     time_unit: Option<TimeUnit>,
+    restarts: usize,
+    notes: Vec<String>,
     names: PedestrianNames,
 }
 
@@ -93,6 +95,8 @@ impl Recording {
             starts,
             rate: None,
             time_unit: None,
+            restarts: 0,
+            notes: Vec::new(),
             names: PedestrianNames::default(),
         })
     }
@@ -120,7 +124,7 @@ impl Recording {
     }
 
     /// The differences of frame numbers between successive rows of each pedestrian.
-    fn differences(&self) -> Vec<i64> {
+    pub(crate) fn differences(&self) -> Vec<i64> {
         let tracks = self.tracks();
         let differences = tracks.values().flat_map(|track| {
             track.array_windows().map(|[before, row]| row.frame - before.frame)
@@ -189,6 +193,24 @@ impl Recording {
         Self { time_unit, ..self }
     }
 
+    pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
+        Self { notes, ..self }
+    }
+
+    /// What was assumed while the file was read, a sentence each.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    pub(crate) fn with_restarts(self, restarts: usize) -> Self {
+        Self { restarts, ..self }
+    }
+
+    /// How often the frame numbers begin again in the file.
+    pub(crate) fn restarts(&self) -> usize {
+        self.restarts
+    }
+
     /// The clock of its frame numbers, which are ticks.
     pub(crate) fn tick_clock(&self) -> Clock {
         Clock::of_ticks(self.frame_step)
@@ -202,6 +224,8 @@ impl Recording {
         Ok(Self {
             rate: self.rate,
             time_unit: self.time_unit,
+            restarts: self.restarts,
+            notes: self.notes.clone(),
             names: self.names.clone(),
             ..Self::new(self.shared_name(), frame_step, observations)?
         })

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::live::Completeness;
 use crate::observation::Observation;
+use crate::observe::Arrival;
 use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
 use crate::recording::Recording;
 use crate::rule::WindowRule;
@@ -38,6 +39,17 @@ pub struct Summary {
     pub frame_step: i64,
     /// Time from the first frame to the last, s.
     pub seconds: f64,
+    /// Rows of a pedestrian per second, by the median time between two of them; `None` if nobody has two rows.
+    pub rows_a_second: Option<f64>,
+    /// Median deviation of that time (s) from its median, where no row is missing.
+    pub jitter: f64,
+    /// Whether pedestrians are seen at common frames, or each on a clock of its own.
+    pub common_frames: bool,
+    /// Standard deviation of the noise of a coordinate, m.
+    pub noise: f64,
+    /// The rows that are left out, or begin a track anew: tick, pedestrian, and how it arrived.
+    #[serde(skip)]
+    pub arrivals: Vec<(i64, PedestrianId, Arrival)>,
     /// Number of pedestrians.
     pub pedestrians: usize,
     /// Number of observations.
@@ -56,6 +68,10 @@ pub struct Summary {
     pub fastest: Option<Fastest>,
     /// The 90 % quantile of the step speeds of tracks that end more than 2 m from their start, m/s.
     pub brisk_speed: Option<f64>,
+    /// Number of tracks that walk, and then repeat one position for 4 s or longer, to their end.
+    pub frozen: usize,
+    /// How often the frame numbers of the file begin again.
+    pub restarts: usize,
     /// Share of missing rows between the first and last of each pedestrian, by the usual time between two rows.
     pub unseen: f64,
     /// Number of gaps: a pedestrian was not seen for some steps and then again.
@@ -97,9 +113,10 @@ impl Summary {
             farthest: self.farthest,
         };
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
-        speeds
-            .warning()
+        plausibility::restarted(self.restarts)
             .into_iter()
+            .chain(speeds.warning())
+            .chain(plausibility::frozen(self.frozen))
             .chain(plausibility::unseen(self.unseen))
             .chain(learning.then_some(PlausibilityWarning::NothingToLearnFrom))
             .collect()
@@ -138,6 +155,12 @@ impl Recording {
                 [0, 1].map(|axis| pick(corner[axis], place[axis]))
             })
         };
+        let spacing = self.usual_spacing();
+        let differences = self.differences().into_iter();
+        let off = differences.filter_map(|difference| Some((difference - spacing?).abs()));
+        let mut off: Vec<i64> = off.filter(|&off| 2 * off < spacing.unwrap_or(0)).collect();
+        off.sort_unstable();
+        let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
         let (first, last) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
         let windows = self.windows(WindowRule::Observed);
         let observed = self.observe(self.live_tracks().with_completeness(Completeness::Partial));
@@ -149,7 +172,12 @@ impl Recording {
             first_frame: first,
             last_frame: last,
             frame_step: step,
-            seconds: (last - first) as f64 * TIME_STEP / step as f64,
+            seconds: seconds(last - first),
+            rows_a_second: spacing.map(|spacing| 1.0 / seconds(spacing)),
+            jitter: seconds(off.get(off.len() / 2).copied().unwrap_or(0)),
+            common_frames: self.has_common_frames(),
+            noise: observed.noise.metres(),
+            arrivals: observed.arrivals,
             pedestrians: tracks.len(),
             observations: self.observations().len(),
             low: corner(f64::min, f64::INFINITY),
@@ -159,6 +187,8 @@ impl Recording {
             fastest: speeds.fastest,
             brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
+            frozen: tracks.values().filter(|track| plausibility::is_frozen(track, step)).count(),
+            restarts: self.restarts(),
             unseen: self.unseen(&tracks),
             holes: gaps.len(),
             longest_hole: gaps.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),

@@ -4,7 +4,7 @@ mod place_memory;
 
 use crate::command::Telling;
 use crate::telling::{many, tell};
-use crate::units::Units;
+use crate::units::{ReadRecording, Units};
 use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
@@ -50,16 +50,14 @@ impl Data {
         if errors.is_empty() {
             self.picture.draw(&memories)?;
         }
-        recordings::tell_notes(read.iter().map(|(_, resampled_to_steps)| resampled_to_steps));
-        let summaries = read
-            .iter()
-            .map(|(file, resampled_to_steps)| (file, resampled_to_steps.recording.summary(), resampled_to_steps.clock));
+        recordings::tell_notes(read.iter().map(|(_, read)| read));
         let mut text = String::new();
         let mut of_each = Vec::new();
         let mut total = Total::default();
-        for (file, summary, clock) in summaries {
-            write_summary(&mut text, &file.display().to_string(), &summary, clock)?;
-            of_each.push(facts(file, &summary, clock)?);
+        for (file, ReadRecording { recording, clock, .. }) in &read {
+            let summary = recording.summary();
+            write_summary(&mut text, &file.display().to_string(), &summary, recording, *clock)?;
+            of_each.push(facts(file, &summary, recording, *clock)?);
             total.add(&summary);
         }
         if self.telling.json {
@@ -74,7 +72,7 @@ impl Data {
             writeln!(text, "{memory}")?;
         }
         output::print(&text)?;
-        warn_of_unfamiliar(read.iter().map(|(_, resampled_to_steps)| &resampled_to_steps.recording))?;
+        warn_of_unfamiliar(read.iter().map(|(_, read)| &read.recording))?;
         recordings::all_read(errors, files.len())
     }
 }
@@ -99,6 +97,10 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
     Ok(())
 }
 
+/// Least noise that is measured apart (m).
+const EXACT: f64 = 0.005;
+/// Jitter above this share of the time between two rows is printed.
+const EVEN_CLOCK: f64 = 0.01;
 /// Share of unfamiliar motions (%) above which to warn: five times that of training recordings.
 const MANY_UNFAMILIAR: f64 = 5.0;
 
@@ -137,13 +139,10 @@ impl std::fmt::Display for Total {
     }
 }
 
-fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Value> {
+fn facts(file: &Path, summary: &Summary, recording: &Recording, clock: Clock) -> serde_json::Result<Value> {
     let mut facts = serde_json::to_value(summary)?;
     facts["file"] = file.display().to_string().into();
-    let warnings = summary.warnings().into_iter();
-    facts["doubts"] = warnings
-        .map(|warning| recordings::words(&recordings::in_frames(clock, warning)))
-        .collect();
+    facts["doubts"] = doubts(summary, recording, clock).into();
     for (name, frame) in [
         ("first_frame", summary.first_frame),
         ("last_frame", summary.last_frame),
@@ -160,8 +159,21 @@ fn facts(file: &Path, summary: &Summary, clock: Clock) -> serde_json::Result<Val
     Ok(facts)
 }
 
+fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String> {
+    let warnings = summary.warnings().into_iter();
+    let warnings = warnings.map(|warning| recordings::words(&recordings::in_frames(clock, warning)));
+    let arrivals = recordings::words_of_arrivals(recording, clock, &summary.arrivals);
+    warnings.chain(arrivals).collect()
+}
+
 /// A quantity in each line, so that no line is wider than a terminal.
-fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std::fmt::Result {
+fn write_summary(
+    out: &mut String,
+    file: &str,
+    s: &Summary,
+    recording: &Recording,
+    clock: Clock,
+) -> std::fmt::Result {
     let speed = match (s.median_speed, &s.fastest) {
         (Some(median), Some(fastest)) => format!(
             "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
@@ -179,6 +191,23 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
             clock.number(gap.after)
         )
     });
+    let rows = s.rows_a_second.map_or_else(
+        || "nobody has two".to_owned(),
+        |rate| {
+            let jitter = if s.jitter * rate > EVEN_CLOCK {
+                format!(", ± {:.0} ms", 1e3 * s.jitter)
+            } else {
+                String::new()
+            };
+            let clocks = if s.common_frames { "" } else { ", each pedestrian on its own clock" };
+            let noise = if s.noise > EXACT {
+                format!("noise {:.0} cm", 100.0 * s.noise)
+            } else {
+                "noise below 1 cm".to_owned()
+            };
+            format!("{rate:.3} a second{jitter}{clocks}, {noise}")
+        },
+    );
     let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,
@@ -187,6 +216,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
          \x20 time         {:.1} s, frames {} to {} ({} per step of 0.4 s)\n\
          \x20 area         x {:.2} to {:.2} m, y {:.2} to {:.2} m\n\
          \x20 speed        {speed}\n\
+         \x20 rows         {rows}\n\
          \x20 gaps         {}{gaps}\n\
          \x20 to forecast  {} of 8 steps, {} of them observed at all 8\n\
          \x20 to train     {} of 20 steps, in {}",
@@ -206,8 +236,8 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, clock: Clock) -> std
         windows(s.to_learn_from),
         many(s.windows, "window", "windows"),
     )?;
-    for warning in s.warnings() {
-        writeln!(out, "  doubtful     {}", recordings::words(&recordings::in_frames(clock, warning)))?;
+    for doubt in doubts(s, recording, clock) {
+        writeln!(out, "  doubtful     {doubt}")?;
     }
     Ok(())
 }

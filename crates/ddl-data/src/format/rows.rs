@@ -69,6 +69,7 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
         return Err(row.place.wrong(origin, MIXED_TIMES).into());
     }
     let (mut placed, names) = numbered(rows);
+    let restarts = restarts(&placed);
     refuse_duplicates(&mut placed, &names, unit, origin)?;
     let observations = placed.into_iter().map(|(seen, _)| seen).collect();
     let recording = Recording::in_usual_step(origin, observations);
@@ -76,7 +77,7 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
         name: origin.to_owned(),
         source,
     })?;
-    Ok(recording.with_names(names).with_time_unit(unit))
+    Ok(recording.with_names(names).with_time_unit(unit).with_restarts(restarts))
 }
 
 /// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a
@@ -100,6 +101,17 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
         (seen, row.place)
     });
     (placed.collect(), PedestrianNames::new(names))
+}
+
+/// How often the frames of a file in order of time begin again: its parts hold several pedestrians each, in order of
+/// time. Files in another order, such as one pedestrian after the other, have none.
+fn restarts(rows: &[Placed]) -> usize {
+    let parts: Vec<&[Placed]> = rows.chunk_by(|(before, _), (after, _)| before.frame <= after.frame).collect();
+    let is_crowd = |part: &&[Placed]| {
+        let first = part[0].0;
+        part.iter().any(|(row, _)| row.pedestrian != first.pedestrian && row.frame > first.frame)
+    };
+    if parts.iter().all(is_crowd) { parts.len() - 1 } else { 0 }
 }
 
 /// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.

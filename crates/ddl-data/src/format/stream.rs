@@ -207,6 +207,14 @@ impl<R: BufRead> FrameReader<R> {
         self.first?.unit
     }
 
+    /// What was assumed while the lines were read, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        match &self.kind {
+            Some(Kind::Table(columns)) => columns.notes(),
+            _ => Vec::new(),
+        }
+    }
+
     /// Frames per second, if a line so far states it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate.frames_a_second

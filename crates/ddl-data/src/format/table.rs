@@ -31,7 +31,8 @@ fn wrong_count(expected: usize, found: usize) -> String {
     field_count(expected, found, names)
 }
 
-pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatError> {
+/// The rows, and notes on the columns.
+pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, Vec<String>), FormatError> {
     if text.trim().is_empty() {
         return Err(FilePlace::line(1).wrong(origin, EMPTY));
     }
@@ -47,7 +48,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         let line = record.position().map_or(1, |p| p.line() as usize);
         columns.row(record, line, origin)
     });
-    rows.collect()
+    Ok((rows.collect::<Result<_, _>>()?, columns.notes()))
 }
 
 #[derive(Debug)]
@@ -56,6 +57,10 @@ pub(super) struct TrackColumns {
     scene: Option<usize>,
     count: usize,
     time: TimeColumn,
+    /// Whether the column of frames holds seconds.
+    is_fraction: bool,
+    /// Names of further columns.
+    unread: Vec<String>,
 }
 
 /// What the first column counts.
@@ -95,6 +100,17 @@ impl TrackColumns {
         self.row(&record, line, origin)
     }
 
+    /// What a reader should know of the columns.
+    pub(super) fn notes(&self) -> Vec<String> {
+        let seconds = self.is_fraction.then(|| "the column frame has fractions: it is read as seconds".to_owned());
+        let unread = match &self.unread[..] {
+            [] => None,
+            [name] => Some(format!("the column {name} is not read")),
+            names => Some(format!("the columns {} are not read", names.join(", "))),
+        };
+        seconds.into_iter().chain(unread).collect()
+    }
+
     /// Finds out what the column of the time counts, if these rows show it.
     fn look_at(&mut self, records: &[StringRecord]) {
         let mut fields = records.iter().filter_map(|record| record.get(self.places[0]));
@@ -103,6 +119,7 @@ impl TrackColumns {
             TimeColumn::Time => fields.next().map(field::unit_of),
             TimeColumn::Frame => fields.any(field::has_fraction).then_some(TimeUnit::Seconds),
         };
+        self.is_fraction = self.time == TimeColumn::Frame && unit.is_some();
         self.time = unit.map_or(self.time, TimeColumn::Known);
     }
 
@@ -128,10 +145,7 @@ impl TrackColumns {
             let column = COLUMNS.iter().position(|c| name.eq_ignore_ascii_case(c));
             let column = column.or(named.map(|_| 0));
             let Some(column) = column else {
-                unknown.push((
-                    index + 1,
-                    format!("{:?}; {}", field::quoted(name), advice(name, header)),
-                ));
+                unknown.push((index + 1, name));
                 continue;
             };
             if places[column].replace(index).is_some() {
@@ -143,13 +157,17 @@ impl TrackColumns {
                 return Err(wrong(Some(index + 1), format!("column {name} {again}")));
             }
         }
-        if let Some(&(first, _)) = unknown.first() {
-            let messages = unknown
-                .iter()
+        // Columns that say that the rows are of another kind are refused, others are not read.
+        let is_complete = places.iter().all(Option::is_some);
+        let refused = |name: &str| !is_complete || matters(name, header);
+        let mut refused = unknown.iter().filter(|(_, name)| refused(name)).peekable();
+        if let Some(&&(first, _)) = refused.peek() {
+            let messages = refused
                 .take(UNKNOWN_NAMED)
-                .map(|(_, words)| format!("unknown column {words}"));
+                .map(|(_, name)| format!("unknown column {:?}; {}", field::quoted(name), advice(name, header)));
             return Err(wrong(Some(first), messages.collect::<Vec<_>>().join("; ")));
         }
+        let unread = unknown.iter().map(|(_, name)| field::quoted(name)).collect();
         let mut columns = [0; 4];
         for ((column, place), name) in columns.iter_mut().zip(places).zip(COLUMNS) {
             *column = place.ok_or_else(|| wrong(None, format!("column {name} is missing")))?;
@@ -159,6 +177,8 @@ impl TrackColumns {
             scene,
             count: header.len(),
             time,
+            is_fraction: false,
+            unread,
         })
     }
 
@@ -181,6 +201,14 @@ impl TrackColumns {
         })
     }
 }
+
+/// Whether an unknown column says that the rows are no tracks of one scene.
+fn matters(name: &str, header: &StringRecord) -> bool {
+    let advice = advice(name, header);
+    advice != REMOVE && !name.is_empty()
+}
+
+const REMOVE: &str = "remove it";
 
 fn advice(name: &str, header: &StringRecord) -> String {
     let is_named = |column: &str| header.iter().any(|name| name.eq_ignore_ascii_case(column));
@@ -209,7 +237,7 @@ fn advice(name: &str, header: &StringRecord) -> String {
     } else if name.contains([';', '\t']) {
         "separate columns by commas, and use a decimal point".to_owned()
     } else if missing.is_empty() {
-        "remove it".to_owned()
+        REMOVE.to_owned()
     } else {
         format!("still missing: {}; rename the column, or remove it", missing.join(", "))
     }

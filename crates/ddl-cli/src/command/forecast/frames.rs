@@ -8,11 +8,12 @@ use std::thread;
 /// Number of frames that are read ahead. When they are full, the thread waits, and so does the writer of the stream.
 const AHEAD: usize = 64;
 
-/// What the lines so far state about time.
-#[derive(Debug, Clone, Copy)]
+/// What the lines so far state about time, and notes on them.
+#[derive(Debug, Clone)]
 pub(super) struct StatedTime {
     pub(super) frames_a_second: Option<f64>,
     pub(super) time_unit: Option<TimeUnit>,
+    pub(super) notes: Vec<String>,
 }
 
 impl StatedTime {
@@ -20,6 +21,7 @@ impl StatedTime {
         Self {
             frames_a_second: frames.rate(),
             time_unit: frames.time_unit(),
+            notes: frames.notes(),
         }
     }
 }
