@@ -12,6 +12,10 @@ const STEADINESS: f64 = 0.3;
 const EXACT: f64 = 0.005;
 /// Share of the mean change of the step. A pedestrian whose mean step is shorter than this stands.
 const STANDING: f64 = 0.5;
+/// Step (m) above which a pedestrian walks; cosines of the angles between steps that go the same way, and back.
+const WALKING: f64 = 0.16;
+const SAME_WAY: f64 = 0.8;
+const BACK: f64 = -0.5;
 /// Independent errors of the positions give successive changes of the step the correlation -2/3.
 const OF_ERRORS: f64 = -2.0 / 3.0;
 
@@ -31,10 +35,13 @@ impl GoalSet {
     /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/tried.md` lists the
     /// recordings on which the constants were chosen.
     ///
+    /// Positions before a turn by more than 120° are left out, if the last two steps agree: who turns back goes on.
+    ///
     /// # Shapes
     /// `observed`: the observed positions (m), the last one last. With fewer than three, the result is the median.
     pub fn central(&self, observed: &[[f64; 2]]) -> [f64; 2] {
         let median = self.median();
+        let observed = since_reversal(observed);
         let &[first, .., before, last] = observed else {
             return median;
         };
@@ -69,6 +76,25 @@ impl GoalSet {
         let experts = self.experts().to_vec();
         Self::new(vec![self.central(observed)], vec![1.0], experts)
     }
+}
+
+/// The positions from the last turn by more than 120° on, if the last two steps go the same way.
+fn since_reversal(observed: &[[f64; 2]]) -> &[[f64; 2]] {
+    let step = |end: usize| -> [f64; 2] {
+        std::array::from_fn(|axis| observed[end][axis] - observed[end - 1][axis])
+    };
+    let cosine = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
+        let walks = a.hypot(b) > WALKING && c.hypot(d) > WALKING;
+        if walks { (a * c + b * d) / (a.hypot(b) * c.hypot(d)) } else { 0.0 }
+    };
+    let Some(last) = observed.len().checked_sub(1).filter(|last| *last >= 3) else {
+        return observed;
+    };
+    if cosine(step(last), step(last - 1)) < SAME_WAY {
+        return observed;
+    }
+    let turned = (1..last - 1).rev().find(|&end| cosine(step(last), step(end)) < BACK);
+    &observed[turned.unwrap_or(0)..]
 }
 
 /// n: the share of the step changes that errors of the positions explain, 0 to 1.

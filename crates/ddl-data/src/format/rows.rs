@@ -1,6 +1,6 @@
 //! From rows, each with its place in the file, to a recording.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use ddl_core::{PedestrianId, PedestrianNames, Position};
 
@@ -107,9 +107,11 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
 /// time. Files in another order, such as one pedestrian after the other, have none.
 fn restarts(rows: &[Placed]) -> usize {
     let parts: Vec<&[Placed]> = rows.chunk_by(|(before, _), (after, _)| before.frame <= after.frame).collect();
+    // Pedestrians take turns, instead of following each other.
     let is_crowd = |part: &&[Placed]| {
-        let first = part[0].0;
-        part.iter().any(|(row, _)| row.pedestrian != first.pedestrian && row.frame > first.frame)
+        let changes = part.array_windows().filter(|[before, row]| before.0.pedestrian != row.0.pedestrian).count();
+        let pedestrians: BTreeSet<PedestrianId> = part.iter().map(|(row, _)| row.pedestrian).collect();
+        changes >= pedestrians.len()
     };
     if parts.iter().all(is_crowd) { parts.len() - 1 } else { 0 }
 }

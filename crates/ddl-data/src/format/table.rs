@@ -228,7 +228,9 @@ fn advice(name: &str, header: &StringRecord) -> String {
         "posy" | "ypos" | "positiony" | "ym" | "py" | "centery" | "worldy" => Some("y"),
         _ => None,
     };
-    let missing: Vec<&str> = COLUMNS.into_iter().filter(|column| !is_named(column)).collect();
+    let has_time = header.iter().any(|name| TimeColumn::named(name).is_some());
+    let is_missing = |column: &&str| !(is_named(column) || *column == COLUMNS[0] && has_time);
+    let missing: Vec<&str> = COLUMNS.into_iter().filter(is_missing).collect();
     if let Some(meant) = meant.filter(|meant| missing.contains(meant)) {
         return format!("rename it to {meant}");
     }

@@ -55,6 +55,11 @@ impl Motion {
         }
     }
 
+    /// Its speed (m/s).
+    pub(super) fn speed(&self) -> f64 {
+        self.velocity[0].hypot(self.velocity[1])
+    }
+
     /// Distance of a position from the expected one (m).
     pub(super) fn distance(&self, position: Position) -> f64 {
         (position[0] - self.position[0]).hypot(position[1] - self.position[1])

@@ -12,6 +12,8 @@ const SURPRISE: f64 = 0.5;
 const ACCELERATION: f64 = 1.5;
 /// ... and this many standard deviations.
 const DEVIATIONS: f64 = 4.0;
+/// A pedestrian may turn to any side at its speed, and a little more.
+const TURNING: f64 = 1.1;
 /// Fastest pedestrian that is taken up again after a jump (m/s).
 const FASTEST: f64 = 4.0;
 /// Number of rows at wrong positions after which the last of them is believed.
@@ -89,7 +91,10 @@ impl ObservedTrack {
         let distance = expected.distance(position);
         let noise = level.walk().noise;
         let deviation = (expected.variance + noise * noise).sqrt();
-        if distance <= SURPRISE + ACCELERATION * seconds * seconds + DEVIATIONS * deviation {
+        // Who turns goes on from the last row at the speed that it had.
+        let turned = self.noise.motion(level).distance(position) - TURNING * expected.speed() * seconds;
+        let noise_margin = DEVIATIONS * deviation;
+        if distance <= SURPRISE + ACCELERATION * seconds * seconds + noise_margin || turned <= noise_margin {
             self.suspect = None;
             self.accept(row, tick_time, recording);
             return Arrival::Expected;
