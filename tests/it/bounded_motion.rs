@@ -205,7 +205,7 @@ fn filled_in_positions_are_not_evidence() {
     let pedestrian = PedestrianId(7);
     assert_eq!(tracks.push(0, [(pedestrian, [0.0, 0.0])]).unwrap(), None);
     let window = tracks.push(1, [(pedestrian, [0.1, 0.0])]).unwrap().unwrap();
-    assert_eq!(window.completion_counts(0).padded, 6);
+    assert_eq!(window.quality(0).unseen, 6);
     for model in builtin() {
         let windows = std::slice::from_ref(&window);
         let median = model.goal_model().goals(windows).unwrap()[0][0].median();

@@ -23,8 +23,9 @@ struct CsvRow {
     frame: i64,
     x: f64,
     y: f64,
-    padded: usize,
-    filled: usize,
+    unseen: usize,
+    age: f64,
+    uncertainty: f64,
     familiarity: f64,
     #[serde(default)]
     distance_to_goal: Option<f64>,
@@ -37,8 +38,9 @@ struct CsvRow {
 struct JsonLine {
     observed_until: i64,
     pedestrian: i64,
-    padded: usize,
-    filled: usize,
+    unseen: usize,
+    age: f64,
+    uncertainty: f64,
     frames: Vec<i64>,
     /// In (0, 1].
     familiarity: f64,
@@ -139,7 +141,8 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
                 assert_eq!(row.weight.to_bits(), hypothesis.weight.to_bits());
                 // Rounded to three digits.
                 assert!((row.familiarity / line.familiarity - 1.0).abs() < 6e-3);
-                assert_eq!([row.padded, row.filled, line.padded, line.filled], [0; 4]);
+                assert_eq!([row.unseen, line.unseen], [0; 2]);
+                assert_eq!([row.age, row.uncertainty, line.age, line.uncertainty], [0.0; 4]);
                 assert_eq!((row.distance_to_goal, row.certified), (Some(left[t]), Some(true)));
             }
         }
@@ -149,7 +152,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
     let cut = |line: &str| line.split(',').take(12).collect::<Vec<_>>().join(",");
     let cut: Vec<String> = certified.lines().map(cut).collect();
     assert_eq!(forecast("").lines().collect::<Vec<_>>(), cut);
-    let header = ",x,y,padded,filled,familiarity,distance_to_goal,certified";
+    let header = ",x,y,unseen,age,uncertainty,familiarity,distance_to_goal,certified";
     assert!(certified.lines().next().unwrap().ends_with(header));
     let mut plain: Vec<JsonLine> = json_lines(&forecast("--format jsonl"));
     for (plain, line) in plain.iter_mut().zip(&lines) {

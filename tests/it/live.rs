@@ -151,7 +151,7 @@ fn two_frames_are_enough_and_a_closed_output_ends_it_quietly() {
     let mut live = Live::start(&place, "--one --certificate");
     live.write(&format!("frame,pedestrian,x,y\n{}\n", rows_of(&rows, 0..11)));
     let first = live.line();
-    assert_eq!((&first["observed_until"], &first["padded"]), (&10.into(), &6.into()));
+    assert_eq!((&first["observed_until"], &first["unseen"]), (&10.into(), &6.into()));
     assert_eq!(first["hypotheses"].as_array().unwrap().len(), 1);
     assert_eq!(first["hypotheses"][0]["certificate"]["holds"], true);
     let Live {

@@ -13,8 +13,8 @@ use std::fmt::Write as _;
 const SCENE: &str = "{\"scene\": {\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 200, \"fps\": 2}}\n";
 const WORDS: [&str; 3] = ["7f3e-aa41", "007", "b, \"the guard\""];
 
-fn made_up(line: &Value) -> [i64; 4] {
-    ["observed_until", "pedestrian", "padded", "filled"].map(|name| line[name].as_i64().unwrap())
+fn unseen(line: &Value) -> [i64; 3] {
+    ["observed_until", "pedestrian", "unseen"].map(|name| line[name].as_i64().unwrap())
 }
 
 fn in_words(rows: &[Row]) -> String {
@@ -42,32 +42,31 @@ fn late_arrivals_and_holes_are_forecast_and_flagged() {
     // The second pedestrian arrives at frame 60; the third is not seen at 40 and 50.
     rows.retain(|&(frame, id, ..)| !(id == 2 && frame < 60 || id == 3 && [40, 50].contains(&frame)));
     let (lines, stderr) = forecast(&rows, "--certificate --last");
-    let note = "of 3 forecasts 1 are of pedestrians observed at fewer than 8 time steps, and 1 over filled gaps";
+    let note = "of 3 forecasts 1 are of pedestrians tracked for less than 8 steps";
     assert!(stderr.contains(note), "{stderr}");
-    let completions: Vec<_> = lines.iter().map(made_up).collect();
-    assert_eq!(completions, [[90, 1, 0, 0], [90, 2, 4, 0], [90, 3, 0, 2]]);
+    let qualities: Vec<_> = lines.iter().map(unseen).collect();
+    assert_eq!(qualities, [[90, 1, 0], [90, 2, 4], [90, 3, 0]]);
+    let uncertainties = [0, 1, 2].map(|line: usize| lines[line]["uncertainty"].as_f64().unwrap());
+    assert!(uncertainties[0] == 0.0 && uncertainties[1] > uncertainties[2], "{uncertainties:?}");
     for line in &lines {
         let mut hypotheses = line["hypotheses"].as_array().unwrap().iter();
         assert!(hypotheses.all(|hypothesis| hypothesis["certificate"]["holds"] == true));
     }
     let (lines, stderr) = forecast(&rows, "--last --whole");
-    assert_eq!(
-        (lines.iter().map(made_up).collect(), stderr),
-        (vec![[90, 1, 0, 0]], String::new())
-    );
+    assert_eq!(lines.iter().map(unseen).collect::<Vec<_>>(), [[90, 1, 0], [90, 3, 0]]);
+    assert!(!stderr.contains("of pedestrians"), "{stderr}");
     // Pedestrians that have just appeared are counted.
     rows.push((90, 4, 3.0, 1.0));
-    let missing = "1 of the 4 pedestrians at frame 90 were observed at too few of the last 8 time steps";
+    let missing = "1 of the 4 pedestrians at frame 90 are not forecast";
     let stderr = forecast(&rows, "--last").1;
     assert!(stderr.contains(missing), "{stderr}");
 }
 
 #[test]
-fn a_rate_without_whole_steps_is_resampled_and_reported() {
+fn a_step_need_not_be_a_whole_number_of_frames() {
     let rows: Vec<Row> = (0..=72).map(|frame| (frame, 1, 0.05 * frame as f64, 1.0)).collect();
     let (lines, stderr) = forecast(&rows, "--fps 24 --last");
-    assert!(stderr.contains("0.4 s is 9.6 frames"), "{stderr}");
-    assert_eq!(made_up(&lines[0]), [72, 1, 0, 0]);
+    assert_eq!((unseen(&lines[0]), stderr.as_str()), ([72, 1, 0], ""));
     let frames: Vec<f64> = serde_json::from_value(lines[0]["frames"].clone()).unwrap();
     assert!((frames[0] - 81.6).abs() < 1e-9 && (frames[11] - 187.2).abs() < 1e-9);
     assert_eq!(lines[0]["frames"][4], 120);
@@ -187,15 +186,15 @@ fn files_and_options_override_the_rate_of_a_run() {
         (
             "plain.csv",
             "",
-            "20 apart in 0.4 s, as in the run's training (--fps 50)",
+            "a step of 0.4 s is taken as 20 frames, as in the run's training (--fps 50)",
         ),
-        ("two.ndjson", "", "8 apart in 0.4 s, from the fps of the scenes, 2"),
+        ("two.ndjson", "", "taken as 8 frames, from the fps of the scenes, 2"),
         ("plain.csv", "--fps 25", ""),
     ] {
         let line = format!("forecast - --model run --threads 1 --one {options}");
         let live = place.run_on(&place.text(file), &line);
         assert_eq!(live.code, Some(0), "{live:?}");
-        assert_eq!(live.stderr.contains("apart"), !note.is_empty(), "{live:?}");
+        assert_eq!(live.stderr.contains("is taken as"), !note.is_empty(), "{live:?}");
         assert!(live.stderr.contains(note), "{live:?}");
     }
 }
@@ -206,9 +205,6 @@ fn rate_and_homography_of_a_run_are_used() {
     place.write_film();
     let units = "--fps 23.98 --homography film/H.txt";
     let finished = place.run(&format!("data film {units}"));
-    let note = "note: 3 recordings: 0.4 s is 9.592 frames: positions are interpolated";
-    assert_eq!(finished.stderr.matches("9.592").count(), 1, "{finished:?}");
-    assert!(finished.stderr.contains(note), "{finished:?}");
     let text = finished.succeeds();
     let total = text.lines().last().unwrap();
     assert!(total.starts_with("total: 3 recordings, "), "{text}");
@@ -230,10 +226,11 @@ fn rate_and_homography_of_a_run_are_used() {
     let said = place.run(&format!("{forecast} {units}"));
     assert!(!said.stderr.contains("training"), "{said:?}");
     assert_eq!(finished.succeeds(), said.succeeds());
-    let live = place.run_on(&place.text("film/hall.csv"), "forecast - --model film-run");
-    let message = "the run was trained with --fps 23.98: 0.4 s is 9.592 frames";
-    assert_eq!(live.code, Some(1), "{live:?}");
-    assert!(live.stderr.contains(message), "{live:?}");
+    // A stream of the same rows gives the same forecasts as the file.
+    let options = "--model film-run --threads 1 --format jsonl";
+    let live = place.run_on(&place.text("film/hall.csv"), &format!("forecast - {options}"));
+    assert!(live.stderr.contains("9.592 frames, as in the run's training (--fps 23.98)"), "{live:?}");
+    assert_eq!(live.succeeds(), place.ok(&format!("forecast film/hall.csv {options}")));
 }
 
 #[test]
@@ -269,7 +266,7 @@ fn frames_are_numbered_as_in_the_tracks() {
     let walk = |id: i64, off: fn(i64) -> f64| (0..200).map(move |t| (t, id, 0.05 * t as f64 + off(t), 3.0 * id as f64));
     place.write_tracks("tracks.csv", &walk(1, |_| 0.0).chain(walk(2, far)).collect::<Vec<_>>());
     let summary = place.ok("data tracks.csv --fps 24");
-    assert!(summary.contains("frames 7 to 199 (9.6 per step of 0.4 s)"), "{summary}");
+    assert!(summary.contains("frames 0 to 199 (9.6 per step of 0.4 s)"), "{summary}");
     for (before, after) in [("(pedestrian 2, frame ", ')'), ("that ends at frame ", ',')] {
         let frame = summary.split(before).nth(1).unwrap().split(after).next().unwrap();
         assert!((95..=106).contains(&frame.parse::<i64>().unwrap()), "{summary}");
@@ -296,6 +293,6 @@ fn a_page_shows_the_moments_of_own_tracks() {
     assert_eq!(moments[4]["frame"], 14 * own_tracks::FRAME_STEP);
     assert_eq!((count(4, "truth"), count(4, "paths")), (0, 20));
     // The first of five is the third of fourteen: seen for 3 frames, with a known future.
-    assert_eq!(moments[0]["pedestrians"][0]["made_up"]["padded"], 5);
+    assert_eq!(moments[0]["pedestrians"][0]["quality"]["unseen"], 5);
     assert_eq!(count(0, "truth"), 24);
 }

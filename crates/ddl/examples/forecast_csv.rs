@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let recording = parse_recording(&table, name, Format::Table)?;
     // Pedestrians with short or incomplete observations are forecast as well.
-    let windows = recording.completed_windows(Completeness::Partial);
+    let windows = recording.observe(recording.live_tracks().with_completeness(Completeness::Partial)).windows;
     let window = windows.last().ok_or("no pedestrian was observed twice")?;
 
     ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread is enough
@@ -56,8 +56,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         forecast.hypotheses()
     );
     for (i, pedestrian) in window.pedestrians().iter().enumerate() {
-        let ([x, y], seen) = (window.observed(i)[7], window.completion_counts(i).seen());
-        println!("pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, observed at {seen} of 8 time steps");
+        let ([x, y], seen) = (window.observed(i)[7], 8 - window.quality(i).unseen);
+        println!("pedestrian {pedestrian}, now at ({x:.2}, {y:.2}) m, tracked for {seen} of 8 time steps");
         // Hypotheses are in the order of their weights, the largest first.
         for k in 0..3.min(forecast.hypotheses()) {
             let [x, y] = forecast.goal(i, k).ok_or("a model without goals")?;

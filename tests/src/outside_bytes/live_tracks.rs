@@ -9,12 +9,12 @@ use arbitrary::Unstructured;
 /// of any bits.
 pub(super) fn read(bytes: &[u8]) {
     let mut choices = Unstructured::new(bytes);
-    let completion = [Completeness::Whole, Completeness::Partial][below(&mut choices, 2)];
+    let completeness = [Completeness::Whole, Completeness::Partial][below(&mut choices, 2)];
     let step = 1 + below(&mut choices, 12) as i64;
     let Ok(tracks) = LiveTracks::with_frame_step(step) else {
         panic!("a step of {step} is allowed");
     };
-    let mut tracks = tracks.with_completeness(completion);
+    let mut tracks = tracks.with_completeness(completeness);
     let mut frame: i64 = byte(&mut choices).into();
     let mut people_of_late: Vec<(i64, usize)> = Vec::new();
     while !choices.is_empty() {
@@ -39,9 +39,10 @@ pub(super) fn read(bytes: &[u8]) {
             Ok(window) => {
                 assert_eq!(tracks.last_frame(), Some(frame));
                 if let Some(window) = window {
-                    assert!(window.frames().last() == Some(&frame) && window.len() <= count);
+                    assert!(window.frames().last() == Some(&frame) && window.len() <= tracks.len());
                 }
-                let oldest = frame.saturating_sub(4 * step);
+                // 2 s.
+                let oldest = frame.saturating_sub(5 * step);
                 people_of_late.retain(|&(seen, _)| seen >= oldest);
                 people_of_late.push((frame, count));
                 let most: usize = people_of_late.iter().map(|&(_, count)| count).sum();

@@ -1,6 +1,6 @@
 //! A user's own tracks, as in `ddl forecast`: format guessed, rate given, windows cut.
 
-use ddl_data::{COORDINATE_LIMIT, Completeness, Format, OBSERVED, Recording, WindowRule, parse_recording};
+use ddl_data::{COORDINATE_LIMIT, Clock, Completeness, Format, OBSERVED, Recording, WindowRule, parse_recording};
 
 use super::tracks::bounded;
 
@@ -8,8 +8,8 @@ const NAMES: [&str; 4] = ["a.csv", "a.txt", "a.ndjson", "a"];
 /// Seconds per frame; the second byte chooses one.
 const FRAME_TIMES: [f64; 6] = [0.4, 0.04, 1.0 / 30.0, 0.1, 1e-9, 7.0];
 
-/// Limit of padded positions, m.
-const PADDED_LIMIT: f64 = (1.0 + 6.0 * 2.0) * COORDINATE_LIMIT;
+/// Limit of positions before the first row (m): a runner is there seconds earlier.
+const UNSEEN_LIMIT: f64 = COORDINATE_LIMIT + 1000.0;
 
 /// The first byte chooses the name of a file of tracks, the second the rate; the others are its content.
 pub(super) fn read(bytes: &[u8]) {
@@ -23,30 +23,30 @@ pub(super) fn read(bytes: &[u8]) {
     };
     cut(&recording);
     let frame_time = FRAME_TIMES[usize::from(*rate) % FRAME_TIMES.len()];
-    if let Ok(steps) = recording.resampled_to_steps(frame_time) {
-        bounded(&steps.recording);
-        cut(&steps.recording);
+    let clock = recording.stated_clock().unwrap_or_else(|| Clock::with_frame_time(frame_time));
+    if let Ok(recording) = clock.and_then(|clock| recording.on_clock(clock)) {
+        bounded(&recording);
+        cut(&recording);
     }
 }
 
 fn cut(recording: &Recording) {
     let last = recording.frames().last().copied();
-    let whole = recording.completed_windows(Completeness::Whole);
-    let completed = recording.completed_windows(Completeness::Partial);
-    assert!(whole.len() <= completed.len() && completed.len() <= recording.frames().len());
-    for window in &completed {
+    let whole = recording.observed_windows();
+    let partial = recording.observe(recording.live_tracks().with_completeness(Completeness::Partial)).windows;
+    assert!(whole.len() <= partial.len() && partial.len() <= recording.frames().len());
+    for window in &partial {
         assert_eq!(window.steps(), OBSERVED);
         assert!(window.frames().last() <= last.as_ref());
         for i in 0..window.len() {
-            // Up to 6 positions are padded at the start, on a straight line at the mean observed velocity: at most from
-            // one end of the bound to the other in one step.
             let mut far = window.observed(i).as_flattened().iter();
-            assert!(far.all(|c| c.abs() <= PADDED_LIMIT), "{window:?}");
+            assert!(far.all(|c| c.abs() <= UNSEEN_LIMIT), "{window:?}");
         }
     }
     for rule in [
         WindowRule::Published,
         WindowRule::Complete,
+        WindowRule::Observed,
         WindowRule::SocialGan { min_pedestrians: 2 },
     ] {
         assert!(recording.windows(rule).len() <= recording.frames().len());

@@ -8,7 +8,7 @@ use crate::observe::motion::{Motion, Walk};
 const NOISE: [f64; 12] = [0.005, 0.01, 0.02, 0.03, 0.04, 0.05, 0.07, 0.1, 0.14, 0.2, 0.28, 0.4];
 /// The spectral densities of accelerations (m²/s³) among which the agility is chosen. The likelihood of the tracks of
 /// nine recordings, of 2.5 to 30 rows a second, has its maximum between 0.02 and 0.05; who walks straight has less.
-const AGILITY: [f64; 3] = [0.005, 0.02, 0.08];
+const AGILITY: [f64; 4] = [0.001, 0.005, 0.02, 0.08];
 /// Number of pairs of the two.
 const LEVELS: usize = NOISE.len() * AGILITY.len();
 /// What the ETH/UCY recordings have, which the models were trained on (m).

@@ -14,6 +14,9 @@ const ACCELERATION: f64 = 1.5;
 const DEVIATIONS: f64 = 4.0;
 /// A pedestrian may turn to any side at its speed, and a little more.
 const TURNING: f64 = 1.1;
+/// Fastest runner (m/s), and number of rows that show the speed of a pedestrian.
+const RUNNING: f64 = 12.0;
+const SHOW_SPEED: usize = 3;
 /// Fastest pedestrian that is taken up again after a jump (m/s).
 const FASTEST: f64 = 4.0;
 /// Number of rows at wrong positions after which the last of them is believed.
@@ -91,10 +94,16 @@ impl ObservedTrack {
         let distance = expected.distance(position);
         let noise = level.walk().noise;
         let deviation = (expected.variance + noise * noise).sqrt();
-        // Who turns goes on from the last row at the speed that it had.
-        let turned = self.noise.motion(level).distance(position) - TURNING * expected.speed() * seconds;
         let noise_margin = DEVIATIONS * deviation;
-        if distance <= SURPRISE + ACCELERATION * seconds * seconds + noise_margin || turned <= noise_margin {
+        let surprise = distance - SURPRISE - ACCELERATION * seconds * seconds;
+        // Who turns goes on from the last row at the speed that it had; a speed not yet seen may be that of a runner.
+        let speed = if self.rows.len() < SHOW_SPEED {
+            RUNNING
+        } else {
+            (TURNING * expected.speed()).min(RUNNING)
+        };
+        let turned = self.noise.motion(level).distance(position) - speed * seconds;
+        if surprise.min(turned) <= noise_margin {
             self.suspect = None;
             self.accept(row, tick_time, recording);
             return Arrival::Expected;
