@@ -15,7 +15,7 @@ const EXAMPLES: [(&str, &[&str]); 4] = [
         "ddl-forecast forecast_csv",
         &[
             "pavement, frame 9: 3 pedestrians, 20 hypotheses each\n",
-            "pedestrian 3, now at (4.90, -0.30) m, observed at 4 of 8 time steps",
+            "pedestrian 3, now at (4.90, -0.30) m, tracked for 4 of 8 time steps",
             "closer at every step",
             "all 60 certificates hold\n",
         ],

@@ -149,7 +149,7 @@ fn every_format_has_the_same_hypotheses_and_certificates() {
     }
     assert!(rows.next().is_none());
     // The certificate changes no other number.
-    let cut = |line: &str| line.split(',').take(12).collect::<Vec<_>>().join(",");
+    let cut = |line: &str| line.split(',').take(13).collect::<Vec<_>>().join(",");
     let cut: Vec<String> = certified.lines().map(cut).collect();
     assert_eq!(forecast("").lines().collect::<Vec<_>>(), cut);
     let header = ",x,y,unseen,age,uncertainty,familiarity,distance_to_goal,certified";
@@ -233,7 +233,7 @@ fn regions_are_written_as_radii_and_as_discs() {
     let mut of_table = 0;
     for row in rows.lines() {
         let fields: Vec<&str> = row.split(',').collect();
-        let [half, most] = [12, 13].map(|field: usize| fields[field].parse().unwrap_or(0.0));
+        let [half, most] = [13, 14].map(|field: usize| fields[field].parse().unwrap_or(0.0));
         assert!(most >= half && half >= 0.0, "{row}");
         of_table += usize::from(most > 0.0);
     }

@@ -9,6 +9,7 @@ pub mod console;
 pub mod crowd;
 pub mod drawn_model;
 pub mod example;
+pub mod failing_model;
 pub mod folder_contents;
 pub mod golden;
 pub mod guide;

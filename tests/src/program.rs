@@ -69,12 +69,13 @@ impl Finished {
     }
 
     /// Asserts failure, and returns the error message. A failure must have exit code 1, no standard output, and one
-    /// line on standard error that begins with `error: ` and repeats nothing.
+    /// line on standard error, behind notes, that begins with `error: ` and repeats nothing.
     pub fn fails(self) -> String {
         assert_eq!(self.code, Some(1), "{self:#?}");
         assert_eq!(self.stdout, "", "{self:#?}");
-        let message = self.stderr.strip_prefix("error: ").unwrap_or_default();
-        let message = message.trim_end();
+        let lines = self.stderr.split_inclusive('\n');
+        let lines: String = lines.skip_while(|line| line.starts_with("note: ")).collect();
+        let message = lines.strip_prefix("error: ").unwrap_or_default().trim_end();
         assert!(
             !message.is_empty() && message.lines().count() == 1,
             "not one error message: {self:#?}"

@@ -51,10 +51,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
 pub(crate) fn read(files: &[PathBuf], units: &Units) -> anyhow::Result<Vec<ReadRecording>> {
     let (read, errors) = read_each(files, units);
     all_read(errors, files.len())?;
-    Ok(read
-        .into_iter()
-        .map(|(_, recording)| recording)
-        .collect())
+    Ok(read.into_iter().map(|(_, recording)| recording).collect())
 }
 
 /// Prints messages about recordings; a message about several is printed once.
@@ -76,7 +73,7 @@ fn tell_grouped<'a>(kind: &str, messages: impl IntoIterator<Item = (&'a str, Str
 
 pub(crate) fn tell_notes<'a>(read: impl IntoIterator<Item = &'a ReadRecording>) {
     let notes = read.into_iter().flat_map(|read| {
-        let notes = read.notes.iter();
+        let notes = read.notes.iter().chain(&read.guessed);
         notes.map(move |note| (read.recording.name(), note.clone()))
     });
     tell_grouped("note", notes);
@@ -150,7 +147,10 @@ pub(crate) fn words_of_arrivals(
 ) -> Vec<String> {
     let first = |(tick, pedestrian, off): &(i64, PedestrianId, f64)| {
         let name = recording.names().of(*pedestrian);
-        format!("first that of pedestrian {name} at frame {}, {off:.1} m off", clock.number(*tick))
+        format!(
+            "first that of pedestrian {name} at frame {}, {off:.1} m off",
+            clock.number(*tick)
+        )
     };
     let (mut wrong, mut jumped) = (Vec::new(), Vec::new());
     for &(tick, pedestrian, arrival) in arrivals {

@@ -73,9 +73,9 @@ impl TrackOptions {
         self.file.is_some()
     }
 
-    /// Whether not every frame is forecast.
+    /// Whether some pedestrians or frames are not to be forecast.
     pub(crate) fn are_thinned(&self) -> bool {
-        self.every.is_some()
+        self.whole || self.every.is_some()
     }
 
     /// These tracks with the options' windows.
@@ -104,17 +104,25 @@ impl TrackOptions {
         let ReadRecording {
             recording,
             clock,
+            guessed,
             notes,
         } = self.units.or_those_of(run).read(self.file())?;
-        for note in notes {
+        for note in notes.into_iter().chain(guessed) {
             tell(format_args!("note: {note}"));
         }
         let observed = recording.observe(self.windows_of(recording.live_tracks()));
         let mut windows = observed.windows;
+        let warning = recording
+            .speed_warning()
+            .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
+            .map(|warning| recordings::in_frames(clock, warning));
+        if let Some(warning) = &warning {
+            recordings::warn_of(warning);
+        }
         if windows.is_empty() {
             bail!(
-                "{}: no pedestrian {} (a step of 0.4 s is taken as {} frames); give --fps or --frame-step if frame \
-                 numbers are not 0.4 s apart",
+                "{}: no pedestrian {} without a jump (a step of 0.4 s is taken as {} frames); give --fps or \
+                 --frame-step if frame numbers are not 0.4 s apart, and --homography if positions are not in metres",
                 self.file().display(),
                 if self.whole {
                     "was tracked for 8 steps, 2.8 s"
@@ -123,13 +131,6 @@ impl TrackOptions {
                 },
                 clock.number(recording.frame_step())
             );
-        }
-        let warning = recording
-            .speed_warning()
-            .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
-            .map(|warning| recordings::in_frames(clock, warning));
-        if let Some(warning) = &warning {
-            recordings::warn_of(warning);
         }
         if self.last {
             windows.drain(..windows.len() - 1);
@@ -169,7 +170,9 @@ impl ObservedTracks {
                 100.0 * self.noise
             ));
         }
-        recordings::warn_of_arrivals(&self.recording, self.clock, &self.arrivals);
+        if !matches!(self.warning, Some(PlausibilityWarning::Fast { .. })) {
+            recordings::warn_of_arrivals(&self.recording, self.clock, &self.arrivals);
+        }
         if !self.whole {
             self.tell_who_is_missing();
         }

@@ -35,6 +35,8 @@ pub(crate) struct Units {
 pub(crate) struct ReadRecording {
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
+    /// A note on its frame step, if neither options nor the file give the rate.
+    pub(crate) guessed: Option<String>,
     /// Notes on its rate, for [`tell_notes`](crate::recordings::tell_notes).
     pub(crate) notes: Vec<String>,
 }
@@ -103,7 +105,10 @@ impl Units {
         let place = || file.display().to_string();
         let stated = recording.stated_clock().transpose().with_context(place)?;
         if let (Some(option), Some(_)) = (self.rate_given(), recording.time_unit()) {
-            bail!("{}: the rows have times, and {option} gives a rate: leave it out", place());
+            bail!(
+                "{}: the rows have times, and {option} gives a rate: leave it out",
+                place()
+            );
         }
         let notes = recording.notes().iter().cloned().chain(self.note_of_rate(&recording));
         let mut notes: Vec<String> = notes.chain(self.note_of_run(stated.is_none())).collect();
@@ -112,22 +117,21 @@ impl Units {
             Some(clock) => Some(clock),
             None => clock_of(&self.remembered)?,
         };
-        let guessed = clock.is_none();
+        let guessed = clock.is_none().then(|| {
+            let step = many_frames(recording.frame_step());
+            format!("a step of 0.4 s is taken as {step}; give --fps, --dt or --frame-step if this is wrong")
+        });
         let clock = clock.map_or_else(|| Clock::with_frame_step(recording.frame_step()), Ok)?;
-        if guessed {
-            notes.push(format!(
-                "a step of 0.4 s is taken as {}, the most common difference of two rows of a pedestrian; give --fps, \
-                 --dt or --frame-step if this is wrong",
-                many_frames(recording.frame_step())
-            ));
-        }
         let recording = recording.on_clock(clock).with_context(place)?;
         if !recording.has_common_frames() {
-            notes.push("each pedestrian has a clock of its own: forecasts are at least 0.4 s apart (--every)".to_owned());
+            notes.push(
+                "each pedestrian has a clock of its own: forecasts are at least 0.4 s apart (--every)".to_owned(),
+            );
         }
         Ok(ReadRecording {
             recording,
             clock,
+            guessed,
             notes,
         })
     }

@@ -21,10 +21,10 @@ pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 pub use position::{
     FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance, is_finite, is_frame, is_frame_step,
 };
+pub use quality::ObservationQuality;
 pub use region::AdaptiveRegions;
 pub use region_table::{Disc, RegionTable};
 pub use representative::{average_displacement, medoid};
 pub use weighted_goals::WeightedGoals;
-pub use quality::ObservationQuality;
 pub use window::{RememberedTrack, Window};
 pub use work_done::WorkDone;

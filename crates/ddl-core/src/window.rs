@@ -161,7 +161,9 @@ impl Window {
             "{} qualities",
             qualities.len()
         );
-        let measured = qualities.iter().all(|quality| *quality == ObservationQuality::default());
+        let measured = qualities
+            .iter()
+            .all(|quality| *quality == ObservationQuality::default());
         self.qualities = if measured { Vec::new() } else { qualities };
         self
     }

@@ -8,12 +8,10 @@ use ddl_core::{
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observe::{Arrival, ObservedTrack, RecordingNoise};
+use crate::observe::{Arrival, ON_STEP, ObservedTrack, RecordingNoise};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
-/// Shortest part of an interval between two moments that is taken for the whole: clocks jitter.
-const INTERVAL_TOLERANCE: f64 = 0.995;
 
 /// Which pedestrians are observed well enough for a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,7 +64,10 @@ pub struct LiveTracks {
     interval: f64,
     /// Ticks.
     last_frame: Option<i64>,
-    last_moment: Option<i64>,
+    /// Whether there is a window at the last frame.
+    is_moment: bool,
+    /// Tick from which on there is the next window.
+    next_moment: f64,
     noise: RecordingNoise,
     pedestrians: Vec<LivePedestrian>,
     arrivals: Vec<(PedestrianId, Arrival)>,
@@ -110,7 +111,8 @@ impl LiveTracks {
             max_age: clock.frame_step() as f64,
             interval: 0.0,
             last_frame: None,
-            last_moment: None,
+            is_moment: false,
+            next_moment: f64::NEG_INFINITY,
             noise: RecordingNoise::default(),
             pedestrians: Vec::new(),
             arrivals: Vec::new(),
@@ -151,7 +153,7 @@ impl LiveTracks {
     /// The same tracks, with windows at least so long apart (s); 0 for one at every frame.
     #[must_use]
     pub fn with_interval(self, seconds: f64) -> Self {
-        let interval = INTERVAL_TOLERANCE * self.ticks(seconds);
+        let interval = self.ticks(seconds);
         Self { interval, ..self }
     }
 
@@ -162,7 +164,8 @@ impl LiveTracks {
     /// Forgets all pedestrians and the last frame. Any frame may come next, as after a restart of the tracker.
     pub fn clear(&mut self) {
         self.last_frame = None;
-        self.last_moment = None;
+        self.is_moment = false;
+        self.next_moment = f64::NEG_INFINITY;
         self.pedestrians.clear();
         self.arrivals.clear();
     }
@@ -247,8 +250,14 @@ impl LiveTracks {
         for absent in earlier {
             next.keep(absent);
         }
-        if next.is_due() {
-            next.last_moment = Some(tick);
+        // How late the frame is for the next window; a clock may jitter.
+        let late = tick as f64 - self.next_moment + ON_STEP * step;
+        next.is_moment = late >= 0.0;
+        if next.is_moment && late < f64::INFINITY && self.interval > 0.0 {
+            // A late frame does not shift the windows after it.
+            next.next_moment += self.interval * ((late / self.interval).floor() + 1.0);
+        } else if next.is_moment {
+            next.next_moment = tick as f64 + self.interval;
         }
         Ok(next)
     }
@@ -275,19 +284,11 @@ impl LiveTracks {
         TIME_STEP / self.clock.frame_step() as f64
     }
 
-    /// Whether the last frame is long enough after the last window.
-    fn is_due(&self) -> bool {
-        match (self.last_frame, self.last_moment) {
-            (Some(now), Some(last)) => now == last || (now - last) as f64 >= self.interval,
-            _ => true,
-        }
-    }
-
     /// The window that ends at the last frame: the pedestrians observed well enough; `None` if there are none, or too
     /// soon after the last window.
     #[must_use]
     pub fn window(&self) -> Option<Window> {
-        let last = self.last_frame.filter(|_| self.is_due())?;
+        let last = self.last_frame.filter(|_| self.is_moment)?;
         let (time, step) = (last as f64, self.clock.frame_step());
         let (mut ids, mut positions, mut qualities) = (Vec::new(), Vec::new(), Vec::new());
         for LivePedestrian { id, last_row, track } in &self.pedestrians {

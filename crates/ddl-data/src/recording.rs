@@ -126,9 +126,9 @@ impl Recording {
     /// The differences of frame numbers between successive rows of each pedestrian.
     pub(crate) fn differences(&self) -> Vec<i64> {
         let tracks = self.tracks();
-        let differences = tracks.values().flat_map(|track| {
-            track.array_windows().map(|[before, row]| row.frame - before.frame)
-        });
+        let differences = tracks
+            .values()
+            .flat_map(|track| track.array_windows().map(|[before, row]| row.frame - before.frame));
         differences.collect()
     }
 
@@ -142,7 +142,9 @@ impl Recording {
     /// Whether pedestrians are seen at common frames, or each on a clock of its own.
     pub fn has_common_frames(&self) -> bool {
         let span = self.frames[self.frames.len() - 1] - self.frames[0];
-        let expected = self.usual_spacing().map_or(f64::INFINITY, |spacing| 1.0 + span as f64 / spacing as f64);
+        let expected = self
+            .usual_spacing()
+            .map_or(f64::INFINITY, |spacing| 1.0 + span as f64 / spacing as f64);
         self.frames.len() as f64 <= CROWDED * expected
     }
 

@@ -36,7 +36,12 @@ impl Recording {
             let rows = rows.map(|row| (row.pedestrian, row.position));
             // Cannot fail: the invariants of a recording exclude every error of live tracks.
             windows.extend(tracks.push(frame, rows).ok().flatten());
-            arrivals.extend(tracks.arrivals().iter().map(|&(pedestrian, arrival)| (frame, pedestrian, arrival)));
+            arrivals.extend(
+                tracks
+                    .arrivals()
+                    .iter()
+                    .map(|&(pedestrian, arrival)| (frame, pedestrian, arrival)),
+            );
         }
         let noise = tracks.noise().clone();
         ObservedRecording {
@@ -74,4 +79,3 @@ impl Recording {
         observed.windows.into_iter().filter_map(with_future).collect()
     }
 }
-

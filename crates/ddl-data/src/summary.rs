@@ -129,7 +129,10 @@ impl Recording {
             return 0.0;
         };
         let span = |track: &Vec<&Observation>| (track[track.len() - 1].frame - track[0].frame) as f64;
-        let expected: f64 = tracks.values().map(|track| 1.0 + (span(track) / spacing as f64).round()).sum();
+        let expected: f64 = tracks
+            .values()
+            .map(|track| 1.0 + (span(track) / spacing as f64).round())
+            .sum();
         (1.0 - self.observations().len() as f64 / expected).max(0.0)
     }
 
@@ -164,7 +167,10 @@ impl Recording {
         let (first, last) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
         let windows = self.windows(WindowRule::Observed);
         let observed = self.observe(self.live_tracks().with_completeness(Completeness::Partial));
-        let qualities = observed.windows.iter().flat_map(|window| (0..window.len()).map(|i| window.quality(i)));
+        let qualities = observed
+            .windows
+            .iter()
+            .flat_map(|window| (0..window.len()).map(|i| window.quality(i)));
         let whole = qualities.filter(|quality| quality.is_whole());
         Summary {
             recording: self.name().to_owned(),
@@ -187,7 +193,10 @@ impl Recording {
             fastest: speeds.fastest,
             brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
-            frozen: tracks.values().filter(|track| plausibility::is_frozen(track, step)).count(),
+            frozen: tracks
+                .values()
+                .filter(|track| plausibility::is_frozen(track, step))
+                .count(),
             restarts: self.restarts(),
             unseen: self.unseen(&tracks),
             holes: gaps.len(),

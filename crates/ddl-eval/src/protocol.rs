@@ -129,7 +129,9 @@ impl Protocol {
         windows: &[Window],
     ) -> Result<Vec<Forecast>, ForecastError> {
         let forecasts = forecaster.forecast_all(&self.visible(windows))?.into_iter();
-        let scored = forecasts.zip(windows).map(|(forecast, window)| forecast.without_bystanders(window.len()));
+        let scored = forecasts
+            .zip(windows)
+            .map(|(forecast, window)| forecast.without_bystanders(window.len()));
         self.admit(scored.collect(), &forecaster.name())
     }
 

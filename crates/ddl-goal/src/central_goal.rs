@@ -80,12 +80,14 @@ impl GoalSet {
 
 /// The positions from the last turn by more than 120° on, if the last two steps go the same way.
 fn since_reversal(observed: &[[f64; 2]]) -> &[[f64; 2]] {
-    let step = |end: usize| -> [f64; 2] {
-        std::array::from_fn(|axis| observed[end][axis] - observed[end - 1][axis])
-    };
+    let step = |end: usize| -> [f64; 2] { std::array::from_fn(|axis| observed[end][axis] - observed[end - 1][axis]) };
     let cosine = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
         let walks = a.hypot(b) > WALKING && c.hypot(d) > WALKING;
-        if walks { (a * c + b * d) / (a.hypot(b) * c.hypot(d)) } else { 0.0 }
+        if walks {
+            (a * c + b * d) / (a.hypot(b) * c.hypot(d))
+        } else {
+            0.0
+        }
     };
     let Some(last) = observed.len().checked_sub(1).filter(|last| *last >= 3) else {
         return observed;

@@ -41,7 +41,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let recording = parse_recording(&table, name, Format::Table)?;
     // Pedestrians with short or incomplete observations are forecast as well.
-    let windows = recording.observe(recording.live_tracks().with_completeness(Completeness::Partial)).windows;
+    let windows = recording
+        .observe(recording.live_tracks().with_completeness(Completeness::Partial))
+        .windows;
     let window = windows.last().ok_or("no pedestrian was observed twice")?;
 
     ddl::prepare(DeviceChoice::Cpu, Some(1))?; // one thread is enough

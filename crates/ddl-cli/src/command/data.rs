@@ -8,7 +8,7 @@ use crate::units::{ReadRecording, Units};
 use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
-use ddl::data::{Clock, Recording, Summary, WindowRule};
+use ddl::data::{Clock, PlausibilityWarning, Recording, Summary, WindowRule};
 use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -45,7 +45,11 @@ impl Data {
         let (memories, of_tracks): (Vec<PathBuf>, _) =
             files.iter().cloned().partition(|file| place_memory::is_in(file));
         let (memories, not_memories) = place_memory::read_each(memories);
-        let (read, mut errors) = recordings::read_each(&of_tracks, &self.units);
+        let (mut read, mut errors) = recordings::read_each(&of_tracks, &self.units);
+        for (_, read) in &mut read {
+            // The summary prints the frame step.
+            read.guessed = None;
+        }
         errors.extend(not_memories);
         if errors.is_empty() {
             self.picture.draw(&memories)?;
@@ -162,18 +166,20 @@ fn facts(file: &Path, summary: &Summary, recording: &Recording, clock: Clock) ->
 fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String> {
     let warnings = summary.warnings().into_iter();
     let warnings = warnings.map(|warning| recordings::words(&recordings::in_frames(clock, warning)));
-    let arrivals = recordings::words_of_arrivals(recording, clock, &summary.arrivals);
-    warnings.chain(arrivals).collect()
+    let mut doubts: Vec<String> = warnings.collect();
+    // With other units, nearly every position is a jump.
+    if !summary
+        .warnings()
+        .iter()
+        .any(|warning| matches!(warning, PlausibilityWarning::Fast { .. }))
+    {
+        doubts.extend(recordings::words_of_arrivals(recording, clock, &summary.arrivals));
+    }
+    doubts
 }
 
 /// A quantity in each line, so that no line is wider than a terminal.
-fn write_summary(
-    out: &mut String,
-    file: &str,
-    s: &Summary,
-    recording: &Recording,
-    clock: Clock,
-) -> std::fmt::Result {
+fn write_summary(out: &mut String, file: &str, s: &Summary, recording: &Recording, clock: Clock) -> std::fmt::Result {
     let speed = match (s.median_speed, &s.fastest) {
         (Some(median), Some(fastest)) => format!(
             "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
@@ -199,7 +205,11 @@ fn write_summary(
             } else {
                 String::new()
             };
-            let clocks = if s.common_frames { "" } else { ", each pedestrian on its own clock" };
+            let clocks = if s.common_frames {
+                ""
+            } else {
+                ", each pedestrian on its own clock"
+            };
             let noise = if s.noise > EXACT {
                 format!("noise {:.0} cm", 100.0 * s.noise)
             } else {

@@ -84,7 +84,9 @@ impl AdaptiveRegions {
             .map_or(1.0, |last| ((now - last.frame) as f64 / step as f64).min(1.0));
         let previous = self.pending.back().map(|last| last.frame);
         let judged = self.pending.iter();
-        let outcomes: Vec<Outcomes> = judged.filter_map(|pending| pending.outcomes(window, previous)).collect();
+        let outcomes: Vec<Outcomes> = judged
+            .filter_map(|pending| pending.outcomes(window, previous))
+            .collect();
         learned.learn(&outcomes, share);
         let forecast = forecast.with_regions(learned.table());
         let over = |pending: &Pending| now - pending.frame >= HORIZON as i64 * step;

@@ -46,12 +46,7 @@ pub(super) fn social_gan(
     TrackRow::of(line, origin, unit, [(1, frame), (2, pedestrian), (3, x), (4, y)])
 }
 
-pub(super) fn obsmat(
-    text: &str,
-    line: usize,
-    origin: &str,
-    unit: Option<TimeUnit>,
-) -> Result<TrackRow, FormatError> {
+pub(super) fn obsmat(text: &str, line: usize, origin: &str, unit: Option<TimeUnit>) -> Result<TrackRow, FormatError> {
     let [frame, pedestrian, x, z, y, v_x, v_z, v_y] = fields(text, line, origin, OBSMAT)?;
     let place = |field: usize| FilePlace::field(line, field);
     let row = TrackRow::of(line, origin, unit, [(1, frame), (2, pedestrian), (3, x), (5, y)])?;

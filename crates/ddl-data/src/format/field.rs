@@ -73,7 +73,11 @@ pub(super) fn unit_of(text: &str) -> TimeUnit {
 
 /// Whether a text is a number with a fraction, which is a time and no frame number.
 pub(super) fn has_fraction(text: &str) -> bool {
-    text.contains('.') && text.trim().parse::<f64>().is_ok_and(|number| number.fract().abs() > 0.0)
+    text.contains('.')
+        && text
+            .trim()
+            .parse::<f64>()
+            .is_ok_and(|number| number.fract().abs() > 0.0)
 }
 
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]

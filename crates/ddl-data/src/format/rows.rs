@@ -106,10 +106,15 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
 /// How often the frames of a file in order of time begin again: its parts hold several pedestrians each, in order of
 /// time. Files in another order, such as one pedestrian after the other, have none.
 fn restarts(rows: &[Placed]) -> usize {
-    let parts: Vec<&[Placed]> = rows.chunk_by(|(before, _), (after, _)| before.frame <= after.frame).collect();
+    let parts: Vec<&[Placed]> = rows
+        .chunk_by(|(before, _), (after, _)| before.frame <= after.frame)
+        .collect();
     // Pedestrians take turns, instead of following each other.
     let is_crowd = |part: &&[Placed]| {
-        let changes = part.array_windows().filter(|[before, row]| before.0.pedestrian != row.0.pedestrian).count();
+        let changes = part
+            .array_windows()
+            .filter(|[before, row]| before.0.pedestrian != row.0.pedestrian)
+            .count();
         let pedestrians: BTreeSet<PedestrianId> = part.iter().map(|(row, _)| row.pedestrian).collect();
         changes >= pedestrians.len()
     };

@@ -102,7 +102,9 @@ impl TrackColumns {
 
     /// What a reader should know of the columns.
     pub(super) fn notes(&self) -> Vec<String> {
-        let seconds = self.is_fraction.then(|| "the column frame has fractions: it is read as seconds".to_owned());
+        let seconds = self
+            .is_fraction
+            .then(|| "the column frame has fractions: it is read as seconds".to_owned());
         let unread = match &self.unread[..] {
             [] => None,
             [name] => Some(format!("the column {name} is not read")),

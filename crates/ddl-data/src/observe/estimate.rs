@@ -24,7 +24,13 @@ pub(crate) struct Observed {
 impl ObservedTrack {
     /// The observation at a time, not before the last row; both in ticks of `tick_time` seconds, of which `step` make
     /// 0.4 s. Rows at the steps pass unchanged unless the tracker is noisy. `None` with fewer than two rows.
-    pub(crate) fn observed(&self, time: f64, step: f64, tick_time: f64, recording: &RecordingNoise) -> Option<Observed> {
+    pub(crate) fn observed(
+        &self,
+        time: f64,
+        step: f64,
+        tick_time: f64,
+        recording: &RecordingNoise,
+    ) -> Option<Observed> {
         if self.rows.len() < FEWEST {
             return None;
         }
@@ -102,5 +108,7 @@ impl ObservedTrack {
 fn clean_motion() -> Motion {
     let walk = NoiseLevel::usual().walk();
     let first = Motion::first_seen([0.0; 2], walk);
-    (1..OBSERVED).fold(first, |motion, _| motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise))
+    (1..OBSERVED).fold(first, |motion, _| {
+        motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise)
+    })
 }

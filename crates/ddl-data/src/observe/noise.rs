@@ -140,7 +140,10 @@ impl TrackNoise {
 fn likeliest(evidence: &Evidence) -> NoiseLevel {
     let with_prior = |level: usize| {
         let Walk { noise, agility } = NoiseLevel(level).walk();
-        let unusual = [CERTAINTY * (noise / USUAL).ln().powi(2), (agility / USUAL_AGILITY).ln().powi(2)];
+        let unusual = [
+            CERTAINTY * (noise / USUAL).ln().powi(2),
+            (agility / USUAL_AGILITY).ln().powi(2),
+        ];
         evidence[level] - unusual.iter().sum::<f64>()
     };
     let best = (0..LEVELS).max_by(|&a, &b| with_prior(a).total_cmp(&with_prior(b)));

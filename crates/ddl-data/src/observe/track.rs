@@ -82,7 +82,13 @@ impl ObservedTrack {
     }
 
     /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds.
-    pub(crate) fn push(&mut self, time: f64, position: Position, tick_time: f64, recording: &mut RecordingNoise) -> Arrival {
+    pub(crate) fn push(
+        &mut self,
+        time: f64,
+        position: Position,
+        tick_time: f64,
+        recording: &mut RecordingNoise,
+    ) -> Arrival {
         let row = Row { time, position };
         let seconds = (time - self.last_time()) * tick_time;
         if seconds > Arrival::LONGEST_GAP {

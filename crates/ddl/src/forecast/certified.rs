@@ -126,7 +126,9 @@ impl Walked<'_> {
                 let time_step = self.config.time_step;
                 let spread = calibration.spread(self.window.observed(i), goals, weights, time_step);
                 let quality = self.window.quality(i);
-                (1..).zip(spread).map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
+                (1..)
+                    .zip(spread)
+                    .map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
             })
             .collect();
         Ok(forecast.with_std_dev(spread, Calibration::shared_regions())?)

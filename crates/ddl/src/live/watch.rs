@@ -62,7 +62,11 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            place.observe(tracks.last_frame().unwrap_or(frame), pedestrians, made.as_ref().map(|(window, _)| window))?;
+            place.observe(
+                tracks.last_frame().unwrap_or(frame),
+                pedestrians,
+                made.as_ref().map(|(window, _)| window),
+            )?;
         }
         self.tracks = tracks;
         Ok(made)

@@ -8,11 +8,16 @@ use std::time::{Duration, Instant};
 /// Time between two messages of a kind, so that many invalid lines do not cause as many messages.
 const PAUSE: Duration = Duration::from_secs(10);
 
+/// Number of rows that show whether most are doubtful.
+const MANY_ROWS: usize = 20;
+
 #[derive(Debug, Default)]
 pub(super) struct LeftOut {
     wrong: Seldom,
     dropped: Seldom,
     doubtful: Seldom,
+    /// Whether the warning about units has been given.
+    is_unit_doubted: bool,
     /// Rows, and forecasts of pedestrians.
     rows: usize,
     forecast: usize,
@@ -59,8 +64,19 @@ impl LeftOut {
     pub(super) fn doubtful(&mut self, rows: usize, doubts: &[String]) {
         self.rows += rows;
         self.doubtful.count += doubts.len() as u64;
+        let are_most = self.rows >= MANY_ROWS && 2 * self.doubtful.count > self.rows as u64;
+        if are_most && !std::mem::replace(&mut self.is_unit_doubted, true) {
+            tell(format_args!(
+                "warning: most positions are too far from the ones before: are they in metres (--homography), and is \
+                 the rate right (--fps)?"
+            ));
+        }
         if let (Some(last), Some(new)) = (doubts.last(), self.doubtful.take_due()) {
-            let others = if new == 1 { String::new() } else { format!(" (the last of {new} such)") };
+            let others = if new == 1 {
+                String::new()
+            } else {
+                format!(" (the last of {new} such)")
+            };
             tell(format_args!("warning: {last}{others}"));
         }
     }

@@ -295,7 +295,10 @@ impl Stream<'_> {
         let (scene, rows, number) = (frame.scene.clone(), frame.pedestrians.len(), frame.number);
         let names = frame.names.clone();
         let observed = watching.observe(frame, self.model);
-        let tracks = watching.scenes.as_ref().and_then(|scenes| scenes.tracks(scene.as_ref()));
+        let tracks = watching
+            .scenes
+            .as_ref()
+            .and_then(|scenes| scenes.tracks(scene.as_ref()));
         if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
             let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
             let doubts = tracks.arrivals().iter().filter_map(|&(pedestrian, arrival)| {
@@ -304,7 +307,10 @@ impl Stream<'_> {
                     Arrival::Jumped(off) => (off, "the track begins anew, as of another pedestrian"),
                     _ => return None,
                 };
-                let (name, frame) = (names.of(pedestrian), tracks.clock().number(tracks.last_frame().unwrap_or(number)));
+                let (name, frame) = (
+                    names.of(pedestrian),
+                    tracks.clock().number(tracks.last_frame().unwrap_or(number)),
+                );
                 Some(format!(
                     "pedestrian {name}{place} at frame {frame} is {off:.1} m from where it can be: {then}"
                 ))
@@ -449,11 +455,7 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
 
 /// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame. `apart`: difference
 /// of the first two frame numbers of a scene.
-fn clock_of(
-    units: &Units,
-    apart: Option<i64>,
-    stated: &StatedTime,
-) -> anyhow::Result<Option<(Clock, Option<String>)>> {
+fn clock_of(units: &Units, apart: Option<i64>, stated: &StatedTime) -> anyhow::Result<Option<(Clock, Option<String>)>> {
     if let Some(unit) = stated.time_unit {
         return Ok(Some((Clock::with_stamps(unit), None)));
     }
