@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ddl_core::{FRAME_LIMIT, TIME_STEP, is_frame_step};
+use ddl_core::{TIME_STEP, is_frame, is_frame_step};
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 use time::OffsetDateTime;
@@ -112,7 +112,7 @@ impl Clock {
     pub fn with_frame_time(seconds: f64) -> Result<Self, ClockError> {
         let frames = TIME_STEP / seconds;
         // False for NaN.
-        if !(frames > 1e-3 && frames.ceil() < (1_i64 << 31) as f64) {
+        if !(frames >= 1e-3 && frames.ceil() < (1_i64 << 31) as f64) {
             return Err(ClockError::FrameTime { found: seconds });
         }
         if let Some(frame_step) = whole(frames, TOLERANCE) {
@@ -171,7 +171,7 @@ impl Clock {
         let Count::Frames { ticks } = self.count else {
             return Ok(frame);
         };
-        let tick = frame.checked_mul(ticks).filter(|tick| tick.abs() < FRAME_LIMIT);
+        let tick = frame.checked_mul(ticks).filter(|tick| is_frame(*tick));
         // A number that needs no division is checked where it is used.
         let tick = tick.or((ticks == 1).then_some(frame));
         tick.ok_or(ClockError::Frame { frame, ticks })
