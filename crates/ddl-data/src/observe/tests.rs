@@ -61,7 +61,10 @@ fn an_estimate_is_the_posterior_of_a_gaussian_process() {
     assert!(farthest(&positions, &expected) < 1e-6, "{positions:?}");
     let expected = [0.1, 0.013_558_69, 0.046_221_88];
     let found = [quality.age, quality.deviation, quality.velocity_deviation];
-    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6), "{quality:?}");
+    assert!(
+        found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-6),
+        "{quality:?}"
+    );
     assert_eq!(quality.unseen, 1);
     // A row on its step passes unchanged, and so does one 2 ms beside it.
     rows.push((3.099, [4.0, 0.8]));

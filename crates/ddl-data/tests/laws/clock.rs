@@ -57,7 +57,10 @@ fn invalid_clocks_and_extreme_frames_are_refused() {
     for found in [0, -1, (1 << 31) + 1] {
         assert_eq!(Clock::with_frame_step(found), Err(ClockError::FrameStep { found }));
     }
-    let (whole, parts) = (Clock::with_frame_time(0.04).unwrap(), Clock::with_frame_time(1.0 / 24.0).unwrap());
+    let (whole, parts) = (
+        Clock::with_frame_time(0.04).unwrap(),
+        Clock::with_frame_time(1.0 / 24.0).unwrap(),
+    );
     for frame in [1 << 52, -(1 << 52), i64::MIN, i64::MAX] {
         assert_eq!(parts.tick(frame), Err(ClockError::Frame { frame, ticks: 5 }));
         assert_eq!(whole.tick(frame), Ok(frame)); // refused where it is used
@@ -77,13 +80,25 @@ fn a_recording_is_counted_in_ticks_unless_its_rows_are_too_far_apart() {
     let at = |seconds: f64| recording.on_clock(Clock::with_frame_time(seconds).unwrap());
     let seven = at(1.0 / 7.0).unwrap();
     assert_eq!((seven.frames()[19], seven.frame_step()), (57 * 5, 14));
-    let positions = |recording: &Recording| recording.observations().iter().map(|row| row.position).collect::<Vec<_>>();
+    let positions = |recording: &Recording| {
+        recording
+            .observations()
+            .iter()
+            .map(|row| row.position)
+            .collect::<Vec<_>>()
+    };
     assert_eq!(positions(&seven), positions(&recording));
     assert!(at(0.4).is_ok());
     assert!(matches!(at(0.41), Err(ClockError::TooSlow { apart }) if apart > 1.2));
     let far = pedestrian((1 << 52)..(1 << 52) + 20);
     let refused = far.on_clock(Clock::with_frame_time(1.0 / 24.0).unwrap());
-    assert_eq!(refused, Err(ClockError::Frame { frame: 1 << 52, ticks: 5 }));
+    assert_eq!(
+        refused,
+        Err(ClockError::Frame {
+            frame: 1 << 52,
+            ticks: 5
+        })
+    );
 }
 
 /// A pedestrian at 1.3 m/s, seen twice a second, every 12 frame numbers.
@@ -113,7 +128,10 @@ fn scenes_of_trajnet_state_the_frame_rate() {
     let windows = recording.observed_windows();
     let speed = |track: &[[f64; 2]]| (track[7][0] - track[0][0]) / 2.8;
     let speeds: Vec<f64> = windows.iter().map(|window| speed(window.observed(0))).collect();
-    assert!(speeds.len() == 24 && speeds.iter().all(|speed| (speed - 1.3).abs() < 0.02), "{speeds:?}");
+    assert!(
+        speeds.len() == 24 && speeds.iter().all(|speed| (speed - 1.3).abs() < 0.02),
+        "{speeds:?}"
+    );
 
     // The usual files, with frames 0.4 s apart and any frame numbers, are left unchanged.
     let usual = read(&scene(r#", "fps": 2.5"#));
@@ -161,21 +179,35 @@ fn times_are_exact_to_a_microsecond_and_print_back() {
         let [header, time, expected, printed] = case.split("=> ").map(str::trim).collect::<Vec<_>>()[..] else {
             panic!("{case}");
         };
-        let text = if header.is_empty() { format!("{time}\n") } else { format!("{header}\n{time},7,0,0\n") };
+        let text = if header.is_empty() {
+            format!("{time}\n")
+        } else {
+            format!("{header}\n{time},7,0,0\n")
+        };
         let format = Format::guess("".as_ref(), text.as_bytes());
         let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
         assert_eq!(recording.frames()[0].to_string(), expected, "{case}");
         let clock = recording.stated_clock().unwrap().unwrap();
-        assert_eq!((clock.frame_step(), clock.number(recording.frames()[0]).to_string()), (400_000, printed.to_owned()));
+        assert_eq!(
+            (clock.frame_step(), clock.number(recording.frames()[0]).to_string()),
+            (400_000, printed.to_owned())
+        );
         let mut stream = FrameReader::new(text.as_bytes(), "f");
-        assert_eq!(stream.next_frame().unwrap().unwrap().number, recording.frames()[0], "{case}");
+        assert_eq!(
+            stream.next_frame().unwrap().unwrap().number,
+            recording.frames()[0],
+            "{case}"
+        );
         assert_eq!(stream.time_unit(), recording.time_unit());
     }
     let whole = parse_recording(b"frame,pedestrian,x,y\n12.0,7,0,0\n", "f", Format::Table).unwrap();
     assert_eq!((whole.frames(), whole.time_unit()), (&[12][..], None));
     // One fraction shows that all are seconds.
     let seconds = parse_recording(b"frame,pedestrian,x,y\n12,7,0,0\n12.4,7,0,0\n", "f", Format::Table).unwrap();
-    assert_eq!((seconds.frames(), seconds.time_unit()), (&[12_000_000, 12_400_000][..], Some(TimeUnit::Seconds)));
+    assert_eq!(
+        (seconds.frames(), seconds.time_unit()),
+        (&[12_000_000, 12_400_000][..], Some(TimeUnit::Seconds))
+    );
 }
 
 /// Files, `|` between lines, what reading the whole file says, and what reading a stream says.
@@ -203,12 +235,17 @@ fn times_of_two_kinds_are_refused_with_their_place() {
         };
         let text = text.replace('|', "\n").replace("TRACK", r#""p":7,"x":0,"y":0"#) + "\n";
         let format = Format::guess("".as_ref(), text.as_bytes());
-        let file = parse_recording(text.as_bytes(), "f", format).err().map_or("NONE".to_owned(), |e| e.to_string());
+        let file = parse_recording(text.as_bytes(), "f", format)
+            .err()
+            .map_or("NONE".to_owned(), |e| e.to_string());
         let mut frames = FrameReader::new(text.as_bytes(), "f");
         let stream = std::iter::from_fn(|| frames.next_frame().transpose()).find_map(Result::err);
         let stream = stream.map_or("NONE".to_owned(), |error| error.to_string());
         assert!(file.contains(of_file), "{case}: {file}");
-        assert!(stream.contains(if of_stream == "SAME" { of_file } else { of_stream }), "{case}: {stream}");
+        assert!(
+            stream.contains(if of_stream == "SAME" { of_file } else { of_stream }),
+            "{case}: {stream}"
+        );
     }
 }
 
@@ -217,7 +254,10 @@ fn times_of_two_kinds_are_refused_with_their_place() {
 fn a_stream_goes_on_after_a_time_of_another_kind() {
     for (text, numbers) in [
         ("frame,pedestrian,x,y\n0,7,0,0\n0.5,7,0,0\n1,7,0,0\n", [0, 1]),
-        ("time,pedestrian,x,y\nnoon,7,0,0\n1970-01-01T00:00:01Z,7,0,0\n1970-01-01T00:00:02Z,7,0,0\n", [1_000_000, 2_000_000]),
+        (
+            "time,pedestrian,x,y\nnoon,7,0,0\n1970-01-01T00:00:01Z,7,0,0\n1970-01-01T00:00:02Z,7,0,0\n",
+            [1_000_000, 2_000_000],
+        ),
     ] {
         let mut frames = FrameReader::new(text.as_bytes(), "f");
         let read = std::iter::from_fn(|| frames.next_frame().transpose());

@@ -25,7 +25,10 @@ fn pedestrians_may_be_words() {
         assert_eq!(read_names, names, "{format}");
         assert!((0..4).all(|i| window.named(&window.name(i)) == Some(i)));
         let partial = recording.live_tracks().with_completeness(Completeness::Partial);
-        assert_eq!(recording.observe(partial).windows[1].name(3), PedestrianName::Word("1e3".to_owned()));
+        assert_eq!(
+            recording.observe(partial).windows[1].name(3),
+            PedestrianName::Word("1e3".to_owned())
+        );
         // A duplicate is reported with its word.
         let twice = text.clone() + text.lines().last().unwrap();
         let read = parse_recording(twice.as_bytes(), "f", format);

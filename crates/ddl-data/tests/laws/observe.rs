@@ -107,8 +107,17 @@ type Bits = Vec<(i64, PedestrianId, Vec<u64>, usize)>;
 fn bits(windows: &[Window]) -> Bits {
     let of_window = |window: &Window| -> Bits {
         let of_pedestrian = |i: usize| {
-            let ObservationQuality { unseen, age, deviation, velocity_deviation } = window.quality(i);
-            let numbers = window.observed(i).iter().flatten().chain([&age, &deviation, &velocity_deviation]);
+            let ObservationQuality {
+                unseen,
+                age,
+                deviation,
+                velocity_deviation,
+            } = window.quality(i);
+            let numbers = window
+                .observed(i)
+                .iter()
+                .flatten()
+                .chain([&age, &deviation, &velocity_deviation]);
             let numbers = numbers.map(|number| number.to_bits()).collect();
             (window.frames()[OBSERVED - 1], window.pedestrians()[i], numbers, unseen)
         };
@@ -279,7 +288,10 @@ fn assert_all_observed(rows: Vec<Observation>, pedestrians: usize, from: f64, un
         if (from..until).contains(&now) {
             assert_eq!(window.len(), pedestrians, "{now} s");
             let places = (0..pedestrians).map(|i| window.observed(i)[OBSERVED - 1]);
-            assert!(places.into_iter().all(|place| (place[0] - 1.2 * now).abs() < 0.1), "{window:?}");
+            assert!(
+                places.into_iter().all(|place| (place[0] - 1.2 * now).abs() < 0.1),
+                "{window:?}"
+            );
             count += 1;
         }
     }
@@ -292,14 +304,26 @@ fn every_clock_is_observed() {
     let phases = [66, 121, 189, 278, 303, 309];
     let own = |id: i64| (0..30).map(|k| phases[id as usize - 1] + 400 * k).collect();
     assert_all_observed(straight(own, 6), 6, 0.8, 11.6);
-    assert_all_observed(straight(|id| (0..25).map(|k| 40 * (10 * k + [0, 3, 7][id as usize - 1])).collect(), 3), 3, 0.8, 9.6);
+    assert_all_observed(
+        straight(
+            |id| (0..25).map(|k| 40 * (10 * k + [0, 3, 7][id as usize - 1])).collect(),
+            3,
+        ),
+        3,
+        0.8,
+        9.6,
+    );
     // A common clock that jitters: each at every moment from its second row on.
     let jitter = |_| (0..100).map(|k| 1_000 + Pace::Jitter.frame(0, k)).collect();
     let recording = recording(Clock::with_frame_time(0.001).unwrap(), straight(jitter, 4));
     let observed = partial(&recording);
     assert_eq!(observed.windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
     let slow = recording.observe(recording.live_tracks().with_interval(0.4)).windows;
-    assert!((16..=18).contains(&slow.len()), "{} windows every 0.4 s of the last 7.1 s", slow.len());
+    assert!(
+        (16..=18).contains(&slow.len()),
+        "{} windows every 0.4 s of the last 7.1 s",
+        slow.len()
+    );
 }
 
 /// A third of the rows lost: as many windows with futures and whole observations as with all rows.
@@ -307,15 +331,29 @@ fn every_clock_is_observed() {
 fn lost_rows_cost_no_windows() {
     let ten = Pace::Rate(10.0);
     let counts = |lost: f64| {
-        let recording = recording(ten.clock(), (0..20).flat_map(|seed| {
-            let later = move |row: Observation| Observation { pedestrian: PedestrianId(row.pedestrian.0 + 10 * seed), ..row };
-            film(ten, seed as u64, 0.0, lost).into_iter().map(later)
-        }).collect());
+        let recording = recording(
+            ten.clock(),
+            (0..20)
+                .flat_map(|seed| {
+                    let later = move |row: Observation| Observation {
+                        pedestrian: PedestrianId(row.pedestrian.0 + 10 * seed),
+                        ..row
+                    };
+                    film(ten, seed as u64, 0.0, lost).into_iter().map(later)
+                })
+                .collect(),
+        );
         let len = |windows: Vec<Window>| windows.iter().map(Window::len).sum::<usize>();
-        [len(recording.windows(WindowRule::Observed)), len(recording.observed_windows())]
+        [
+            len(recording.windows(WindowRule::Observed)),
+            len(recording.observed_windows()),
+        ]
     };
     let (all, some) = (counts(0.0), counts(0.33));
-    assert!((0..2).all(|which| some[which] as f64 > 0.95 * all[which] as f64), "{some:?} of {all:?}");
+    assert!(
+        (0..2).all(|which| some[which] as f64 > 0.95 * all[which] as f64),
+        "{some:?} of {all:?}"
+    );
 }
 
 /// Two rows a second, and a turn after 4.5 s: at 4.6 s nothing of it is known.
@@ -323,22 +361,36 @@ fn lost_rows_cost_no_windows() {
 fn between_rows_a_walk_goes_on_straight() {
     let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(0.001).unwrap());
     for k in 0..10 {
-        tracks.push(500 * k, [(PedestrianId(1), [0.65 * k as f64, 0.0])]).unwrap();
+        tracks
+            .push(500 * k, [(PedestrianId(1), [0.65 * k as f64, 0.0])])
+            .unwrap();
     }
     let window = tracks.push(4_600, [(PedestrianId(2), [9.0, 9.0])]).unwrap().unwrap();
     let (quality, track) = (window.quality(0), window.observed(0));
-    assert!(distance(track[7], [5.98, 0.0]) < 0.01 && distance(track[0], [2.34, 0.0]) < 0.01, "{track:?}");
+    assert!(
+        distance(track[7], [5.98, 0.0]) < 0.01 && distance(track[0], [2.34, 0.0]) < 0.01,
+        "{track:?}"
+    );
     assert!((quality.age - 0.1).abs() < 1e-12 && quality.is_whole(), "{quality:?}");
     // Carried on up to an age, then no longer.
     let present = |tracks: LiveTracks, frame| tracks.after(frame, []).unwrap().window().is_some();
     for (age, [here, gone]) in [(0.4, [4_899, 4_900]), (1.2, [5_699, 5_700]), (f64::NAN, [4_601, 4_602])] {
         let tracks = tracks.clone().with_max_age(age);
-        assert_eq!((present(tracks.clone(), here), present(tracks, gone)), (age > 0.0, false), "{age}");
+        assert_eq!(
+            (present(tracks.clone(), here), present(tracks, gone)),
+            (age > 0.0, false),
+            "{age}"
+        );
     }
 }
 
 /// The arrivals, and the last window, of walkers at 1.4 m/s along x whose rows from an index on are moved.
-fn told(rate: f64, pedestrians: i64, from: usize, moved: impl Fn(i64, Position) -> Position) -> (Vec<(i64, PedestrianId, Arrival)>, Window) {
+fn told(
+    rate: f64,
+    pedestrians: i64,
+    from: usize,
+    moved: impl Fn(i64, Position) -> Position,
+) -> (Vec<(i64, PedestrianId, Arrival)>, Window) {
     let clock = Clock::with_frame_time(1.0 / rate).unwrap();
     let mut rows = Vec::new();
     for id in 1..=pedestrians {
@@ -363,7 +415,10 @@ fn a_wrong_position_is_left_out_and_told() {
                 "{rate} {off}: {told:?}"
             );
             let seen = window.observed(0)[OBSERVED - 1];
-            assert!(distance(seen, [1.4 * last as f64 / rate, 3.0]) < 0.3, "{rate} {off}: {seen:?}");
+            assert!(
+                distance(seen, [1.4 * last as f64 / rate, 3.0]) < 0.3,
+                "{rate} {off}: {seen:?}"
+            );
             assert!((window.quality(0).age * rate - 1.0).abs() < 1e-9);
         }
     }
@@ -375,11 +430,17 @@ fn an_exchange_of_numbers_begins_both_tracks() {
     for rate in [2.5, 10.0] {
         let from = (4.0 * rate) as usize;
         let (told, window) = told(rate, 2, from, |id, [x, y]| [x, if id == 1 { y + 3.0 } else { y - 3.0 }]);
-        let kinds: Vec<_> = told.iter().map(|(_, id, arrival)| (id.0, matches!(arrival, Arrival::Jumped(_)))).collect();
+        let kinds: Vec<_> = told
+            .iter()
+            .map(|(_, id, arrival)| (id.0, matches!(arrival, Arrival::Jumped(_))))
+            .collect();
         assert_eq!(kinds, [(1, false), (2, false), (1, true), (2, true)], "{told:?}");
         for i in 0..2 {
             let straight = |position: &Position| (position[1] - [6.0, 3.0][i]).abs() < 0.05;
-            assert!(window.observed(i).iter().all(straight) && window.quality(i).unseen > 0, "{window:?}");
+            assert!(
+                window.observed(i).iter().all(straight) && window.quality(i).unseen > 0,
+                "{window:?}"
+            );
         }
     }
 }
@@ -391,7 +452,11 @@ fn exact_recordings_are_observed_as_they_are() {
     datasets.extend(recordings::load(Convention::Star));
     for recording in datasets.iter().flat_map(Dataset::recordings) {
         let told = recording.observe(recording.live_tracks()).arrivals.len();
-        assert!(told <= recording.observations().len() / 2_000, "{}: {told} told", recording.name());
+        assert!(
+            told <= recording.observations().len() / 2_000,
+            "{}: {told} told",
+            recording.name()
+        );
         let complete = recording.windows(WindowRule::Complete);
         let observed = recording.windows(WindowRule::Observed);
         if told > 0 {
