@@ -118,8 +118,8 @@ impl Clock {
         if let Some(frame_step) = whole(frames, TOLERANCE) {
             return Self::with_frame_step(frame_step);
         }
-        let steps = (1..MOST_TICKS).map(|ticks| (ticks, whole(frames * ticks as f64, FIT)));
-        let fitting = steps.filter_map(|(ticks, step)| Some((ticks, step?))).next();
+        let mut counts = 1..MOST_TICKS;
+        let fitting = counts.find_map(|ticks| Some((ticks, whole(frames * ticks as f64, FIT)?)));
         // A thousandth of a frame is always accurate enough.
         let (ticks, frame_step) = fitting.unwrap_or((MOST_TICKS, (frames * MOST_TICKS as f64).round() as i64));
         Ok(Self {
