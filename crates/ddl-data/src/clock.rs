@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use ddl_core::{FRAME_LIMIT, TIME_STEP, is_frame_step};
+use ddl_core::{TIME_STEP, is_frame, is_frame_step};
 use serde::{Serialize, Serializer};
 use thiserror::Error;
 use time::OffsetDateTime;
@@ -112,14 +112,14 @@ impl Clock {
     pub fn with_frame_time(seconds: f64) -> Result<Self, ClockError> {
         let frames = TIME_STEP / seconds;
         // False for NaN.
-        if !(frames > 1e-3 && frames.ceil() < (1_i64 << 31) as f64) {
+        if !(frames >= 1e-3 && frames.ceil() < (1_i64 << 31) as f64) {
             return Err(ClockError::FrameTime { found: seconds });
         }
         if let Some(frame_step) = whole(frames, TOLERANCE) {
             return Self::with_frame_step(frame_step);
         }
-        let steps = (1..MOST_TICKS).map(|ticks| (ticks, whole(frames * ticks as f64, FIT)));
-        let fitting = steps.filter_map(|(ticks, step)| Some((ticks, step?))).next();
+        let mut counts = 1..MOST_TICKS;
+        let fitting = counts.find_map(|ticks| Some((ticks, whole(frames * ticks as f64, FIT)?)));
         // A thousandth of a frame is always accurate enough.
         let (ticks, frame_step) = fitting.unwrap_or((MOST_TICKS, (frames * MOST_TICKS as f64).round() as i64));
         Ok(Self {
@@ -172,7 +172,7 @@ impl Clock {
         let Count::Frames { ticks } = self.count else {
             return Ok(frame);
         };
-        let tick = frame.checked_mul(ticks).filter(|tick| tick.abs() < FRAME_LIMIT);
+        let tick = frame.checked_mul(ticks).filter(|tick| is_frame(*tick));
         // A number that needs no division is checked where it is used.
         let tick = tick.or((ticks == 1).then_some(frame));
         tick.ok_or(ClockError::Frame { frame, ticks })

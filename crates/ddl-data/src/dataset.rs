@@ -50,7 +50,7 @@ impl Dataset {
         }
     }
 
-    /// The user's own recordings, in steps of 0.4 s ([`Recording::resampled_to_steps`]). Each recording can be left out
+    /// The user's own recordings, in steps of 0.4 s ([`Recording::on_clock`]). Each recording can be left out
     /// as a fold, which has the recording's name.
     ///
     /// # Errors

@@ -4,11 +4,12 @@ use ddl_core::{Forecast, ForecastError, Forecaster, OBSERVED, Position, WINDOW, 
 
 /// Looks for a leak: forecasts the window as it is, without its future, and with futures changed one frame of one
 /// pedestrian at a time and all together. `None` when every forecast is bit-identical, else the change that a forecast
-/// revealed.
+/// revealed. Bystanders, which have no future, are left out.
 ///
 /// # Errors
 /// The forecaster failed, for instance because it needs the future, which is also a leak.
 pub fn find(forecaster: &(impl Forecaster + ?Sized), window: &Window) -> Result<Option<String>, ForecastError> {
+    let window = &window.clone().with_bystanders(None);
     let reference = bits(&forecaster.forecast(&window.without_future())?);
     let leaks =
         |changed: &Window| -> Result<bool, ForecastError> { Ok(bits(&forecaster.forecast(changed)?) != reference) };
@@ -57,7 +58,8 @@ fn bits(forecast: &Forecast) -> Vec<u64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixture::{forecast, walk, window};
+    use crate::baseline::SocialForce;
+    use crate::fixture::{forecast, walk, walking, window};
 
     struct Peeks {
         frame: usize,
@@ -85,7 +87,12 @@ mod tests {
         for frame in OBSERVED..WINDOW {
             assert!(find(&Peeks { frame }, &window).unwrap().is_some());
         }
+        // Bystanders are no leak, and hide none.
+        let crowd = walking(&[([0.5, 0.0], [0.4, 0.0]), ([1.0, 0.5], [-0.4, 0.0])], OBSERVED);
+        let window = window.with_bystanders(Some(crowd));
+        assert!(find(&Peeks { frame: OBSERVED }, &window).unwrap().is_some());
         let frame = OBSERVED - 1;
         assert_eq!(find(&Peeks { frame }, &window).unwrap(), None);
+        assert_eq!(find(&SocialForce, &window).unwrap(), None);
     }
 }

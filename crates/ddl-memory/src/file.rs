@@ -122,7 +122,10 @@ fn checked(stored: Stored<'_>) -> Result<SceneMemory, String> {
     for frame in last_frames.clone().chain(memory.last_frame) {
         checked_frame(frame, None, []).map_err(|error| error.to_string())?;
     }
-    if last_frames.max() > memory.last_frame {
+    let last_rows = of_running.clone().map(|running| running.last_row(memory.frame_step));
+    let last_rows: Option<Vec<i64>> = last_rows.collect();
+    let last_rows = last_rows.ok_or("the last row of a pedestrian lies far from its last step")?;
+    if last_rows.into_iter().max() > memory.last_frame {
         return Err("a pedestrian was seen after the last frame".to_owned());
     }
     for track in memory.ended.iter().chain(of_running.map(|running| &running.track)) {

@@ -139,8 +139,7 @@ impl SceneMemory {
     /// Adds the pedestrians of one frame in any order, with world positions in metres. Frame numbers must increase.
     ///
     /// A memory accepts the frames that [`LiveTracks`](ddl_data::LiveTracks) accepts. It ignores positions with x or y
-    /// beyond 1e7 m. If no two frames are one step apart (as for every third frame of a camera with 10 frames per
-    /// step), it holds no segments, although [`summary`](Self::summary) counts pedestrians.
+    /// beyond 1e7 m.
     ///
     /// # Errors
     /// [`MemoryError::Frame`] for a frame that [`checked_frame`] refuses. The memory is then unchanged.

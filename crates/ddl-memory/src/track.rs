@@ -3,7 +3,7 @@
 use ddl_data::Position;
 use serde::{Deserialize, Serialize};
 
-use crate::piece::{FirstMotion, Piece, SHARED};
+use crate::piece::{FirstMotion, Piece, SHARED, is_remembered};
 
 /// A track ends after this many steps of 0.4 s (3.2 s) without a position. If the same id returns later, a new track
 /// begins.
@@ -89,9 +89,9 @@ pub(crate) struct RunningTrack {
     /// The frame of its last position.
     pub(crate) last: i64,
     pub(crate) track: Track,
-    /// Its last row, which may lie between two steps.
-    #[serde(skip)]
-    latest: Option<(i64, Position)>,
+    /// Its last row, if that lies between two steps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    between: Option<(i64, Position)>,
 }
 
 /// Without its last row, which is not kept in files.
@@ -107,8 +107,23 @@ impl RunningTrack {
         Self {
             last: frame,
             track: Track { pieces },
-            latest: Some((frame, position)),
+            between: None,
         }
+    }
+
+    /// The frame of its last row; `None` if that cannot be, in a file.
+    pub(crate) fn last_row(&self, step: i64) -> Option<i64> {
+        match self.between {
+            None => Some(self.last),
+            Some((frame, position)) => {
+                let after = frame.checked_sub(self.last).filter(|after| (1..step).contains(after));
+                after.filter(|_| is_remembered(position)).map(|_| frame)
+            }
+        }
+    }
+
+    fn last_position(&self) -> Option<Position> {
+        self.track.pieces.last()?.path().last().copied()
     }
 
     /// Whether the track has ended by this frame.
@@ -120,19 +135,21 @@ impl RunningTrack {
     /// Returns the numbers of segments added and removed.
     pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
         let (mut new, mut gone) = (0, 0);
-        let before = self.latest.replace((frame, position));
+        let last = self.last_position().map(|last| (self.last, last));
+        let before = self.between.take().or(last);
         let before = before.filter(|(before, _)| frame - before <= LONGEST_JOINED * step);
         while let Some((from, start)) = before
             && frame > self.last + step
-            && (frame - self.last) % step != 0
+            && (from != self.last || (frame - self.last) % step != 0)
         {
             let due = self.last + step;
             let share = (due - from) as f64 / (frame - from) as f64;
-            let between = [0, 1].map(|axis| start[axis] + share * (position[axis] - start[axis]));
-            let (added, removed) = self.add(due, between, step);
+            let passed = [0, 1].map(|axis| start[axis] + share * (position[axis] - start[axis]));
+            let (added, removed) = self.add(due, passed, step);
             (new, gone) = (new + added, gone + removed);
         }
         if frame < self.last + step {
+            self.between = Some((frame, position));
             return (new, gone);
         }
         let (added, removed) = self.add(frame, position, step);

@@ -1,6 +1,6 @@
 //! Windows: what is refused, and what stays when pedestrians or positions change.
 
-use ddl_core::{OBSERVED, PedestrianId, Position, RememberedTrack, Window, WindowError};
+use ddl_core::{OBSERVED, ObservationQuality, PedestrianId, Position, RememberedTrack, Window, WindowError};
 
 fn ids(range: std::ops::Range<i64>) -> Vec<PedestrianId> {
     range.map(PedestrianId).collect()
@@ -79,4 +79,72 @@ fn remembered_tracks_stay_with_their_pedestrian() {
     // Reversal drops it, because it would lie in the future.
     assert_eq!(remembering.reversed(), window.reversed());
     assert_eq!(remembering.with_remembered(|_| Vec::new()), window);
+}
+
+#[test]
+fn bystanders_are_seen_behind_the_pedestrians() {
+    let of = |range: std::ops::Range<i64>, steps: usize| {
+        let tracks = range.clone().map(|id| vec![[id as f64, 1.0]; steps]).collect();
+        let ages = range.clone().map(|id| ObservationQuality {
+            age: id as f64,
+            ..ObservationQuality::default()
+        });
+        let window = Window::new("yard", 0, 10, ids(range.clone()), tracks)
+            .unwrap()
+            .with_qualities(ages.collect());
+        let remembered = |i| RememberedTrack {
+            track: [[i as f64, 2.0]; 20],
+            distance: 0.0,
+        };
+        window.with_remembered(|i| vec![remembered(range.start as usize + i)])
+    };
+    let window = of(4..6, 20).with_bystanders(Some(of(1..4, 20)));
+    assert!(!window.bystanders().unwrap().has_future());
+    let seen = window.without_future();
+    assert_eq!(
+        (seen.len(), seen.pedestrians()),
+        (5, &[4, 5, 1, 2, 3].map(PedestrianId)[..])
+    );
+    for (i, id) in [4.0, 5.0, 1.0, 2.0, 3.0].into_iter().enumerate() {
+        assert_eq!(
+            (seen.observed(i)[7], seen.quality(i).age, seen.remembered(i)[0].track[0]),
+            ([id, 1.0], id, [id, 2.0])
+        );
+    }
+    assert_eq!(seen.bystanders(), None);
+    assert_eq!(
+        window
+            .filter_pedestrians(|i| i == 1)
+            .unwrap()
+            .without_future()
+            .pedestrians(),
+        [5, 1, 2, 3].map(PedestrianId)
+    );
+    assert_eq!((window.len(), window.reversed().bystanders()), (2, None));
+    assert_eq!(window.clone().with_bystanders(None).without_future(), of(4..6, 8));
+    let later = Window::new("yard", 10, 10, ids(1..2), vec![vec![[0.0; 2]; 8]]).unwrap();
+    assert!(
+        std::panic::catch_unwind(|| window.with_bystanders(Some(later))).is_err(),
+        "other frames"
+    );
+}
+
+#[test]
+fn what_was_measured_has_no_quality() {
+    let window = Window::new("r", 0, 1, ids(0..2), vec![vec![[0.0; 2]; 8]; 2]).unwrap();
+    let measured = ObservationQuality::default();
+    assert_eq!(
+        (window.quality(1), measured.is_whole(), measured.deviation_after(4.8)),
+        (measured, true, 0.0)
+    );
+    assert_eq!(window.clone().with_qualities(vec![measured; 2]), window);
+    let partial = ObservationQuality {
+        unseen: 3,
+        age: 0.1,
+        deviation: 0.3,
+        velocity_deviation: 0.1,
+    };
+    assert!(!partial.is_whole() && (partial.deviation_after(4.0) - 0.5).abs() < 1e-12);
+    let window = window.with_qualities(vec![measured, partial]);
+    assert_eq!(window.filter_pedestrians(|i| i == 1).unwrap().quality(0), partial);
 }

@@ -70,17 +70,18 @@ enum TimeColumn {
     Frame,
     /// Seconds or dates, as the first value says.
     Time,
-    Known(TimeUnit),
+    /// Frames, without a unit, or times.
+    Known(Option<TimeUnit>),
 }
 
 impl TimeColumn {
     fn named(name: &str) -> Option<Self> {
         match name.to_ascii_lowercase().as_str() {
             "time" | "timestamp" | "t" => Some(Self::Time),
-            "time_s" | "seconds" => Some(Self::Known(TimeUnit::Seconds)),
-            "time_ms" | "timestamp_ms" | "milliseconds" => Some(Self::Known(TimeUnit::Milliseconds)),
-            "time_us" | "timestamp_us" | "microseconds" => Some(Self::Known(TimeUnit::Microseconds)),
-            "time_ns" | "timestamp_ns" | "nanoseconds" => Some(Self::Known(TimeUnit::Nanoseconds)),
+            "time_s" | "seconds" => Some(Self::Known(Some(TimeUnit::Seconds))),
+            "time_ms" | "timestamp_ms" | "milliseconds" => Some(Self::Known(Some(TimeUnit::Milliseconds))),
+            "time_us" | "timestamp_us" | "microseconds" => Some(Self::Known(Some(TimeUnit::Microseconds))),
+            "time_ns" | "timestamp_ns" | "nanoseconds" => Some(Self::Known(Some(TimeUnit::Nanoseconds))),
             _ => None,
         }
     }
@@ -96,8 +97,13 @@ impl TrackColumns {
         if record.len() != self.count {
             return Err(FilePlace::line(line).wrong(origin, wrong_count(self.count, record.len())));
         }
+        let before = self.time;
         self.look_at(std::slice::from_ref(&record));
-        self.row(&record, line, origin)
+        let row = self.row(&record, line, origin);
+        if row.is_err() {
+            self.time = before;
+        }
+        row
     }
 
     /// What a reader should know of the columns.
@@ -117,12 +123,12 @@ impl TrackColumns {
     fn look_at(&mut self, records: &[StringRecord]) {
         let mut fields = records.iter().filter_map(|record| record.get(self.places[0]));
         let unit = match self.time {
-            TimeColumn::Known(_) => return,
+            TimeColumn::Known(unit) => unit,
             TimeColumn::Time => fields.next().map(field::unit_of),
             TimeColumn::Frame => fields.any(field::has_fraction).then_some(TimeUnit::Seconds),
         };
-        self.is_fraction = self.time == TimeColumn::Frame && unit.is_some();
-        self.time = unit.map_or(self.time, TimeColumn::Known);
+        self.is_fraction |= self.time == TimeColumn::Frame && unit.is_some();
+        self.time = TimeColumn::Known(unit);
     }
 
     fn of(header: &StringRecord, line: usize, origin: &str) -> Result<Self, FormatError> {
@@ -187,7 +193,7 @@ impl TrackColumns {
     fn row(&self, record: &StringRecord, line: usize, origin: &str) -> Result<TrackRow, FormatError> {
         let field = |column: usize| (column + 1, record.get(column).unwrap_or_default());
         let unit = match self.time {
-            TimeColumn::Known(unit) => Some(unit),
+            TimeColumn::Known(unit) => unit,
             TimeColumn::Frame | TimeColumn::Time => None,
         };
         let row = TrackRow::of(line, origin, unit, self.places.map(field))?;

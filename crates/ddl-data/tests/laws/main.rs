@@ -1,13 +1,13 @@
 //! Recordings, windows and folds: laws, and numbers computed outside this project.
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod completion;
+mod clock;
 mod folds;
 mod frames;
 mod homography;
 mod live;
 mod names;
-mod rate;
+mod observe;
 mod readers;
 mod recordings;
 mod summary;

@@ -97,7 +97,7 @@ fn every_mistake_of_a_social_gan_file_is_named_with_its_place() {
 0 1 0 0\n1 1 nan 0 => 2, field 3: x must be a finite number
 0 1 0 1e999 => 1, field 4: y must be a finite number
 0 1 2e7 0 => 1, field 3: x must lie within 10000000 m
-0.5 1 0 0 => 1, field 1: frame must be a whole number
+half 1 0 0 => 1, field 1: frame must be a whole number
 1e300 1 0 0 => 1, field 1: frame must be a whole number
 0 1 0 0\n0 2 0 0\n0 1 5 5 => 3: pedestrian 1 is in frame 0 already (line 1)
 ";
@@ -155,7 +155,7 @@ fn every_mistake_of_an_obsmat_file_is_named_with_its_place() {
 => 1: the file holds no observation
 0 1 2 3 => 1: 4 fields where 8 are expected
 0 1 2 0 3 0 0 0\n1 1 2 0 3 0 0 0 0 => 2: 9 fields where 8 are expected
-0.5 1 2 0 3 0 0 0 => 1, field 1: frame must be a whole number
+half 1 2 0 3 0 0 0 => 1, field 1: frame must be a whole number
 5 one 2 0 3 0 0 0 => 1, field 2: pedestrian must be a whole number
 5 1 NaN 0 3 0 0 0 => 1, field 3: x must be a finite number
 5 1 2 up 3 0 0 0 => 1, field 4: z must be a number
@@ -218,7 +218,6 @@ fn other_headers_are_read_or_explained() {
     let cases = "
 observed_until,pedestrian,frame,x,y => this is a table of forecasts
 frame,id,x,y => rename it to pedestrian
-time,pedestrian,x,y => count frames
 frame;pedestrian;x;y => commas
 frame,pedestrian,x,y,vx => ; remove it
 frame,pedestrian,x,vx => still missing: y
@@ -239,7 +238,6 @@ frame\tpedestrian\tx\ty => separate columns by commas
 #[test]
 fn other_rows_are_read_or_explained() {
     let cases = r#"
-0.4,1,2.0,3.0 => line 2, field 1 => is it a time? Count frames
 0,1.5,2.0,3.0 => line 2, field 2 => must be a whole number
 0,,2.0,3.0 => line 2, field 2 => leave out the row
 0,1,"2,5",3.0 => line 2, field 3 => use a decimal point

@@ -145,6 +145,7 @@ fn rules_are_read_by_name() {
     for (word, rule) in [
         ("published", WindowRule::Published),
         ("complete", WindowRule::Complete),
+        ("observed", WindowRule::Observed),
         ("social-gan", social_gan(2)),
         ("social-gan-1", social_gan(1)),
         ("social-gan-7", social_gan(7)),

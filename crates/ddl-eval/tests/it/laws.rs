@@ -2,8 +2,9 @@
 
 use ddl_core::{Forecast, distance};
 use ddl_data::{PedestrianId, Position, Rotation, WINDOW, Window};
+use ddl_eval::baseline::SocialForce;
 use ddl_eval::metric::collision::closest_approach;
-use ddl_eval::{Category, EvaluationError, Scores, WindowProblem};
+use ddl_eval::{Category, EvaluationError, Protocol, Scores, WindowProblem};
 use proptest::{collection::vec, prelude::*};
 use serde_json::Value;
 
@@ -289,5 +290,29 @@ proptest! {
         // A relative step is shorter than 160 m: 1/800 of it on either side of a sample.
         prop_assert!(exact <= sampled + 1e-12 && sampled <= exact + 0.2, "{exact} {sampled}");
         prop_assert!(all_agree(&[exact], &[closest_approach(&b, &a)]));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Who has no future is seen by the forecaster, and not scored.
+    #[test]
+    fn bystanders_are_seen_and_not_scored(all in walking(5), scored in 1..5_usize) {
+        let some = |range: std::ops::Range<usize>| all.filter_pedestrians(|i| range.contains(&i));
+        let (window, others) = (some(0..scored).unwrap(), some(scored..5));
+        let seen = window.clone().with_bystanders(others);
+        prop_assert_eq!(&seen.without_future(), &all.without_future());
+        for protocol in [Protocol::Fair, Protocol::Single] {
+            let forecast = |window: &Window| {
+                let forecasts = protocol.forecast(&SocialForce, std::slice::from_ref(window));
+                forecasts.unwrap().remove(0)
+            };
+            let (of_all, of_seen) = (forecast(&all), forecast(&seen));
+            prop_assert_eq!(of_seen.pedestrians(), scored);
+            prop_assert_eq!(&of_seen, &of_all.without_bystanders(scored));
+            let [with, without] = [&seen, &window].map(|window| scores(window, &of_seen));
+            prop_assert_eq!(with, without);
+        }
     }
 }

@@ -32,9 +32,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
     #[test]
-    fn what_was_written_is_read(frames in crate::crowds(), capacity in 1..2_000_usize) {
+    fn what_was_written_is_read(frames in crate::crowds(), capacity in 1..2_000_usize, step in 1..10_i64) {
         let (_folder, path) = folder();
-        let mut memory = memory_of(&frames, capacity);
+        // With any step, also with rows between two.
+        let mut memory = SceneMemory::new(step, capacity).unwrap();
+        for (frame, pedestrians) in &frames {
+            memory.observe(*frame, pedestrians.clone()).unwrap();
+        }
         memory.write(&path).unwrap();
         let mut read = SceneMemory::read(&path).unwrap();
         prop_assert_eq!(&read, &memory);
@@ -142,6 +146,26 @@ fn impossible_memories_are_refused() {
     ] {
         assert!(text.contains(from), "{from}");
         let edited = text[HEAD..].replacen(from, to, 1);
+        let error = read(&path, &signed(edited.as_bytes())).unwrap_err();
+        assert!(error.contains(problem), "{error}");
+    } // A row between two steps: 3 after the step at frame 20.
+    let mut memory = SceneMemory::new(10, 20).unwrap();
+    for frame in [10, 20, 23] {
+        memory
+            .observe(frame, [(ddl_data::PedestrianId(1), [0.1 * frame as f64, 0.0])])
+            .unwrap();
+    }
+    memory.write(&path).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    for (row, problem) in [
+        ("[20,[2.3,0.0]]", "far from its last step"),
+        ("[30,[2.3,0.0]]", "far from its last step"),
+        ("[23,[2.3,1e8]]", "far from its last step"),
+        ("[24,[2.3,0.0]]", "after the last frame"),
+    ] {
+        let row = format!("\"between\":{row}");
+        let (before, after) = text[HEAD..].split_once("\"between\":").unwrap();
+        let edited = [before, &row, &after[after.find("]]").unwrap() + 2..]].concat();
         let error = read(&path, &signed(edited.as_bytes())).unwrap_err();
         assert!(error.contains(problem), "{error}");
     }

@@ -187,28 +187,62 @@ fn ties_go_by_age() {
     assert_eq!((sides(1), sides(2)), (vec![true], vec![true, false]));
 }
 
-/// A camera with ten frames per step: a track uses the positions one step apart, and a gap begins another run.
+/// A walker at 1.2 m/s whose rows lie at other times than the steps after the first one: the positions at the steps lie
+/// between them. By the frames of 40 s and the frames of a step: 10 Hz, also with lost rows (four in a row, and those of
+/// two steps in a row), milliseconds that jitter, 7 and 1 frames a second in parts, every third frame at 25.
 #[test]
-fn frames_between_steps_give_no_segments() {
-    let mut memory = SceneMemory::new(10, 1_000).unwrap();
-    let mut seen = |frames: std::ops::Range<i64>| {
-        for frame in frames {
-            let pedestrians = [(PedestrianId(1), [0.05 * frame as f64, 0.0])];
-            memory.observe(frame, pedestrians).unwrap();
+fn rows_between_the_steps_give_segments() {
+    let lost = |k: &i64| ![4, 5, 6, 7, 20, 24].contains(&(k % 30));
+    let films: [(i64, Vec<i64>); 6] = [
+        (4, (0..=400).collect()),
+        (4, (0..=400).filter(lost).collect()),
+        (400, (0..=400).map(|k| 100 * k + (k * k * 7) % 21).collect()),
+        (14, (0..=280).map(|k| 5 * k).collect()),
+        (2, (0..=40).map(|k| 5 * k).collect()),
+        (10, (0..=1_000).step_by(3).chain([1_000]).collect()),
+    ];
+    for (step, frames) in films {
+        let mut memory = SceneMemory::new(step, 1_000).unwrap();
+        for &frame in &frames {
+            memory
+                .observe(frame, [(PedestrianId(1), [0.48 * frame as f64 / step as f64, 2.0])])
+                .unwrap();
         }
-        memory.segments()
-    };
-    assert_eq!([seen(3..193), seen(193..203), seen(203..213)], [0, 1, 2]);
-    assert_eq!([seen(214..304), seen(304..404), seen(404..405)], [2, 2, 3]);
-    assert_eq!(memory.summary().pedestrians, 1);
-    assert!((memory.summary().seconds - 16.04).abs() < 1e-9);
-    // Every third frame: no two are one step apart.
-    let mut memory = SceneMemory::new(10, 1_000).unwrap();
-    for frame in (0..600).step_by(3) {
-        memory.observe(frame, [(PedestrianId(1), [0.0; 2])]).unwrap();
+        let track: Vec<Position> = memory.tracks().next().unwrap();
+        let off = |(k, place): (usize, &Position)| (place[0] - 0.48 * k as f64).hypot(place[1] - 2.0);
+        assert!(
+            track.iter().enumerate().map(off).all(|off| off < 1e-4),
+            "{step}: {track:?}"
+        );
+        assert_eq!(
+            (track.len(), memory.segments()),
+            (101, 82),
+            "{step}, {} frames",
+            frames.len()
+        );
     }
-    let summary = memory.summary();
-    assert_eq!((summary.frames, summary.pedestrians, summary.segments), (200, 1, 0));
+}
+
+/// Rows at the steps (every tenth frame) are not joined over a missing step, others not over more than 1.2 s.
+#[test]
+fn long_gaps_begin_another_run() {
+    for (spacing, resumed, segments) in [
+        (10, 310, 42),
+        (10, 320, 23),
+        (1, 311, 43),
+        (1, 321, 44),
+        (1, 329, 44),
+        (1, 331, 23),
+    ] {
+        let mut memory = SceneMemory::new(10, 1_000).unwrap();
+        let then = (resumed..resumed + 300).step_by(spacing);
+        for frame in (0..=300).step_by(spacing).chain(then) {
+            memory
+                .observe(frame, [(PedestrianId(1), [0.05 * frame as f64, 0.0])])
+                .unwrap();
+        }
+        assert_eq!(memory.segments(), segments, "{spacing} {resumed}");
+    }
 }
 
 /// The positions of all pedestrians, each once, without gaps; pedestrians without a segment are left out.

@@ -1,6 +1,6 @@
 //! Refused input leaves the memory unchanged.
 
-use ddl_data::{LiveError, LiveTracks, PedestrianId};
+use ddl_data::{ClockError, LiveError, LiveTracks, PedestrianId};
 use ddl_memory::{MemoryError, SceneMemory};
 
 #[test]
@@ -59,7 +59,8 @@ fn input_of_live_tracks_is_accepted() {
 fn a_memory_needs_a_step_and_a_capacity() {
     for step in [0, -1, (1 << 31) + 1, i64::MIN] {
         let error = SceneMemory::new(step, 1);
-        assert!(matches!(error, Err(MemoryError::Frame(LiveError::FrameStep { found })) if found == step));
+        let expected = LiveError::Clock(ClockError::FrameStep { found: step });
+        assert!(matches!(error, Err(MemoryError::Frame(found)) if found == expected));
     }
     for capacity in [0, (1 << 18) + 1, usize::MAX] {
         let error = SceneMemory::new(1, capacity);

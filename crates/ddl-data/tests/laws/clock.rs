@@ -1,0 +1,267 @@
+//! Clocks: how frame numbers and times count, and how they print back.
+
+use ddl_data::{
+    Clock, ClockError, Format, FrameReader, LiveTracks, Observation, PedestrianId, Recording, TimeUnit, parse_recording,
+};
+use proptest::prelude::*;
+
+use crate::readers::complaint;
+
+/// By hand: 12 frames a second are 4.8 in a step, 4 are 1.6, 1 is 0.4.
+#[test]
+fn a_step_is_a_whole_number_of_frames_or_of_their_parts() {
+    for (rate, ticks, step) in [
+        (2.5, 1, 1),
+        (5.0, 1, 2),
+        (12.5, 1, 5),
+        (25.0, 1, 10),
+        (29.97, 1, 12),
+        (1000.0, 1, 400),
+        (12.0, 5, 24),
+        (4.0, 5, 8),
+        (1.0, 5, 2),
+        (7.0, 5, 14),
+        (9.0, 5, 18),
+    ] {
+        let clock = Clock::with_frame_time(1.0 / rate).unwrap();
+        assert_eq!((clock.tick(1), clock.frame_step()), (Ok(ticks), step), "{rate}");
+        assert_eq!(clock.counts_frames(), ticks == 1);
+    }
+}
+
+proptest! {
+    /// Within 0.5 % where a tick is a frame, else within 0.01 % or a thousandth of a frame.
+    #[test]
+    fn a_step_takes_two_fifths_of_a_second(rate in (0.0..5.0_f64).prop_map(|power| 0.01 * 10_f64.powf(power)),
+                                           frame in -1_000_000_000..1_000_000_000_i64) {
+        let clock = Clock::with_frame_time(1.0 / rate).unwrap();
+        let ticks = clock.tick(1).unwrap();
+        let off = (clock.frame_step() as f64 / (ticks as f64 * rate * 0.4) - 1.0).abs();
+        let rounded = 0.5 / (1000.0 * rate * 0.4);
+        prop_assert!(off <= if ticks == 1 { 0.005 } else { f64::max(1e-4, rounded) } + 1e-12, "{clock:?} {off}");
+        let tick = clock.tick(frame).unwrap();
+        prop_assert_eq!(tick, frame * ticks);
+        prop_assert_eq!(clock.number(tick).to_string(), frame.to_string());
+        let next: f64 = clock.number(tick + 1).to_string().parse().unwrap();
+        prop_assert!((next - frame as f64 - 1.0 / ticks as f64).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn invalid_clocks_and_extreme_frames_are_refused() {
+    for seconds in [0.0, -0.1, f64::NAN, f64::INFINITY, 1e-12, 400.1] {
+        let error = Clock::with_frame_time(seconds);
+        assert!(matches!(error, Err(ClockError::FrameTime { .. })), "{seconds}");
+    }
+    assert!(Clock::with_frame_time(400.0).is_ok());
+    for found in [0, -1, (1 << 31) + 1] {
+        assert_eq!(Clock::with_frame_step(found), Err(ClockError::FrameStep { found }));
+    }
+    let (whole, parts) = (
+        Clock::with_frame_time(0.04).unwrap(),
+        Clock::with_frame_time(1.0 / 24.0).unwrap(),
+    );
+    for frame in [1 << 52, -(1 << 52), i64::MIN, i64::MAX] {
+        assert_eq!(parts.tick(frame), Err(ClockError::Frame { frame, ticks: 5 }));
+        assert_eq!(whole.tick(frame), Ok(frame)); // refused where it is used
+        assert_eq!(whole.number(frame).to_string(), frame.to_string());
+        assert!(LiveTracks::with_clock(parts).push(frame, []).is_err());
+    }
+}
+
+fn pedestrian(frames: impl Iterator<Item = i64>) -> Recording {
+    let seen = frames.map(|frame| Observation::new(frame, PedestrianId(1), [0.05 * frame as f64, 0.0]));
+    Recording::in_usual_step("film", seen.collect()).unwrap()
+}
+
+#[test]
+fn a_recording_is_counted_in_ticks_unless_its_rows_are_too_far_apart() {
+    let recording = pedestrian((0..20).map(|t| 3 * t));
+    let at = |seconds: f64| recording.on_clock(Clock::with_frame_time(seconds).unwrap());
+    let seven = at(1.0 / 7.0).unwrap();
+    assert_eq!((seven.frames()[19], seven.frame_step()), (57 * 5, 14));
+    let positions = |recording: &Recording| {
+        recording
+            .observations()
+            .iter()
+            .map(|row| row.position)
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(positions(&seven), positions(&recording));
+    assert!(at(0.4).is_ok());
+    assert!(matches!(at(0.41), Err(ClockError::TooSlow { apart }) if apart > 1.2));
+    let far = pedestrian((1 << 52)..(1 << 52) + 20);
+    let refused = far.on_clock(Clock::with_frame_time(1.0 / 24.0).unwrap());
+    assert_eq!(
+        refused,
+        Err(ClockError::Frame {
+            frame: 1 << 52,
+            ticks: 5
+        })
+    );
+}
+
+/// A pedestrian at 1.3 m/s, seen twice a second, every 12 frame numbers.
+fn trajnet_at_2_fps(scenes: &str) -> String {
+    let track = |t: u32| {
+        let x = 0.65 * f64::from(t);
+        format!("{{\"track\": {{\"f\": {}, \"p\": 1, \"x\": {x}, \"y\": 0}}}}\n", 12 * t)
+    };
+    scenes.to_owned() + &(0..30).map(track).collect::<String>()
+}
+
+#[test]
+fn scenes_of_trajnet_state_the_frame_rate() {
+    let scene = |fps: &str| format!("{{\"scene\": {{\"id\": 0, \"p\": 1, \"s\": 0, \"e\": 240{fps}}}}}\n");
+    let read = |scenes: &str| parse_recording(trajnet_at_2_fps(scenes).as_bytes(), "f", Format::TrajNet).unwrap();
+    for none in [String::new(), scene(""), scene(r#", "fps": null"#)] {
+        assert_eq!((read(&none).rate(), read(&none).stated_clock()), (None, None));
+    }
+    let two = scene(r#", "fps": 2"#);
+    assert_eq!(read(&(scene("") + &two + &scene(r#", "fps": 2.0"#))).rate(), Some(2.0));
+
+    // 24 frame numbers a second, 9.6 in 0.4 s.
+    let recording = read(&two);
+    let clock = recording.stated_clock().unwrap().unwrap();
+    assert_eq!((clock.tick(1), clock.frame_step()), (Ok(5), 48));
+    let recording = recording.on_clock(clock).unwrap();
+    let windows = recording.observed_windows();
+    let speed = |track: &[[f64; 2]]| (track[7][0] - track[0][0]) / 2.8;
+    let speeds: Vec<f64> = windows.iter().map(|window| speed(window.observed(0))).collect();
+    assert!(
+        speeds.len() == 24 && speeds.iter().all(|speed| (speed - 1.3).abs() < 0.02),
+        "{speeds:?}"
+    );
+
+    // The usual files, with frames 0.4 s apart and any frame numbers, are left unchanged.
+    let usual = read(&scene(r#", "fps": 2.5"#));
+    assert_eq!(usual.on_clock(usual.stated_clock().unwrap().unwrap()), Ok(usual));
+}
+
+#[test]
+fn scenes_that_disagree_about_the_rate_are_named() {
+    let scenes = "{\"scene\": {\"id\": 0, \"fps\": 2.5}}\n\n{\"scene\": {\"id\": 1, \"fps\": 25}}\n";
+    let message = complaint(trajnet_at_2_fps(scenes), Format::TrajNet);
+    assert!(
+        message.starts_with("f, line 3: scene.fps is 25, but 2.5 on line 1; a file holds one recording"),
+        "{message}"
+    );
+    for fps in ["0", "-2.5", "\"fast\"", "[2.5]"] {
+        let scenes = format!("{{\"scene\": {{\"id\": 0, \"fps\": {fps}}}}}\n");
+        let message = complaint(trajnet_at_2_fps(&scenes), Format::TrajNet);
+        let expected = format!("f, line 1: scene.fps must be a number above 0, the frames in a second, found {fps}");
+        assert_eq!(message, expected);
+    }
+}
+
+/// The header (empty for TrajNet++), a time, the microseconds that it is, and how it prints.
+const TIMES: &str = r#"
+time,pedestrian,x,y => 1351039227.1 => 1351039227100000 => 1351039227.1
+Seconds,pedestrian,x,y => -3 => -3000000 => -3
+frame,pedestrian,x,y => 1351039227.000001 => 1351039227000001 => 1351039227.000001
+time_ms,pedestrian,x,y => 1700000000100 => 1700000000100000 => 1700000000100
+time_ms,pedestrian,x,y => 33.5 => 33500 => 33.5
+timestamp_us,pedestrian,x,y => 1700000000100001 => 1700000000100001 => 1700000000100001
+time_ns,pedestrian,x,y => 1700000000123456789 => 1700000000123456 => 1700000000123456000
+time_ns,pedestrian,x,y => -1 => -1 => -1000
+time,pedestrian,x,y => 2026-05-31T12:00:00.4Z => 1780228800400000 => 2026-05-31T12:00:00.4Z
+timestamp,pedestrian,x,y => 2026-05-31 14:00:00.4+02:00 => 1780228800400000 => 2026-05-31T12:00:00.4Z
+t,pedestrian,x,y => 2026-05-31T12:00:00 => 1780228800000000 => 2026-05-31T12:00:00Z
+=> 0.25 7 0 0 => 250000 => 0.25
+=> {"track":{"t":1351039227.1,"p":7,"x":0,"y":0}} => 1351039227100000 => 1351039227.1
+=> {"track":{"t":12,"p":7,"x":0,"y":0}} => 12000000 => 12
+=> {"track":{"t":"2026-05-31T12:00:00.4+00:00","p":7,"x":0,"y":0}} => 1780228800400000 => 2026-05-31T12:00:00.4Z
+"#;
+
+#[test]
+fn times_are_exact_to_a_microsecond_and_print_back() {
+    for case in TIMES.trim().lines() {
+        let [header, time, expected, printed] = case.split("=> ").map(str::trim).collect::<Vec<_>>()[..] else {
+            panic!("{case}");
+        };
+        let text = if header.is_empty() {
+            format!("{time}\n")
+        } else {
+            format!("{header}\n{time},7,0,0\n")
+        };
+        let format = Format::guess("".as_ref(), text.as_bytes());
+        let recording = parse_recording(text.as_bytes(), "f", format).unwrap();
+        assert_eq!(recording.frames()[0].to_string(), expected, "{case}");
+        let clock = recording.stated_clock().unwrap().unwrap();
+        assert_eq!(
+            (clock.frame_step(), clock.number(recording.frames()[0]).to_string()),
+            (400_000, printed.to_owned())
+        );
+        let mut stream = FrameReader::new(text.as_bytes(), "f");
+        assert_eq!(
+            stream.next_frame().unwrap().unwrap().number,
+            recording.frames()[0],
+            "{case}"
+        );
+        assert_eq!(stream.time_unit(), recording.time_unit());
+    }
+    let whole = parse_recording(b"frame,pedestrian,x,y\n12.0,7,0,0\n", "f", Format::Table).unwrap();
+    assert_eq!((whole.frames(), whole.time_unit()), (&[12][..], None));
+    // One fraction shows that all are seconds.
+    let seconds = parse_recording(b"frame,pedestrian,x,y\n12,7,0,0\n12.4,7,0,0\n", "f", Format::Table).unwrap();
+    assert_eq!(
+        (seconds.frames(), seconds.time_unit()),
+        (&[12_000_000, 12_400_000][..], Some(TimeUnit::Seconds))
+    );
+}
+
+/// Files, `|` between lines, what reading the whole file says, and what reading a stream says.
+const MIXED_TIMES: &str = r#"
+time,pedestrian,x,y|12.5,7,0,0|2026-05-31T12:00:00Z,7,0,0 => line 3, field 1: time must be a time, found "2026 => SAME
+time,pedestrian,x,y|2026-05-31T12:00:00Z,7,0,0|12.5,7,0,0 => line 3, field 1: time must be a date with a time => SAME
+time_ms,pedestrian,x,y|2026-05-31T12:00:00Z,7,0,0 => line 2, field 1: time must be a time, found "2026-05 => SAME
+time_s,pedestrian,x,y|1700000000100,7,0,0 => line 2, field 1: time 1700000000100 is after the year 2250 => SAME
+time,pedestrian,x,y|noon,7,0,0 => line 2, field 1: time must be a time, found "noon" => SAME
+time,frame,pedestrian,x,y|0,0,7,0,0 => line 1, field 2: the header must name => beside a column of times
+frame,pedestrian,x,y|0,7,0,0|0.4,7,0,0 => NONE => line 3, field 1: frame must be a whole number below 2^53 in size
+0.4 7 0 0|0.8 7 0 0 => NONE => NONE
+0 7 0 0|0.4 7 0 0 => NONE => line 2, field 1: frame must be a whole number
+{"track":{"f":0,TRACK}}|{"track":{"t":0.4,TRACK}} => line 2: the time is of another kind than that of the first => SAME
+{"track":{"t":0,TRACK}}|{"track":{"t":"2026-05-31T12:00:00Z",TRACK}} => line 2: the time is of another kind => SAME
+{"track":{"f":0,"t":0.4,TRACK}} => line 1: track.f and track.t: give a frame or a time => SAME
+{"track":{"t":"noon",TRACK}} => line 1: time must be a date with a time such as 2026-05-31T12:00:00.4Z => SAME
+"#;
+
+#[test]
+fn times_of_two_kinds_are_refused_with_their_place() {
+    for case in MIXED_TIMES.trim().lines() {
+        let [text, of_file, of_stream] = case.split(" => ").collect::<Vec<_>>()[..] else {
+            panic!("{case}");
+        };
+        let text = text.replace('|', "\n").replace("TRACK", r#""p":7,"x":0,"y":0"#) + "\n";
+        let format = Format::guess("".as_ref(), text.as_bytes());
+        let file = parse_recording(text.as_bytes(), "f", format)
+            .err()
+            .map_or("NONE".to_owned(), |e| e.to_string());
+        let mut frames = FrameReader::new(text.as_bytes(), "f");
+        let stream = std::iter::from_fn(|| frames.next_frame().transpose()).find_map(Result::err);
+        let stream = stream.map_or("NONE".to_owned(), |error| error.to_string());
+        assert!(file.contains(of_file), "{case}: {file}");
+        assert!(
+            stream.contains(if of_stream == "SAME" { of_file } else { of_stream }),
+            "{case}: {stream}"
+        );
+    }
+}
+
+/// A mistake decides nothing about the lines after it.
+#[test]
+fn a_stream_goes_on_after_a_time_of_another_kind() {
+    for (text, numbers) in [
+        ("frame,pedestrian,x,y\n0,7,0,0\n0.5,7,0,0\n1,7,0,0\n", [0, 1]),
+        (
+            "time,pedestrian,x,y\nnoon,7,0,0\n1970-01-01T00:00:01Z,7,0,0\n1970-01-01T00:00:02Z,7,0,0\n",
+            [1_000_000, 2_000_000],
+        ),
+    ] {
+        let mut frames = FrameReader::new(text.as_bytes(), "f");
+        let read = std::iter::from_fn(|| frames.next_frame().transpose());
+        let read: Vec<i64> = read.filter_map(|frame| Some(frame.ok()?.number)).collect();
+        assert_eq!(read, numbers, "{text}");
+    }
+}

@@ -1,0 +1,478 @@
+//! Observations of recordings and streams: what passes unchanged, what is estimated, and that nothing later is read.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use ddl_data::{
+    Arrival, Clock, Completeness, Convention, Dataset, Format, FrameReader, LiveTracks, OBSERVED, Observation,
+    ObservationQuality, ObservedRecording, PedestrianId, Position, Recording, TIME_STEP, Window, WindowRule,
+    parse_recording,
+};
+use proptest::prelude::*;
+use rand::SeedableRng as _;
+use rand_chacha::ChaCha8Rng;
+
+use crate::recordings;
+
+/// How the rows of a film are timed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Pace {
+    /// Frames at a rate.
+    Rate(f64),
+    /// Milliseconds: each pedestrian every 400 or 410 ms from its own first row on.
+    OwnClocks,
+    /// Milliseconds: common frames every 100 ms, up to 10 ms early or late.
+    Jitter,
+}
+
+const PACES: [Pace; 11] = [
+    Pace::Rate(1.0),
+    Pace::Rate(2.0),
+    Pace::Rate(7.0),
+    Pace::Rate(9.0),
+    Pace::Rate(12.5),
+    Pace::Rate(23.976),
+    Pace::Rate(25.0),
+    Pace::Rate(29.97),
+    Pace::Rate(30.0),
+    Pace::OwnClocks,
+    Pace::Jitter,
+];
+
+impl Pace {
+    fn clock(self) -> Clock {
+        let seconds = if let Pace::Rate(rate) = self { 1.0 / rate } else { 0.001 };
+        Clock::with_frame_time(seconds).unwrap()
+    }
+
+    /// The frame number of the k-th row of a pedestrian.
+    fn frame(self, pedestrian: i64, k: i64) -> i64 {
+        match self {
+            Self::Rate(_) => k,
+            Self::OwnClocks => 87 * pedestrian + k * (400 + 10 * (pedestrian % 2)),
+            Self::Jitter => 100 * k + (k * k * 7 + 3 * k) % 21 - 10,
+        }
+    }
+
+    fn rows_in(self, seconds: f64) -> i64 {
+        match self {
+            Self::Rate(rate) => (seconds * rate) as i64,
+            Self::OwnClocks => (seconds / 0.4) as i64,
+            Self::Jitter => (seconds / 0.1) as i64,
+        }
+    }
+}
+
+/// Walkers for 14 s that turn and pause, with noise and lost rows, in some order.
+fn film(pace: Pace, seed: u64, noise: f64, lost: f64) -> Vec<Observation> {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let lost = if pace == Pace::Rate(1.0) { 0.0 } else { lost }; // rows are at most 1.2 s apart
+    let second = if let Pace::Rate(rate) = pace { rate } else { 1000.0 };
+    let mut rows = Vec::new();
+    for id in 1..=3 {
+        let mut amount = |low: f64, high: f64| low + (high - low) * random.random::<f64>();
+        let (speed, heading, turn) = (amount(0.3, 1.8), amount(0.0, 6.0), amount(-0.4, 0.4));
+        let (first, end) = (pace.rows_in(amount(0.0, 2.0)), pace.rows_in(amount(11.0, 14.0)));
+        for k in first..end {
+            let frame = pace.frame(id, k);
+            let time = frame as f64 / second;
+            let angle = heading + turn * (0.7 * time).sin();
+            let place = [speed * time * angle.cos(), 2.0 * id as f64 + speed * time * angle.sin()];
+            let place = place.map(|coordinate| coordinate + noise * amount(-1.7, 1.7));
+            if amount(0.0, 1.0) >= lost {
+                rows.push(Observation::new(frame, PedestrianId(id), place));
+            }
+        }
+    }
+    rows
+}
+
+fn films() -> impl Strategy<Value = (Pace, Vec<Observation>)> {
+    let noise = prop::sample::select(vec![0.0, 0.0, 0.05, 0.2]);
+    let lost = prop::sample::select(vec![0.0, 0.3]);
+    let film = |(pace, seed, noise, lost)| (pace, film(pace, seed, noise, lost));
+    (prop::sample::select(&PACES[..]), any::<u64>(), noise, lost).prop_map(film)
+}
+
+fn recording(clock: Clock, rows: Vec<Observation>) -> Recording {
+    Recording::in_usual_step("film", rows).unwrap().on_clock(clock).unwrap()
+}
+
+fn partial(recording: &Recording) -> ObservedRecording {
+    recording.observe(recording.live_tracks().with_completeness(Completeness::Partial))
+}
+
+type Bits = Vec<(i64, PedestrianId, Vec<u64>, usize)>;
+
+/// Moment, pedestrian, and the bits of all that is known of it.
+fn bits(windows: &[Window]) -> Bits {
+    let of_window = |window: &Window| -> Bits {
+        let of_pedestrian = |i: usize| {
+            let ObservationQuality {
+                unseen,
+                age,
+                deviation,
+                velocity_deviation,
+            } = window.quality(i);
+            let numbers = window
+                .observed(i)
+                .iter()
+                .flatten()
+                .chain([&age, &deviation, &velocity_deviation]);
+            let numbers = numbers.map(|number| number.to_bits()).collect();
+            (window.frames()[OBSERVED - 1], window.pedestrians()[i], numbers, unseen)
+        };
+        (0..window.len()).map(of_pedestrian).collect()
+    };
+    windows.iter().flat_map(of_window).collect()
+}
+
+fn distance(a: Position, b: Position) -> f64 {
+    (a[0] - b[0]).hypot(a[1] - b[1])
+}
+
+/// The largest distance between the observations of two lists of windows of the same pedestrians.
+fn farthest(a: &[Window], b: &[Window], moved: impl Fn(Position) -> Position) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let pairs = a.iter().zip(b).flat_map(|(a, b)| {
+        assert_eq!(a.pedestrians(), b.pedestrians());
+        (0..a.len()).flat_map(|i| a.observed(i).iter().copied().zip(b.observed(i).iter().copied()))
+    });
+    pairs.map(|(a, b)| distance(moved(a), b)).fold(0.0, f64::max)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Rows after a tick may be changed, added and removed: no bit of a window up to it changes.
+    #[test]
+    fn nothing_later_is_read((pace, rows) in films(), other in any::<u64>(), share in 0.2..0.9_f64, interval: bool) {
+        let last = rows.iter().map(|row| row.frame).max().unwrap();
+        let cut = (share * last as f64) as i64;
+        let mut changed: Vec<_> = rows.iter().copied().filter(|row| row.frame <= cut).collect();
+        changed.extend(film(pace, other, 1.0, 0.3).into_iter().filter(|row| row.frame > cut));
+        let observed = |rows: Vec<Observation>| {
+            let recording = recording(pace.clock(), rows);
+            let tracks = recording.live_tracks().with_completeness(Completeness::Partial);
+            let windows = recording.observe(tracks.with_interval(if interval { TIME_STEP } else { 0.0 })).windows;
+            let mut bits = bits(&windows);
+            bits.retain(|seen| seen.0 <= pace.clock().tick(cut).unwrap());
+            bits
+        };
+        let before = observed(rows);
+        prop_assert!(before.len() > usize::from(share > 0.5), "{}", before.len());
+        prop_assert_eq!(before, observed(changed));
+    }
+
+    /// The text of a stream, the file, and its rows in any order within a frame give the same windows.
+    #[test]
+    fn streams_and_files_are_observed_alike((pace, mut rows) in films(), turned: bool) {
+        rows.sort_by_key(|row| (row.frame, if turned { -row.pedestrian.0 } else { row.pedestrian.0 }));
+        let times = if matches!(pace, Pace::Rate(_)) { "frame" } else { "time_ms" };
+        let mut text = format!("x,y,pedestrian,{times}\n");
+        for Observation { frame, pedestrian, position: [x, y] } in rows {
+            writeln!(text, "{x},{y},{pedestrian},{frame}").unwrap();
+        }
+        let file = parse_recording(text.as_bytes(), "film", Format::Table).unwrap();
+        let clock = file.stated_clock().unwrap_or_else(|| Ok(pace.clock())).unwrap();
+        let file = file.on_clock(clock).unwrap();
+        let interval = if file.has_common_frames() { 0.0 } else { TIME_STEP };
+        let mut tracks = LiveTracks::with_clock(clock).with_completeness(Completeness::Partial).with_interval(interval);
+        let mut frames = FrameReader::new(text.as_bytes(), "tracker");
+        let mut live = Vec::new();
+        while let Some(frame) = frames.next_frame().unwrap() {
+            live.extend(tracks.push(frame.number, frame.pedestrians).unwrap());
+        }
+        let of_file = partial(&file);
+        prop_assert_eq!(bits(&live), bits(&of_file.windows));
+        prop_assert_eq!(tracks.noise(), &of_file.noise);
+        prop_assert_eq!(frames.time_unit(), file.time_unit());
+    }
+
+    /// Where and when a scene lies does not matter.
+    #[test]
+    fn observations_move_with_the_scene((pace, rows) in films(), angle in 0.0..6.3_f64, later in 0..1_000_000_i64) {
+        let (sin, cos) = angle.sin_cos();
+        let moved = |[x, y]: Position| [cos * x - sin * y + 31.0, sin * x + cos * y - 7.0];
+        let clock = pace.clock();
+        let here = partial(&recording(clock, rows.clone()));
+        let shift = |row: &Observation| Observation { frame: row.frame + later, ..*row };
+        let then = partial(&recording(clock, rows.iter().map(shift).collect()));
+        let shifted = clock.tick(later).unwrap();
+        let back = |(moment, id, bits, unseen)| (moment - shifted, id, bits, unseen);
+        prop_assert_eq!(bits(&here.windows), bits(&then.windows).into_iter().map(back).collect::<Bits>());
+        let turn = |row: &Observation| Observation { position: moved(row.position), ..*row };
+        let there = partial(&recording(clock, rows.iter().map(turn).collect()));
+        prop_assert!(farthest(&here.windows, &there.windows, moved) < 1e-6);
+        prop_assert_eq!(here.arrivals.len(), there.arrivals.len());
+    }
+
+    /// Others tell how exact a tracker is; where it is exact, a pedestrian alone is observed the same.
+    #[test]
+    fn others_change_nothing_where_positions_are_exact(pace in prop::sample::select(&PACES[..]), seed in any::<u64>()) {
+        let rows = film(pace, seed, 0.0, 0.2);
+        let together = partial(&recording(pace.clock(), rows.clone())).windows;
+        let mine: Vec<_> = rows.into_iter().filter(|row| row.pedestrian.0 == 1).collect();
+        for window in partial(&recording(pace.clock(), mine)).windows {
+            let moment = |other: &&Window| other.frames() == window.frames();
+            let Some(other) = together.iter().find(moment) else {
+                continue; // the common windows may be due at other moments
+            };
+            let i = other.pedestrians().iter().position(|id| id.0 == 1).unwrap();
+            let pairs = window.observed(0).iter().zip(other.observed(i)).skip(window.quality(0).unseen);
+            let off = pairs.map(|(a, b)| distance(*a, *b)).fold(0.0, f64::max);
+            prop_assert!(off < 0.1, "{off}");
+        }
+    }
+
+    /// Rows at the steps, with or without others between them, pass to the bit, and nothing was estimated.
+    #[test]
+    fn rows_at_the_steps_pass_unchanged(frames in prop::sample::select(vec![1, 2, 4, 5, 10]), seed in any::<u64>()) {
+        let pace = Pace::Rate(2.5 * f64::from(frames));
+        let recording = recording(pace.clock(), film(pace, seed, 0.0, 0.0));
+        let windows = recording.observed_windows();
+        prop_assert!(windows.len() > 5);
+        for window in windows {
+            let now = recording.at(window.frames()[OBSERVED - 1]);
+            let here = |id: &PedestrianId| now.iter().any(|row| row.pedestrian == *id);
+            for (i, &id) in window.pedestrians().iter().enumerate().filter(|(_, id)| here(id)) {
+                prop_assert_eq!(window.quality(i), ObservationQuality::default());
+                for (&frame, position) in window.frames().iter().zip(window.observed(i)) {
+                    prop_assert!(recording.at(frame).contains(&Observation::new(frame, id, *position)));
+                }
+            }
+        }
+    }
+
+    /// The definition, by a search: a row at the step, or a point between rows at most 1.2 s apart.
+    #[test]
+    fn futures_are_rows_or_lie_between_two(pace in prop::sample::select(&PACES[..]), seed in any::<u64>()) {
+        let recording = recording(pace.clock(), film(pace, seed, 0.0, 0.35));
+        let step = recording.frame_step();
+        let tracks: BTreeMap<_, _> = recording.pedestrians().into_iter().map(|id| (id, recording.track(id))).collect();
+        let position = |id, tick: i64| {
+            let track = &tracks[&id];
+            let off = |row: &&Observation| (row.frame - tick).abs();
+            if let Some(row) = track.iter().min_by_key(off).filter(|row| off(row) * 200 <= step) {
+                return Some(row.position);
+            }
+            let before = track.iter().rfind(|row| row.frame < tick)?;
+            let after = track.iter().find(|row| row.frame > tick)?;
+            let apart = after.frame - before.frame;
+            let share = (tick - before.frame) as f64 / apart as f64;
+            let ([x, y], [to_x, to_y]) = (before.position, after.position);
+            (apart <= 3 * step).then_some([x + share * (to_x - x), y + share * (to_y - y)])
+        };
+        for window in partial(&recording).windows {
+            let last = window.frames()[OBSERVED - 1];
+            for (future, &id) in recording.futures().of(&window).iter().zip(window.pedestrians()) {
+                let expected: Vec<Position> = (1..=12).map_while(|k| position(id, last + k * step)).collect();
+                prop_assert_eq!(future, &expected);
+            }
+        }
+    }
+}
+
+/// Rows of straight walkers at 1.2 m/s along x, in milliseconds, given the times of each.
+fn straight(times: impl Fn(i64) -> Vec<i64>, pedestrians: i64) -> Vec<Observation> {
+    let of_pedestrian = |id| {
+        let row = move |time| Observation::new(time, PedestrianId(id), [0.0012 * time as f64, 2.0 * id as f64]);
+        times(id).into_iter().map(row)
+    };
+    (1..=pedestrians).flat_map(of_pedestrian).collect()
+}
+
+/// Each of the pedestrians in each window from a moment to another (s), and near the true place.
+fn assert_all_observed(rows: Vec<Observation>, pedestrians: usize, from: f64, until: f64) {
+    let recording = recording(Clock::with_frame_time(0.001).unwrap(), rows);
+    let mut count = 0.0;
+    for window in partial(&recording).windows {
+        let now = window.frames()[OBSERVED - 1] as f64 * 0.001;
+        if (from..until).contains(&now) {
+            assert_eq!(window.len(), pedestrians, "{now} s");
+            let places = (0..pedestrians).map(|i| window.observed(i)[OBSERVED - 1]);
+            assert!(
+                places.into_iter().all(|place| (place[0] - 1.2 * now).abs() < 0.1),
+                "{window:?}"
+            );
+            count += 1.0;
+        }
+    }
+    assert!(count >= (until - from) / 0.41, "{count} moments");
+}
+
+#[test]
+fn every_clock_is_observed() {
+    // Every 400 ms, each from its own first row on, and three phases of a camera at 25 frames a second.
+    let phases = [66, 121, 189, 278, 303, 309];
+    let own = |id: i64| (0..30).map(|k| phases[id as usize - 1] + 400 * k).collect();
+    assert_all_observed(straight(own, 6), 6, 0.8, 11.6);
+    assert_all_observed(
+        straight(
+            |id| (0..25).map(|k| 40 * (10 * k + [0, 3, 7][id as usize - 1])).collect(),
+            3,
+        ),
+        3,
+        0.8,
+        9.6,
+    );
+    // A common clock that jitters: each at every moment from its second row on.
+    let jitter = |_| (0..100).map(|k| 1_000 + Pace::Jitter.frame(0, k)).collect();
+    let recording = recording(Clock::with_frame_time(0.001).unwrap(), straight(jitter, 4));
+    let observed = partial(&recording);
+    assert_eq!(observed.windows.iter().map(Window::len).sum::<usize>(), 4 * 99);
+    let slow = recording.observe(recording.live_tracks().with_interval(0.4)).windows;
+    assert!(
+        (16..=18).contains(&slow.len()),
+        "{} windows every 0.4 s of the last 7.1 s",
+        slow.len()
+    );
+}
+
+/// A third of the rows lost: as many windows with futures and whole observations as with all rows.
+#[test]
+fn lost_rows_cost_no_windows() {
+    let ten = Pace::Rate(10.0);
+    let counts = |lost: f64| {
+        let recording = recording(
+            ten.clock(),
+            (0..20)
+                .flat_map(|seed| {
+                    let later = move |row: Observation| Observation {
+                        pedestrian: PedestrianId(row.pedestrian.0 + 10 * seed),
+                        ..row
+                    };
+                    film(ten, seed as u64, 0.0, lost).into_iter().map(later)
+                })
+                .collect(),
+        );
+        let len = |windows: Vec<Window>| windows.iter().map(Window::len).sum::<usize>();
+        [
+            len(recording.windows(WindowRule::Observed)),
+            len(recording.observed_windows()),
+        ]
+    };
+    let (all, some) = (counts(0.0), counts(0.33));
+    assert!(
+        (0..2).all(|which| some[which] as f64 > 0.95 * all[which] as f64),
+        "{some:?} of {all:?}"
+    );
+}
+
+/// Two rows a second, and a turn after 4.5 s: at 4.6 s nothing of it is known.
+#[test]
+fn between_rows_a_walk_goes_on_straight() {
+    let mut tracks = LiveTracks::with_clock(Clock::with_frame_time(0.001).unwrap());
+    for k in 0..10 {
+        tracks
+            .push(500 * k, [(PedestrianId(1), [0.65 * k as f64, 0.0])])
+            .unwrap();
+    }
+    let window = tracks.push(4_600, [(PedestrianId(2), [9.0, 9.0])]).unwrap().unwrap();
+    let (quality, track) = (window.quality(0), window.observed(0));
+    assert!(
+        distance(track[7], [5.98, 0.0]) < 0.01 && distance(track[0], [2.34, 0.0]) < 0.01,
+        "{track:?}"
+    );
+    assert!((quality.age - 0.1).abs() < 1e-12 && quality.is_whole(), "{quality:?}");
+    // Carried on up to an age, then no longer.
+    let present = |tracks: LiveTracks, frame| tracks.after(frame, []).unwrap().window().is_some();
+    for (age, [here, gone]) in [(0.4, [4_899, 4_900]), (1.2, [5_699, 5_700]), (f64::NAN, [4_601, 4_602])] {
+        let tracks = tracks.clone().with_max_age(age);
+        assert_eq!(
+            (present(tracks.clone(), here), present(tracks, gone)),
+            (age > 0.0, false),
+            "{age}"
+        );
+    }
+}
+
+/// The arrivals, and the last window, of walkers at 1.4 m/s along x whose rows from an index on are moved.
+fn told(
+    rate: f64,
+    pedestrians: i64,
+    from: usize,
+    moved: impl Fn(i64, Position) -> Position,
+) -> (Vec<(i64, PedestrianId, Arrival)>, Window) {
+    let clock = Clock::with_frame_time(1.0 / rate).unwrap();
+    let mut rows = Vec::new();
+    for id in 1..=pedestrians {
+        rows.extend((0..(5.0 * rate) as i64).map(|k| {
+            let place = [1.4 * k as f64 / rate, 3.0 * id as f64];
+            let place = if k as usize >= from { moved(id, place) } else { place };
+            Observation::new(k, PedestrianId(id), place)
+        }));
+    }
+    let mut observed = partial(&recording(clock, rows));
+    (observed.arrivals, observed.windows.pop().unwrap())
+}
+
+#[test]
+fn a_wrong_position_is_left_out_and_told() {
+    for rate in [2.5, 7.0, 10.0, 25.0] {
+        for off in [1.0, 2.0, 3.0, 5.0, 8.0, 30.0] {
+            let last = (5.0 * rate) as usize - 1;
+            let (told, window) = told(rate, 1, last, |_, [x, y]| [x, y + off]);
+            assert!(
+                matches!(told[..], [(_, PedestrianId(1), Arrival::Wrong(by))] if (by - off).abs() < 0.1),
+                "{rate} {off}: {told:?}"
+            );
+            let seen = window.observed(0)[OBSERVED - 1];
+            assert!(
+                distance(seen, [1.4 * last as f64 / rate, 3.0]) < 0.3,
+                "{rate} {off}: {seen:?}"
+            );
+            assert!((window.quality(0).age * rate - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
+/// Two pedestrians 3 m apart exchange their numbers: both are told, and both tracks begin anew.
+#[test]
+fn an_exchange_of_numbers_begins_both_tracks() {
+    for rate in [2.5, 10.0] {
+        let from = (4.0 * rate) as usize;
+        let (told, window) = told(rate, 2, from, |id, [x, y]| [x, if id == 1 { y + 3.0 } else { y - 3.0 }]);
+        let kinds: Vec<_> = told
+            .iter()
+            .map(|(_, id, arrival)| (id.0, matches!(arrival, Arrival::Jumped(_))))
+            .collect();
+        assert_eq!(kinds, [(1, false), (2, false), (1, true), (2, true)], "{told:?}");
+        for i in 0..2 {
+            let straight = |position: &Position| (position[1] - [6.0, 3.0][i]).abs() < 0.05;
+            assert!(
+                window.observed(i).iter().all(straight) && window.quality(i).unseen > 0,
+                "{window:?}"
+            );
+        }
+    }
+}
+
+/// What a live stream sees of recordings with a row at every step is what they hold; nearly nothing is told.
+#[test]
+fn exact_recordings_are_observed_as_they_are() {
+    let mut datasets = vec![Dataset::simulated(1)];
+    datasets.extend(recordings::load(Convention::Star));
+    for recording in datasets.iter().flat_map(Dataset::recordings) {
+        let told = recording.observe(recording.live_tracks()).arrivals.len();
+        assert!(
+            told <= recording.observations().len() / 2_000,
+            "{}: {told} told",
+            recording.name()
+        );
+        let complete = recording.windows(WindowRule::Complete);
+        let observed = recording.windows(WindowRule::Observed);
+        if told > 0 {
+            continue;
+        }
+        assert_eq!(observed.len(), complete.len(), "{}", recording.name());
+        let mut bystanders = 0;
+        for (observed, complete) in observed.into_iter().zip(complete) {
+            bystanders += observed.bystanders().map_or(0, Window::len);
+            let others = observed.bystanders().into_iter().flat_map(Window::pedestrians);
+            assert!(others.into_iter().all(|id| !complete.pedestrians().contains(id)));
+            assert_eq!(observed.with_bystanders(None), complete);
+        }
+        assert!(bystanders > 0);
+    }
+}
