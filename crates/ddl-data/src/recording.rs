@@ -191,7 +191,10 @@ impl Recording {
         self.time_unit
     }
 
-    pub(crate) fn with_time_unit(self, time_unit: Option<TimeUnit>) -> Self {
+    /// The same recording, whose frame numbers are times in microseconds that its columns count in this unit; `None` for
+    /// frame numbers.
+    #[must_use]
+    pub fn with_time_unit(self, time_unit: Option<TimeUnit>) -> Self {
         Self { time_unit, ..self }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::errors::of_any;
 use crate::forecasts::{EmptyFields, PlainOrCertified, parts};
-use crate::observed::{Observed, completion};
+use crate::observed::{Observed, completeness};
 use ddl::data::Window;
 use ddl::eval::baseline::{ConstantAcceleration, ConstantVelocity, GoalSource, SocialForce, StraightLine};
 use ddl::{ForecastError, Forecaster, WeightedGoals};
@@ -22,7 +22,7 @@ pub(crate) fn baseline<'py>(
     seed: u64,
     goals: Option<PyReadonlyArray3<'py, f64>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let scene = Observed::new(&past, asked, completion(false))?;
+    let scene = Observed::new(&past, asked, completeness(false))?;
     let forecaster: Box<dyn Forecaster + Send + Sync> = match name {
         "constant_velocity" => Box::new(ConstantVelocity::LastStep),
         "mean_velocity" => Box::new(ConstantVelocity::MeanObserved),

@@ -2,9 +2,10 @@
 
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::{of_any, raised};
-use crate::forecasts::{frame_number, names};
+use crate::forecasts::names;
 use crate::interruptible::{Stop, run, run_telling};
 use crate::model::Model;
+use crate::moments::Moments;
 use crate::recording::Recording;
 use ddl::data::{Convention, Dataset, HORIZON, OBSERVED, Window, WindowRule, locate};
 use ddl::eval::{Conditions, Protocol, ResultRow};
@@ -74,17 +75,25 @@ pub(crate) fn windows<'py>(
             }
         }
     };
-    let parts = recording.map_or(1, |recording| recording.parts);
-    windows.iter().map(|window| window_parts(py, window, parts)).collect()
+    let moments = recording.map(|recording| recording.moments);
+    windows.iter().map(|window| window_parts(py, window, moments)).collect()
 }
 
-fn window_parts<'py>(py: Python<'py>, window: &Window, parts: i64) -> PyResult<Bound<'py, PyDict>> {
+/// Without `moments` the ticks of the window are frame numbers.
+fn window_parts<'py>(py: Python<'py>, window: &Window, moments: Option<Moments>) -> PyResult<Bound<'py, PyDict>> {
     let n = window.len();
     let dict = PyDict::new(py);
     dict.set_item("recording", window.recording())?;
-    let last = frame_number(py, window.frames()[OBSERVED - 1], parts)?;
-    dict.set_item("frame", last)?;
-    dict.set_item("frame_step", frame_number(py, window.frame_step(), parts)?)?;
+    dict.set_item(
+        "frame",
+        moments
+            .unwrap_or(Moments::FRAMES)
+            .one(py, window.frames()[OBSERVED - 1])?,
+    )?;
+    match moments {
+        Some(moments) => dict.set_item("frame_step", moments.step(py)?)?,
+        None => dict.set_item("frame_step", window.frame_step())?,
+    }
     dict.set_item("ids", names(py, window)?)?;
     let past = (0..n).flat_map(|i| window.observed(i).to_vec()).collect();
     dict.set_item("past", array(py, numbers(past), [n, OBSERVED, 2])?)?;
@@ -123,10 +132,10 @@ impl TestSet {
         };
         let dataset = run(py, move |_| dataset(convention, folder))?.map_err(raised)?;
         let fold_by_name = dataset.fold(fold).map_err(raised)?;
-        let recordings = fold_by_name.test_recordings().iter().map(|tracks| Recording {
-            tracks: Arc::new((*tracks).clone()),
-            parts: 1,
-        });
+        let recordings = fold_by_name
+            .test_recordings()
+            .iter()
+            .map(|tracks| Recording::of_ticks((*tracks).clone()));
         Ok(Self {
             convention,
             rule,
@@ -149,7 +158,7 @@ impl TestSet {
     fn observed<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
         let window = self.windows.get(index).map(Window::without_future);
         let window = window.ok_or_else(|| PyValueError::new_err("there is no such window"))?;
-        window_parts(py, &window, 1)
+        window_parts(py, &window, None)
     }
 
     /// Checks a forecast of a window: its shape, its numbers, and as many hypotheses as the protocol allows.
@@ -197,6 +206,11 @@ impl TestSet {
             })
         });
         let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
+        // Bystanders were shown to the model, and are not scored.
+        let scored = made.into_iter().zip(self.windows.iter());
+        let made = scored
+            .map(|(made, window)| made.without_bystanders(window.len()))
+            .collect();
         let admitted = protocol.admit(made, name).map_err(of_any)?;
         let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
         let windows = Arc::clone(&self.windows);

@@ -2,8 +2,9 @@
 
 use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::of_any;
+use crate::moments::Moments;
 use crate::observed::Observed;
-use ddl::data::{HORIZON, OBSERVED, PedestrianId, PedestrianName, Window};
+use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, Window};
 use ddl::{CertifiedForecast, Forecast, RegionTable};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -123,51 +124,44 @@ fn spread_and_regions(
     dict.set_item("region_table", table.map(json).transpose()?)
 }
 
-/// The observation, and the numbers of filled-in positions.
+/// The observation, and how well it is known.
 fn observed_rows(py: Python<'_>, observed: &Observed, dict: &Bound<'_, PyDict>) -> PyResult<()> {
     let (window, rows) = (observed.window.as_ref(), &observed.rows);
     let n = rows.len();
-    let counts = rows.iter().flat_map(|row| {
-        let counts = window.zip(*row).map(|(window, i)| window.completion_counts(i));
-        counts.map_or([0; 2], |counts| [counts.padded as i64, counts.filled as i64])
-    });
+    let qualities = || {
+        rows.iter()
+            .map(|row| window.zip(*row).map(|(window, i)| window.quality(i)))
+    };
+    let unseen = qualities().map(|quality| quality.map_or(0, |quality| quality.unseen as i64));
+    let age = qualities().map(|quality| quality.map_or(f64::NAN, |quality| quality.age));
+    let uncertainty = qualities().map(|quality| quality.map_or(f64::NAN, ObservationQuality::uncertainty));
     let past = rows.iter().flat_map(|row| match window.zip(*row) {
         Some((window, i)) => window.observed(i).to_vec(),
         None => vec![[f64::NAN; 2]; OBSERVED],
     });
     let past = array(py, numbers(past.collect()), [n, OBSERVED, 2])?;
     dict.set_item("past", past)?;
-    dict.set_item("made_up", array(py, counts.collect(), [n, 2])?)
+    dict.set_item("unseen", array(py, unseen.collect(), [n])?)?;
+    dict.set_item("age", array(py, age.collect(), [n])?)?;
+    dict.set_item("uncertainty", array(py, uncertainty.collect(), [n])?)
 }
 
-/// As [`parts`], with pedestrians, frames and recording; `parts` frames of the window are one frame of the file.
+/// As [`parts`], with pedestrians, frames and recording.
 pub(crate) fn named_parts<'py>(
     py: Python<'py>,
     window: &Window,
     forecast_of_window: &PlainOrCertified,
-    frame_parts: i64,
+    moments: Moments,
 ) -> PyResult<Bound<'py, PyDict>> {
     let observed = Observed::of_window(window.clone());
     let dict = parts(py, &observed, Some(forecast_of_window), EmptyFields::default())?;
     dict.set_item("ids", names(py, window)?)?;
-    let frames = window.frames();
-    let ahead = (1..=HORIZON as i64).map(|t| frames[OBSERVED - 1] + t * window.frame_step());
-    let number = |frame: i64| frame_number(py, frame, frame_parts);
-    dict.set_item("frame", number(frames[OBSERVED - 1])?)?;
-    let ahead: Vec<Py<PyAny>> = ahead.map(number).collect::<PyResult<_>>()?;
-    dict.set_item("frames", ahead)?;
+    let last = window.frames()[OBSERVED - 1];
+    let ahead = (1..=HORIZON as i64).map(|t| last + t * window.frame_step());
+    dict.set_item("frame", moments.one(py, last)?)?;
+    dict.set_item("frames", moments.all(py, ahead.collect())?)?;
     dict.set_item("recording", window.recording())?;
     Ok(dict)
-}
-
-/// A frame number of the tracks; a fraction where a step of 0.4 s ends between two frames.
-pub(crate) fn frame_number(py: Python<'_>, frame: i64, parts: i64) -> PyResult<Py<PyAny>> {
-    if frame % parts == 0 {
-        Ok((frame / parts).into_pyobject(py)?.into_any().unbind())
-    } else {
-        let between = frame as f64 / parts as f64;
-        Ok(between.into_pyobject(py)?.into_any().unbind())
-    }
 }
 
 /// The ids of the pedestrians of a window: numbers, or words if the recording has words.

@@ -22,6 +22,7 @@ mod interruptible;
 mod live;
 mod metrics;
 mod model;
+mod moments;
 mod observed;
 mod program;
 mod recording;

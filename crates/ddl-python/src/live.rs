@@ -1,12 +1,13 @@
 //! Live forecasts of an observed place.
 
 use crate::arrays::points;
-use crate::errors::raised;
+use crate::errors::{of_any, raised};
 use crate::forecasts::{PlainOrCertified, named_parts};
 use crate::interruptible::{run_live, wait_for};
 use crate::model::Model;
-use crate::observed::completion;
-use ddl::data::{LiveTracks, PedestrianId, Position, Window, whole_frame_step};
+use crate::moments::{Moments, clock_of_rate, unit_named};
+use crate::observed::{WindowOptions, distance_off};
+use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, Position, TimeUnit, Window};
 use ddl::{AdaptiveRegions, Ddl, DdlError, LiveForecaster, MemoryFile};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -16,7 +17,10 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 #[pyclass(frozen, module = "ddl_forecast._core")]
-pub(crate) struct Live(SharedPlace);
+pub(crate) struct Live {
+    place: SharedPlace,
+    clock: Clock,
+}
 
 /// `None` while a call uses the state. No lock is held during a forecast, so a worker thread never waits for its own
 /// lock.
@@ -28,9 +32,15 @@ struct WatchedPlace {
     certificates: bool,
 }
 
-/// The answer to a frame: a forecast if there are pedestrians to forecast, and an error if the memory could not be
-/// written.
-type Answer = (Option<(Window, PlainOrCertified)>, Option<String>);
+/// The answer to a frame.
+struct Answer {
+    /// `None` without pedestrians to forecast.
+    forecast: Option<(Window, PlainOrCertified)>,
+    /// The pedestrians whose position does not fit their track, with its distance (m) from where it was expected.
+    misfits: Vec<(i64, f64)>,
+    /// An error if the memory could not be written.
+    unwritten: Option<String>,
+}
 
 impl WatchedPlace {
     fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
@@ -48,7 +58,13 @@ impl WatchedPlace {
             // The frame has been observed, so a full disk must not discard its forecast.
             unwritten = file.write(place).err().map(|error| error.to_string());
         }
-        Ok((forecast, unwritten))
+        let arrivals = self.live.tracks().arrivals().iter();
+        let misfits = arrivals.filter_map(|&(id, arrival)| Some((id.0, distance_off(arrival)?)));
+        Ok(Answer {
+            forecast,
+            misfits: misfits.collect(),
+            unwritten,
+        })
     }
 
     /// Writes the memory; on success, closes its file.
@@ -97,21 +113,21 @@ fn held(slot: &SharedPlace) -> MutexGuard<'_, Option<Box<WatchedPlace>>> {
 #[pymethods]
 impl Live {
     #[new]
-    #[pyo3(signature = (model, fps, memory, whole, certificates))]
-    fn new(model: &Model, fps: f64, memory: Option<PathBuf>, whole: bool, certificates: bool) -> PyResult<Self> {
-        let step = if fps.is_finite() && fps > 0.0 {
-            whole_frame_step(fps.recip())
-        } else {
-            None
+    #[pyo3(signature = (model, fps, memory, whole, max_age, every, certificates))]
+    fn new(
+        model: &Model,
+        fps: Option<f64>,
+        memory: Option<PathBuf>,
+        whole: bool,
+        max_age: f64,
+        every: f64,
+        certificates: bool,
+    ) -> PyResult<Self> {
+        let clock = match fps {
+            Some(fps) => clock_of_rate(fps)?,
+            None => Clock::with_stamps(TimeUnit::Seconds),
         };
-        let step = step.ok_or_else(|| {
-            PyValueError::new_err(format!(
-            "fps is {fps}: it must be the frames per second, and 0.4 s must be a whole number of frames, as for 2.5, \
-             5, 10, 12.5 or 25; live tracks are not resampled"
-            ))
-        })?;
-        let tracks = LiveTracks::with_frame_step(step).map_err(|error| raised(DdlError::from(error)))?;
-        let tracks = tracks.with_completion(completion(whole));
+        let tracks = WindowOptions::new(whole, max_age, Some(every))?.of(LiveTracks::with_clock(clock));
         let live = LiveForecaster::with_tracks(Arc::clone(&model.0), tracks);
         let mut live = live.with_adaptive_regions(AdaptiveRegions::default());
         let mut file = None;
@@ -125,17 +141,29 @@ impl Live {
             file,
             certificates,
         };
-        Ok(Self(Arc::new(Mutex::new(Some(Box::new(watching))))))
+        let place = Arc::new(Mutex::new(Some(Box::new(watching))));
+        Ok(Self { place, clock })
     }
 
-    /// A forecast (`None` without pedestrians to forecast), and an error if the memory could not be written.
+    /// A forecast (`None` without pedestrians to forecast), the pedestrians whose positions do not fit, each with its
+    /// distance from where it was expected, and an error if the memory could not be written. With a unit, `frame` is a
+    /// time in microseconds.
+    #[pyo3(signature = (frame, unit, ids, xy))]
     fn observe<'py>(
         &self,
         py: Python<'py>,
         frame: i64,
+        unit: Option<&str>,
         ids: PyReadonlyArray1<'py, i64>,
         xy: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<(Option<Bound<'py, PyDict>>, Option<String>)> {
+    ) -> PyResult<(Option<Bound<'py, PyDict>>, Vec<(i64, f64)>, Option<String>)> {
+        let moments = match unit {
+            Some(unit) => Moments::of_times(unit_named(unit)?),
+            None => Moments {
+                clock: self.clock,
+                unit: None,
+            },
+        };
         let positions = points("xy", &xy)?;
         if ids.len() != positions.len() {
             return Err(PyValueError::new_err(format!(
@@ -146,21 +174,23 @@ impl Live {
         }
         let seen = ids.as_array().into_iter().map(|id| PedestrianId(*id));
         let seen: Vec<_> = seen.zip(positions).collect();
-        let mut turn = Turn::take(py, &self.0)?;
+        let mut turn = Turn::take(py, &self.place)?;
         let now = run_live(py, move |_| {
             let watching = turn.watching();
             watching.map(|watching| watching.observe(frame, seen))
         })?;
-        let Some((forecast, unwritten)) = now.transpose().map_err(raised)? else {
-            return Ok((None, None));
+        let Some(answer) = now.transpose().map_err(|error| wrong_frame(error, moments))? else {
+            return Ok((None, Vec::new(), None));
         };
-        let parts = forecast.map(|(window, forecast)| named_parts(py, &window, &forecast, 1));
-        Ok((parts.transpose()?, unwritten))
+        let parts = answer
+            .forecast
+            .map(|(window, forecast)| named_parts(py, &window, &forecast, moments));
+        Ok((parts.transpose()?, answer.misfits, answer.unwritten))
     }
 
     /// Forgets all tracks; the memory is kept.
     fn clear(&self, py: Python<'_>) -> PyResult<()> {
-        let mut turn = Turn::take(py, &self.0)?;
+        let mut turn = Turn::take(py, &self.place)?;
         if let Some(watching) = turn.watching() {
             watching.live.clear();
         }
@@ -169,22 +199,43 @@ impl Live {
 
     /// Number of remembered segments; 0 without a memory.
     fn remembered(&self, py: Python<'_>) -> PyResult<usize> {
-        let mut turn = Turn::take(py, &self.0)?;
+        let mut turn = Turn::take(py, &self.place)?;
         let place = turn.watching().and_then(|watching| watching.live.place());
         Ok(place.map_or(0, |place| place.memory().segments()))
     }
 
     /// The reason why the given memory is not used; `None` if it is used.
     fn refused(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let mut turn = Turn::take(py, &self.0)?;
+        let mut turn = Turn::take(py, &self.place)?;
         let refused = turn.watching().and_then(|watching| watching.live.place()?.refused());
         Ok(refused.map(str::to_owned))
     }
 
     /// Writes the memory and closes its file; returns a warning, if any.
     fn close(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        let mut turn = Turn::take(py, &self.0)?;
+        let mut turn = Turn::take(py, &self.place)?;
         let warning = run_live(py, move |_| turn.watching().map_or(Ok(None), WatchedPlace::close))?;
         warning.map_err(raised)
     }
+}
+
+/// The error with frame numbers or times as the user counts them.
+fn wrong_frame(error: DdlError, moments: Moments) -> PyErr {
+    let DdlError::Live(error) = error else {
+        return raised(error);
+    };
+    PyValueError::new_err(match error {
+        LiveError::TooEarly { frame, last } => format!(
+            "{} comes after {}; give frames in order of time, each once; when the tracker restarts, call clear()",
+            moments.words(frame),
+            moments.words(last)
+        ),
+        LiveError::Duplicate { pedestrian, frame } => {
+            format!(
+                "pedestrian {pedestrian} is in {} twice; keep one position",
+                moments.words(frame)
+            )
+        }
+        error => return of_any(error),
+    })
 }

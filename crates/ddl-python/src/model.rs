@@ -4,9 +4,9 @@ use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
 use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
-use crate::observed::{Observed, completion};
-use crate::recording::Recording;
-use ddl::data::Window;
+use crate::observed::{Observed, WindowOptions, completeness};
+use crate::recording::{ObservedWindows, Recording};
+use ddl::data::{LiveTracks, Window};
 use ddl::{Clearance, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, ModelSource, RecordingPlayer};
 use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
@@ -114,7 +114,7 @@ impl Model {
         self.0.parameter_count() + self.0.goal_model().parameter_count()
     }
 
-    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`.
+    /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns text about doubtful positions.
     #[pyo3(signature = (past, asked, samples, whole, certificates))]
     fn forecast<'py>(
         &self,
@@ -124,11 +124,11 @@ impl Model {
         samples: usize,
         whole: bool,
         certificates: bool,
-    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates)?;
         let scenes = past.iter().zip(asked);
         let scenes: Vec<Observed> = scenes
-            .map(|(past, asked)| Observed::new(past, asked, completion(whole)))
+            .map(|(past, asked)| Observed::new(past, asked, completeness(whole)))
             .collect::<PyResult<_>>()?;
         let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
         let mut forecasts = self.forecasts(py, options, windows)?.into_iter();
@@ -143,10 +143,13 @@ impl Model {
             let forecast = scene.window.is_some().then(|| forecasts.next()).flatten();
             parts(py, scene, forecast.as_ref(), empty)
         };
-        scenes.iter().map(of_scene).collect()
+        let forecasts = scenes.iter().map(of_scene).collect::<PyResult<_>>()?;
+        Ok((forecasts, scenes.iter().find_map(Observed::doubt)))
     }
 
-    /// Forecasts each frame of the recording with pedestrians to forecast, or only the last of them.
+    /// Forecasts each moment of the recording with pedestrians to forecast, or only the last of them. Also returns text
+    /// about doubtful positions.
+    #[pyo3(signature = (recording, last, samples, whole, max_age, every, certificates))]
     fn forecast_recording<'py>(
         &self,
         py: Python<'py>,
@@ -154,23 +157,25 @@ impl Model {
         last: bool,
         samples: usize,
         whole: bool,
+        max_age: f64,
+        every: Option<f64>,
         certificates: bool,
-    ) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates)?;
-        let mut windows = recording.observed(whole);
+        let observed = WindowOptions::new(whole, max_age, every)?;
+        let ObservedWindows { mut windows, doubt } = py.detach(|| recording.observed(observed));
         if last {
             windows.drain(..windows.len().saturating_sub(1));
         }
         let forecasts = self.forecasts(py, options, windows.clone())?;
         let pairs = windows.iter().zip(&forecasts);
-        pairs
-            .map(|(window, forecast)| named_parts(py, window, forecast, recording.parts))
-            .collect()
+        let forecasts = pairs.map(|(window, forecast)| named_parts(py, window, forecast, recording.moments));
+        Ok((forecasts.collect::<PyResult<_>>()?, doubt))
     }
 
     /// Goals `(n, k, 2)` and weights `(n, k)`; NaN for pedestrians that cannot be forecast.
     fn goals(&self, py: Python<'_>, past: PyReadonlyArray3<'_, f64>, asked: usize) -> PyResult<(Py<PyAny>, Py<PyAny>)> {
-        let scene = Observed::new(&past, asked, completion(false))?;
+        let scene = Observed::new(&past, asked, completeness(false))?;
         let k = self.hypotheses();
         let mut goals = vec![[f64::NAN; 2]; asked * k];
         let mut weights = vec![f64::NAN; asked * k];
@@ -190,13 +195,15 @@ impl Model {
         Ok((goals, array(py, weights, [asked, k])?))
     }
 
-    /// A page that plays moments of the recording.
-    fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<String> {
-        let windows = recording.observed(false);
+    /// A page that plays moments of the recording, and text about doubtful positions.
+    fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<(String, Option<String>)> {
+        let observed = WindowOptions::new(false, LiveTracks::DEFAULT_MAX_AGE, None)?;
+        let ObservedWindows { windows, doubt } = py.detach(|| recording.observed(observed));
         if windows.is_empty() {
-            return Err(PyValueError::new_err(
-                "no pedestrian in the recording was observed at 2 consecutive time steps; check fps",
-            ));
+            return Err(PyValueError::new_err(format!(
+                "no pedestrian of the recording can be forecast; check fps, and that positions are in metres{}",
+                doubt.map_or_else(String::new, |doubt| format!(": {doubt}"))
+            )));
         }
         let player = RecordingPlayer {
             model: &self.0,
@@ -208,8 +215,9 @@ impl Model {
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
         let name = recording.tracks.name();
-        let page = player.to_html(&forecasts, name, None, |frame| frame / recording.parts);
-        page.map_err(raised)
+        let frame = |tick| recording.moments.clock.number(tick).nearest();
+        let page = player.to_html(&forecasts, name, None, frame).map_err(raised)?;
+        Ok((page, doubt))
     }
 }
 

@@ -1,10 +1,63 @@
-//! The observation of a scene, as a window to forecast from.
+//! What was observed of a scene or recording, as windows to forecast from.
 
 use crate::arrays::tracks;
 use crate::errors::of_any;
-use ddl::data::{Completion, LiveTracks, OBSERVED, PedestrianId, Window};
+use ddl::data::{Arrival, Completeness, LiveTracks, OBSERVED, PedestrianId, Window};
 use numpy::PyReadonlyArray3;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+
+/// Largest age and interval (s): tracks begin anew after a longer time without a row.
+const MOST_SECONDS: f64 = 2.0;
+
+/// A row at a tick that does not fit its track.
+pub(crate) type Misfit = (i64, PedestrianId, Arrival);
+
+/// Which pedestrians are observed well enough to be forecast.
+pub(crate) fn completeness(whole: bool) -> Completeness {
+    if whole {
+        Completeness::Whole
+    } else {
+        Completeness::Partial
+    }
+}
+
+/// The windows that the user asks for.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct WindowOptions {
+    pub(crate) completeness: Completeness,
+    max_age: f64,
+    /// `None` for the interval that suits the recording.
+    pub(crate) every: Option<f64>,
+}
+
+impl WindowOptions {
+    pub(crate) fn new(whole: bool, max_age: f64, every: Option<f64>) -> PyResult<Self> {
+        for (name, seconds) in [("max_age", Some(max_age)), ("every", every)] {
+            if let Some(seconds) = seconds
+                && !(0.0..=MOST_SECONDS).contains(&seconds)
+            {
+                return Err(PyValueError::new_err(format!(
+                    "{name} must be a number of seconds from 0 to {MOST_SECONDS}; found {seconds}"
+                )));
+            }
+        }
+        let completeness = completeness(whole);
+        Ok(Self {
+            completeness,
+            max_age,
+            every,
+        })
+    }
+
+    pub(crate) fn of(self, tracks: LiveTracks) -> LiveTracks {
+        let tracks = tracks.with_completeness(self.completeness).with_max_age(self.max_age);
+        match self.every {
+            None => tracks,
+            Some(every) => tracks.with_interval(every),
+        }
+    }
+}
 
 /// The pedestrians of a scene that can be forecast, and their positions in the user's array.
 #[derive(Debug, Clone)]
@@ -13,14 +66,17 @@ pub(crate) struct Observed {
     pub(crate) window: Option<Window>,
     /// Index in the window of each requested pedestrian; `None` for one that cannot be forecast.
     pub(crate) rows: Vec<Option<usize>>,
+    /// The positions that were left out, or begin a track anew; the ticks are steps from 0.
+    pub(crate) misfits: Vec<Misfit>,
 }
 
 impl Observed {
     /// The observation of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their
     /// neighbours.
-    pub(crate) fn new(past: &PyReadonlyArray3<'_, f64>, asked: usize, completion: Completion) -> PyResult<Self> {
+    pub(crate) fn new(past: &PyReadonlyArray3<'_, f64>, asked: usize, completeness: Completeness) -> PyResult<Self> {
         let tracks = tracks("past", past, OBSERVED, true)?;
-        let mut live = LiveTracks::new().with_completion(completion);
+        let mut live = LiveTracks::new().with_completeness(completeness);
+        let mut misfits = Vec::new();
         for frame in 0..OBSERVED {
             let seen = tracks.iter().enumerate().filter_map(|(i, track)| {
                 let position = track[frame];
@@ -28,6 +84,7 @@ impl Observed {
                 is_seen.then_some((PedestrianId(i as i64), position))
             });
             live.push(frame as i64, seen).map_err(of_any)?;
+            misfits.extend(live.arrivals().iter().map(|&(id, arrival)| (frame as i64, id, arrival)));
         }
         let window = live.window();
         let mut rows = vec![None; asked];
@@ -36,18 +93,63 @@ impl Observed {
                 *row = Some(index);
             }
         }
-        Ok(Self { window, rows })
+        Ok(Self { window, rows, misfits })
     }
 
     /// All pedestrians of a window, in its order.
     pub(crate) fn of_window(window: Window) -> Self {
         let rows = (0..window.len()).map(Some).collect();
-        let window = Some(window);
-        Self { window, rows }
+        Self {
+            window: Some(window),
+            rows,
+            misfits: Vec::new(),
+        }
+    }
+
+    /// Text about positions of the array that do not fit their tracks.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        let doubt = doubt_of(&self.misfits, |step, id| format!("past[{}, {step}]", id.0))?;
+        Some(format!(
+            "{doubt}; check that positions are in metres and steps are 0.4 s"
+        ))
     }
 }
 
-/// Fills gaps and pads late beginnings, as the program does, unless only whole observations count.
-pub(crate) fn completion(whole: bool) -> Completion {
-    if whole { Completion::NONE } else { Completion::DEFAULT }
+/// Distance (m) of a row from where its pedestrian was expected, if it is too far away.
+pub(crate) fn distance_off(arrival: Arrival) -> Option<f64> {
+    match arrival {
+        Arrival::Wrong(distance) | Arrival::Jumped(distance) => Some(distance),
+        _ => None,
+    }
+}
+
+/// A sentence about rows that do not fit their tracks; `place` names a row.
+pub(crate) fn doubt_of(misfits: &[Misfit], place: impl Fn(i64, PedestrianId) -> String) -> Option<String> {
+    let &(tick, pedestrian, arrival) = misfits.first()?;
+    let jumps = misfits
+        .iter()
+        .filter(|(_, _, arrival)| matches!(arrival, Arrival::Jumped(_)))
+        .count();
+    let said = [
+        (
+            misfits.len() - jumps,
+            "position is left out",
+            "positions are left out",
+            ", as nobody can be there",
+        ),
+        (jumps, "track begins anew", "tracks begin anew", " after a jump"),
+    ];
+    let said = said
+        .iter()
+        .filter(|(count, ..)| *count > 0)
+        .map(|(count, one, many, why)| match count {
+            1 => format!("1 {one}{why}"),
+            _ => format!("{count} {many}{why}"),
+        });
+    Some(format!(
+        "{}: first {}, {:.1} m from where it was expected",
+        said.collect::<Vec<_>>().join(", and "),
+        place(tick, pedestrian),
+        distance_off(arrival).unwrap_or_default()
+    ))
 }

@@ -2,25 +2,31 @@
 
 use crate::arrays::array;
 use crate::errors::{of_any, raised};
-use crate::observed::completion;
+use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
+use crate::observed::{WindowOptions, doubt_of};
 use ddl::data::{
-    Format, Homography, Observation, PedestrianId, PedestrianName, Recording as Tracks, RecordingError, Window,
-    read_recording, write_recording,
+    Clock, Completeness, Format, Homography, Observation, PedestrianId, PedestrianName, PlausibilityWarning,
+    Recording as Tracks, RecordingError, Window, read_recording, write_recording,
 };
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Tracks in metres, in steps of 0.4 s.
+/// Tracks in metres.
 #[pyclass(frozen, module = "ddl_forecast._core")]
 #[derive(Debug, Clone)]
 pub(crate) struct Recording {
+    /// In ticks of the clock.
     pub(crate) tracks: Arc<Tracks>,
-    /// Number of its frames per frame of the file; above 1 if 0.4 s is not a whole number of frames.
-    pub(crate) parts: i64,
+    /// With the frame numbers of the file, or its times in microseconds.
+    rows: Arc<Tracks>,
+    pub(crate) moments: Moments,
+    /// Frame numbers per second, if the user or the file states them.
+    fps: Option<f64>,
 }
 
 /// The frame rate, if the user gives it.
@@ -31,52 +37,97 @@ struct GivenRate {
 }
 
 impl GivenRate {
-    fn of(self, tracks: Tracks) -> PyResult<Recording> {
+    fn of(self, rows: Tracks) -> PyResult<Recording> {
         if self.fps.is_some() && self.frame_step.is_some() {
             return Err(PyValueError::new_err(
                 "give fps or frame_step, not both: fps counts frames per second, frame_step frames in 0.4 s",
             ));
         }
-        if let Some(step) = self.frame_step {
-            let tracks = tracks.with_frame_step(step).map_err(of_any)?;
-            return Ok(Recording::whole(tracks));
+        let unit = rows.time_unit();
+        let is_given = self.fps.is_some() || self.frame_step.is_some();
+        if unit.is_some() && is_given {
+            return Err(PyValueError::new_err(
+                "the rows have times, and fps or frame_step gives a rate of frame numbers; leave it out",
+            ));
         }
-        if let Some(fps) = self.fps
-            && !(fps.is_finite() && fps > 0.0)
-        {
-            return Err(PyValueError::new_err(format!(
-                "fps must be a finite number above 0, the frames per second; found {fps}"
-            )));
-        }
-        let Some(frame_time) = self.fps.map(f64::recip).or(tracks.stated_frame_time()) else {
-            return Ok(Recording::whole(tracks));
+        let stated = rows.stated_frame_time().filter(|_| !is_given).map(f64::recip);
+        let fps = self.fps.or(stated);
+        let clock = match (unit, fps) {
+            (Some(unit), _) => Clock::with_stamps(unit),
+            (None, Some(fps)) => clock_of_rate(fps)?,
+            (None, None) => Clock::with_frame_step(self.frame_step.unwrap_or(rows.frame_step())).map_err(of_any)?,
         };
-        let steps = tracks.resampled_to_steps(frame_time).map_err(of_any)?;
+        let tracks = Arc::new(rows.on_clock(clock).map_err(of_any)?);
+        let is_same = unit.is_some() || clock.counts_frames();
         Ok(Recording {
-            tracks: Arc::new(steps.recording),
-            parts: steps.parts,
+            rows: if is_same { Arc::clone(&tracks) } else { Arc::new(rows) },
+            tracks,
+            moments: Moments { clock, unit },
+            fps,
         })
     }
 }
 
+/// The windows of a recording, and text about what else was in it.
+pub(crate) struct ObservedWindows {
+    pub(crate) windows: Vec<Window>,
+    pub(crate) doubt: Option<String>,
+}
+
 impl Recording {
-    fn whole(tracks: Tracks) -> Self {
+    /// A recording whose frames are ticks.
+    pub(crate) fn of_ticks(tracks: Tracks) -> Self {
         let tracks = Arc::new(tracks);
-        Self { tracks, parts: 1 }
+        Self {
+            rows: Arc::clone(&tracks),
+            tracks,
+            moments: Moments::FRAMES,
+            fps: None,
+        }
     }
 
-    /// Windows of 8 observed steps, one for each frame with pedestrians to forecast.
-    pub(crate) fn observed(&self, whole: bool) -> Vec<Window> {
-        self.tracks.completed_windows(completion(whole))
+    /// Windows of 8 observed steps, one for each moment with pedestrians to forecast.
+    pub(crate) fn observed(&self, options: WindowOptions) -> ObservedWindows {
+        let observed = self.tracks.observe(options.of(self.tracks.live_tracks()));
+        let names = self.tracks.names();
+        let misfits = doubt_of(&observed.arrivals, |tick, id| {
+            format!("that of pedestrian {} at {}", names.of(id), self.moments.words(tick))
+        });
+        let missing = self.words_of_missing(options, &observed.windows);
+        let doubts: Vec<String> = misfits.into_iter().chain(missing).collect();
+        ObservedWindows {
+            windows: observed.windows,
+            doubt: (!doubts.is_empty()).then(|| doubts.join("; ")),
+        }
+    }
+
+    /// Text about pedestrians who are in no window, though they have rows enough.
+    fn words_of_missing(&self, options: WindowOptions, windows: &[Window]) -> Option<String> {
+        if options.completeness == Completeness::Whole || options.every.is_some() {
+            return None;
+        }
+        let found: BTreeSet<PedestrianId> = windows.iter().flat_map(Window::pedestrians).copied().collect();
+        let mut rows: Vec<PedestrianId> = self.tracks.observations().iter().map(|row| row.pedestrian).collect();
+        rows.sort_unstable();
+        let known = rows.chunk_by(|a, b| a == b);
+        let missing = known.filter(|rows| rows.len() > 1 && !found.contains(&rows[0])).count();
+        (missing > 0).then(|| {
+            format!(
+                "{missing} of {} pedestrians are never forecast, because they have no two rows that belong together \
+                 and are at most 2 s apart",
+                self.tracks.pedestrians().len()
+            )
+        })
     }
 }
 
 #[pymethods]
 impl Recording {
     #[new]
-    #[pyo3(signature = (frame, id, x, y, words, fps, frame_step, name))]
+    #[pyo3(signature = (frame, unit, id, x, y, words, fps, frame_step, name))]
     fn new(
         frame: PyReadonlyArray1<'_, i64>,
+        unit: Option<&str>,
         id: PyReadonlyArray1<'_, i64>,
         x: PyReadonlyArray1<'_, f64>,
         y: PyReadonlyArray1<'_, f64>,
@@ -85,10 +136,12 @@ impl Recording {
         frame_step: Option<i64>,
         name: &str,
     ) -> PyResult<Self> {
+        let unit = unit.map(unit_named).transpose()?;
         let lengths = [frame.len(), id.len(), x.len(), y.len()];
         if lengths.iter().any(|length| *length != lengths[0]) {
             return Err(PyValueError::new_err(format!(
-                "frame, id, x and y must have one length; found {lengths:?} rows"
+                "{}, id, x and y must have one length; found {lengths:?} rows",
+                if unit.is_some() { "time" } else { "frame" }
             )));
         }
         let [frame, id] = [frame.as_array(), id.as_array()];
@@ -107,13 +160,16 @@ impl Recording {
             observations.push(Observation::new(frame[row], PedestrianId(id[row]), position));
         }
         let made = Tracks::in_usual_step(name, observations);
-        let mut tracks = made.map_err(|error| match (&error, &words) {
-            (RecordingError::Duplicate { pedestrian, frame }, Some(words)) => {
-                let word = words.get(pedestrian.0 as usize).map_or("", String::as_str);
-                PyValueError::new_err(format!("pedestrian {word:?} is in frame {frame} twice"))
+        let mut tracks = made.map_err(|error| match error {
+            RecordingError::Duplicate { pedestrian, frame } => {
+                let word = words.as_ref().and_then(|words| words.get(pedestrian.0 as usize));
+                let pedestrian = word.map_or_else(|| pedestrian.to_string(), |word| format!("{word:?}"));
+                let moment = unit.map_or(Moments::FRAMES, Moments::of_times).words(frame);
+                PyValueError::new_err(format!("pedestrian {pedestrian} is in {moment} twice"))
             }
-            _ => of_any(error),
+            error => of_any(error),
         })?;
+        tracks = tracks.with_time_unit(unit);
         if let Some(words) = words {
             let numbered = (0..).map(PedestrianId).zip(words.into_iter().map(Arc::from));
             tracks = tracks.with_words(numbered.collect());
@@ -150,13 +206,7 @@ impl Recording {
 
     #[pyo3(signature = (path, *, format = "table"))]
     fn write(&self, path: PathBuf, format: &str) -> PyResult<()> {
-        if self.parts != 1 {
-            return Err(PyValueError::new_err(
-                "the positions were resampled to steps of 0.4 s between the frames; to write the recording, read it \
-                 without fps",
-            ));
-        }
-        let bytes = write_recording(&self.tracks, format_named(format)?).map_err(raised)?;
+        let bytes = write_recording(&self.rows, format_named(format)?).map_err(raised)?;
         ddl::write_atomically(&path, &bytes).map_err(raised)
     }
 
@@ -166,8 +216,19 @@ impl Recording {
     }
 
     #[getter]
-    fn frame_step(&self) -> f64 {
-        self.tracks.frame_step() as f64 / self.parts as f64
+    fn frame_step(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        self.moments.step(py)
+    }
+
+    #[getter]
+    fn fps(&self) -> Option<f64> {
+        self.fps
+    }
+
+    /// What its times count; `None` for frame numbers.
+    #[getter]
+    fn unit(&self) -> Option<&'static str> {
+        self.moments.unit.map(name_of)
     }
 
     fn __len__(&self) -> usize {
@@ -184,18 +245,20 @@ impl Recording {
         )
     }
 
-    /// Frame, id, x and y of every position, in order of frames; frames as in the file, ids as a list if some are
-    /// words.
+    /// The frame of every position as a whole number, or its time in microseconds.
+    fn numbers(&self, py: Python<'_>) -> PyResult<Py<PyAny>> {
+        let frames = self.rows.observations().iter().map(|row| row.frame);
+        array(py, frames.collect(), [self.__len__()])
+    }
+
+    /// Frame, id, x and y of every position, in order of frames; frames or times as in the file, ids as a list if some
+    /// are words.
     fn columns(&self, py: Python<'_>) -> PyResult<(Py<PyAny>, Py<PyAny>, Py<PyAny>, Py<PyAny>)> {
         let observations = self.tracks.observations();
         let n = observations.len();
-        let frame = if self.parts == 1 {
-            array(py, observations.iter().map(|seen| seen.frame).collect(), [n])?
-        } else {
-            let parts = self.parts as f64;
-            let frames = observations.iter().map(|seen| seen.frame as f64 / parts);
-            array(py, frames.collect(), [n])?
-        };
+        let frame = self
+            .moments
+            .all(py, observations.iter().map(|seen| seen.frame).collect())?;
         let axis = |axis: usize| array(py, observations.iter().map(|seen| seen.position[axis]).collect(), [n]);
         let names = self.tracks.names();
         let numbered = observations.iter().map(|seen| match names.of(seen.pedestrian) {
@@ -213,7 +276,19 @@ impl Recording {
 
     /// Text that describes a fault suggested by the speeds.
     fn doubt(&self) -> Option<String> {
-        Some(self.tracks.speed_warning()?.to_string())
+        let mut warning = self.tracks.speed_warning()?;
+        match &mut warning {
+            PlausibilityWarning::Jump(fastest) => self.count_as_given(&mut fastest.frame),
+            PlausibilityWarning::NoSteps { frame_step } => self.count_as_given(frame_step),
+            _ => {}
+        }
+        Some(warning.to_string())
+    }
+}
+
+impl Recording {
+    fn count_as_given(&self, tick: &mut i64) {
+        *tick = self.moments.clock.number(*tick).nearest();
     }
 }
 

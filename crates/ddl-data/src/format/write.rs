@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use ddl_core::PedestrianName;
 use serde::Serialize;
 
+use crate::clock::{Clock, FrameNumber, TimeUnit};
 use crate::error::DataError;
 use crate::format::kind::Format;
 use crate::observation::Observation;
@@ -17,7 +18,10 @@ struct TrackLine {
 
 #[derive(Serialize)]
 struct WrittenTrack {
-    f: i64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    f: Option<i64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    t: Option<FrameNumber>,
     p: PedestrianName,
     x: f64,
     y: f64,
@@ -28,24 +32,13 @@ struct WrittenTrack {
 /// which no reader uses, are written as 0.
 ///
 /// # Errors
-/// [`DataError::Own`] where pedestrians are words: only [`Format::Table`] and [`Format::TrajNet`] can name them.
+/// [`DataError::Own`] where pedestrians are words, or rows have times: only [`Format::Table`] and [`Format::TrajNet`]
+/// have them.
 pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>, DataError> {
+    refuse_what_it_lacks(recording, format)?;
     let observations = recording.observations();
     let name = |seen: &Observation| recording.names().of(seen.pedestrian);
-    if !matches!(format, Format::Table | Format::TrajNet) {
-        let word = observations
-            .iter()
-            .map(name)
-            .find(|name| matches!(name, PedestrianName::Word(_)));
-        if let Some(word) = word {
-            let problem = format!(
-                "the format {format} names pedestrians by numbers, but {word} is a word; use the format {} or {}",
-                Format::Table,
-                Format::TrajNet
-            );
-            return Err(DataError::Own { problem });
-        }
-    }
+    let unit = recording.time_unit();
     let mut text = String::new();
     match format {
         Format::StarCsv => text += &star_csv(observations),
@@ -58,17 +51,25 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
             format!("{} {} {x:?} 0 {y:?} 0 0 0", seen.frame, seen.pedestrian)
         }),
         Format::Table => {
-            text += "frame,pedestrian,x,y\n";
+            text += time_column(unit);
+            text += ",pedestrian,x,y\n";
             lines(&mut text, observations, |seen| {
                 let [x, y] = seen.position;
-                format!("{},{},{x:?},{y:?}", seen.frame, csv_field(&name(seen)))
+                let when = unit.map_or(FrameNumber::Whole(seen.frame), |unit| time(unit, seen));
+                format!("{when},{},{x:?},{y:?}", csv_field(&name(seen)))
             });
         }
         Format::TrajNet => {
+            // Its times are dates or seconds.
+            let unit = unit.map(|unit| match unit {
+                TimeUnit::Dates => unit,
+                _ => TimeUnit::Seconds,
+            });
             for seen in observations {
                 let [x, y] = seen.position;
                 let track = WrittenTrack {
-                    f: seen.frame,
+                    f: unit.is_none().then_some(seen.frame),
+                    t: unit.map(|unit| time(unit, seen)),
                     p: name(seen),
                     x,
                     y,
@@ -82,6 +83,39 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
         }
     }
     Ok(text.into_bytes())
+}
+
+fn refuse_what_it_lacks(recording: &Recording, format: Format) -> Result<(), DataError> {
+    if matches!(format, Format::Table | Format::TrajNet) {
+        return Ok(());
+    }
+    let mut names = recording
+        .observations()
+        .iter()
+        .map(|seen| recording.names().of(seen.pedestrian));
+    let problem = if let Some(word) = names.find(|name| matches!(name, PedestrianName::Word(_))) {
+        format!("the format {format} names pedestrians by numbers, but {word} is a word")
+    } else if recording.time_unit().is_some() {
+        format!("the format {format} has frame numbers, but these rows have times")
+    } else {
+        return Ok(());
+    };
+    let problem = format!("{problem}; use the format {} or {}", Format::Table, Format::TrajNet);
+    Err(DataError::Own { problem })
+}
+
+fn time(unit: TimeUnit, seen: &Observation) -> FrameNumber {
+    Clock::with_stamps(unit).number(seen.frame)
+}
+
+fn time_column(unit: Option<TimeUnit>) -> &'static str {
+    match unit {
+        None => "frame",
+        Some(TimeUnit::Seconds | TimeUnit::Dates) => "time",
+        Some(TimeUnit::Milliseconds) => "time_ms",
+        Some(TimeUnit::Microseconds) => "time_us",
+        Some(TimeUnit::Nanoseconds) => "time_ns",
+    }
 }
 
 fn lines(text: &mut String, observations: &[Observation], line: impl Fn(&Observation) -> String) {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timezone
 from typing import Any
 
 import numpy as np
@@ -70,9 +71,42 @@ def whole(values: ArrayLike, name: str) -> Integers:
     if len(wrong):
         row = int(wrong[0])
         missing = "; leave out rows without it" if np.isnan(array[row]) else ""
-        hint = missing or ("; count frames: 0, 1, 2, and so on" if name == "frame" else "")
+        hint = missing or ("; count frames: 0, 1, 2, and so on, or give times as time=" if name == "frame" else "")
         raise ValueError(f"row {row}, column {name}: {array[row]} is not a whole number below 2^53 in size{hint}")
     return np.require(array, np.int64, ["C", "A"])
+
+
+def moments(frame: ArrayLike | None, time: ArrayLike | None) -> tuple[Integers, str | None]:
+    """Frames, or times in microseconds and their unit: ``seconds`` or ``dates``."""
+    if (frame is None) == (time is None):
+        raise ValueError("give frame or time, one of the two: frame numbers, or times in seconds or as datetimes")
+    if frame is not None:
+        return whole(frame, "frame"), None
+    assert time is not None
+    array = column(time, "time")
+    if array.dtype.kind in "iuf":
+        seconds = array.astype(np.float64)
+        wrong = np.flatnonzero(~(np.abs(seconds) * 1e6 < LARGEST))
+        if len(wrong):
+            row = int(wrong[0])
+            raise ValueError(f"row {row}, column time: {array[row]} is not a time in seconds, below 9e9 in size")
+        return np.require(np.round(seconds * 1e6), np.int64, ["C", "A"]), "seconds"
+    dates = _dates(array)
+    missing = np.flatnonzero(np.isnat(dates))
+    if len(missing):
+        raise ValueError(f"row {int(missing[0])}, column time: the time is missing; leave out rows without it")
+    return np.require(dates.astype("datetime64[us]").astype(np.int64), np.int64, ["C", "A"]), "dates"
+
+
+def _dates(array: NDArray[Any]) -> NDArray[Any]:
+    """Columns with a time zone, as of pandas, hold objects: they become UTC."""
+    if array.dtype.kind == "O" and all(isinstance(one, datetime) for one in array):
+        zoned = [one.astimezone(timezone.utc).replace(tzinfo=None) if one.tzinfo is not None else one for one in array]
+        return np.array(zoned, dtype="datetime64[us]")
+    if array.dtype.kind != "M":
+        hint = "(text? pandas.to_datetime reads it)"
+        raise ValueError(f"column time must hold seconds or datetimes; found the type {array.dtype} {hint}")
+    return array
 
 
 def column(values: ArrayLike, name: str) -> NDArray[Any]:

@@ -39,7 +39,7 @@ class Window:
     ids : (n,)
         Ids of the pedestrians: whole numbers or words.
     frame, frame_step
-        Last observed frame, and frame numbers in 0.4 s.
+        Last observed frame or time, and frame numbers (or time) in 0.4 s.
     recording : str
         Name of the recording.
     """
@@ -47,7 +47,7 @@ class Window:
     past: Floats
     future: Floats
     ids: NDArray[Any]
-    frame: float
+    frame: Any
     frame_step: float
     recording: str
 
@@ -65,17 +65,18 @@ def windows(
     Parameters
     ----------
     source
-        A recording (every complete window), or a data convention: ``"star"``, ``"social-gan"``, ``"simulated"``.
+        A recording, or a data convention: ``"star"``, ``"social-gan"``, ``"simulated"``.
     fold, part
         For a convention: the scene left out (``eth``, ``hotel``, ``univ``, ``zara1``, ``zara2``), and the windows
         ``"test"`` or ``"training"``.
     rule
-        Window rule: ``published``, ``complete``, ``social-gan``; default: that of the convention's tables.
+        Window rule: ``published``, ``complete``, ``social-gan``, ``observed``; default: that of the convention's
+        tables, for a recording ``observed``: what a live stream would have observed at each moment, on any clock.
     data
         Folder of the convention's files; default: the environment variable DDL_DATASETS.
     """
     if isinstance(source, Recording):
-        parts = _core.windows("simulated", None, "", part, rule or "complete", source._core)
+        parts = _core.windows("simulated", None, "", part, rule or "observed", source._core)
     else:
         parts = _core.windows(source, data, fold, part, rule, None)
     return [Window(**{**one, "ids": np.array(one["ids"])}) for one in parts]

@@ -36,15 +36,15 @@ class Certificates:
 
 
 class DoubtWarning(UserWarning):
-    """The input looks wrong: a unit, a frame rate, or motions unlike the training motions."""
+    """The input looks wrong: a unit, a frame rate, positions, or motions unlike the training motions."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Forecast:
     """k weighted hypotheses of the next 4.8 s for each of n pedestrians.
 
-    ``valid`` is False for pedestrians that cannot be forecast: those not observed in the last frame, or observed only
-    once since the last gap of more than 2 steps. Their rows are NaN.
+    ``valid`` is False for pedestrians that cannot be forecast: those not observed now, observed only once, or where
+    they cannot be. Their rows are NaN.
 
     Attributes
     ----------
@@ -61,14 +61,18 @@ class Forecast:
     spread : (n, 12) or None
         Standard deviation around the right hypothesis, metres.
     past : (n, 8, 2)
-        The observation with gaps filled and late beginnings padded, metres.
-    made_up : (n, 2)
-        How many of the 8 positions are made up: before the first that counts, and in gaps.
+        The observed positions 0.4 s apart, metres: rows at these times, otherwise estimated from all rows so far.
+    unseen : (n,)
+        How many of them lie before the first row: they continue the motion backwards.
+    age : (n,)
+        Time since the last row, seconds.
+    uncertainty : (n,)
+        Standard deviation that the observation adds at the end of the forecast, metres; 0 with a row at every step.
     certificates : Certificates or None
         The evidence, with ``certificates=True``.
     ids, frame, frames, recording
-        Ids of the pedestrians, the last observed frame, the 12 forecast frames, and the name of the recording; frames
-        are None for arrays.
+        Ids of the pedestrians, the last observed frame, the 12 forecast frames, and the name of the recording. Frames
+        are numbers or times as in the recording; None for arrays.
     """
 
     paths: Floats
@@ -78,10 +82,12 @@ class Forecast:
     certified: Flags | None
     spread: Floats | None
     past: Floats
-    made_up: Integers
+    unseen: Integers
+    age: Floats
+    uncertainty: Floats
     certificates: Certificates | None = None
     ids: NDArray[Any] = field(default_factory=lambda: np.empty(0, dtype=np.int64))
-    frame: float | None = None
+    frame: Any = None
     frames: NDArray[Any] | None = None
     recording: str = ""
     _region_table: str | None = field(default=None, repr=False)
@@ -99,7 +105,7 @@ class Forecast:
             **parts,
             certificates=None if evidence is None else Certificates(**evidence),
             ids=_ids(list(names)),
-            frames=None if frames is None else np.array(frames),
+            frames=frames,
             _region_table=table,
         )
 
@@ -173,7 +179,7 @@ class Forecast:
         goals = None if self.goals is None else self.goals[shown]
         radii = None if level is None else self.regions(level)[shown, :, -1]
         return draw(
-            ax, self.past[shown], self.made_up[shown, 0], self.paths[shown], self.weights[shown], goals, radii, level
+            ax, self.past[shown], self.unseen[shown], self.paths[shown], self.weights[shown], goals, radii, level
         )
 
 
@@ -235,14 +241,13 @@ def write_forecasts(path: str | os.PathLike[str], forecasts: Sequence[Forecast])
             raise ValueError(
                 "only forecasts of recordings with numbered pedestrians can be written, not of arrays or words"
             )
-        if forecast.frame != int(forecast.frame):
-            between = f"frame {forecast.frame} lies between two frames, because the recording was resampled"
-            raise ValueError(f"{between}; such forecasts cannot be written")
+        if not isinstance(forecast.frame, int):
+            raise ValueError(f"only forecasts of frame numbers can be written, not of the time {forecast.frame}")
         keep = forecast.valid
         rows.append(
             (
                 forecast.recording,
-                int(forecast.frame),
+                forecast.frame,
                 [int(one) for one in forecast.ids[keep]],
                 np.ascontiguousarray(forecast.past[keep]),
                 np.ascontiguousarray(forecast.paths[keep]),

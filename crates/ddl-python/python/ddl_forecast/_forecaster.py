@@ -82,16 +82,15 @@ class Forecaster:
         Parameters
         ----------
         past
-            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not observed. Gaps
-            of up to 2 positions are filled on a straight line; positions before a longer gap are ignored. A
-            pedestrian is forecast if the last position and at least one other remain; earlier positions are padded at
-            the mean velocity.
+            (n, 8, 2) positions, metres, 0.4 s apart, the last one now; NaN where a pedestrian was not observed. Such
+            positions are estimated from the others; those before a gap of more than 2 s are ignored. A pedestrian is
+            forecast if the last position and at least one other remain.
         neighbours
             (m, 8, 2) positions of other pedestrians, which influence the forecast but are not forecast.
         samples
             20: all hypotheses; 1: the central forecast of the model, with the least expected error.
         whole
-            Forecast only pedestrians observed at all 8 positions.
+            Forecast only pedestrians tracked for all 8 steps: those with a position at the first.
         certificates
             Return the evidence that each hypothesis approaches its goal, for each step.
 
@@ -103,7 +102,8 @@ class Forecaster:
         Warns
         -----
         DoubtWarning
-            A motion is unlike the training motions: pixels instead of metres, another time step, or no pedestrian.
+            A motion is unlike the training motions, or a position is where the pedestrian cannot be: pixels instead of
+            metres, another time step, or no pedestrian.
 
         Examples
         --------
@@ -111,8 +111,8 @@ class Forecaster:
         >>> past = np.stack([np.linspace([0, 0], [3.5, 0], 8), np.linspace([6, 1], [2.5, 1], 8)])
         >>> past[1, :3] = np.nan  # the second one appeared later
         >>> forecast = Forecaster().forecast(past)
-        >>> forecast.paths.shape, forecast.made_up.tolist()
-        ((2, 20, 12, 2), [[0, 0], [3, 0]])
+        >>> forecast.paths.shape, forecast.unseen.tolist()
+        ((2, 20, 12, 2), [0, 3])
         """
         return self.forecast_all(
             [past],
@@ -137,8 +137,8 @@ class Forecaster:
             raise ValueError(f"neighbours are of {len(others)} scenes, pasts of {len(pasts)}")
         scenes = [scene(past, other) for past, other in zip(pasts, others, strict=True)]
         arrays, asked = [array for array, _ in scenes], [count for _, count in scenes]
-        made = self._core.forecast(arrays, asked, samples, whole, certificates)
-        return _told([Forecast._of(parts) for parts in made])
+        made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates)
+        return _told([Forecast._of(parts) for parts in made], doubt)
 
     def forecast_recording(
         self,
@@ -147,27 +147,57 @@ class Forecaster:
         last: bool = False,
         samples: int = 20,
         whole: bool = False,
+        max_age: float = 0.4,
+        every: float | None = None,
         certificates: bool = False,
     ) -> list[Forecast]:
-        """Forecast from every frame of a recording with pedestrians to forecast; with ``last`` from the last one."""
+        """Forecast from every moment of a recording with pedestrians to forecast, in order of time.
+
+        Each forecast uses the rows up to its moment, and no later ones.
+
+        Parameters
+        ----------
+        recording
+            From :func:`read`, or of columns.
+        last
+            Only the last moment.
+        whole
+            Forecast only pedestrians tracked for all 8 steps, 2.8 s.
+        max_age
+            Seconds until which a pedestrian is carried on after its last row; 0: only those with a row at the moment.
+        every
+            Least time between two moments, seconds. Default: 0 (every frame), or 0.4 where each pedestrian has a clock
+            of its own.
+        samples, certificates
+            As for :meth:`forecast`.
+
+        Warns
+        -----
+        DoubtWarning
+            The rate or the units look wrong, or positions are left out because the pedestrians cannot be there.
+        """
         _tell_doubt(recording)
-        made = self._core.forecast_recording(recording._core, last, samples, whole, certificates)
-        return _told([Forecast._of(parts) for parts in made])
+        made, doubt = self._core.forecast_recording(recording._core, last, samples, whole, max_age, every, certificates)
+        return _told([Forecast._of(parts) for parts in made], doubt and f"{recording.name}: {doubt}")
 
     def forecast_table(
         self,
-        frame: ArrayLike,
-        id: ArrayLike,
-        x: ArrayLike,
-        y: ArrayLike,
+        frame: ArrayLike | None = None,
+        id: ArrayLike = (),
+        x: ArrayLike = (),
+        y: ArrayLike = (),
         *,
+        time: ArrayLike | None = None,
         fps: float | None = None,
         last: bool = False,
         samples: int = 20,
         whole: bool = False,
+        max_age: float = 0.4,
+        every: float | None = None,
     ) -> dict[str, NDArray[Any]]:
         """Forecast from columns of lists, numpy, pandas or polars, and return columns.
 
+        Columns and options are those of :class:`Recording` and :meth:`forecast_recording`.
         The result has the columns of :meth:`Forecast.to_dict`; ``pandas.DataFrame(...)`` or ``polars.DataFrame(...)``
         makes a table of them.
 
@@ -176,10 +206,10 @@ class Forecaster:
         ValueError
             A value is wrong (the message names row and column), or no pedestrian was observed long enough.
         """
-        recording = Recording(frame, id, x, y, fps=fps)
-        made = self.forecast_recording(recording, last=last, samples=samples, whole=whole)
+        recording = Recording(frame, id, x, y, time=time, fps=fps)
+        made = self.forecast_recording(recording, last=last, samples=samples, whole=whole, max_age=max_age, every=every)
         if not made:
-            missing = "no pedestrian was observed at 2 consecutive time steps of 0.4 s"
+            missing = "no pedestrian has two rows at most 2 s apart"
             raise ValueError(f"{missing}; set fps to the frame numbers per second")
         return table(made)
 
@@ -195,7 +225,9 @@ class Forecaster:
         place, and ``Page.open()`` opens it in a browser.
         """
         _tell_doubt(recording)
-        html = self._core.page(recording._core, moments)
+        html, doubt = self._core.page(recording._core, moments)
+        if doubt is not None:
+            warnings.warn(f"{recording.name}: {doubt}", DoubtWarning, stacklevel=2)
         if path is None:
             import tempfile
 
@@ -223,8 +255,10 @@ def _tell_doubt(recording: Recording) -> None:
         warnings.warn(f"{recording.name}: {doubt}", DoubtWarning, stacklevel=3)
 
 
-def _told(forecasts: list[Forecast]) -> list[Forecast]:
-    """The forecasts, with a warning about the first one with unfamiliar motions."""
+def _told(forecasts: list[Forecast], doubt: str | None) -> list[Forecast]:
+    """The forecasts, with warnings about doubtful positions and about the first one with unfamiliar motions."""
+    if doubt is not None:
+        warnings.warn(doubt, DoubtWarning, stacklevel=4)
     for forecast in forecasts:
         words = forecast.unfamiliar()
         if words is not None:

@@ -7,13 +7,15 @@ import os
 import threading
 import warnings
 from collections.abc import Hashable, Iterable
+from datetime import datetime
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Integers, floats
+from ddl_forecast._arrays import Integers, floats, moments
 from ddl_forecast._forecast import DoubtWarning, Forecast
 from ddl_forecast._forecaster import Forecaster
 
@@ -26,7 +28,7 @@ MOST_WORDS = 100_000
 class Live:
     """Forecasts for each frame of one camera or robot.
 
-    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same frames, except for regions, which adapt
+    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same rows, except for regions, which adapt
     to the observations so that they keep their share in this place too.
 
     Parameters
@@ -34,13 +36,15 @@ class Live:
     forecaster
         A forecaster can serve several places.
     fps
-        Frame numbers per second; 0.4 s must be a whole number of frames, as for 2.5, 5, 10, 12.5 or 25.
+        Frame numbers per second, such as 25, 7 or 23.976; None if frames have times instead.
     memory
         File of a scene memory, through which the paths of earlier pedestrians of this place influence the forecasts. It
         is created if missing, written about every minute while frames arrive, and written by :meth:`close`. The first
         pedestrians show whether a memory is of another place: then a warning is given, and the file is left unchanged.
-    whole, certificates
-        As for :meth:`Forecaster.forecast`.
+    every
+        Least time between two forecasts, seconds; 0: at every frame.
+    whole, max_age, certificates
+        As for :meth:`Forecaster.forecast_recording`.
 
     Examples
     --------
@@ -55,16 +59,19 @@ class Live:
         self,
         forecaster: Forecaster,
         *,
-        fps: float,
+        fps: float | None = None,
         memory: str | os.PathLike[str] | None = None,
         whole: bool = False,
+        max_age: float = 0.4,
+        every: float = 0.0,
         certificates: bool = False,
     ) -> None:
         if not isinstance(forecaster, Forecaster):
             raise TypeError(
                 f"forecaster must be a Forecaster, such as Forecaster('hotel'); found {type(forecaster).__name__}"
             )
-        self._core = _core.Live(forecaster._core, fps, memory, whole, certificates)
+        self._core = _core.Live(forecaster._core, fps, memory, whole, max_age, every, certificates)
+        self._has_times = fps is None
         self._numbers: dict[str, int] = {}
         self._words: dict[int, str] = {}
         self._next = FIRST_WORD
@@ -72,13 +79,22 @@ class Live:
         self._told = False
         self._doubted = False
 
-    def observe(self, frame: int, ids: Iterable[Hashable], xy: ArrayLike) -> Forecast | None:
+    def observe(
+        self,
+        frame: int | None = None,
+        ids: Iterable[Hashable] = (),
+        xy: ArrayLike = (),
+        *,
+        time: float | np.datetime64 | datetime | None = None,
+    ) -> Forecast | None:
         """Add a frame, which must be later than the last one, and forecast from it.
 
         Parameters
         ----------
         frame
             Its number. A missing frame is a gap.
+        time
+            Its time instead of its number, without ``fps``: seconds, or a datetime.
         ids
             Ids of the n pedestrians: whole numbers or words, which must not change from frame to frame.
         xy
@@ -86,7 +102,8 @@ class Live:
 
         Returns
         -------
-        A forecast of all pedestrians observed in this frame and often enough before; None without such pedestrians.
+        A forecast of all pedestrians observed now and often enough before; None without such pedestrians, or earlier
+        than ``every`` allows.
 
         Raises
         ------
@@ -94,27 +111,45 @@ class Live:
             A frame out of order, a repeated pedestrian, or a position that is not finite. The state is then unchanged:
             the frame may be given again without the fault.
         """
+        number, unit = self._moment(frame, time)
         people = list(ids)
         positions = np.empty((0, 2)) if len(people) == 0 and np.size(xy) == 0 else floats(xy, 2, "xy", "(n, 2)")
         with self._turn:
             numbers = np.array([self._number(one) for one in people], dtype=np.int64)
-            parts, unwritten = self._core.observe(operator.index(frame), numbers, positions)
+            parts, misfits, unwritten = self._core.observe(number, unit, numbers, positions)
             self._forget(numbers)
             words = self._words
             names = None if parts is None else [words.get(one, one) for one in parts["ids"]]
+            misfit = None if not misfits else (words.get(misfits[0][0], misfits[0][0]), misfits[0][1])
         self._tell_refusal()
         if unwritten is not None:
             warnings.warn(
                 f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2
             )
-        if parts is None:
-            return None
-        forecast = Forecast._of(parts, names)
-        doubt = None if self._doubted else forecast.unfamiliar()
-        if doubt is not None:
+        forecast = None if parts is None else Forecast._of(parts, names)
+        doubt = None if forecast is None else forecast.unfamiliar()
+        if misfit is not None:
+            doubt = (
+                f"pedestrian {misfit[0]} is {misfit[1]:.1f} m from where it was expected; check that positions are in "
+                "metres. Such positions are left out until others agree with them"
+            )
+        if doubt is not None and not self._doubted:
             self._doubted = True
-            warnings.warn(f"frame {frame}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
+            moment = f"frame {frame}" if time is None else f"time {time}"
+            warnings.warn(f"{moment}: {doubt}; this warning appears once", DoubtWarning, stacklevel=2)
         return forecast
+
+    def _moment(self, frame: int | None, time: float | np.datetime64 | datetime | None) -> tuple[int, str | None]:
+        """A frame number, or a time in microseconds and its unit."""
+        if self._has_times and frame is not None:
+            raise ValueError("a frame number needs Live(..., fps=...), the frame numbers per second; else give time=")
+        if not self._has_times and time is not None:
+            raise ValueError("with fps frames have numbers: give frame instead of time, or leave out fps")
+        if frame is not None and time is None:
+            return operator.index(frame), None
+        column: Any = None if time is None else [time]
+        times, unit = moments(None, column)
+        return int(times[0]), unit
 
     def _number(self, one: Hashable) -> int:
         """Numbers are kept; words get numbers beyond those of trackers."""

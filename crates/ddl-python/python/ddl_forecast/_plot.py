@@ -17,14 +17,17 @@ PAST, PATH, GOAL = "#222222", "#d9601a", "#1a7f5a"
 def draw(
     ax: Axes | None,
     past: Floats,
-    padded: Integers,
+    unseen: Integers,
     paths: Floats,
     weights: Floats,
     goals: Floats | None,
     radii: Floats | None,
     level: float | None,
 ) -> Axes:
-    """Draw the scene on these axes, or on new ones; `radii` (n, k) are of the region of `level` at the horizon."""
+    """Draw the scene on these axes, or on new ones; `radii` (n, k) are of the region of `level` at the horizon.
+
+    `unseen` (n,) positions at the start of `past` are dotted.
+    """
     try:
         import matplotlib.pyplot as plt
         from matplotlib.collections import LineCollection
@@ -57,16 +60,16 @@ def draw(
             ax.scatter(
                 goals[i, :, 0], goals[i, :, 1], 260 * weights_of, "none", edgecolors=GOAL, linewidths=0.9, zorder=3
             )
-        seen, invented = past[i, padded[i] :], past[i, : padded[i] + 1]
+        seen, before = past[i, unseen[i] :], past[i, : unseen[i] + 1]
         ax.plot(seen[:, 0], seen[:, 1], color=PAST, linewidth=1.6, zorder=4)
-        ax.plot(invented[:, 0], invented[:, 1], ":", color=PAST, linewidth=1.0, zorder=4)
+        ax.plot(before[:, 0], before[:, 1], ":", color=PAST, linewidth=1.0, zorder=4)
         ax.plot(now[0], now[1], "o", color=PAST, markersize=5, zorder=5)
     legend = [
         Line2D([], [], color=PAST, marker="o", label="observed, 3.2 s"),
         Line2D([], [], color=PATH, linewidth=2, label="forecast, 4.8 s"),
     ]
-    if padded.any():
-        legend.insert(1, Line2D([], [], color=PAST, linestyle=":", label="not observed (padded)"))
+    if unseen.any():
+        legend.insert(1, Line2D([], [], color=PAST, linestyle=":", label="before the first observation"))
     if goals is not None and len(goals):
         ring = Line2D(
             [], [], color="none", marker="o", markerfacecolor="none", markeredgecolor=GOAL, label="goal, size by weight"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Floats, column, numbered, whole
+from ddl_forecast._arrays import Floats, column, moments, numbered
 
 #: Formats of files of tracks, by name.
 FORMATS = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
@@ -23,9 +23,12 @@ class Recording:
     frame, id, x, y
         Columns of equal length, one row per position in any order: frame number, pedestrian (whole number or word), and
         metres. Lists, numpy arrays, pandas or polars columns.
+    time
+        Times instead of ``frame``: seconds as numbers, or datetimes of numpy, pandas or polars (in UTC where they have
+        a time zone). They are rounded to microseconds.
     fps
-        Frame numbers per second. Positions are interpolated linearly if 0.4 s is not a whole number of frames. Default:
-        the most common difference of two frame numbers counts as 0.4 s.
+        Frame numbers per second, such as 25, 7 or 23.976. Default: the most common difference of two rows of a
+        pedestrian counts as 0.4 s.
     frame_step
         Frame numbers in 0.4 s, instead of ``fps``.
     name
@@ -34,7 +37,8 @@ class Recording:
     Raises
     ------
     ValueError
-        A value is missing or not finite (the message names row and column), or a frame has a pedestrian twice.
+        A value is missing or not finite (the message names row and column), a frame has a pedestrian twice, or the rows
+        of a pedestrian are more than 1.2 s apart.
 
     Examples
     --------
@@ -45,19 +49,19 @@ class Recording:
 
     def __init__(
         self,
-        frame: ArrayLike,
-        id: ArrayLike,
-        x: ArrayLike,
-        y: ArrayLike,
+        frame: ArrayLike | None = None,
+        id: ArrayLike = (),
+        x: ArrayLike = (),
+        y: ArrayLike = (),
         *,
+        time: ArrayLike | None = None,
         fps: float | None = None,
         frame_step: int | None = None,
         name: str = "recording",
     ) -> None:
+        numbers, unit = moments(frame, time)
         ids, words = numbered(id)
-        self._core = _core.Recording(
-            whole(frame, "frame"), ids, _column(x, "x"), _column(y, "y"), words, fps, frame_step, name
-        )
+        self._core = _core.Recording(numbers, unit, ids, _column(x, "x"), _column(y, "y"), words, fps, frame_step, name)
 
     @classmethod
     def _of(cls, core: _core.Recording) -> Recording:
@@ -72,12 +76,12 @@ class Recording:
 
     @property
     def frame_step(self) -> float:
-        """Frame numbers in 0.4 s."""
+        """Frame numbers in 0.4 s; for times, 0.4 s in their unit."""
         return self._core.frame_step
 
     @property
     def frame(self) -> NDArray[Any]:
-        """Frame of each position, ascending; a fraction for interpolated positions."""
+        """Frame or time of each position as in the file, ascending."""
         return self._core.columns()[0]
 
     @property
@@ -102,8 +106,8 @@ class Recording:
     def write(self, path: str | os.PathLike[str], *, format: str = "table") -> None:
         """Write a file that :func:`read` restores position by position, in one of :data:`FORMATS`.
 
-        The file is either complete or missing. Only ``table`` and ``trajnet`` can hold words as ids. No format holds
-        ``fps``: give it to :func:`read` again.
+        The file is either complete or missing. Only ``table`` and ``trajnet`` can hold words as ids, or times. No
+        format holds ``fps``: give it to :func:`read` again.
         """
         self._core.write(path, format=format)
 
@@ -114,15 +118,16 @@ class Recording:
         return repr(self._core).replace('"', "'")
 
     def __reduce__(self) -> tuple[Any, ...]:
-        step = self.frame_step
-        if step != int(step):
-            raise TypeError("a resampled recording cannot be pickled; pickle its columns and rate")
-        frame, ids, x, y = self._core.columns()
-        return _rebuilt, (frame, ids, x, y, int(step), self.name)
+        core = self._core
+        step = int(core.frame_step) if core.fps is None and core.unit is None else None
+        return _rebuilt, (core.numbers(), core.unit, *core.columns()[1:], core.fps, step, core.name)
 
 
-def _rebuilt(frame: Any, id: Any, x: Any, y: Any, step: int, name: str) -> Recording:
-    return Recording(frame, id, x, y, frame_step=step, name=name)
+def _rebuilt(
+    numbers: Any, unit: str | None, id: Any, x: Any, y: Any, fps: float | None, step: int | None, name: str
+) -> Recording:
+    ids, words = numbered(id)
+    return Recording._of(_core.Recording(numbers, unit, ids, x, y, words, fps, step, name))
 
 
 def _column(values: ArrayLike, name: str) -> Floats:
@@ -146,12 +151,13 @@ def read(
     Parameters
     ----------
     path
-        csv with the header ``frame,pedestrian,x,y``, ndjson of TrajNet++, ``obsmat.txt`` of ETH, or a file of
-        Social-GAN or of STAR.
+        csv with the header ``frame,pedestrian,x,y`` (or ``time`` in seconds or as dates, ``time_ms``, ``time_us`` or
+        ``time_ns`` instead of ``frame``), ndjson of TrajNet++, ``obsmat.txt`` of ETH, or a file of Social-GAN or of
+        STAR.
     format
         One of :data:`FORMATS`; default: recognised by the extension and the first lines.
     fps, frame_step
-        As for :class:`Recording`.
+        As for :class:`Recording`; only for frame numbers.
     homography
         3 x 3 matrix from pixels to metres, for positions in pixels.
 
