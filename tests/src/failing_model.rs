@@ -6,6 +6,7 @@ use ddl_data::Window;
 use std::cell::Cell;
 
 /// A model whose forecasts fail while `fails` is set.
+#[derive(Debug)]
 pub struct FailingModel {
     model: Ddl,
     /// Whether forecasts fail.

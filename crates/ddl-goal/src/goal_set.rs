@@ -130,6 +130,22 @@ impl GoalSet {
         self
     }
 
+    /// The same set, widened about its [`median`](Self::median) so that the variance of the goals on each axis grows by
+    /// that of this standard deviation (m, not negative): for a pedestrian whose motion is not well known.
+    #[must_use]
+    pub fn widened_by(mut self, deviation: f64) -> Self {
+        let median = self.median();
+        let goals = self.goals.iter().zip(&self.weights);
+        let variance: f64 = goals.map(|(&goal, weight)| weight * squared_distance(goal, median) / 2.0).sum();
+        if deviation > 0.0 && variance > 0.0 {
+            let factor = (1.0 + deviation * deviation / variance).sqrt();
+            for goal in &mut self.goals {
+                *goal = [0, 1].map(|axis| median[axis] + factor * (goal[axis] - median[axis]));
+            }
+        }
+        self
+    }
+
     /// The same goals with flatter or steeper weights. Each weight is raised to `power` (positive) and divided by the
     /// sum. Then the share `uniform` (0 to 1) of the probability is divided equally among all goals. The order and the
     /// [`median`](Self::median) do not change.

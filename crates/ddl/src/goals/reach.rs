@@ -9,6 +9,8 @@ use ddl_network::motion_bounds;
 pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec<GoalSet> {
     let reachable = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);
+        let c: f64 = std::env::var("WIDE").map_or(1.0, |v| v.parse().unwrap());
+        let set = set.widened_by(c * window.quality(i).uncertainty());
         let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
         set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
     };
