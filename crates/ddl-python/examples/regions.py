@@ -103,28 +103,29 @@ def equivalent_radius(centres: Floats, radii: Floats, cells: int = 24) -> float:
 def forecasts(recording: ddl.Recording, model: str) -> Iterator[tuple[float, list[ddl.Forecast], Floats]]:
     """For each frame its minute, the forecasts with fixed and adaptive regions, and the later positions."""
     forecaster = ddl.Forecaster(model)
-    times = np.round((recording.frame - recording.frame[0]) / recording.frame_step, 6)
-    whole_step = recording.frame_step == int(recording.frame_step)
-    # Interpolated frames are 0.4 s apart; others keep their numbers.
-    numbers = (recording.frame if whole_step else np.round(times)).astype(np.int64)
-    step = int(recording.frame_step) if whole_step else 1
-    rows = {number: np.flatnonzero(numbers == number) for number in np.unique(numbers)}
+    step = float(recording.frame_step)
     xy = np.stack([recording.x, recording.y], axis=1)
-    positions = {n: dict(zip(recording.id[at].tolist(), xy[at], strict=True)) for n, at in rows.items()}
-    fixed = iter(forecaster.forecast_recording(recording, whole=True))
-    with ddl.Live(forecaster, fps=2.5 * step, whole=True) as live:
+    rows = {int(number): np.flatnonzero(recording.frame == number) for number in np.unique(recording.frame)}
+    tracks = {one: np.flatnonzero(recording.id == one) for one in np.unique(recording.id).tolist()}
+    fixed = iter(forecaster.forecast_recording(recording, whole=True, every=0.4))
+    with ddl.Live(forecaster, fps=2.5 * step, whole=True, every=0.4) as live:
         for number, at in rows.items():
-            adaptive = live.observe(int(number), recording.id[at].tolist(), xy[at])
+            adaptive = live.observe(number, recording.id[at].tolist(), xy[at])
             if adaptive is None:
                 continue
-            ahead = np.full((len(adaptive), 12, 2), np.nan)
-            for i, one in enumerate(adaptive.ids.tolist()):
-                for t in range(12):
-                    later = positions.get(number + (t + 1) * step, {}).get(one)
-                    if later is None:
-                        break
-                    ahead[i, t] = later
-            yield (number - numbers[0]) / step * STEP, [next(fixed), adaptive], ahead
+            of_each = [tracks[one] for one in adaptive.ids.tolist()]
+            ahead = np.stack([later(recording.frame[of], xy[of], number, step) for of in of_each])
+            yield (number - recording.frame[0]) / step * STEP, [next(fixed), adaptive], ahead
+
+
+def later(frames: Floats, track: Floats, number: int, step: float) -> Floats:
+    """(12, 2) positions after a frame: rows, or points between rows at most 1.2 s apart; NaN from the first missing."""
+    ahead = number + step * np.arange(1, 13)
+    after = np.searchsorted(frames, ahead).clip(1, len(frames) - 1)
+    is_row = (frames[after] == ahead) | (frames[-1] == ahead)
+    known = is_row | ((ahead < frames[-1]) & (frames[after] - frames[after - 1] <= 3 * step))
+    positions = np.stack([np.interp(ahead, frames, track[:, axis]) for axis in (0, 1)], axis=1)
+    return np.where(np.logical_and.accumulate(known)[:, None], positions, np.nan)
 
 
 def coverage(recording: ddl.Recording, model: str) -> Coverage:
