@@ -107,8 +107,8 @@ def forecasts(recording: ddl.Recording, model: str) -> Iterator[tuple[float, lis
     xy = np.stack([recording.x, recording.y], axis=1)
     rows = {int(number): np.flatnonzero(recording.frame == number) for number in np.unique(recording.frame)}
     tracks = {one: np.flatnonzero(recording.id == one) for one in np.unique(recording.id).tolist()}
-    fixed = iter(forecaster.forecast_recording(recording, whole=True, every=STEP))
-    with ddl.Live(forecaster, fps=step / STEP, whole=True, every=STEP) as live:
+    fixed = iter(forecaster.forecast_recording(recording, whole=True, every=0.4))
+    with ddl.Live(forecaster, fps=2.5 * step, whole=True, every=0.4) as live:
         for number, at in rows.items():
             adaptive = live.observe(number, recording.id[at].tolist(), xy[at])
             if adaptive is None:

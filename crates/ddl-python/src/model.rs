@@ -4,7 +4,7 @@ use crate::arrays::{array, numbers};
 use crate::errors::{of_any, raised};
 use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
-use crate::observed::{Observed, WindowOptions, completeness};
+use crate::observed::{Observed, WindowOptions, completeness, past_tracks};
 use crate::recording::{ObservedWindows, Recording};
 use ddl::data::{LiveTracks, Window};
 use ddl::{Clearance, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, ModelSource, RecordingPlayer};
@@ -12,6 +12,7 @@ use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rayon::prelude::*;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -126,10 +127,14 @@ impl Model {
         certificates: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates)?;
-        let scenes = past.iter().zip(asked);
-        let scenes: Vec<Observed> = scenes
-            .map(|(past, asked)| Observed::new(past, asked, completeness(whole)))
-            .collect::<PyResult<_>>()?;
+        let completeness = completeness(whole);
+        let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
+        let scenes = run(py, move |_| {
+            let scenes = pasts.par_iter().zip(asked);
+            let scenes = scenes.map(|(past, asked)| Observed::of_tracks(past, asked, completeness));
+            scenes.collect::<Result<Vec<Observed>, _>>()
+        })?;
+        let scenes = scenes.map_err(of_any)?;
         let windows: Vec<Window> = scenes.iter().filter_map(|scene| scene.window.clone()).collect();
         let mut forecasts = self.forecasts(py, options, windows)?.into_iter();
         let empty = EmptyFields {
@@ -163,7 +168,7 @@ impl Model {
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
         let options = ForecastOptions::new(&self.0, samples, certificates)?;
         let observed = WindowOptions::new(whole, max_age, every)?;
-        let ObservedWindows { mut windows, doubt } = py.detach(|| recording.observed(observed));
+        let ObservedWindows { mut windows, doubt } = recording.observed(py, observed)?;
         if last {
             windows.drain(..windows.len().saturating_sub(1));
         }
@@ -198,7 +203,7 @@ impl Model {
     /// A page that plays moments of the recording, and text about doubtful positions.
     fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<(String, Option<String>)> {
         let observed = WindowOptions::new(false, LiveTracks::DEFAULT_MAX_AGE, None)?;
-        let ObservedWindows { windows, doubt } = py.detach(|| recording.observed(observed));
+        let ObservedWindows { windows, doubt } = recording.observed(py, observed)?;
         if windows.is_empty() {
             return Err(PyValueError::new_err(format!(
                 "no pedestrian of the recording can be forecast; check fps, and that positions are in metres{}",

@@ -2,7 +2,7 @@
 
 use crate::arrays::tracks;
 use crate::errors::of_any;
-use ddl::data::{Arrival, Completeness, LiveTracks, OBSERVED, PedestrianId, Window};
+use ddl::data::{Arrival, Completeness, LiveError, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -74,7 +74,15 @@ impl Observed {
     /// The observation of `(n, 8, 2)` positions. The first `asked` pedestrians are forecast; the others are their
     /// neighbours.
     pub(crate) fn new(past: &PyReadonlyArray3<'_, f64>, asked: usize, completeness: Completeness) -> PyResult<Self> {
-        let tracks = tracks("past", past, OBSERVED, true)?;
+        Self::of_tracks(&past_tracks(past)?, asked, completeness).map_err(of_any)
+    }
+
+    /// As [`Observed::new`], of positions with NaN where a pedestrian was not observed.
+    pub(crate) fn of_tracks(
+        tracks: &[Vec<Position>],
+        asked: usize,
+        completeness: Completeness,
+    ) -> Result<Self, LiveError> {
         let mut live = LiveTracks::new().with_completeness(completeness);
         let mut misfits = Vec::new();
         for frame in 0..OBSERVED {
@@ -83,7 +91,7 @@ impl Observed {
                 let is_seen = !position[0].is_nan();
                 is_seen.then_some((PedestrianId(i as i64), position))
             });
-            live.push(frame as i64, seen).map_err(of_any)?;
+            live.push(frame as i64, seen)?;
             misfits.extend(live.arrivals().iter().map(|&(id, arrival)| (frame as i64, id, arrival)));
         }
         let window = live.window();
@@ -113,6 +121,11 @@ impl Observed {
             "{doubt}; check that positions are in metres and steps are 0.4 s"
         ))
     }
+}
+
+/// The tracks of `(n, 8, 2)` positions.
+pub(crate) fn past_tracks(past: &PyReadonlyArray3<'_, f64>) -> PyResult<Vec<Vec<Position>>> {
+    tracks("past", past, OBSERVED, true)
 }
 
 /// Distance (m) of a row from where its pedestrian was expected, if it is too far away.

@@ -2,6 +2,7 @@
 
 use crate::arrays::array;
 use crate::errors::{of_any, raised};
+use crate::interruptible::run;
 use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
 use crate::observed::{WindowOptions, doubt_of};
 use ddl::data::{
@@ -87,7 +88,12 @@ impl Recording {
     }
 
     /// Windows of 8 observed steps, one for each moment with pedestrians to forecast.
-    pub(crate) fn observed(&self, options: WindowOptions) -> ObservedWindows {
+    pub(crate) fn observed(&self, py: Python<'_>, options: WindowOptions) -> PyResult<ObservedWindows> {
+        let recording = self.clone();
+        run(py, move |_| recording.observe(options))
+    }
+
+    fn observe(&self, options: WindowOptions) -> ObservedWindows {
         let observed = self.tracks.observe(options.of(self.tracks.live_tracks()));
         let names = self.tracks.names();
         let misfits = doubt_of(&observed.arrivals, |tick, id| {
