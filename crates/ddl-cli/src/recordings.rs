@@ -3,7 +3,7 @@
 use crate::telling::{self, tell};
 use crate::units::{ReadRecording, Units};
 use anyhow::{Context as _, bail};
-use ddl::data::{Arrival, Clock, PedestrianId, PlausibilityWarning, Recording};
+use ddl::data::{Clock, Misfit, PlausibilityWarning, Recording};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
@@ -133,49 +133,12 @@ pub(crate) fn in_frames(clock: Clock, warning: PlausibilityWarning) -> Plausibil
     }
 }
 
-/// Warns of rows that were left out, or began a track anew.
-pub(crate) fn warn_of_arrivals(recording: &Recording, clock: Clock, arrivals: &[(i64, PedestrianId, Arrival)]) {
-    for words in words_of_arrivals(recording, clock, arrivals) {
-        tell(format_args!("warning: {words}"));
-    }
-}
-
-pub(crate) fn words_of_arrivals(
-    recording: &Recording,
-    clock: Clock,
-    arrivals: &[(i64, PedestrianId, Arrival)],
-) -> Vec<String> {
-    let first = |(tick, pedestrian, off): &(i64, PedestrianId, f64)| {
-        let name = recording.names().of(*pedestrian);
-        format!(
-            "first that of pedestrian {name} at frame {}, {off:.1} m off",
-            clock.number(*tick)
-        )
-    };
-    let (mut wrong, mut jumped) = (Vec::new(), Vec::new());
-    for &(tick, pedestrian, arrival) in arrivals {
-        match arrival {
-            Arrival::Wrong(off) => wrong.push((tick, pedestrian, off)),
-            Arrival::Jumped(off) => jumped.push((tick, pedestrian, off)),
-            _ => {}
-        }
-    }
-    let left_out = wrong.first().map(|row| {
-        format!(
-            "{}, where the pedestrian cannot be, {} left out: {}",
-            telling::many(wrong.len(), "position", "positions"),
-            if wrong.len() == 1 { "is" } else { "are" },
-            first(row)
-        )
-    });
-    let begun = jumped.first().map(|row| {
-        format!(
-            "{} after a jump, as of another pedestrian: {}",
-            telling::many(jumped.len(), "track begins anew", "tracks begin anew"),
-            first(row)
-        )
-    });
-    left_out.into_iter().chain(begun).collect()
+/// A sentence about rows that do not fit their tracks.
+pub(crate) fn words_of_misfits(recording: &Recording, clock: Clock, misfits: &[Misfit]) -> Option<String> {
+    Misfit::words(misfits, |misfit| {
+        let name = recording.names().of(misfit.pedestrian);
+        format!("pedestrian {name} at frame {}", clock.number(misfit.tick))
+    })
 }
 
 pub(crate) fn warn_of(warning: &PlausibilityWarning) {

@@ -7,8 +7,8 @@ use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
 use ddl::data::{
-    Arrival, Clock, Completeness, LiveTracks, OBSERVED, Observation, ObservationQuality, PedestrianId,
-    PlausibilityWarning, Recording, Window,
+    Clock, Completeness, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PlausibilityWarning, Recording,
+    Window,
 };
 use std::path::{Path, PathBuf};
 
@@ -55,7 +55,7 @@ pub(crate) struct ObservedTracks {
     /// A fault that the speeds suggest, such as wrong units or a wrong rate, which give meaningless forecasts.
     pub(crate) warning: Option<PlausibilityWarning>,
     /// Rows that were left out, or began a track anew.
-    arrivals: Vec<(i64, PedestrianId, Arrival)>,
+    misfits: Vec<Misfit>,
     noise: f64,
     whole: bool,
 }
@@ -140,7 +140,7 @@ impl TrackOptions {
             windows,
             clock,
             warning,
-            arrivals: observed.arrivals,
+            misfits: observed.misfits,
             noise: observed.noise.metres(),
             whole: self.whole,
         })
@@ -170,8 +170,11 @@ impl ObservedTracks {
                 100.0 * self.noise
             ));
         }
-        if !matches!(self.warning, Some(PlausibilityWarning::Fast { .. })) {
-            recordings::warn_of_arrivals(&self.recording, self.clock, &self.arrivals);
+        let doubt = recordings::words_of_misfits(&self.recording, self.clock, &self.misfits);
+        // With other units, nearly every position is a jump.
+        let is_fast = matches!(self.warning, Some(PlausibilityWarning::Fast { .. }));
+        if let Some(doubt) = doubt.filter(|_| !is_fast) {
+            tell(format_args!("warning: {doubt}"));
         }
         if !self.whole {
             self.tell_who_is_missing();

@@ -110,7 +110,7 @@ pub use live::{Completeness, LiveError, LiveTracks, checked_frame};
 pub use locate::locate;
 pub use neighbours::{Neighbours, SpatialIndex};
 pub use observation::{COORDINATE_LIMIT, Observation};
-pub use observe::{Arrival, RecordingNoise};
+pub use observe::{Misfit, MisfitTreatment, RecordingNoise};
 pub use plausibility::{Fastest, PlausibilityWarning};
 pub use recording::Recording;
 pub use replay::ObservedRecording;

@@ -8,7 +8,7 @@ use ddl_core::{
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observe::{Arrival, ON_STEP, ObservedTrack, RecordingNoise};
+use crate::observe::{Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -32,7 +32,7 @@ pub enum Completeness {
 /// - Each pedestrian has its own clock: rows may come at any times, also at other times than those of other
 ///   pedestrians.
 /// - A pedestrian whose last row is less than [0.4 s](Self::with_max_age) old is carried on to the frame.
-/// - A position where a pedestrian cannot be is left out, and [told](Self::arrivals). If the next rows agree with it,
+/// - A position where a pedestrian cannot be is left out, and [told](Self::misfits). If the next rows agree with it,
 ///   the track begins anew there, and also after 2 s without a row.
 /// - A pedestrian without a row for 2 s is forgotten.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
@@ -62,7 +62,8 @@ pub struct LiveTracks {
     max_age: f64,
     /// Least time between two windows, in ticks.
     interval: f64,
-    /// Ticks.
+    /// The last frame number pushed, and its tick.
+    last_number: Option<i64>,
     last_frame: Option<i64>,
     /// Whether there is a window at the last frame.
     is_moment: bool,
@@ -70,7 +71,7 @@ pub struct LiveTracks {
     next_moment: f64,
     noise: RecordingNoise,
     pedestrians: Vec<LivePedestrian>,
-    arrivals: Vec<(PedestrianId, Arrival)>,
+    misfits: Vec<Misfit>,
 }
 
 /// A pedestrian seen within the last 2 s.
@@ -110,12 +111,13 @@ impl LiveTracks {
             completeness: Completeness::Whole,
             max_age: clock.frame_step() as f64,
             interval: 0.0,
+            last_number: None,
             last_frame: None,
             is_moment: false,
             next_moment: f64::NEG_INFINITY,
             noise: RecordingNoise::default(),
             pedestrians: Vec::new(),
-            arrivals: Vec::new(),
+            misfits: Vec::new(),
         }
     }
 
@@ -163,11 +165,12 @@ impl LiveTracks {
 
     /// Forgets all pedestrians and the last frame. Any frame may come next, as after a restart of the tracker.
     pub fn clear(&mut self) {
+        self.last_number = None;
         self.last_frame = None;
         self.is_moment = false;
         self.next_moment = f64::NEG_INFINITY;
         self.pedestrians.clear();
-        self.arrivals.clear();
+        self.misfits.clear();
     }
 
     /// How frames are counted.
@@ -191,8 +194,8 @@ impl LiveTracks {
     }
 
     /// The pedestrians of the last frame whose row was left out, or began the track anew.
-    pub fn arrivals(&self) -> &[(PedestrianId, Arrival)] {
-        &self.arrivals
+    pub fn misfits(&self) -> &[Misfit] {
+        &self.misfits
     }
 
     /// Adds one frame, with the positions (m) of all pedestrians in any order, and returns the window that ends there.
@@ -218,12 +221,13 @@ impl LiveTracks {
         frame: i64,
         positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
+        let positions = checked_frame(frame, self.last_number, positions)?;
         let tick = self.clock.tick(frame)?;
-        let positions = checked_frame(tick, self.last_frame, positions)?;
         let mut next = Self {
+            last_number: Some(frame),
             last_frame: Some(tick),
             pedestrians: Vec::with_capacity(positions.len()),
-            arrivals: Vec::new(),
+            misfits: Vec::new(),
             ..self.clone_without_pedestrians()
         };
         let step = self.clock.frame_step() as f64;
@@ -238,9 +242,7 @@ impl LiveTracks {
                     let mut track = before.track.clone();
                     let arrival = track.push(tick as f64, position, self.tick_time(), &mut next.noise);
                     track.forget_before(tick as f64, step);
-                    if matches!(arrival, Arrival::Wrong(_) | Arrival::Jumped(_)) {
-                        next.arrivals.push((id, arrival));
-                    }
+                    next.misfits.extend(Misfit::of(tick, id, arrival));
                     track
                 }
             };
@@ -268,7 +270,7 @@ impl LiveTracks {
             names: self.names.clone(),
             noise: self.noise.clone(),
             pedestrians: Vec::new(),
-            arrivals: Vec::new(),
+            misfits: Vec::new(),
             ..*self
         }
     }

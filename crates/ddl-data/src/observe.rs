@@ -1,13 +1,15 @@
 //! What was observed of a pedestrian at a moment: an estimate from the rows of its track up to then.
 
 mod estimate;
+mod misfit;
 mod motion;
 mod noise;
 mod track;
 
 pub(crate) use estimate::ON_STEP;
+pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;
-pub use track::Arrival;
+pub(crate) use track::Arrival;
 pub(crate) use track::ObservedTrack;
 
 #[cfg(test)]

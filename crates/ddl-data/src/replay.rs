@@ -1,9 +1,9 @@
 //! A recording, observed frame by frame as a live stream would be.
 
-use ddl_core::{HORIZON, PedestrianId, TIME_STEP, WINDOW, Window};
+use ddl_core::{HORIZON, TIME_STEP, WINDOW, Window};
 
 use crate::live::{Completeness, LiveTracks};
-use crate::observe::{Arrival, RecordingNoise};
+use crate::observe::{Misfit, RecordingNoise};
 use crate::recording::Recording;
 
 /// What was observed of a recording, in order of time.
@@ -14,8 +14,8 @@ pub struct ObservedRecording {
     pub windows: Vec<Window>,
     /// How exact the positions are.
     pub noise: RecordingNoise,
-    /// The rows that were left out, or began a track anew: tick, pedestrian, and how it arrived.
-    pub arrivals: Vec<(i64, PedestrianId, Arrival)>,
+    /// The rows that were left out, or began a track anew.
+    pub misfits: Vec<Misfit>,
 }
 
 impl Recording {
@@ -30,24 +30,19 @@ impl Recording {
     /// The windows that these tracks, empty until now, make of the recording.
     #[must_use]
     pub fn observe(&self, mut tracks: LiveTracks) -> ObservedRecording {
-        let (mut windows, mut arrivals) = (Vec::new(), Vec::new());
+        let (mut windows, mut misfits) = (Vec::new(), Vec::new());
         for &frame in self.frames() {
             let rows = self.at(frame).iter();
             let rows = rows.map(|row| (row.pedestrian, row.position));
             // Cannot fail: the invariants of a recording exclude every error of live tracks.
             windows.extend(tracks.push(frame, rows).ok().flatten());
-            arrivals.extend(
-                tracks
-                    .arrivals()
-                    .iter()
-                    .map(|&(pedestrian, arrival)| (frame, pedestrian, arrival)),
-            );
+            misfits.extend_from_slice(tracks.misfits());
         }
         let noise = tracks.noise().clone();
         ObservedRecording {
             windows,
             noise,
-            arrivals,
+            misfits,
         }
     }
 

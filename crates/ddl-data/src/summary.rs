@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::live::Completeness;
 use crate::observation::Observation;
-use crate::observe::Arrival;
+use crate::observe::Misfit;
 use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
 use crate::recording::Recording;
 use crate::rule::WindowRule;
@@ -47,9 +47,9 @@ pub struct Summary {
     pub common_frames: bool,
     /// Standard deviation of the noise of a coordinate, m.
     pub noise: f64,
-    /// The rows that are left out, or begin a track anew: tick, pedestrian, and how it arrived.
+    /// The rows that are left out, or begin a track anew.
     #[serde(skip)]
-    pub arrivals: Vec<(i64, PedestrianId, Arrival)>,
+    pub misfits: Vec<Misfit>,
     /// Number of pedestrians.
     pub pedestrians: usize,
     /// Number of observations.
@@ -136,6 +136,28 @@ impl Recording {
         (1.0 - self.observations().len() as f64 / expected).max(0.0)
     }
 
+    /// Median deviation of the time between two rows of a pedestrian from its median, in ticks.
+    fn jitter(&self) -> i64 {
+        let Some(spacing) = self.usual_spacing() else {
+            return 0;
+        };
+        let off = self
+            .differences()
+            .into_iter()
+            .map(|difference| (difference - spacing).abs());
+        let mut off: Vec<i64> = off.filter(|off| 2 * off < spacing).collect();
+        off.sort_unstable();
+        off.get(off.len() / 2).copied().unwrap_or(0)
+    }
+
+    /// The least or largest coordinates, by `pick`, starting from `from`.
+    fn corner(&self, pick: fn(f64, f64) -> f64, from: f64) -> Position {
+        let places = self.observations().iter().map(|seen| seen.position);
+        places.fold([from; 2], |corner, place| {
+            [0, 1].map(|axis| pick(corner[axis], place[axis]))
+        })
+    }
+
     /// A summary of the recording.
     #[must_use]
     pub fn summary(&self) -> Summary {
@@ -152,17 +174,6 @@ impl Recording {
             })
             .collect();
         let pedestrians = |windows: &[crate::Window]| windows.iter().map(crate::Window::len).sum();
-        let corner = |pick: fn(f64, f64) -> f64, from: f64| {
-            let places = self.observations().iter().map(|seen| seen.position);
-            places.fold([from; 2], |corner, place| {
-                [0, 1].map(|axis| pick(corner[axis], place[axis]))
-            })
-        };
-        let spacing = self.usual_spacing();
-        let differences = self.differences().into_iter();
-        let off = differences.filter_map(|difference| Some((difference - spacing?).abs()));
-        let mut off: Vec<i64> = off.filter(|&off| 2 * off < spacing.unwrap_or(0)).collect();
-        off.sort_unstable();
         let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
         let (first, last) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
         let windows = self.windows(WindowRule::Observed);
@@ -179,15 +190,15 @@ impl Recording {
             last_frame: last,
             frame_step: step,
             seconds: seconds(last - first),
-            rows_a_second: spacing.map(|spacing| 1.0 / seconds(spacing)),
-            jitter: seconds(off.get(off.len() / 2).copied().unwrap_or(0)),
+            rows_a_second: self.usual_spacing().map(|spacing| 1.0 / seconds(spacing)),
+            jitter: seconds(self.jitter()),
             common_frames: self.has_common_frames(),
             noise: observed.noise.metres(),
-            arrivals: observed.arrivals,
+            misfits: observed.misfits,
             pedestrians: tracks.len(),
             observations: self.observations().len(),
-            low: corner(f64::min, f64::INFINITY),
-            high: corner(f64::max, f64::NEG_INFINITY),
+            low: self.corner(f64::min, f64::INFINITY),
+            high: self.corner(f64::max, f64::NEG_INFINITY),
             steps: speeds.steps,
             median_speed: speeds.median,
             fastest: speeds.fastest,

@@ -136,7 +136,9 @@ impl GoalSet {
     pub fn widened_by(mut self, deviation: f64) -> Self {
         let median = self.median();
         let goals = self.goals.iter().zip(&self.weights);
-        let variance: f64 = goals.map(|(&goal, weight)| weight * squared_distance(goal, median) / 2.0).sum();
+        let variance: f64 = goals
+            .map(|(&goal, weight)| weight * squared_distance(goal, median) / 2.0)
+            .sum();
         if deviation > 0.0 && variance > 0.0 {
             let factor = (1.0 + deviation * deviation / variance).sqrt();
             for goal in &mut self.goals {

@@ -6,7 +6,7 @@ use crate::forecasts::{PlainOrCertified, named_parts};
 use crate::interruptible::{run_live, wait_for};
 use crate::model::Model;
 use crate::moments::{Moments, clock_of_rate, unit_named};
-use crate::observed::{WindowOptions, distance_off};
+use crate::observed::WindowOptions;
 use ddl::data::{Clock, LiveError, LiveTracks, PedestrianId, Position, TimeUnit, Window};
 use ddl::{AdaptiveRegions, Ddl, DdlError, LiveForecaster, MemoryFile};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods as _};
@@ -58,8 +58,8 @@ impl WatchedPlace {
             // The frame has been observed, so a full disk must not discard its forecast.
             unwritten = file.write(place).err().map(|error| error.to_string());
         }
-        let arrivals = self.live.tracks().arrivals().iter();
-        let misfits = arrivals.filter_map(|&(id, arrival)| Some((id.0, distance_off(arrival)?)));
+        let misfits = self.live.tracks().misfits().iter();
+        let misfits = misfits.map(|misfit| (misfit.pedestrian.0, misfit.distance));
         Ok(Answer {
             forecast,
             misfits: misfits.collect(),
@@ -224,16 +224,18 @@ fn wrong_frame(error: DdlError, moments: Moments) -> PyErr {
     let DdlError::Live(error) = error else {
         return raised(error);
     };
+    // Frames and times are as they were given.
+    let words = |frame| moments.words(moments.clock.tick(frame).unwrap_or(frame));
     PyValueError::new_err(match error {
         LiveError::TooEarly { frame, last } => format!(
             "{} comes after {}; give frames in order of time, each once; when the tracker restarts, call clear()",
-            moments.words(frame),
-            moments.words(last)
+            words(frame),
+            words(last)
         ),
         LiveError::Duplicate { pedestrian, frame } => {
             format!(
                 "pedestrian {pedestrian} is in {} twice; keep one position",
-                moments.words(frame)
+                words(frame)
             )
         }
         error => return of_any(error),

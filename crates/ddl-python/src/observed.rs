@@ -2,16 +2,13 @@
 
 use crate::arrays::tracks;
 use crate::errors::of_any;
-use ddl::data::{Arrival, Completeness, LiveError, LiveTracks, OBSERVED, PedestrianId, Position, Window};
+use ddl::data::{Completeness, LiveError, LiveTracks, Misfit, OBSERVED, PedestrianId, Position, Window};
 use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 /// Largest age and interval (s): tracks begin anew after a longer time without a row.
 const MOST_SECONDS: f64 = 2.0;
-
-/// A row at a tick that does not fit its track.
-pub(crate) type Misfit = (i64, PedestrianId, Arrival);
 
 /// Which pedestrians are observed well enough to be forecast.
 pub(crate) fn completeness(whole: bool) -> Completeness {
@@ -92,7 +89,7 @@ impl Observed {
                 is_seen.then_some((PedestrianId(i as i64), position))
             });
             live.push(frame as i64, seen)?;
-            misfits.extend(live.arrivals().iter().map(|&(id, arrival)| (frame as i64, id, arrival)));
+            misfits.extend_from_slice(live.misfits());
         }
         let window = live.window();
         let mut rows = vec![None; asked];
@@ -116,7 +113,9 @@ impl Observed {
 
     /// Text about positions of the array that do not fit their tracks.
     pub(crate) fn doubt(&self) -> Option<String> {
-        let doubt = doubt_of(&self.misfits, |step, id| format!("past[{}, {step}]", id.0))?;
+        let doubt = Misfit::words(&self.misfits, |misfit| {
+            format!("past[{}, {}]", misfit.pedestrian.0, misfit.tick)
+        })?;
         Some(format!(
             "{doubt}; check that positions are in metres and steps are 0.4 s"
         ))
@@ -126,43 +125,4 @@ impl Observed {
 /// The tracks of `(n, 8, 2)` positions.
 pub(crate) fn past_tracks(past: &PyReadonlyArray3<'_, f64>) -> PyResult<Vec<Vec<Position>>> {
     tracks("past", past, OBSERVED, true)
-}
-
-/// Distance (m) of a row from where its pedestrian was expected, if it is too far away.
-pub(crate) fn distance_off(arrival: Arrival) -> Option<f64> {
-    match arrival {
-        Arrival::Wrong(distance) | Arrival::Jumped(distance) => Some(distance),
-        _ => None,
-    }
-}
-
-/// A sentence about rows that do not fit their tracks; `place` names a row.
-pub(crate) fn doubt_of(misfits: &[Misfit], place: impl Fn(i64, PedestrianId) -> String) -> Option<String> {
-    let &(tick, pedestrian, arrival) = misfits.first()?;
-    let jumps = misfits
-        .iter()
-        .filter(|(_, _, arrival)| matches!(arrival, Arrival::Jumped(_)))
-        .count();
-    let said = [
-        (
-            misfits.len() - jumps,
-            "position is left out",
-            "positions are left out",
-            ", as nobody can be there",
-        ),
-        (jumps, "track begins anew", "tracks begin anew", " after a jump"),
-    ];
-    let said = said
-        .iter()
-        .filter(|(count, ..)| *count > 0)
-        .map(|(count, one, many, why)| match count {
-            1 => format!("1 {one}{why}"),
-            _ => format!("{count} {many}{why}"),
-        });
-    Some(format!(
-        "{}: first {}, {:.1} m from where it was expected",
-        said.collect::<Vec<_>>().join(", and "),
-        place(tick, pedestrian),
-        distance_off(arrival).unwrap_or_default()
-    ))
 }

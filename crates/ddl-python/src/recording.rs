@@ -4,9 +4,9 @@ use crate::arrays::array;
 use crate::errors::{of_any, raised};
 use crate::interruptible::run;
 use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
-use crate::observed::{WindowOptions, doubt_of};
+use crate::observed::WindowOptions;
 use ddl::data::{
-    Clock, Completeness, Format, Homography, Observation, PedestrianId, PedestrianName, PlausibilityWarning,
+    Clock, Completeness, Format, Homography, Misfit, Observation, PedestrianId, PedestrianName, PlausibilityWarning,
     Recording as Tracks, RecordingError, Window, read_recording, write_recording,
 };
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
@@ -96,8 +96,12 @@ impl Recording {
     fn observe(&self, options: WindowOptions) -> ObservedWindows {
         let observed = self.tracks.observe(options.of(self.tracks.live_tracks()));
         let names = self.tracks.names();
-        let misfits = doubt_of(&observed.arrivals, |tick, id| {
-            format!("that of pedestrian {} at {}", names.of(id), self.moments.words(tick))
+        let misfits = Misfit::words(&observed.misfits, |misfit| {
+            format!(
+                "pedestrian {} at {}",
+                names.of(misfit.pedestrian),
+                self.moments.words(misfit.tick)
+            )
         });
         let missing = self.words_of_missing(options, &observed.windows);
         let doubts: Vec<String> = misfits.into_iter().chain(missing).collect();

@@ -173,9 +173,34 @@ fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String>
         .iter()
         .any(|warning| matches!(warning, PlausibilityWarning::Fast { .. }))
     {
-        doubts.extend(recordings::words_of_arrivals(recording, clock, &summary.arrivals));
+        doubts.extend(recordings::words_of_misfits(recording, clock, &summary.misfits));
     }
     doubts
+}
+
+/// The rate of the rows of a pedestrian, its jitter, and the noise.
+fn rows_in_words(s: &Summary) -> String {
+    s.rows_a_second.map_or_else(
+        || "nobody has two".to_owned(),
+        |rate| {
+            let jitter = if s.jitter * rate > EVEN_CLOCK {
+                format!(", ± {:.0} ms", 1e3 * s.jitter)
+            } else {
+                String::new()
+            };
+            let clocks = if s.common_frames {
+                ""
+            } else {
+                ", each pedestrian on its own clock"
+            };
+            let noise = if s.noise > EXACT {
+                format!("noise {:.0} cm", 100.0 * s.noise)
+            } else {
+                "noise below 1 cm".to_owned()
+            };
+            format!("{rate:.3} a second{jitter}{clocks}, {noise}")
+        },
+    )
 }
 
 /// A quantity in each line, so that no line is wider than a terminal.
@@ -197,27 +222,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, recording: &Recordin
             clock.number(gap.after)
         )
     });
-    let rows = s.rows_a_second.map_or_else(
-        || "nobody has two".to_owned(),
-        |rate| {
-            let jitter = if s.jitter * rate > EVEN_CLOCK {
-                format!(", ± {:.0} ms", 1e3 * s.jitter)
-            } else {
-                String::new()
-            };
-            let clocks = if s.common_frames {
-                ""
-            } else {
-                ", each pedestrian on its own clock"
-            };
-            let noise = if s.noise > EXACT {
-                format!("noise {:.0} cm", 100.0 * s.noise)
-            } else {
-                "noise below 1 cm".to_owned()
-            };
-            format!("{rate:.3} a second{jitter}{clocks}, {noise}")
-        },
-    );
+    let rows = rows_in_words(s);
     let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,

@@ -97,11 +97,11 @@ impl TrackColumns {
         if record.len() != self.count {
             return Err(FilePlace::line(line).wrong(origin, wrong_count(self.count, record.len())));
         }
-        let before = self.time;
+        let before = (self.time, self.is_fraction);
         self.look_at(std::slice::from_ref(&record));
         let row = self.row(&record, line, origin);
         if row.is_err() {
-            self.time = before;
+            (self.time, self.is_fraction) = before;
         }
         row
     }
@@ -213,7 +213,7 @@ impl TrackColumns {
 /// Whether an unknown column says that the rows are no tracks of one scene.
 fn matters(name: &str, header: &StringRecord) -> bool {
     let advice = advice(name, header);
-    advice != REMOVE && !name.is_empty()
+    (advice != REMOVE && !name.is_empty()) || name.eq_ignore_ascii_case(SCENE)
 }
 
 const REMOVE: &str = "remove it";

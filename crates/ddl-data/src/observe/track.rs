@@ -34,8 +34,7 @@ pub(super) struct Row {
 
 /// How a row fits to the earlier ones of its track.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Arrival {
+pub(crate) enum Arrival {
     /// It is the first, or the first after a long gap.
     First,
     /// It is where the pedestrian was expected.

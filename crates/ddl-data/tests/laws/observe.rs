@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use ddl_data::{
-    Arrival, Clock, Completeness, Convention, Dataset, Format, FrameReader, LiveTracks, OBSERVED, Observation,
-    ObservationQuality, ObservedRecording, PedestrianId, Position, Recording, TIME_STEP, Window, WindowRule,
-    parse_recording,
+    Clock, Completeness, Convention, Dataset, Format, FrameReader, LiveTracks, Misfit, MisfitTreatment, OBSERVED,
+    Observation, ObservationQuality, ObservedRecording, PedestrianId, Position, Recording, TIME_STEP, Window,
+    WindowRule, parse_recording,
 };
 use proptest::prelude::*;
 use rand::SeedableRng as _;
@@ -204,7 +204,7 @@ proptest! {
         let turn = |row: &Observation| Observation { position: moved(row.position), ..*row };
         let there = partial(&recording(clock, rows.iter().map(turn).collect()));
         prop_assert!(farthest(&here.windows, &there.windows, moved) < 1e-6);
-        prop_assert_eq!(here.arrivals.len(), there.arrivals.len());
+        prop_assert_eq!(here.misfits.len(), there.misfits.len());
     }
 
     /// Others tell how exact a tracker is; where it is exact, a pedestrian alone is observed the same.
@@ -388,12 +388,7 @@ fn between_rows_a_walk_goes_on_straight() {
 }
 
 /// The arrivals, and the last window, of walkers at 1.4 m/s along x whose rows from an index on are moved.
-fn told(
-    rate: f64,
-    pedestrians: i64,
-    from: usize,
-    moved: impl Fn(i64, Position) -> Position,
-) -> (Vec<(i64, PedestrianId, Arrival)>, Window) {
+fn told(rate: f64, pedestrians: i64, from: usize, moved: impl Fn(i64, Position) -> Position) -> (Vec<Misfit>, Window) {
     let clock = Clock::with_frame_time(1.0 / rate).unwrap();
     let mut rows = Vec::new();
     for id in 1..=pedestrians {
@@ -404,7 +399,7 @@ fn told(
         }));
     }
     let mut observed = partial(&recording(clock, rows));
-    (observed.arrivals, observed.windows.pop().unwrap())
+    (observed.misfits, observed.windows.pop().unwrap())
 }
 
 #[test]
@@ -414,7 +409,8 @@ fn a_wrong_position_is_left_out_and_told() {
             let last = (5.0 * rate) as usize - 1;
             let (told, window) = told(rate, 1, last, |_, [x, y]| [x, y + off]);
             assert!(
-                matches!(told[..], [(_, PedestrianId(1), Arrival::Wrong(by))] if (by - off).abs() < 0.1),
+                matches!(told[..], [Misfit { pedestrian: PedestrianId(1), distance, treatment: MisfitTreatment::LeftOut, .. }]
+                    if (distance - off).abs() < 0.1),
                 "{rate} {off}: {told:?}"
             );
             let seen = window.observed(0)[OBSERVED - 1];
@@ -435,7 +431,7 @@ fn an_exchange_of_numbers_begins_both_tracks() {
         let (told, window) = told(rate, 2, from, |id, [x, y]| [x, if id == 1 { y + 3.0 } else { y - 3.0 }]);
         let kinds: Vec<_> = told
             .iter()
-            .map(|(_, id, arrival)| (id.0, matches!(arrival, Arrival::Jumped(_))))
+            .map(|misfit| (misfit.pedestrian.0, misfit.treatment == MisfitTreatment::BegunAnew))
             .collect();
         assert_eq!(kinds, [(1, false), (2, false), (1, true), (2, true)], "{told:?}");
         for i in 0..2 {
@@ -454,7 +450,7 @@ fn exact_recordings_are_observed_as_they_are() {
     let mut datasets = vec![Dataset::simulated(1)];
     datasets.extend(recordings::load(Convention::Star));
     for recording in datasets.iter().flat_map(Dataset::recordings) {
-        let told = recording.observe(recording.live_tracks()).arrivals.len();
+        let told = recording.observe(recording.live_tracks()).misfits.len();
         assert!(
             told <= recording.observations().len() / 2_000,
             "{}: {told} told",

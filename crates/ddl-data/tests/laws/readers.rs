@@ -215,11 +215,18 @@ fn other_headers_are_read_or_explained() {
         recording.at(0)[0].position.map(f64::to_bits),
         [2.0_f64, 3.0].map(f64::to_bits)
     );
+    let further = parse_recording(b"frame,vx,pedestrian,x,y,note\n0,9,1,2.0,3.0,a\n", "t", Format::Table).unwrap();
+    assert_eq!(
+        (further.observations(), further.notes()),
+        (
+            recording.observations(),
+            &["the columns vx, note are not read".to_owned()][..]
+        )
+    );
     let cases = "
 observed_until,pedestrian,frame,x,y => this is a table of forecasts
 frame,id,x,y => rename it to pedestrian
 frame;pedestrian;x;y => commas
-frame,pedestrian,x,y,vx => ; remove it
 frame,pedestrian,x,vx => still missing: y
 frame,TrackID,x,y => rename it to pedestrian
 frame,pedestrian,x [m],y [m] => rename it to x

@@ -61,9 +61,9 @@ impl LeftOut {
     }
 
     /// Reports rows of a frame that were left out, or began a track anew.
-    pub(super) fn doubtful(&mut self, rows: usize, doubts: &[String]) {
+    pub(super) fn doubtful(&mut self, rows: usize, misfits: usize, doubt: Option<String>) {
         self.rows += rows;
-        self.doubtful.count += doubts.len() as u64;
+        self.doubtful.count += misfits as u64;
         let are_most = self.rows >= MANY_ROWS && 2 * self.doubtful.count > self.rows as u64;
         if are_most && !std::mem::replace(&mut self.is_unit_doubted, true) {
             tell(format_args!(
@@ -71,13 +71,15 @@ impl LeftOut {
                  the rate right (--fps)?"
             ));
         }
-        if let (Some(last), Some(new)) = (doubts.last(), self.doubtful.take_due()) {
-            let others = if new == 1 {
-                String::new()
+        if let Some(doubt) = doubt
+            && let Some(new) = self.doubtful.take_due()
+        {
+            let since = if new as usize > misfits {
+                format!(" ({new} since the last warning)")
             } else {
-                format!(" (the last of {new} such)")
+                String::new()
             };
-            tell(format_args!("warning: {last}{others}"));
+            tell(format_args!("warning: {doubt}{since}"));
         }
     }
 

@@ -11,7 +11,7 @@ use crate::telling::{tell, words};
 use crate::units::{Units, many_frames};
 use anyhow::{Context as _, bail};
 use ddl::data::{
-    Arrival, Clock, Frame, FrameNumber, Homography, LiveTracks, Observation, PlausibilityWarning, Recording, SceneName,
+    Clock, Frame, FrameNumber, Homography, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording, SceneName,
     Window,
 };
 use ddl::{Ddl, LiveScenes};
@@ -215,7 +215,7 @@ impl Stream<'_> {
             match incoming {
                 None => self.answer_batch()?,
                 Some(Incoming::Frame(frame, stated)) => {
-                    if let Err(error) = self.take(frame, stated, units) {
+                    if let Err(error) = self.take(frame, &stated, units) {
                         break Some(error);
                     }
                 }
@@ -236,7 +236,7 @@ impl Stream<'_> {
     }
 
     /// Adds a frame.
-    fn take(&mut self, frame: Frame, stated: StatedTime, units: &Units) -> anyhow::Result<()> {
+    fn take(&mut self, frame: Frame, stated: &StatedTime, units: &Units) -> anyhow::Result<()> {
         if std::mem::take(&mut self.is_empty) {
             for note in &stated.notes {
                 tell(format_args!("note: {note}"));
@@ -250,7 +250,7 @@ impl Stream<'_> {
             let mut early = self.early.iter();
             let first = early.find(|early| early.scene == frame.scene);
             let apart = first.map(|first| frame.number - first.number);
-            let Some((clock, reason)) = clock_of(units, apart, &stated)? else {
+            let Some((clock, reason)) = clock_of(units, apart, stated)? else {
                 self.early.push(frame);
                 return Ok(());
             };
@@ -292,7 +292,7 @@ impl Stream<'_> {
         for scene in idle {
             self.state.forget(&scene);
         }
-        let (scene, rows, number) = (frame.scene.clone(), frame.pedestrians.len(), frame.number);
+        let (scene, rows) = (frame.scene.clone(), frame.pedestrians.len());
         let names = frame.names.clone();
         let observed = watching.observe(frame, self.model);
         let tracks = watching
@@ -301,21 +301,14 @@ impl Stream<'_> {
             .and_then(|scenes| scenes.tracks(scene.as_ref()));
         if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
             let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
-            let doubts = tracks.arrivals().iter().filter_map(|&(pedestrian, arrival)| {
-                let (off, then) = match arrival {
-                    Arrival::Wrong(off) => (off, "it is left out"),
-                    Arrival::Jumped(off) => (off, "the track begins anew, as of another pedestrian"),
-                    _ => return None,
-                };
-                let (name, frame) = (
-                    names.of(pedestrian),
-                    tracks.clock().number(tracks.last_frame().unwrap_or(number)),
-                );
-                Some(format!(
-                    "pedestrian {name}{place} at frame {frame} is {off:.1} m from where it can be: {then}"
-                ))
+            let doubt = Misfit::words(tracks.misfits(), |misfit| {
+                let name = names.of(misfit.pedestrian);
+                format!(
+                    "pedestrian {name}{place} at frame {}",
+                    tracks.clock().number(misfit.tick)
+                )
             });
-            self.left_out.doubtful(rows, &doubts.collect::<Vec<_>>());
+            self.left_out.doubtful(rows, tracks.misfits().len(), doubt);
         }
         observed.and(ended)
     }

@@ -1,0 +1,70 @@
+//! Rows that do not fit their tracks.
+
+use ddl_core::PedestrianId;
+
+use crate::observe::track::Arrival;
+
+/// A row where its pedestrian cannot be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Misfit {
+    /// Tick of the row.
+    pub tick: i64,
+    /// Its pedestrian.
+    pub pedestrian: PedestrianId,
+    /// Distance from where the pedestrian was expected (m).
+    pub distance: f64,
+    /// What became of the row.
+    pub treatment: MisfitTreatment,
+}
+
+/// What became of a row where its pedestrian cannot be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MisfitTreatment {
+    /// It is left out.
+    LeftOut,
+    /// The track begins anew, as of another pedestrian.
+    BegunAnew,
+}
+
+impl Misfit {
+    pub(crate) fn of(tick: i64, pedestrian: PedestrianId, arrival: Arrival) -> Option<Self> {
+        let (distance, treatment) = match arrival {
+            Arrival::First | Arrival::Expected => return None,
+            Arrival::Wrong(distance) => (distance, MisfitTreatment::LeftOut),
+            Arrival::Jumped(distance) => (distance, MisfitTreatment::BegunAnew),
+        };
+        Some(Self {
+            tick,
+            pedestrian,
+            distance,
+            treatment,
+        })
+    }
+
+    /// A sentence about these rows, `None` without any; `place` names a row.
+    pub fn words(misfits: &[Self], place: impl Fn(&Self) -> String) -> Option<String> {
+        let first = misfits.first()?;
+        let jumps = misfits
+            .iter()
+            .filter(|misfit| misfit.treatment == MisfitTreatment::BegunAnew);
+        let jumps = jumps.count();
+        let left_out = match misfits.len() - jumps {
+            0 => None,
+            1 => Some("1 position is left out, as nobody can be there".to_owned()),
+            count => Some(format!("{count} positions are left out, as nobody can be there")),
+        };
+        let begun_anew = match jumps {
+            0 => None,
+            1 => Some("1 track begins anew after a jump".to_owned()),
+            count => Some(format!("{count} tracks begin anew after a jump")),
+        };
+        let counts: Vec<String> = left_out.into_iter().chain(begun_anew).collect();
+        Some(format!(
+            "{}: first {}, {:.1} m from where it was expected",
+            counts.join(", and "),
+            place(first),
+            first.distance
+        ))
+    }
+}
