@@ -45,7 +45,7 @@ impl ObservedTrack {
             let noise = noise.max(SWAY);
             let motions = self.motions_at(&steps, tick_time, Walk { noise, agility });
             positions = motions.map(|motion| motion.position);
-            let clean = clean_motion();
+            let clean = clean_motion(agility);
             let excess = |variance: f64, clean: f64| (variance - clean).max(0.0).sqrt();
             let last = &motions[OBSERVED - 1];
             quality = ObservationQuality {
@@ -104,9 +104,12 @@ impl ObservedTrack {
     }
 }
 
-/// The motion after a row at each of the 8 steps of a usual tracker.
-fn clean_motion() -> Motion {
-    let walk = NoiseLevel::usual().walk();
+/// The motion of a pedestrian so agile after a row of a usual tracker at each of the 8 steps.
+fn clean_motion(agility: f64) -> Motion {
+    let walk = Walk {
+        agility,
+        ..NoiseLevel::usual().walk()
+    };
     let first = Motion::first_seen([0.0; 2], walk);
     (1..OBSERVED).fold(first, |motion, _| {
         motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise)
