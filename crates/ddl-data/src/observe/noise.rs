@@ -25,6 +25,8 @@ const TAILS: f64 = 4.0;
 const FIRST: usize = 3;
 /// Number of rows after which a recording's older rows lose their weight: a tracker may change.
 const MEMORY: f64 = 5000.0;
+/// Time (s) in which the rows of a track lose their weight by a factor e: a pedestrian may begin to turn.
+const RECENT: f64 = 3.0;
 /// Number of rows of the recording that weigh as much as one's own.
 const OTHERS: f64 = 200.0;
 
@@ -90,6 +92,14 @@ impl RecordingNoise {
     }
 }
 
+impl RecordingNoise {
+    /// Log-likelihood of a noise at its likeliest agility: each pedestrian has an agility of its own.
+    fn of_noise(&self, noise: usize) -> f64 {
+        let agilities = self.evidence.iter().skip(noise).step_by(NOISE.len());
+        agilities.copied().fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
 impl TrackNoise {
     pub(super) fn of_first(position: Position) -> Self {
         Self {
@@ -108,7 +118,7 @@ impl TrackNoise {
     pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {
         let share = (OTHERS / recording.rows).min(1.0);
         likeliest(&std::array::from_fn(|level| {
-            self.evidence[level] + share * recording.evidence[level]
+            self.evidence[level] + share * recording.of_noise(level % NOISE.len())
         }))
     }
 
@@ -121,7 +131,9 @@ impl TrackNoise {
             recording.rows = recording.rows * keep + 1.0;
             recording.evidence = recording.evidence.map(|evidence| evidence * keep);
         }
+        let keep = (-seconds / RECENT).exp();
         for level in 0..LEVELS {
+            self.evidence[level] *= keep;
             let Walk { noise, .. } = NoiseLevel(level).walk();
             let expected = self.motions[level].expected_after(seconds);
             if counts {

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use ddl_core::{OBSERVED, Position};
+use ddl_core::{OBSERVED, Position, distance as distance_between};
 
 use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise};
 
@@ -107,7 +107,8 @@ impl ObservedTrack {
         } else {
             (TURNING * expected.speed()).min(RUNNING)
         };
-        let turned = self.noise.motion(level).distance(position) - speed * seconds;
+        let last = self.rows.back().map_or(position, |row| row.position);
+        let turned = distance_between(last, position) - speed * seconds;
         if surprise.min(turned) <= noise_margin {
             self.suspect = None;
             self.accept(row, tick_time, recording);
@@ -121,7 +122,7 @@ impl ObservedTrack {
         let Some(before) = before else {
             return Arrival::Wrong(distance);
         };
-        let apart = (position[0] - before.row.position[0]).hypot(position[1] - before.row.position[1]);
+        let apart = distance_between(position, before.row.position);
         let follows = apart <= SURPRISE + FASTEST * (time - before.row.time) * tick_time;
         if follows {
             *self = Self::beginning(before.row.time, before.row.position);
