@@ -35,13 +35,18 @@ impl GoalSet {
     /// The goal is g + x (p + 12 s - g) with g = m + b (p + 12 s - m) + 0.3 n (p + 12 a - m). `docs/tried.md` lists the
     /// recordings on which the constants were chosen.
     ///
-    /// Positions before a turn by more than 120° are left out, if the last two steps agree: who turns back goes on.
+    /// Who has turned by more than 120°, and whose last two steps agree, goes on at the mean velocity since the turn.
     ///
     /// # Shapes
     /// `observed`: the observed positions (m), the last one last. With fewer than three, the result is the median.
     pub fn central(&self, observed: &[[f64; 2]]) -> [f64; 2] {
         let median = self.median();
-        let observed = since_reversal(observed);
+        if let Some(back) = since_reversal(observed)
+            && let [first, .., last] = back
+        {
+            let ahead = HORIZON as f64 / (back.len() - 1) as f64;
+            return std::array::from_fn(|axis| last[axis] + ahead * (last[axis] - first[axis]));
+        }
         let &[first, .., before, last] = observed else {
             return median;
         };
@@ -78,8 +83,8 @@ impl GoalSet {
     }
 }
 
-/// The positions from the last turn by more than 120° on, if the last two steps go the same way.
-fn since_reversal(observed: &[[f64; 2]]) -> &[[f64; 2]] {
+/// The positions from the last turn by more than 120° on; `None` without one, or if the last two steps differ.
+fn since_reversal(observed: &[[f64; 2]]) -> Option<&[[f64; 2]]> {
     let step = |end: usize| -> [f64; 2] { std::array::from_fn(|axis| observed[end][axis] - observed[end - 1][axis]) };
     let cosine = |[a, b]: [f64; 2], [c, d]: [f64; 2]| {
         let walks = a.hypot(b) > WALKING && c.hypot(d) > WALKING;
@@ -89,14 +94,12 @@ fn since_reversal(observed: &[[f64; 2]]) -> &[[f64; 2]] {
             0.0
         }
     };
-    let Some(last) = observed.len().checked_sub(1).filter(|last| *last >= 3) else {
-        return observed;
-    };
+    let last = observed.len().checked_sub(1).filter(|last| *last >= 3)?;
     if cosine(step(last), step(last - 1)) < SAME_WAY {
-        return observed;
+        return None;
     }
-    let turned = (1..last - 1).rev().find(|&end| cosine(step(last), step(end)) < BACK);
-    &observed[turned.unwrap_or(0)..]
+    let turned = (1..last - 1).rev().find(|&end| cosine(step(last), step(end)) < BACK)?;
+    Some(&observed[turned + 1..])
 }
 
 /// n: the share of the step changes that errors of the positions explain, 0 to 1.
