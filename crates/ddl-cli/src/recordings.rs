@@ -117,6 +117,13 @@ pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
         Some((read.recording.name(), words(&in_frames(read.clock, warning))))
     });
     tell_grouped("warning", warnings);
+    for ReadRecording { recording, clock, .. } in read {
+        let misfits = recording.observe(recording.live_tracks()).misfits;
+        let is_fast = matches!(recording.speed_warning(), Some(PlausibilityWarning::Fast { .. }));
+        if let Some(words) = words_of_misfits(recording, *clock, &misfits).filter(|_| !is_fast) {
+            tell(format_args!("warning: {}: {words}", recording.name()));
+        }
+    }
 }
 
 /// The warning with frame numbers of the file.

@@ -2,26 +2,26 @@
 
 use crate::recordings;
 use crate::telling::tell;
-use crate::units::{ReadRecording, Units};
+use crate::units::{ReadRecording, Units, many_frames};
 use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
 use ddl::data::{
-    Clock, Completeness, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PlausibilityWarning, Recording,
-    Window,
+    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality,
+    PlausibilityWarning, Recording, Window,
 };
 use std::path::{Path, PathBuf};
 
 /// Noise (m) from which on observed paths are smoothed.
-const NOISY: f64 = 0.04;
+pub(crate) const NOISY: f64 = 0.04;
 /// Largest age and interval: tracks begin anew after a longer time without a row.
 const MOST_SECONDS: f64 = 2.0;
 
 /// The tracks to read, and their units. A command that needs them requires `file`.
 #[derive(Debug, Args)]
 pub(crate) struct TrackOptions {
-    /// Tracks: csv with the header frame,pedestrian,x,y in metres (or time, in seconds, instead of frame); the rows of a
-    /// pedestrian are 0.4 s apart unless --fps or --dt is given
+    /// Tracks: csv with the header frame,pedestrian,x,y in metres (or time, in seconds, instead of frame); the rows of
+    /// a pedestrian are 0.4 s apart unless --fps or --dt is given
     ///
     /// Also TrajNet++ ndjson, ETH obsmat.txt or the files of a data convention, recognised by extension and first
     /// lines. `ddl forecast -` reads the lines of a live tracker.
@@ -31,8 +31,8 @@ pub(crate) struct TrackOptions {
     pub(crate) units: Units,
     /// Only pedestrians tracked for all 8 observed steps, 2.8 s
     ///
-    /// By default, pedestrians with 2 or more rows are forecast too. Their motion is continued backwards before the first
-    /// row; the column `unseen` counts such steps.
+    /// By default, pedestrians with 2 or more rows are forecast too. Their motion is continued backwards before the
+    /// first row; the column `unseen` counts such steps.
     #[arg(long, requires = "file")]
     whole: bool,
     /// Carry pedestrians on until their last row is so old; 0: only those with a row at the moment
@@ -121,15 +121,15 @@ impl TrackOptions {
         }
         if windows.is_empty() {
             bail!(
-                "{}: no pedestrian {} without a jump (a step of 0.4 s is taken as {} frames); give --fps or \
-                 --frame-step if frame numbers are not 0.4 s apart, and --homography if positions are not in metres",
+                "{}: no pedestrian {} (a step of 0.4 s is taken as {}); give --fps or --frame-step if frame numbers \
+                 are not 0.4 s apart, and --homography if positions are not in metres",
                 self.file().display(),
                 if self.whole {
-                    "was tracked for 8 steps, 2.8 s"
+                    "was tracked for all 8 steps"
                 } else {
-                    "has two rows at most 2 s apart"
+                    "has two rows that fit, at most 2 s apart"
                 },
-                clock.number(recording.frame_step())
+                steps_in_words(clock)
             );
         }
         if self.last {
@@ -197,6 +197,14 @@ impl ObservedTracks {
                 self.clock.number(last)
             ));
         }
+    }
+}
+
+/// A step of 0.4 s as the file counts it.
+pub(crate) fn steps_in_words(clock: Clock) -> String {
+    match clock.number(clock.frame_step()) {
+        FrameNumber::Whole(step) => many_frames(step),
+        step => format!("{step} frames"),
     }
 }
 

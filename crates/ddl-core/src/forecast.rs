@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::error::ForecastShapeError;
 use crate::position::{HORIZON, Position};
 use crate::region_table::RegionTable;
+use crate::window::Window;
 
 /// K weighted hypotheses of 12 positions for each of N pedestrians, in the order of the window.
 ///
@@ -260,14 +261,13 @@ impl Forecast {
         }
     }
 
-    /// The forecasts of the first pedestrians of the window, without its
-    /// [bystanders](crate::Window::with_bystanders).
+    /// The forecasts of the pedestrians of the window, without its [bystanders](Window::with_bystanders).
     #[must_use]
-    pub fn without_bystanders(self, pedestrians: usize) -> Self {
-        if self.pedestrians <= pedestrians {
+    pub fn without_bystanders(self, window: &Window) -> Self {
+        if self.pedestrians == window.len() {
             return self;
         }
-        self.of_pedestrians(&(0..pedestrians).collect::<Vec<_>>())
+        self.of_pedestrians(&window.indices_in_scene())
     }
 
     fn pair(&self, i: usize, k: usize) -> usize {

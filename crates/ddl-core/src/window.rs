@@ -179,7 +179,7 @@ impl Window {
     }
 
     /// The same window with bystanders: other pedestrians of the same 8 steps, whose futures are not known. A
-    /// forecaster sees them, [behind](Self::without_future) the pedestrians of the window; nobody scores them.
+    /// forecaster [sees](Self::without_future) them too; nobody scores them. The ids of the window must ascend.
     ///
     /// # Panics
     /// When the bystanders have other observed frames.
@@ -188,6 +188,7 @@ impl Window {
         let bystanders = bystanders.map(|window| Box::new(window.without_future()));
         if let Some(window) = &bystanders {
             assert_eq!(window.frames, self.frames[..OBSERVED], "frames of bystanders");
+            assert!(self.pedestrians.is_sorted(), "ids of {:?}", self.pedestrians);
         }
         Self { bystanders, ..self }
     }
@@ -286,19 +287,41 @@ impl Window {
         (0..self.len()).map(|i| self.track(i)[step]).collect()
     }
 
-    /// The observation alone, as known when a forecast is made: the pedestrians of the window, then its
-    /// [bystanders](Self::with_bystanders).
+    /// The observation alone, as known when a forecast is made: the pedestrians of the window, or these and its
+    /// [bystanders](Self::with_bystanders) in the order of their ids.
     #[must_use]
     pub fn without_future(&self) -> Window {
-        let scene = || std::iter::once(self).chain(self.bystanders.as_deref());
-        let indices = || scene().flat_map(|window| (0..window.len()).map(move |i| (window, i)));
-        let pedestrians = indices().map(|(window, i)| window.pedestrians[i]).collect();
-        let observed = indices().flat_map(|(window, i)| window.observed(i)).copied().collect();
+        let scene = self.scene();
+        let pedestrians = scene.iter().map(|(window, i)| window.pedestrians[*i]).collect();
+        let observed = scene
+            .iter()
+            .flat_map(|(window, i)| window.observed(*i))
+            .copied()
+            .collect();
         let window = self.of_same(self.frames[..OBSERVED].to_vec(), pedestrians, observed);
-        let mut remembered = indices().map(|(window, i)| window.remembered(i).to_vec());
         window
-            .with_qualities(indices().map(|(window, i)| window.quality(i)).collect())
-            .with_remembered(|_| remembered.next().unwrap_or_default())
+            .with_qualities(scene.iter().map(|(window, i)| window.quality(*i)).collect())
+            .with_remembered(|i| scene[i].0.remembered(scene[i].1).to_vec())
+    }
+
+    /// The index of each pedestrian in [`without_future`](Self::without_future).
+    #[must_use]
+    pub fn indices_in_scene(&self) -> Vec<usize> {
+        let scene = self.scene().into_iter().enumerate();
+        let scored = scene.filter(|(_, (window, _))| std::ptr::eq(*window, self));
+        scored.map(|(index, _)| index).collect()
+    }
+
+    /// The pedestrians and bystanders: the window of each, and its index there.
+    fn scene(&self) -> Vec<(&Window, usize)> {
+        let windows = std::iter::once(self).chain(self.bystanders.as_deref());
+        let mut scene: Vec<(&Window, usize)> = windows
+            .flat_map(|window| (0..window.len()).map(move |i| (window, i)))
+            .collect();
+        if self.bystanders.is_some() {
+            scene.sort_by_key(|(window, i)| window.pedestrians[*i]);
+        }
+        scene
     }
 
     fn of_same(&self, frames: Vec<i64>, pedestrians: Vec<PedestrianId>, positions: Vec<Position>) -> Self {

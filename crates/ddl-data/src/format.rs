@@ -85,6 +85,10 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
         }),
         Format::Obsmat => blanks::parse(text, origin, blanks::obsmat),
     }?;
+    let is_text = matches!(format, Format::SocialGan | Format::Obsmat);
+    if is_text && rows.first().is_some_and(|row| row.unit.is_some()) {
+        notes.push("the first column has fractions: it is read as seconds".to_owned());
+    }
     Ok(rows::into_recording(rows, origin)?.with_rate(rate).with_notes(notes))
 }
 

@@ -1,5 +1,7 @@
 //! Tracks that grow frame by frame, as a tracker on a robot delivers them.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
 use ddl_core::{
@@ -8,7 +10,7 @@ use ddl_core::{
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observe::{Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise};
+use crate::observe::{Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -60,8 +62,8 @@ pub struct LiveTracks {
     completeness: Completeness,
     /// In ticks.
     max_age: f64,
-    /// Least time between two windows, in ticks.
-    interval: f64,
+    /// Least time between two windows, in ticks; `None` for windows at common frames, or every step.
+    interval: Option<f64>,
     /// The last frame number pushed, and its tick.
     last_number: Option<i64>,
     last_frame: Option<i64>,
@@ -70,14 +72,14 @@ pub struct LiveTracks {
     /// Tick from which on there is the next window.
     next_moment: f64,
     noise: RecordingNoise,
-    pedestrians: Vec<LivePedestrian>,
+    /// Shared between copies of the tracks, because a frame may change only some.
+    pedestrians: BTreeMap<PedestrianId, Arc<LivePedestrian>>,
     misfits: Vec<Misfit>,
 }
 
 /// A pedestrian seen within the last 2 s.
 #[derive(Debug, Clone, PartialEq)]
 struct LivePedestrian {
-    id: PedestrianId,
     /// Tick of its last row, wrong or not.
     last_row: i64,
     track: ObservedTrack,
@@ -110,13 +112,13 @@ impl LiveTracks {
             clock,
             completeness: Completeness::Whole,
             max_age: clock.frame_step() as f64,
-            interval: 0.0,
+            interval: Some(0.0),
             last_number: None,
             last_frame: None,
             is_moment: false,
             next_moment: f64::NEG_INFINITY,
             noise: RecordingNoise::default(),
-            pedestrians: Vec::new(),
+            pedestrians: BTreeMap::new(),
             misfits: Vec::new(),
         }
     }
@@ -134,6 +136,7 @@ impl LiveTracks {
         Self {
             name: recording.shared_name(),
             names: recording.names().clone(),
+            interval: None,
             ..Self::with_clock(recording.tick_clock())
         }
     }
@@ -155,7 +158,7 @@ impl LiveTracks {
     /// The same tracks, with windows at least so long apart (s); 0 for one at every frame.
     #[must_use]
     pub fn with_interval(self, seconds: f64) -> Self {
-        let interval = self.ticks(seconds);
+        let interval = Some(self.ticks(seconds));
         Self { interval, ..self }
     }
 
@@ -198,87 +201,83 @@ impl LiveTracks {
         &self.misfits
     }
 
+    /// Whether there is a window at the last frame, if a pedestrian is observed well enough.
+    pub fn is_moment(&self) -> bool {
+        self.is_moment
+    }
+
     /// Adds one frame, with the positions (m) of all pedestrians in any order, and returns the window that ends there.
     /// `None` without a pedestrian that is observed well enough, or too soon after the last window.
     ///
     /// # Errors
-    /// As [`after`](Self::after); the tracks are then unchanged.
+    /// As [`checked_frame`], and for a frame number that the clock cannot divide; the tracks are then unchanged.
     pub fn push(
         &mut self,
         frame: i64,
         positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Option<Window>, LiveError> {
-        *self = self.after(frame, positions)?;
+        let positions = checked_frame(frame, self.last_number, positions)?;
+        let tick = self.clock.tick(frame)?;
+        (self.last_number, self.last_frame) = (Some(frame), Some(tick));
+        self.misfits.clear();
+        let (tick_time, rows) = (self.tick_time(), positions.len());
+        let known = self.noise.clone();
+        for (id, position) in positions {
+            let time = tick as f64;
+            match self.pedestrians.entry(id) {
+                Entry::Vacant(place) => {
+                    let track = ObservedTrack::beginning(time, position);
+                    place.insert(Arc::new(LivePedestrian { last_row: tick, track }));
+                }
+                Entry::Occupied(mut place) => {
+                    let pedestrian = Arc::make_mut(place.get_mut());
+                    pedestrian.last_row = tick;
+                    let row = Row { time, position };
+                    let arrival = pedestrian.track.push(row, tick_time, &known, &mut self.noise);
+                    pedestrian.track.forget_before(time, self.clock.frame_step() as f64);
+                    self.misfits.extend(Misfit::of(tick, id, arrival));
+                }
+            }
+        }
+        let gone = |pedestrian: &LivePedestrian| (tick - pedestrian.last_row) as f64 * tick_time > Arrival::LONGEST_GAP;
+        self.pedestrians.retain(|_, pedestrian| !gone(pedestrian));
+        self.decide_moment(tick, rows);
         Ok(self.window())
     }
 
     /// A copy of the tracks with one more frame; `self` stays unchanged.
     ///
     /// # Errors
-    /// As [`checked_frame`], and for a frame number that the clock cannot divide.
+    /// As [`push`](Self::push).
     pub fn after(
         &self,
         frame: i64,
         positions: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<Self, LiveError> {
-        let positions = checked_frame(frame, self.last_number, positions)?;
-        let tick = self.clock.tick(frame)?;
-        let mut next = Self {
-            last_number: Some(frame),
-            last_frame: Some(tick),
-            pedestrians: Vec::with_capacity(positions.len()),
-            misfits: Vec::new(),
-            ..self.clone_without_pedestrians()
-        };
-        let step = self.clock.frame_step() as f64;
-        let mut earlier = self.pedestrians.iter().peekable();
-        for (id, position) in positions {
-            while let Some(absent) = earlier.next_if(|pedestrian| pedestrian.id < id) {
-                next.keep(absent);
-            }
-            let track = match earlier.next_if(|pedestrian| pedestrian.id == id) {
-                None => ObservedTrack::beginning(tick as f64, position),
-                Some(before) => {
-                    let mut track = before.track.clone();
-                    let arrival = track.push(tick as f64, position, self.tick_time(), &mut next.noise);
-                    track.forget_before(tick as f64, step);
-                    next.misfits.extend(Misfit::of(tick, id, arrival));
-                    track
-                }
-            };
-            let last_row = tick;
-            next.pedestrians.push(LivePedestrian { id, last_row, track });
-        }
-        for absent in earlier {
-            next.keep(absent);
-        }
-        // How late the frame is for the next window; a clock may jitter.
-        let late = tick as f64 - self.next_moment + ON_STEP * step;
-        next.is_moment = late >= 0.0;
-        if next.is_moment && late < f64::INFINITY && self.interval > 0.0 {
-            // A late frame does not shift the windows after it.
-            next.next_moment += self.interval * ((late / self.interval).floor() + 1.0);
-        } else if next.is_moment {
-            next.next_moment = tick as f64 + self.interval;
-        }
+        let mut next = self.clone();
+        next.push(frame, positions)?;
         Ok(next)
     }
 
-    fn clone_without_pedestrians(&self) -> Self {
-        Self {
-            name: Arc::clone(&self.name),
-            names: self.names.clone(),
-            noise: self.noise.clone(),
-            pedestrians: Vec::new(),
-            misfits: Vec::new(),
-            ..*self
-        }
-    }
-
-    fn keep(&mut self, absent: &LivePedestrian) {
-        let now = self.last_frame.unwrap_or(absent.last_row);
-        if (now - absent.last_row) as f64 * self.tick_time() <= Arrival::LONGEST_GAP {
-            self.pedestrians.push(absent.clone());
+    /// Decides whether there is a window at this tick, which has so many rows.
+    fn decide_moment(&mut self, tick: i64, rows: usize) {
+        let step = self.clock.frame_step();
+        let interval = self.interval.unwrap_or_else(|| {
+            // Most of those seen within a step have a row here: it is a common frame.
+            let recent = self
+                .pedestrians
+                .values()
+                .filter(|pedestrian| tick - pedestrian.last_row < step);
+            if 2 * rows >= recent.count() { 0.0 } else { step as f64 }
+        });
+        // How late the frame is for the next window; a clock may jitter.
+        let late = tick as f64 - self.next_moment + ON_STEP * step as f64;
+        self.is_moment = interval == 0.0 || late >= 0.0;
+        if self.is_moment && interval > 0.0 && late < f64::INFINITY {
+            // A late frame does not shift the windows after it.
+            self.next_moment += interval * ((late / interval).floor() + 1.0);
+        } else if self.is_moment {
+            self.next_moment = tick as f64 + self.interval.unwrap_or(step as f64);
         }
     }
 
@@ -293,7 +292,8 @@ impl LiveTracks {
         let last = self.last_frame.filter(|_| self.is_moment)?;
         let (time, step) = (last as f64, self.clock.frame_step());
         let (mut ids, mut positions, mut qualities) = (Vec::new(), Vec::new(), Vec::new());
-        for LivePedestrian { id, last_row, track } in &self.pedestrians {
+        for (id, pedestrian) in &self.pedestrians {
+            let LivePedestrian { last_row, track } = pedestrian.as_ref();
             let age = time - track.last_time();
             // A wrong position says that the pedestrian is there.
             let is_present = age == 0.0 || age < self.max_age || (*last_row == last && age <= self.max_age);

@@ -10,7 +10,7 @@ pub(crate) use estimate::ON_STEP;
 pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;
 pub(crate) use track::Arrival;
-pub(crate) use track::ObservedTrack;
+pub(crate) use track::{ObservedTrack, Row};
 
 #[cfg(test)]
 mod tests;

@@ -133,7 +133,7 @@ impl Recording {
     }
 
     /// Median difference of frame numbers between successive rows of a pedestrian; `None` if nobody has two rows.
-    pub fn usual_spacing(&self) -> Option<i64> {
+    pub(crate) fn usual_spacing(&self) -> Option<i64> {
         let mut differences = self.differences();
         differences.sort_unstable();
         differences.get(differences.len() / 2).copied()
@@ -191,11 +191,16 @@ impl Recording {
         self.time_unit
     }
 
-    /// The same recording, whose frame numbers are times in microseconds that its columns count in this unit; `None` for
-    /// frame numbers.
+    /// The same recording, whose frame numbers are times in microseconds that its columns count in this unit; `None`
+    /// for frame numbers.
     #[must_use]
     pub fn with_time_unit(self, time_unit: Option<TimeUnit>) -> Self {
-        Self { time_unit, ..self }
+        let frame_step = time_unit.map_or(self.frame_step, |unit| Clock::with_stamps(unit).frame_step());
+        Self {
+            time_unit,
+            frame_step,
+            ..self
+        }
     }
 
     pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {

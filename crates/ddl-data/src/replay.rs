@@ -1,6 +1,6 @@
 //! A recording, observed frame by frame as a live stream would be.
 
-use ddl_core::{HORIZON, TIME_STEP, WINDOW, Window};
+use ddl_core::{HORIZON, WINDOW, Window};
 
 use crate::live::{Completeness, LiveTracks};
 use crate::observe::{Misfit, RecordingNoise};
@@ -19,12 +19,11 @@ pub struct ObservedRecording {
 }
 
 impl Recording {
-    /// Empty tracks with the name and clock of this recording. Their windows are at least 0.4 s apart where each
-    /// pedestrian has a [clock of its own](Self::has_common_frames), else there is one at every frame.
+    /// Empty tracks with the name and clock of this recording. There is a window at every frame that shows half of the
+    /// pedestrians of the last 0.4 s, and otherwise, where each pedestrian has a clock of its own, every 0.4 s.
     #[must_use]
     pub fn live_tracks(&self) -> LiveTracks {
-        let interval = if self.has_common_frames() { 0.0 } else { TIME_STEP };
-        LiveTracks::of(self).with_interval(interval)
+        LiveTracks::of(self)
     }
 
     /// The windows that these tracks, empty until now, make of the recording.

@@ -164,9 +164,13 @@ impl Recording {
         let tracks = self.tracks();
         let speeds = self.speeds(&tracks);
         let step = self.frame_step();
+        let spacing = self.usual_spacing().unwrap_or(step);
         let pairs = tracks.values().flat_map(|track| track.windows(2));
         let gaps: Vec<Gap> = pairs
-            .filter(|pair| pair[1].frame - pair[0].frame > step)
+            .filter(|pair| {
+                let apart = pair[1].frame - pair[0].frame;
+                apart > step && 2 * apart > 3 * spacing
+            })
             .map(|pair| Gap {
                 pedestrian: self.names().of(pair[0].pedestrian),
                 after: pair[0].frame,

@@ -131,7 +131,7 @@ impl Protocol {
         let forecasts = forecaster.forecast_all(&self.visible(windows))?.into_iter();
         let scored = forecasts
             .zip(windows)
-            .map(|(forecast, window)| forecast.without_bystanders(window.len()));
+            .map(|(forecast, window)| forecast.without_bystanders(window));
         self.admit(scored.collect(), &forecaster.name())
     }
 

@@ -83,7 +83,7 @@ impl Track {
 }
 
 /// The track of a pedestrian seen within the last 3.2 s.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RunningTrack {
     /// The frame of its last position.
@@ -92,13 +92,6 @@ pub(crate) struct RunningTrack {
     /// Its last row, if that lies between two steps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     between: Option<(i64, Position)>,
-}
-
-/// Without its last row, which is not kept in files.
-impl PartialEq for RunningTrack {
-    fn eq(&self, other: &Self) -> bool {
-        self.last == other.last && self.track == other.track
-    }
 }
 
 impl RunningTrack {

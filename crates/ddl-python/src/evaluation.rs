@@ -208,9 +208,7 @@ impl TestSet {
         let made: Vec<ddl::Forecast> = made.collect::<PyResult<_>>()?;
         // Bystanders were shown to the model, and are not scored.
         let scored = made.into_iter().zip(self.windows.iter());
-        let made = scored
-            .map(|(made, window)| made.without_bystanders(window.len()))
-            .collect();
+        let made = scored.map(|(made, window)| made.without_bystanders(window)).collect();
         let admitted = protocol.admit(made, name).map_err(of_any)?;
         let conditions = Conditions::new(self.convention, self.rule, protocol, &self.fold, name);
         let windows = Arc::clone(&self.windows);

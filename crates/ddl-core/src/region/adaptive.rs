@@ -113,14 +113,17 @@ impl Pending {
         let (now, frame_step) = (window.frames()[OBSERVED - 1], window.frame_step());
         let after = now - self.frame;
         let (steps, back) = (after / frame_step, after % frame_step);
-        // Between two windows less than a step apart.
-        let is_new = back == 0 || previous.is_some_and(|previous| previous > now - frame_step && previous < now - back);
+        let is_new = back == 0 || previous.is_some_and(|previous| previous < now - back);
         if !(is_new && (1..=HORIZON as i64).contains(&steps)) {
             return None;
         }
         let step = steps as usize - 1;
         let position = |id: &PedestrianId| -> Option<Position> {
             let i = window.pedestrians().iter().position(|other| other == id)?;
+            // A position that is carried on was not observed.
+            if window.quality(i).age > 0.0 {
+                return None;
+            }
             let [.., before, last] = *window.observed(i) else {
                 return None;
             };

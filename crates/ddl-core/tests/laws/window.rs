@@ -82,7 +82,7 @@ fn remembered_tracks_stay_with_their_pedestrian() {
 }
 
 #[test]
-fn bystanders_are_seen_behind_the_pedestrians() {
+fn bystanders_are_seen_in_the_order_of_ids() {
     let of = |range: std::ops::Range<i64>, steps: usize| {
         let tracks = range.clone().map(|id| vec![[id as f64, 1.0]; steps]).collect();
         let ages = range.clone().map(|id| ObservationQuality {
@@ -103,9 +103,10 @@ fn bystanders_are_seen_behind_the_pedestrians() {
     let seen = window.without_future();
     assert_eq!(
         (seen.len(), seen.pedestrians()),
-        (5, &[4, 5, 1, 2, 3].map(PedestrianId)[..])
+        (5, &[1, 2, 3, 4, 5].map(PedestrianId)[..])
     );
-    for (i, id) in [4.0, 5.0, 1.0, 2.0, 3.0].into_iter().enumerate() {
+    assert_eq!(window.indices_in_scene(), [3, 4]);
+    for (i, id) in [1.0, 2.0, 3.0, 4.0, 5.0].into_iter().enumerate() {
         assert_eq!(
             (seen.observed(i)[7], seen.quality(i).age, seen.remembered(i)[0].track[0]),
             ([id, 1.0], id, [id, 2.0])
@@ -118,7 +119,7 @@ fn bystanders_are_seen_behind_the_pedestrians() {
             .unwrap()
             .without_future()
             .pedestrians(),
-        [5, 1, 2, 3].map(PedestrianId)
+        [1, 2, 3, 5].map(PedestrianId)
     );
     assert_eq!((window.len(), window.reversed().bystanders()), (2, None));
     assert_eq!(window.clone().with_bystanders(None).without_future(), of(4..6, 8));

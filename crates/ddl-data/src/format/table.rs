@@ -20,6 +20,10 @@ const FEWER: &str = "frame, pedestrian, x, y; a comma stands between two fields,
 /// The fields of a row that is one field.
 const ONE: &str = "frame, pedestrian, x, y, separated by commas";
 
+const FRACTIONS: &str = "the column frame has fractions: it is read as seconds";
+const WHOLE_TIMES: &str = "the times are whole numbers: they are read as seconds; call the column frame if they count \
+    frames, or time_ms, time_us or time_ns";
+
 /// For a row with too few or too many fields.
 fn wrong_count(expected: usize, found: usize) -> String {
     let names = match found {
@@ -57,8 +61,8 @@ pub(super) struct TrackColumns {
     scene: Option<usize>,
     count: usize,
     time: TimeColumn,
-    /// Whether the column of frames holds seconds.
-    is_fraction: bool,
+    /// Why the first column is read as seconds, if neither its name nor its values say so.
+    assumed_seconds: Option<&'static str>,
     /// Names of further columns.
     unread: Vec<String>,
 }
@@ -97,20 +101,18 @@ impl TrackColumns {
         if record.len() != self.count {
             return Err(FilePlace::line(line).wrong(origin, wrong_count(self.count, record.len())));
         }
-        let before = (self.time, self.is_fraction);
+        let before = (self.time, self.assumed_seconds);
         self.look_at(std::slice::from_ref(&record));
         let row = self.row(&record, line, origin);
         if row.is_err() {
-            (self.time, self.is_fraction) = before;
+            (self.time, self.assumed_seconds) = before;
         }
         row
     }
 
     /// What a reader should know of the columns.
     pub(super) fn notes(&self) -> Vec<String> {
-        let seconds = self
-            .is_fraction
-            .then(|| "the column frame has fractions: it is read as seconds".to_owned());
+        let seconds = self.assumed_seconds.map(str::to_owned);
         let unread = match &self.unread[..] {
             [] => None,
             [name] => Some(format!("the column {name} is not read")),
@@ -122,12 +124,18 @@ impl TrackColumns {
     /// Finds out what the column of the time counts, if these rows show it.
     fn look_at(&mut self, records: &[StringRecord]) {
         let mut fields = records.iter().filter_map(|record| record.get(self.places[0]));
+        let first = fields.clone().next();
         let unit = match self.time {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Time => fields.next().map(field::unit_of),
             TimeColumn::Frame => fields.any(field::has_fraction).then_some(TimeUnit::Seconds),
         };
-        self.is_fraction |= self.time == TimeColumn::Frame && unit.is_some();
+        let is_whole = |field: &str| !field.contains('.');
+        self.assumed_seconds = match self.time {
+            TimeColumn::Frame if unit.is_some() => Some(FRACTIONS),
+            TimeColumn::Time if unit == Some(TimeUnit::Seconds) && first.is_some_and(is_whole) => Some(WHOLE_TIMES),
+            _ => self.assumed_seconds,
+        };
         self.time = TimeColumn::Known(unit);
     }
 
@@ -185,7 +193,7 @@ impl TrackColumns {
             scene,
             count: header.len(),
             time,
-            is_fraction: false,
+            assumed_seconds: None,
             unread,
         })
     }

@@ -8,7 +8,7 @@ use crate::observe::track::Arrival;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Misfit {
-    /// Tick of the row.
+    /// Tick of the row, or of the next one, which showed that it is wrong.
     pub tick: i64,
     /// Its pedestrian.
     pub pedestrian: PedestrianId,
@@ -31,7 +31,7 @@ impl Misfit {
     pub(crate) fn of(tick: i64, pedestrian: PedestrianId, arrival: Arrival) -> Option<Self> {
         let (distance, treatment) = match arrival {
             Arrival::First | Arrival::Expected => return None,
-            Arrival::Wrong(distance) => (distance, MisfitTreatment::LeftOut),
+            Arrival::Wrong(distance) | Arrival::Corrected(distance) => (distance, MisfitTreatment::LeftOut),
             Arrival::Jumped(distance) => (distance, MisfitTreatment::BegunAnew),
         };
         Some(Self {

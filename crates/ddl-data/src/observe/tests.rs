@@ -7,14 +7,14 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution as _, Normal};
 
 use crate::observe::estimate::Observed;
-use crate::observe::{ObservedTrack, RecordingNoise};
+use crate::observe::{ObservedTrack, RecordingNoise, Row};
 
 fn observed(rows: &[(f64, Position)], time: f64) -> Observed {
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
         track.forget_before(time, 0.4);
-        track.push(time, position, 1.0, &mut noise);
+        track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
     }
     track.observed(time, 0.4, 1.0, &noise).unwrap()
 }
@@ -75,7 +75,7 @@ fn an_estimate_is_the_posterior_of_a_gaussian_process() {
     assert_eq!(bits(observed(&rows, 3.1).positions[7]), bits([4.0, 0.8]));
 }
 
-/// A hundred walkers at 10 rows a second: the noise that is measured is the noise that was added.
+/// A hundred pedestrians at 10 rows a second: the noise that is measured is the noise that was added.
 #[test]
 fn noise_is_measured() {
     for (added, measured) in [
@@ -89,7 +89,7 @@ fn noise_is_measured() {
             let rows = noisy(&walk((0..30).map(|k| 0.1 * f64::from(k))), added, seed);
             let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
             for &(time, position) in &rows[1..] {
-                track.push(time, position, 1.0, &mut noise);
+                track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
             }
         }
         assert!(measured.contains(&noise.metres()), "{added}: {}", noise.metres());

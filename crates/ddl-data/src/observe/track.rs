@@ -17,19 +17,23 @@ const TURNING: f64 = 1.1;
 /// Fastest runner (m/s), and number of rows that show the speed of a pedestrian.
 const RUNNING: f64 = 12.0;
 const SHOW_SPEED: usize = 3;
+/// Time (s) for which the fastest speed counts.
+const RECENT: f64 = 1.2;
 /// Fastest pedestrian that is taken up again after a jump (m/s).
 const FASTEST: f64 = 4.0;
-/// Number of rows at wrong positions after which the last of them is believed.
-const MOST_WRONG: usize = 3;
+/// Time (s) for which rows must go on from a jump, so that the track begins anew there.
+const CONFIRMED: f64 = 0.3;
+/// Time (s) of rows at wrong positions after which the last of them is believed.
+const LONGEST_DOUBT: f64 = 1.0;
 /// Steps before the observation whose rows still improve it.
 const EARLIER: f64 = 4.0;
 
 /// A position of a track at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Row {
+pub(crate) struct Row {
     /// In ticks.
-    pub(super) time: f64,
-    pub(super) position: Position,
+    pub(crate) time: f64,
+    pub(crate) position: Position,
 }
 
 /// How a row fits to the earlier ones of its track.
@@ -41,7 +45,9 @@ pub(crate) enum Arrival {
     Expected,
     /// It is left out: so many metres from where the pedestrian was expected.
     Wrong(f64),
-    /// The row before it, thought to be wrong, was the first of a new track: so many metres from the old one.
+    /// It is where the pedestrian was expected but for its last row, which is left out: that was so many metres off.
+    Corrected(f64),
+    /// The track begins anew with rows left out before: so many metres from the old one.
     Jumped(f64),
 }
 
@@ -56,16 +62,45 @@ pub(crate) struct ObservedTrack {
     /// Rows since the track began; never empty.
     pub(super) rows: VecDeque<Row>,
     pub(super) noise: TrackNoise,
-    /// The last row, if it is far from where it was expected.
-    suspect: Option<Suspect>,
+    /// The fastest speed of late.
+    pace: Pace,
+    /// If the last row was taken for a sudden turn: the noise before it.
+    turned: Option<Box<Turn>>,
+    /// Rows left out since the last one that was not: the beginning of another track?
+    suspects: Vec<Suspect>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Pace {
+    /// m/s.
+    speed: f64,
+    /// In ticks.
+    time: f64,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Turn {
+    before: TrackNoise,
+    /// Distance of the row from where the pedestrian was expected (m).
+    distance: f64,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Suspect {
     row: Row,
+    /// Distance from where the pedestrian was expected (m).
     distance: f64,
-    /// Number of suspects in a row.
-    count: usize,
+}
+
+/// How far a row is from where a pedestrian may be.
+#[derive(Debug, Clone, Copy)]
+struct Fit {
+    /// Distance from where the pedestrian was expected (m).
+    distance: f64,
+    /// Whether it is about there.
+    is_expected: bool,
+    /// Whether a pedestrian that turns may be there.
+    is_turn: bool,
 }
 
 impl ObservedTrack {
@@ -76,64 +111,102 @@ impl ObservedTrack {
         Self {
             rows: [row].into(),
             noise: TrackNoise::of_first(position),
-            suspect: None,
+            pace: Pace { speed: 0.0, time },
+            turned: None,
+            suspects: Vec::new(),
         }
     }
 
-    /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds.
+    /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. Whether it fits is decided with the
+    /// noise `known` before, so that it does not depend on the order of pedestrians; what it shows is added to
+    /// `recording`.
     pub(crate) fn push(
         &mut self,
-        time: f64,
-        position: Position,
+        row: Row,
         tick_time: f64,
+        known: &RecordingNoise,
         recording: &mut RecordingNoise,
     ) -> Arrival {
-        let row = Row { time, position };
-        let seconds = (time - self.last_time()) * tick_time;
-        if seconds > Arrival::LONGEST_GAP {
-            *self = Self::beginning(time, position);
+        if (row.time - self.last_time()) * tick_time > Arrival::LONGEST_GAP {
+            *self = Self::beginning(row.time, row.position);
             return Arrival::First;
         }
-        let level = self.level(recording);
+        let fit = self.fit(row, tick_time, known);
+        if fit.is_expected || fit.is_turn {
+            self.suspects.clear();
+            let turn = || Turn {
+                before: self.noise.clone(),
+                distance: fit.distance,
+            };
+            self.turned = (!fit.is_expected).then(|| Box::new(turn()));
+            self.accept(row, tick_time, known, recording);
+            return Arrival::Expected;
+        }
+        if let Some(turn) = self.turned.take() {
+            // Either the last row or this one is wrong.
+            let mut without = Self {
+                noise: turn.before,
+                ..self.clone()
+            };
+            without.rows.pop_back();
+            if without.fit(row, tick_time, known).is_expected {
+                without.accept(row, tick_time, known, recording);
+                *self = without;
+                return Arrival::Corrected(turn.distance);
+            }
+        }
+        self.doubt(row, fit.distance, tick_time, known, recording)
+    }
+
+    fn fit(&self, row: Row, tick_time: f64, known: &RecordingNoise) -> Fit {
+        let seconds = (row.time - self.last_time()) * tick_time;
+        let level = self.level(known);
         let expected = self.noise.motion(level).expected_after(seconds);
-        let distance = expected.distance(position);
+        let distance = expected.distance(row.position);
         let noise = level.walk().noise;
-        let deviation = (expected.variance + noise * noise).sqrt();
-        let noise_margin = DEVIATIONS * deviation;
-        let surprise = distance - SURPRISE - ACCELERATION * seconds * seconds;
-        // Who turns goes on from the last row at the speed that it had; a speed not yet seen may be that of a runner.
+        let margin = DEVIATIONS * (expected.variance + noise * noise).sqrt();
+        // A speed not yet seen may be that of a runner.
         let speed = if self.rows.len() < SHOW_SPEED {
             RUNNING
         } else {
-            (TURNING * expected.speed()).min(RUNNING)
+            (TURNING * self.pace.speed.max(expected.speed())).min(RUNNING)
         };
-        let last = self.rows.back().map_or(position, |row| row.position);
-        let turned = distance_between(last, position) - speed * seconds;
-        if surprise.min(turned) <= noise_margin {
-            self.suspect = None;
-            self.accept(row, tick_time, recording);
-            return Arrival::Expected;
-        }
-        let before = self.suspect.replace(Suspect {
-            row,
+        let last = self.rows.back().map_or(row.position, |last| last.position);
+        Fit {
             distance,
-            count: self.suspect.map_or(1, |suspect| suspect.count + 1),
-        });
-        let Some(before) = before else {
-            return Arrival::Wrong(distance);
-        };
-        let apart = distance_between(position, before.row.position);
-        let follows = apart <= SURPRISE + FASTEST * (time - before.row.time) * tick_time;
-        if follows {
-            *self = Self::beginning(before.row.time, before.row.position);
-            self.accept(row, tick_time, recording);
-            Arrival::Jumped(before.distance)
-        } else if before.count + 1 >= MOST_WRONG {
-            *self = Self::beginning(time, position);
-            Arrival::Jumped(distance)
-        } else {
-            Arrival::Wrong(distance)
+            is_expected: distance <= SURPRISE + ACCELERATION * seconds * seconds + margin,
+            is_turn: distance_between(last, row.position) <= speed * seconds + margin,
         }
+    }
+
+    /// Leaves a row out, or begins anew where rows agree.
+    fn doubt(
+        &mut self,
+        row: Row,
+        distance: f64,
+        tick_time: f64,
+        known: &RecordingNoise,
+        recording: &mut RecordingNoise,
+    ) -> Arrival {
+        let follows = |before: &Suspect| {
+            let seconds = (row.time - before.row.time) * tick_time;
+            distance_between(row.position, before.row.position) <= SURPRISE + FASTEST * seconds
+        };
+        if !self.suspects.last().is_some_and(follows) {
+            self.suspects.clear();
+        }
+        self.suspects.push(Suspect { row, distance });
+        let first = self.suspects[0];
+        let is_confirmed = (row.time - first.row.time) * tick_time >= CONFIRMED;
+        if !is_confirmed && (row.time - self.last_time()) * tick_time <= LONGEST_DOUBT {
+            return Arrival::Wrong(distance);
+        }
+        let suspects = std::mem::take(&mut self.suspects);
+        *self = Self::beginning(first.row.time, first.row.position);
+        for suspect in &suspects[1..] {
+            self.accept(suspect.row, tick_time, known, recording);
+        }
+        Arrival::Jumped(first.distance)
     }
 
     /// Time of the last row that was not left out, in ticks.
@@ -155,9 +228,14 @@ impl ObservedTrack {
         }
     }
 
-    fn accept(&mut self, row: Row, tick_time: f64, recording: &mut RecordingNoise) {
+    fn accept(&mut self, row: Row, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
         let seconds = (row.time - self.last_time()) * tick_time;
         self.noise.add(row.position, seconds, recording);
         self.rows.push_back(row);
+        let speed = self.noise.motion(self.level(known)).speed();
+        let is_old = (row.time - self.pace.time) * tick_time > RECENT;
+        if is_old || speed >= self.pace.speed {
+            self.pace = Pace { speed, time: row.time };
+        }
     }
 }

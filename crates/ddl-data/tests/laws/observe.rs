@@ -273,7 +273,7 @@ proptest! {
     }
 }
 
-/// Rows of straight walkers at 1.2 m/s along x, in milliseconds, given the times of each.
+/// Rows of pedestrians straight on at 1.2 m/s along x, in milliseconds, given the times of each.
 fn straight(times: impl Fn(i64) -> Vec<i64>, pedestrians: i64) -> Vec<Observation> {
     let of_pedestrian = |id| {
         let row = move |time| Observation::new(time, PedestrianId(id), [0.0012 * time as f64, 2.0 * id as f64]);
@@ -387,7 +387,7 @@ fn between_rows_a_walk_goes_on_straight() {
     }
 }
 
-/// The arrivals, and the last window, of walkers at 1.4 m/s along x whose rows from an index on are moved.
+/// The arrivals, and the last window, of pedestrians at 1.4 m/s along x whose rows from an index on are moved.
 fn told(rate: f64, pedestrians: i64, from: usize, moved: impl Fn(i64, Position) -> Position) -> (Vec<Misfit>, Window) {
     let clock = Clock::with_frame_time(1.0 / rate).unwrap();
     let mut rows = Vec::new();
@@ -409,7 +409,7 @@ fn a_wrong_position_is_left_out_and_told() {
             let last = (5.0 * rate) as usize - 1;
             let (told, window) = told(rate, 1, last, |_, [x, y]| [x, y + off]);
             assert!(
-                matches!(told[..], [Misfit { pedestrian: PedestrianId(1), distance, treatment: MisfitTreatment::LeftOut, .. }]
+                matches!(told[..], [Misfit { distance, treatment: MisfitTreatment::LeftOut, .. }]
                     if (distance - off).abs() < 0.1),
                 "{rate} {off}: {told:?}"
             );

@@ -310,7 +310,7 @@ proptest! {
             };
             let (of_all, of_seen) = (forecast(&all), forecast(&seen));
             prop_assert_eq!(of_seen.pedestrians(), scored);
-            prop_assert_eq!(&of_seen, &of_all.without_bystanders(scored));
+            prop_assert_eq!(&of_seen, &of_all.without_bystanders(&seen));
             let [with, without] = [&seen, &window].map(|window| scores(window, &of_seen));
             prop_assert_eq!(with, without);
         }

@@ -334,7 +334,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
             let some = forecast_some(&protocol.visible(&rest[..count]))?;
             let scored = |some: Vec<Forecast>| {
                 let pairs = some.into_iter().zip(rest);
-                pairs.map(|(forecast, window)| forecast.without_bystanders(window.len()))
+                pairs.map(|(forecast, window)| forecast.without_bystanders(window))
             };
             for (forecasts, some) in forecasts.model.iter_mut().zip(some.model) {
                 forecasts.extend(scored(some));

@@ -8,12 +8,11 @@ use ddl_network::motion_bounds;
 /// dut, confirmed on citr and juelich, with noise of 10 and 20 cm (docs/tried.md): more gains nothing.
 const WIDENING: f64 = 1.5;
 
-/// Widens the goals of pedestrians that are not well observed, and moves goals beyond the pedestrian's reach closer: to the distance that it covers at its top speed within the
-/// horizon.
+/// Widens the goals of pedestrians that are not well observed, and moves goals beyond the pedestrian's reach closer: to
+/// the distance that it covers at its top speed within the horizon.
 pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec<GoalSet> {
     let reachable = |(i, set): (usize, GoalSet)| {
         let observed = window.observed(i);
-
         let set = set.widened_by(WIDENING * window.quality(i).uncertainty());
         let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
         set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)

@@ -166,10 +166,13 @@ impl LiveScenes {
         let scene = self.scene(&name)?;
         let made = scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(()))?;
         scene.heard = Instant::now();
+        let is_moment = scene.watch.tracks.is_moment();
         let window = made.map(|(window, ())| window.with_names(names));
         let mut waiting = self.waiting.iter();
         let older = waiting.position(|(scene, _)| self.is_latest_only && *scene == name);
         match (older, window) {
+            // A frame between two moments replaces nothing.
+            (Some(_), None) if !is_moment => {}
             (Some(index), window) => {
                 self.dropped += 1;
                 if let Some(scene) = self.scenes.get_mut(&name) {

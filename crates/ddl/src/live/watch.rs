@@ -3,7 +3,7 @@
 use crate::error::DdlError;
 use crate::live::place_memory::PlaceMemory;
 use crate::model::ddl::Ddl;
-use ddl_data::{LiveTracks, PedestrianId, Position, Window};
+use ddl_data::{LiveTracks, MisfitTreatment, PedestrianId, Position, Window};
 use ddl_memory::SceneMemory;
 
 /// The state that a [`LiveForecaster`](crate::LiveForecaster) keeps of its scene, and [`LiveScenes`](crate::LiveScenes)
@@ -62,11 +62,14 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            place.observe(
-                tracks.last_frame().unwrap_or(frame),
-                pedestrians,
-                made.as_ref().map(|(window, _)| window),
-            )?;
+            // Nobody walked where a row is left out.
+            let is_left_out = |id: PedestrianId| {
+                let mut misfits = tracks.misfits().iter();
+                misfits.any(|misfit| misfit.pedestrian == id && misfit.treatment == MisfitTreatment::LeftOut)
+            };
+            let rows = pedestrians.into_iter().filter(|(id, _)| !is_left_out(*id));
+            let window = made.as_ref().map(|(window, _)| window);
+            place.observe(tracks.last_frame().unwrap_or(frame), rows, window)?;
         }
         self.tracks = tracks;
         Ok(made)

@@ -4,7 +4,7 @@ use crate::run::sha256;
 use ddl_data::{Convention, DataError, Dataset, Fold, Recording, Window, WindowRule};
 use sha2::{Digest as _, Sha256};
 
-/// Training uses every complete window of the convention.
+/// Training uses every window of 20 steps of the convention.
 pub(crate) fn training_rule(convention: Convention) -> WindowRule {
     match convention {
         Convention::SocialGan => WindowRule::SocialGan { min_pedestrians: 1 },

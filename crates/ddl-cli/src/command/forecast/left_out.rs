@@ -18,6 +18,7 @@ pub(super) struct LeftOut {
     doubtful: Seldom,
     /// Whether the warning about units has been given.
     is_unit_doubted: bool,
+    is_few_told: bool,
     /// Rows, and forecasts of pedestrians.
     rows: usize,
     forecast: usize,
@@ -88,9 +89,10 @@ impl LeftOut {
         self.forecast += pedestrians;
     }
 
-    /// Says why most pedestrians were not forecast, if so.
-    pub(super) fn tell_if_few(&self) {
-        if 2 * self.forecast < self.rows {
+    /// Says once why most pedestrians are not forecast, if so after this number of rows.
+    pub(super) fn tell_if_few(&mut self, rows: usize) {
+        let are_few = self.rows >= rows && 2 * self.forecast < self.rows;
+        if are_few && !std::mem::replace(&mut self.is_few_told, true) {
             tell(format_args!(
                 "warning: only {} of {} positions were forecast from: a pedestrian needs two rows, at most 2 s apart, \
                  under one name; is the rate right, and does the tracker keep its names?",

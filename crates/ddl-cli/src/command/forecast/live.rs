@@ -8,11 +8,11 @@ use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::interrupt::Interrupt;
 use crate::recordings;
 use crate::telling::{tell, words};
-use crate::units::{Units, many_frames};
+use crate::tracks::{NOISY, steps_in_words};
+use crate::units::Units;
 use anyhow::{Context as _, bail};
 use ddl::data::{
-    Clock, Frame, FrameNumber, Homography, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording, SceneName,
-    Window,
+    Clock, Frame, Homography, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording, SceneName, Window,
 };
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
@@ -25,6 +25,8 @@ const LONGEST_STEP: i64 = 1000;
 
 /// Number of waiting windows at which reading stops, if every frame is forecast.
 const MOST_WAITING: usize = 64;
+/// Number of rows after which a stream is told that few are forecast.
+const MANY_ROWS: usize = 500;
 /// Largest number of frames read between two batches, if only the latest frame of each scene is forecast.
 const MOST_TAKEN: usize = 4096;
 
@@ -77,13 +79,14 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
         state: StreamState::default(),
         left_out: LeftOut::default(),
         is_empty: true,
+        is_noise_told: false,
         looked_at: false,
         taken: 0,
         answered: 0,
     };
     stream.follow(&IncomingFrames::of_standard_input()?, &units)?;
     if !forecast.latest && !forecast.tracks.are_thinned() {
-        stream.left_out.tell_if_few();
+        stream.left_out.tell_if_few(1);
     }
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
@@ -185,6 +188,7 @@ struct Stream<'a> {
     state: StreamState,
     left_out: LeftOut,
     is_empty: bool,
+    is_noise_told: bool,
     /// Whether the speeds of the first pedestrians have been checked.
     looked_at: bool,
     /// Number of frames read since the last batch.
@@ -257,10 +261,7 @@ impl Stream<'_> {
             if let Some(reason) = reason {
                 tell(format_args!(
                     "note: a step of 0.4 s is taken as {}, {reason}; give --fps or --frame-step if this is wrong",
-                    match clock.number(clock.frame_step()) {
-                        FrameNumber::Whole(step) => many_frames(step),
-                        step => format!("{step} frames"),
-                    }
+                    steps_in_words(clock)
                 ));
             }
             begin(self.forecast, self.model, self.watching, clock)?;
@@ -309,6 +310,15 @@ impl Stream<'_> {
                 )
             });
             self.left_out.doubtful(rows, tracks.misfits().len(), doubt);
+            if tracks.noise().metres() >= NOISY && !std::mem::replace(&mut self.is_noise_told, true) {
+                let noise = 100.0 * tracks.noise().metres();
+                tell(format_args!(
+                    "note: the positions are noisy, {noise:.0} cm on each axis: observed paths are smoothed"
+                ));
+            }
+            if !self.forecast.latest && !self.forecast.tracks.are_thinned() {
+                self.left_out.tell_if_few(MANY_ROWS);
+            }
         }
         observed.and(ended)
     }
@@ -446,7 +456,9 @@ fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Resul
     Ok(frame)
 }
 
-/// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame. `apart`: difference
+/// The clock if no option gives it, and the reason if it is assumed; `None` if it needs another frame.
+///
+/// `apart`: difference
 /// of the first two frame numbers of a scene.
 fn clock_of(units: &Units, apart: Option<i64>, stated: &StatedTime) -> anyhow::Result<Option<(Clock, Option<String>)>> {
     if let Some(unit) = stated.time_unit {
