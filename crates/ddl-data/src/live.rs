@@ -14,6 +14,8 @@ use crate::observe::{Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Ro
 use crate::recording::Recording;
 
 const NAME: &str = "live";
+/// A frame is common if it shows one in so many of the pedestrians of the last 0.4 s: trackers lose rows.
+const COMMON: usize = 4;
 
 /// Which pedestrians are observed well enough for a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -263,12 +265,16 @@ impl LiveTracks {
     fn decide_moment(&mut self, tick: i64, rows: usize) {
         let step = self.clock.frame_step();
         let interval = self.interval.unwrap_or_else(|| {
-            // Most of those seen within a step have a row here: it is a common frame.
+            // Some of those seen within a step have a row here: it is a common frame.
             let recent = self
                 .pedestrians
                 .values()
                 .filter(|pedestrian| tick - pedestrian.last_row < step);
-            if 2 * rows >= recent.count() { 0.0 } else { step as f64 }
+            if COMMON * rows >= recent.count() {
+                0.0
+            } else {
+                step as f64
+            }
         });
         // How late the frame is for the next window; a clock may jitter.
         let late = tick as f64 - self.next_moment + ON_STEP * step as f64;

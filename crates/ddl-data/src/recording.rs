@@ -197,8 +197,8 @@ impl Recording {
     pub fn with_time_unit(self, time_unit: Option<TimeUnit>) -> Self {
         let frame_step = time_unit.map_or(self.frame_step, |unit| Clock::with_stamps(unit).frame_step());
         Self {
-            time_unit,
             frame_step,
+            time_unit,
             ..self
         }
     }

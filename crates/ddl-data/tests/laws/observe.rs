@@ -146,7 +146,7 @@ proptest! {
 
     /// Rows after a tick may be changed, added and removed: no bit of a window up to it changes.
     #[test]
-    fn nothing_later_is_read((pace, rows) in films(), other in any::<u64>(), share in 0.2..0.9_f64, interval: bool) {
+    fn nothing_later_is_read((pace, rows) in films(), other in any::<u64>(), share in 0.2..0.9_f64, interval: Option<bool>) {
         let last = rows.iter().map(|row| row.frame).max().unwrap();
         let cut = (share * last as f64) as i64;
         let mut changed: Vec<_> = rows.iter().copied().filter(|row| row.frame <= cut).collect();
@@ -154,7 +154,11 @@ proptest! {
         let observed = |rows: Vec<Observation>| {
             let recording = recording(pace.clock(), rows);
             let tracks = recording.live_tracks().with_completeness(Completeness::Partial);
-            let windows = recording.observe(tracks.with_interval(if interval { TIME_STEP } else { 0.0 })).windows;
+            let tracks = match interval {
+                None => tracks,
+                Some(is_step) => tracks.with_interval(if is_step { TIME_STEP } else { 0.0 }),
+            };
+            let windows = recording.observe(tracks).windows;
             let mut bits = bits(&windows);
             bits.retain(|seen| seen.0 <= pace.clock().tick(cut).unwrap());
             bits
@@ -166,7 +170,11 @@ proptest! {
 
     /// The text of a stream, the file, and its rows in any order within a frame give the same windows.
     #[test]
-    fn streams_and_files_are_observed_alike((pace, mut rows) in films(), turned: bool) {
+    fn streams_and_files_are_observed_alike(
+        (pace, mut rows) in films(),
+        turned: bool,
+        every in prop_oneof![Just(0.0), Just(TIME_STEP)],
+    ) {
         rows.sort_by_key(|row| (row.frame, if turned { -row.pedestrian.0 } else { row.pedestrian.0 }));
         let times = if matches!(pace, Pace::Rate(_)) { "frame" } else { "time_ms" };
         let mut text = format!("x,y,pedestrian,{times}\n");
@@ -176,14 +184,14 @@ proptest! {
         let file = parse_recording(text.as_bytes(), "film", Format::Table).unwrap();
         let clock = file.stated_clock().unwrap_or_else(|| Ok(pace.clock())).unwrap();
         let file = file.on_clock(clock).unwrap();
-        let interval = if file.has_common_frames() { 0.0 } else { TIME_STEP };
-        let mut tracks = LiveTracks::with_clock(clock).with_completeness(Completeness::Partial).with_interval(interval);
+        let options = |tracks: LiveTracks| tracks.with_completeness(Completeness::Partial).with_interval(every);
+        let mut tracks = options(LiveTracks::with_clock(clock));
         let mut frames = FrameReader::new(text.as_bytes(), "tracker");
         let mut live = Vec::new();
         while let Some(frame) = frames.next_frame().unwrap() {
             live.extend(tracks.push(frame.number, frame.pedestrians).unwrap());
         }
-        let of_file = partial(&file);
+        let of_file = file.observe(options(file.live_tracks()));
         prop_assert_eq!(bits(&live), bits(&of_file.windows));
         prop_assert_eq!(tracks.noise(), &of_file.noise);
         prop_assert_eq!(frames.time_unit(), file.time_unit());
@@ -433,7 +441,14 @@ fn an_exchange_of_numbers_begins_both_tracks() {
             .iter()
             .map(|misfit| (misfit.pedestrian.0, misfit.treatment == MisfitTreatment::BegunAnew))
             .collect();
-        assert_eq!(kinds, [(1, false), (2, false), (1, true), (2, true)], "{told:?}");
+        // Left out for 0.3 s, then followed.
+        let [left_out @ .., (1, true), (2, true)] = &kinds[..] else {
+            panic!("{told:?}");
+        };
+        assert!(
+            left_out.starts_with(&[(1, false), (2, false)]) && !left_out.iter().any(|kind| kind.1),
+            "{told:?}"
+        );
         for i in 0..2 {
             let straight = |position: &Position| (position[1] - [6.0, 3.0][i]).abs() < 0.05;
             assert!(

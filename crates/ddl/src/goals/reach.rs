@@ -5,7 +5,7 @@ use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
 
 /// Widening of the goals for each metre that the observation adds to the standard deviation of an endpoint. Chosen on
-/// dut, confirmed on citr and juelich, with noise of 10 and 20 cm (docs/tried.md): more gains nothing.
+/// dut with noise of 10 and 20 cm (docs/tried.md): more gains nothing there; citr gains as much, juelich nothing.
 const WIDENING: f64 = 1.5;
 
 /// Widens the goals of pedestrians that are not well observed, and moves goals beyond the pedestrian's reach closer: to
