@@ -122,6 +122,24 @@ fn words_are_returned_as_written() {
     place.fails("forecast twice.csv", &["pedestrian 7f3e-aa41 is in frame 90 already"]);
 }
 
+/// Each on a clock of its own: at every moment one of them is carried on, under its name.
+#[test]
+fn carried_pedestrians_keep_their_words() {
+    let place = Place::empty();
+    let mut text = "time,pedestrian,x,y\n".to_owned();
+    for t in 0..12 {
+        let seconds = 0.4 * f64::from(t);
+        writeln!(text, "{seconds:.2},anna,{t},0\n{:.2},bob,{t},2", seconds + 0.13).unwrap();
+    }
+    place.write("two.csv", &text);
+    let options = "--one --threads 1 --every 0 --format jsonl";
+    let file = place.ok(&format!("forecast two.csv {options}"));
+    assert_eq!(place.run_on(&text, &format!("forecast - {options}")).succeeds(), file);
+    let lines: Vec<Value> = json_lines(&file);
+    let names: BTreeSet<&str> = lines.iter().filter_map(|line| line["pedestrian"].as_str()).collect();
+    assert_eq!((names, lines.len()), (BTreeSet::from(["anna", "bob"]), 11 + 11 + 21 - 1));
+}
+
 #[test]
 fn the_rate_of_scenes_is_used() {
     let place = Place::empty();

@@ -7,9 +7,10 @@ use anyhow::bail;
 use clap::Args;
 use ddl::RunConfig;
 use ddl::data::{
-    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality,
+    Clock, Completeness, FrameNumber, LiveTracks, Misfit, OBSERVED, Observation, ObservationQuality, PedestrianId,
     PlausibilityWarning, Recording, Window,
 };
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 /// Noise (m) from which on observed paths are smoothed.
@@ -35,10 +36,10 @@ pub(crate) struct TrackOptions {
     /// first row; the column `unseen` counts such steps.
     #[arg(long, requires = "file")]
     whole: bool,
-    /// Carry pedestrians on until their last row is so old; 0: only those with a row at the moment
-    #[arg(long, requires = "file", value_name = "SECONDS", default_value_t = LiveTracks::DEFAULT_MAX_AGE)]
-    #[arg(value_parser = seconds, allow_negative_numbers = true)]
-    max_age: f64,
+    /// Carry pedestrians on until their last row is so old; 0: only those with a row at the moment [default: 0.4, or
+    /// the time between the last rows of a pedestrian if that is longer]
+    #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
+    max_age: Option<f64>,
     /// Least time between two forecasts [default: 0, every frame; 0.4 in files where each pedestrian has its own clock]
     #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     every: Option<f64>,
@@ -57,6 +58,7 @@ pub(crate) struct ObservedTracks {
     /// Rows that were left out, or began a track anew.
     misfits: Vec<Misfit>,
     noise: f64,
+    never_forecast: Vec<PedestrianId>,
     whole: bool,
 }
 
@@ -85,7 +87,11 @@ impl TrackOptions {
         } else {
             Completeness::Partial
         };
-        let tracks = tracks.with_completeness(completeness).with_max_age(self.max_age);
+        let tracks = tracks.with_completeness(completeness);
+        let tracks = match self.max_age {
+            None => tracks,
+            Some(max_age) => tracks.with_max_age(max_age),
+        };
         match self.every {
             None => tracks,
             Some(every) => tracks.with_interval(every),
@@ -132,6 +138,9 @@ impl TrackOptions {
                 steps_in_words(clock)
             );
         }
+        let mut never_forecast = recording.pedestrians();
+        let forecast: BTreeSet<_> = windows.iter().flat_map(Window::pedestrians).copied().collect();
+        never_forecast.retain(|pedestrian| !forecast.contains(pedestrian));
         if self.last {
             windows.drain(..windows.len() - 1);
         }
@@ -142,6 +151,7 @@ impl TrackOptions {
             warning,
             misfits: observed.misfits,
             noise: observed.noise.metres(),
+            never_forecast,
             whole: self.whole,
         })
     }
@@ -182,6 +192,15 @@ impl ObservedTracks {
     }
 
     fn tell_who_is_missing(&self) {
+        if let Some(&first) = self.never_forecast.first() {
+            tell(format_args!(
+                "note: {} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most 2 s \
+                 apart",
+                self.never_forecast.len(),
+                self.recording.pedestrians().len(),
+                self.recording.names().of(first)
+            ));
+        }
         let Some(window) = self.windows.last() else {
             return;
         };
@@ -202,7 +221,7 @@ impl ObservedTracks {
 
 /// A step of 0.4 s as the file counts it.
 pub(crate) fn steps_in_words(clock: Clock) -> String {
-    match clock.number(clock.frame_step()) {
+    match clock.step_number() {
         FrameNumber::Whole(step) => many_frames(step),
         step => format!("{step} frames"),
     }

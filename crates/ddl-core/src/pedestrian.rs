@@ -69,6 +69,14 @@ impl PedestrianNames {
         Self((!words.is_empty()).then(|| Arc::new(words)))
     }
 
+    /// These names and newer ones, of the pedestrians that are kept.
+    #[must_use]
+    pub fn updated(&self, newer: &Self, mut is_kept: impl FnMut(PedestrianId) -> bool) -> Self {
+        let maps = [self, newer].into_iter().filter_map(|names| names.0.as_deref());
+        let words = maps.flatten().filter(|(id, _)| is_kept(**id));
+        Self::new(words.map(|(id, word)| (*id, Arc::clone(word))).collect())
+    }
+
     fn word(&self, id: PedestrianId) -> Option<&str> {
         self.0.as_ref()?.get(&id).map(AsRef::as_ref)
     }

@@ -178,6 +178,14 @@ impl Clock {
         tick.ok_or(ClockError::Frame { frame, ticks })
     }
 
+    /// The step of 0.4 s, in the unit of the file; in seconds for dates.
+    pub fn step_number(self) -> FrameNumber {
+        match self.count {
+            Count::Stamps(TimeUnit::Dates) => FrameNumber::Between(TIME_STEP),
+            _ => self.number(self.frame_step),
+        }
+    }
+
     /// The frame number or time of a tick.
     pub fn number(self, tick: i64) -> FrameNumber {
         let unit = match self.count {
@@ -259,13 +267,13 @@ pub enum ClockError {
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
     FrameStep { found: i64 },
     #[error(
-        "a frame must take more than 0 s and at most 400 s, and 0.4 s must be at most 2^31 frames; found {found} s per \
+        "a frame must take more than 0 s and at most 400 s, and 0.4 s must be at most 2^31 frames; found {found:?} s per \
          frame"
     )]
     FrameTime { found: f64 },
     #[error(
         "the rows of a pedestrian are {apart:.2} s apart, more than 1.2 s: too few to follow a track; is the rate \
-         right, and do the frame numbers count at this rate?"
+         right, and do the frame numbers count at this rate? A column of milliseconds is called time_ms"
     )]
     TooSlow { apart: f64 },
     #[error("frame {frame} is too large to be divided into {ticks} parts; count frames from 0")]

@@ -35,7 +35,7 @@ pub enum Completeness {
 ///
 /// - Each pedestrian has its own clock: rows may come at any times, also at other times than those of other
 ///   pedestrians.
-/// - A pedestrian whose last row is less than [0.4 s](Self::with_max_age) old is carried on to the frame.
+/// - A pedestrian whose last row is not [too old](Self::with_max_age) is carried on to the frame.
 /// - A position where a pedestrian cannot be is left out, and [told](Self::misfits). If the next rows agree with it,
 ///   the track begins anew there, and also after 2 s without a row.
 /// - A pedestrian without a row for 2 s is forgotten.
@@ -62,8 +62,8 @@ pub struct LiveTracks {
     names: PedestrianNames,
     clock: Clock,
     completeness: Completeness,
-    /// In ticks.
-    max_age: f64,
+    /// In ticks; `None` for a step, or the time between the last rows of a pedestrian if that is longer.
+    max_age: Option<f64>,
     /// Least time between two windows, in ticks; `None` for windows at common frames, or every step.
     interval: Option<f64>,
     /// The last frame number pushed, and its tick.
@@ -95,9 +95,6 @@ impl Default for LiveTracks {
 
 #[expect(clippy::len_without_is_empty, reason = "no caller needs is_empty")]
 impl LiveTracks {
-    /// Age (s) from which on a pedestrian without a new row is not in the window.
-    pub const DEFAULT_MAX_AGE: f64 = TIME_STEP;
-
     /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart. Windows hold only
     /// [whole](Completeness::Whole) observations.
     #[must_use]
@@ -113,7 +110,7 @@ impl LiveTracks {
             names: PedestrianNames::default(),
             clock,
             completeness: Completeness::Whole,
-            max_age: clock.frame_step() as f64,
+            max_age: None,
             interval: Some(0.0),
             last_number: None,
             last_frame: None,
@@ -149,18 +146,20 @@ impl LiveTracks {
         Self { completeness, ..self }
     }
 
-    /// The same tracks, in which pedestrians are carried on until their last row is so old (s). NaN and negative
-    /// numbers count as 0: only pedestrians of the frame itself.
+    /// The same tracks, in which pedestrians are carried on until their last row is so old (s); without it 0.4 s, or the
+    /// time between their last rows if that is longer. NaN and negative numbers count as 0: only pedestrians of the
+    /// frame itself.
     #[must_use]
     pub fn with_max_age(self, seconds: f64) -> Self {
-        let max_age = self.ticks(seconds);
+        let max_age = Some(self.ticks(seconds));
         Self { max_age, ..self }
     }
 
     /// The same tracks, with windows at least so long apart (s); 0 for one at every frame.
     #[must_use]
     pub fn with_interval(self, seconds: f64) -> Self {
-        let interval = Some(self.ticks(seconds));
+        // Less than a tick is every frame.
+        let interval = Some(self.ticks(seconds)).map(|ticks| if ticks < 1.0 { 0.0 } else { ticks });
         Self { interval, ..self }
     }
 
@@ -176,6 +175,16 @@ impl LiveTracks {
         self.next_moment = f64::NEG_INFINITY;
         self.pedestrians.clear();
         self.misfits.clear();
+    }
+
+    /// Adds names of pedestrians; those of forgotten pedestrians go.
+    pub fn name(&mut self, names: &PedestrianNames) {
+        self.names = self.names.updated(names, |id| self.pedestrians.contains_key(&id));
+    }
+
+    /// The names of its pedestrians.
+    pub fn names(&self) -> &PedestrianNames {
+        &self.names
     }
 
     /// How frames are counted.
@@ -302,7 +311,8 @@ impl LiveTracks {
             let LivePedestrian { last_row, track } = pedestrian.as_ref();
             let age = time - track.last_time();
             // A wrong position says that the pedestrian is there.
-            let is_present = age == 0.0 || age < self.max_age || (*last_row == last && age <= self.max_age);
+            let max_age = self.max_age.unwrap_or_else(|| track.usual_interval().max(step as f64));
+            let is_present = age == 0.0 || age < max_age || (*last_row == last && age <= max_age);
             let observed = if is_present {
                 track.observed(time, step as f64, self.tick_time(), &self.noise)
             } else {

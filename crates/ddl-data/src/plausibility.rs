@@ -69,12 +69,12 @@ pub enum PlausibilityWarning {
     )]
     Jump(Fastest),
     #[error(
-        "the frame numbers begin again {count} times in the file, so its parts lie over each other; make a file of each"
+        "the frame numbers begin again in the file ({count} x), so its parts lie over each other; make a file of each"
     )]
     Restarted { count: usize },
     #[error(
-        "{count} tracks walk and then repeat one position for 4 s or longer, to their end; does the tracker repeat the \
-         last position of pedestrians that it has lost?"
+        "tracks that walk and then repeat one position for 4 s or longer, to their end: {count}; does the tracker repeat \
+         the last position of pedestrians that it has lost?"
     )]
     Frozen { count: usize },
     #[error("no pedestrian was tracked for 20 steps: these tracks cannot be used for training or evaluation")]

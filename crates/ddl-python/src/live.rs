@@ -119,7 +119,7 @@ impl Live {
         fps: Option<f64>,
         memory: Option<PathBuf>,
         whole: bool,
-        max_age: f64,
+        max_age: Option<f64>,
         every: f64,
         certificates: bool,
     ) -> PyResult<Self> {

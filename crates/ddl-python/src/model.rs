@@ -6,7 +6,7 @@ use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, WindowOptions, completeness, past_tracks};
 use crate::recording::{ObservedWindows, Recording};
-use ddl::data::{LiveTracks, Window};
+use ddl::data::Window;
 use ddl::{Clearance, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, ModelSource, RecordingPlayer};
 use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
@@ -162,7 +162,7 @@ impl Model {
         last: bool,
         samples: usize,
         whole: bool,
-        max_age: f64,
+        max_age: Option<f64>,
         every: Option<f64>,
         certificates: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
@@ -202,7 +202,7 @@ impl Model {
 
     /// A page that plays moments of the recording, and text about doubtful positions.
     fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<(String, Option<String>)> {
-        let observed = WindowOptions::new(false, LiveTracks::DEFAULT_MAX_AGE, None)?;
+        let observed = WindowOptions::new(false, None, None)?;
         let ObservedWindows { windows, doubt } = recording.observed(py, observed)?;
         if windows.is_empty() {
             return Err(PyValueError::new_err(format!(

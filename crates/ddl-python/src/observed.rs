@@ -23,14 +23,15 @@ pub(crate) fn completeness(whole: bool) -> Completeness {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct WindowOptions {
     pub(crate) completeness: Completeness,
-    max_age: f64,
+    /// `None` for that which suits the rows of each pedestrian.
+    max_age: Option<f64>,
     /// `None` for the interval that suits the recording.
     pub(crate) every: Option<f64>,
 }
 
 impl WindowOptions {
-    pub(crate) fn new(whole: bool, max_age: f64, every: Option<f64>) -> PyResult<Self> {
-        for (name, seconds) in [("max_age", Some(max_age)), ("every", every)] {
+    pub(crate) fn new(whole: bool, max_age: Option<f64>, every: Option<f64>) -> PyResult<Self> {
+        for (name, seconds) in [("max_age", max_age), ("every", every)] {
             if let Some(seconds) = seconds
                 && !(0.0..=MOST_SECONDS).contains(&seconds)
             {
@@ -48,7 +49,11 @@ impl WindowOptions {
     }
 
     pub(crate) fn of(self, tracks: LiveTracks) -> LiveTracks {
-        let tracks = tracks.with_completeness(self.completeness).with_max_age(self.max_age);
+        let tracks = tracks.with_completeness(self.completeness);
+        let tracks = match self.max_age {
+            None => tracks,
+            Some(max_age) => tracks.with_max_age(max_age),
+        };
         match self.every {
             None => tracks,
             Some(every) => tracks.with_interval(every),

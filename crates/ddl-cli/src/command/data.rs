@@ -147,11 +147,8 @@ fn facts(file: &Path, summary: &Summary, recording: &Recording, clock: Clock) ->
     let mut facts = serde_json::to_value(summary)?;
     facts["file"] = file.display().to_string().into();
     facts["doubts"] = doubts(summary, recording, clock).into();
-    for (name, frame) in [
-        ("first_frame", summary.first_frame),
-        ("last_frame", summary.last_frame),
-        ("frame_step", summary.frame_step),
-    ] {
+    facts["frame_step"] = serde_json::to_value(clock.step_number())?;
+    for (name, frame) in [("first_frame", summary.first_frame), ("last_frame", summary.last_frame)] {
         facts[name] = serde_json::to_value(clock.number(frame))?;
     }
     if let Some(gap) = &summary.longest_hole {
@@ -240,7 +237,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, recording: &Recordin
         s.seconds,
         clock.number(s.first_frame),
         clock.number(s.last_frame),
-        clock.number(s.frame_step),
+        clock.step_number(),
         s.low[0],
         s.high[0],
         s.low[1],

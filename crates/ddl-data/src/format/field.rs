@@ -36,7 +36,11 @@ pub(super) fn frame(text: &str, name: &str, unit: Option<TimeUnit>) -> Result<i6
 fn time(text: &str, unit: TimeUnit) -> Result<i64, String> {
     let Some(a_second) = unit.a_second() else {
         let wanted = "a date with a time such as 2026-05-31T12:00:00.4Z";
-        return date(text).ok_or_else(|| not_a_time("time", &quoted(text), wanted));
+        let stamp = date(text).ok_or_else(|| not_a_time("time", &quoted(text), wanted))?;
+        let is_near = stamp.abs() < FRAME_LIMIT;
+        return is_near
+            .then_some(stamp)
+            .ok_or_else(|| format!("time {} is after the year 2250", quoted(text)));
     };
     let scale = STAMPS_A_SECOND as f64 / a_second;
     // Whole nanoseconds since 1970 have more digits than an `f64`.

@@ -68,8 +68,8 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
     if let Some(row) = rows.iter().find(|row| row.unit != unit) {
         return Err(row.place.wrong(origin, MIXED_TIMES).into());
     }
+    let restarts = restarts(&rows);
     let (mut placed, names) = numbered(rows);
-    let restarts = restarts(&placed);
     refuse_duplicates(&mut placed, &names, unit, origin)?;
     let observations = placed.into_iter().map(|(seen, _)| seen).collect();
     let recording = Recording::in_usual_step(origin, observations);
@@ -86,6 +86,9 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
     let words = rows
         .iter()
         .any(|row| matches!(row.pedestrian, PedestrianField::Word(_)));
+    // In order of time, as a stream gives them: later rows change no number.
+    let mut rows = rows;
+    rows.sort_by_key(|row| row.frame);
     let mut numbering = Numbering::remembering(usize::MAX);
     let mut names = BTreeMap::new();
     let placed = rows.into_iter().map(|row| {
@@ -105,18 +108,15 @@ fn numbered(rows: Vec<TrackRow>) -> (Vec<Placed>, PedestrianNames) {
 
 /// How often the frames of a file in order of time begin again: its parts hold several pedestrians each, in order of
 /// time. Files in another order, such as one pedestrian after the other, have none.
-fn restarts(rows: &[Placed]) -> usize {
-    let parts: Vec<&[Placed]> = rows
-        .chunk_by(|(before, _), (after, _)| before.frame <= after.frame)
-        .collect();
+fn restarts(rows: &[TrackRow]) -> usize {
+    let parts: Vec<&[TrackRow]> = rows.chunk_by(|before, after| before.frame <= after.frame).collect();
     // Pedestrians take turns, instead of following each other.
-    let is_crowd = |part: &&[Placed]| {
+    let is_crowd = |part: &&[TrackRow]| {
         let changes = part
             .array_windows()
-            .filter(|[before, row]| before.0.pedestrian != row.0.pedestrian)
-            .count();
-        let pedestrians: BTreeSet<PedestrianId> = part.iter().map(|(row, _)| row.pedestrian).collect();
-        changes >= pedestrians.len()
+            .filter(|[before, row]| before.pedestrian != row.pedestrian);
+        let pedestrians: BTreeSet<&PedestrianField> = part.iter().map(|row| &row.pedestrian).collect();
+        changes.count() >= pedestrians.len()
     };
     if parts.iter().all(is_crowd) { parts.len() - 1 } else { 0 }
 }

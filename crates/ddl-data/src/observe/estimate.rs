@@ -31,7 +31,7 @@ impl ObservedTrack {
         tick_time: f64,
         recording: &RecordingNoise,
     ) -> Option<Observed> {
-        if self.rows.len() < FEWEST {
+        if self.rows.len() < FEWEST || self.is_too_fast(recording, tick_time) {
             return None;
         }
         let level = self.level(recording);

@@ -17,6 +17,9 @@ const TURNING: f64 = 1.1;
 /// Fastest runner (m/s), and number of rows that show the speed of a pedestrian.
 const RUNNING: f64 = 12.0;
 const SHOW_SPEED: usize = 3;
+/// Faster than this (m/s) a pedestrian is only believed after this time (s).
+const BRISK: f64 = 3.5;
+const SHORT: f64 = 0.35;
 /// Time (s) for which the fastest speed counts.
 const RECENT: f64 = 1.2;
 /// Fastest pedestrian that is taken up again after a jump (m/s).
@@ -172,11 +175,22 @@ impl ObservedTrack {
             (TURNING * self.pace.speed.max(expected.speed())).min(RUNNING)
         };
         let last = self.rows.back().map_or(row.position, |last| last.position);
+        // The estimate lags behind a runner who starts.
+        let ahead = self.ahead(row.time).filter(|_| self.rows.len() >= SHOW_SPEED);
+        let off = ahead.map_or(distance, |ahead| distance.min(distance_between(ahead, row.position)));
         Fit {
             distance,
-            is_expected: distance <= SURPRISE + ACCELERATION * seconds * seconds + margin,
+            is_expected: off <= SURPRISE + ACCELERATION * seconds * seconds + margin,
             is_turn: distance_between(last, row.position) <= speed * seconds + margin,
         }
+    }
+
+    /// The last two rows, extrapolated to a time.
+    fn ahead(&self, time: f64) -> Option<Position> {
+        let before = self.rows.get(self.rows.len().checked_sub(2)?)?;
+        let last = self.rows.back()?;
+        let share = (time - last.time) / (last.time - before.time);
+        Some([0, 1].map(|axis| last.position[axis] + share * (last.position[axis] - before.position[axis])))
     }
 
     /// Leaves a row out, or begins anew where rows agree.
@@ -213,6 +227,24 @@ impl ObservedTrack {
     #[must_use]
     pub(crate) fn last_time(&self) -> f64 {
         self.rows.back().map_or(f64::NEG_INFINITY, |row| row.time)
+    }
+
+    /// The shorter of the last two times between rows, in ticks; 0 with fewer rows.
+    pub(crate) fn usual_interval(&self) -> f64 {
+        let times = |back: usize| Some(self.rows.get(self.rows.len().checked_sub(back)?)?.time);
+        match (times(1), times(2), times(3)) {
+            (Some(last), Some(before), Some(first)) => (last - before).min(before - first),
+            _ => 0.0,
+        }
+    }
+
+    /// Whether the track is too short to believe its speed: a wrong or noisy first row looks like a runner.
+    pub(super) fn is_too_fast(&self, recording: &RecordingNoise, tick_time: f64) -> bool {
+        let seconds = self
+            .rows
+            .front()
+            .map_or(0.0, |first| (self.last_time() - first.time) * tick_time);
+        seconds < SHORT && self.noise.motion(self.level(recording)).speed() > BRISK
     }
 
     pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {

@@ -66,7 +66,7 @@ class Model:
         last: bool,
         samples: int,
         whole: bool,
-        max_age: float,
+        max_age: float | None,
         every: float | None,
         certificates: bool,
     ) -> tuple[list[dict[str, Any]], str | None]: ...
@@ -118,7 +118,7 @@ class Live:
         fps: float | None,
         memory: _Path | None,
         whole: bool,
-        max_age: float,
+        max_age: float | None,
         every: float,
         certificates: bool,
     ) -> Live: ...

@@ -147,7 +147,7 @@ class Forecaster:
         last: bool = False,
         samples: int = 20,
         whole: bool = False,
-        max_age: float = 0.4,
+        max_age: float | None = None,
         every: float | None = None,
         certificates: bool = False,
     ) -> list[Forecast]:
@@ -165,6 +165,7 @@ class Forecaster:
             Forecast only pedestrians tracked for all 8 steps, 2.8 s.
         max_age
             Seconds until which a pedestrian is carried on after its last row; 0: only those with a row at the moment.
+            Default: 0.4, or the time between its last rows if that is longer.
         every
             Least time between two moments, seconds. Default: 0 (every frame), or 0.4 where each pedestrian has a clock
             of its own.
@@ -192,7 +193,7 @@ class Forecaster:
         last: bool = False,
         samples: int = 20,
         whole: bool = False,
-        max_age: float = 0.4,
+        max_age: float | None = None,
         every: float | None = None,
     ) -> dict[str, NDArray[Any]]:
         """Forecast from columns of lists, numpy, pandas or polars, and return columns.

@@ -62,7 +62,7 @@ class Live:
         fps: float | None = None,
         memory: str | os.PathLike[str] | None = None,
         whole: bool = False,
-        max_age: float = 0.4,
+        max_age: float | None = None,
         every: float = 0.0,
         certificates: bool = False,
     ) -> None:

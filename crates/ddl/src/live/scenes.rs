@@ -133,7 +133,7 @@ impl LiveScenes {
         pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
     ) -> Result<(), DdlError> {
         let pedestrians = pedestrians.into_iter().collect();
-        self.add(scene.cloned(), frame, pedestrians, PedestrianNames::default())
+        self.add(scene.cloned(), frame, pedestrians, &PedestrianNames::default())
     }
 
     /// Adds a frame as read by a [`FrameReader`](ddl_data::FrameReader); its pedestrians keep their names. If the scene
@@ -148,7 +148,7 @@ impl LiveScenes {
         {
             scene.watch.clear();
         }
-        self.add(frame.scene, frame.number, frame.pedestrians, frame.names)
+        self.add(frame.scene, frame.number, frame.pedestrians, &frame.names)
     }
 
     fn add(
@@ -156,7 +156,7 @@ impl LiveScenes {
         name: Option<SceneName>,
         frame: i64,
         pedestrians: Vec<(PedestrianId, Position)>,
-        names: PedestrianNames,
+        names: &PedestrianNames,
     ) -> Result<(), DdlError> {
         if self.waiting.len() >= Self::MOST_WAITING {
             return Err(DdlError::TooManyWaiting {
@@ -167,7 +167,9 @@ impl LiveScenes {
         let made = scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(()))?;
         scene.heard = Instant::now();
         let is_moment = scene.watch.tracks.is_moment();
-        let window = made.map(|(window, ())| window.with_names(names));
+        scene.watch.tracks.name(names);
+        let names = scene.watch.tracks.names();
+        let window = made.map(|(window, ())| window.with_names(names.clone()));
         let mut waiting = self.waiting.iter();
         let older = waiting.position(|(scene, _)| self.is_latest_only && *scene == name);
         match (older, window) {

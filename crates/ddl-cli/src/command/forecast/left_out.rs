@@ -124,6 +124,12 @@ impl LeftOut {
                 most.unwrap_or_default()
             ));
         }
+        if self.doubtful.count > self.doubtful.reported {
+            tell(format_args!(
+                "warning: {} positions were left out or began a track anew in all",
+                self.doubtful.count
+            ));
+        }
         match self.wrong.count {
             0 => Ok(()),
             1 => Err(anyhow!("standard input: one line or frame was wrong, and was left out")),
