@@ -121,7 +121,7 @@ fn tracks_that_cannot_be_forecast_are_refused() {
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(7));
     let whole = format!("{FORECAST} --whole");
-    place.fails(&whole, &["tracks.csv", "8 consecutive time steps", "10 frames"]);
+    place.fails(&whole, &["tracks.csv", "was tracked for all 8 steps", "10 frames"]);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(1));
     place.fails(FORECAST, &["tracks.csv", "2 consecutive time steps", "--fps"]);
     place.all_fail(&[

@@ -180,14 +180,19 @@ impl ObservedTracks {
                 100.0 * self.noise
             ));
         }
+        self.warn_of_misfits();
+        if !self.whole {
+            self.tell_who_is_missing();
+        }
+    }
+
+    /// Warns of positions that are left out.
+    pub(crate) fn warn_of_misfits(&self) {
         let doubt = recordings::words_of_misfits(&self.recording, self.clock, &self.misfits);
         // With other units, nearly every position is a jump.
         let is_fast = matches!(self.warning, Some(PlausibilityWarning::Fast { .. }));
         if let Some(doubt) = doubt.filter(|_| !is_fast) {
             tell(format_args!("warning: {doubt}"));
-        }
-        if !self.whole {
-            self.tell_who_is_missing();
         }
     }
 

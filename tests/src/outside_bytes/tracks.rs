@@ -62,6 +62,9 @@ fn check(bytes: &[u8], format: Format) {
     let again = parse_recording(text.as_bytes(), "fuzzed", Format::TrajNet)
         .unwrap_or_else(|error| panic!("a written recording is refused: {error}\n{text}"));
     assert_eq!(again.observations(), recording.observations(), "{text}");
+    if recording.time_unit().is_some() {
+        return;
+    }
     assert_eq!(
         (again.frame_step(), again.rate()),
         (recording.frame_step(), recording.rate()),

@@ -64,7 +64,7 @@ impl View {
             PathBuf::from(format!("{}-forecasts.html", stem.to_string_lossy()))
         });
         output::write_output(Some(&path), &page)?;
-        observed.tell_what_was_estimated();
+        observed.warn_of_misfits();
         output::print(&format!("{}\n", path.display()))?;
         if !self.no_open && std::io::stdout().is_terminal() {
             open(&path)?;

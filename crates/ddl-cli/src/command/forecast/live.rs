@@ -316,7 +316,8 @@ impl Stream<'_> {
                     "note: the positions are noisy, {noise:.0} cm on each axis: observed paths are smoothed"
                 ));
             }
-            if !self.forecast.latest && !self.forecast.tracks.are_thinned() {
+            let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);
+            if is_idle && !self.forecast.latest && !self.forecast.tracks.are_thinned() {
                 self.left_out.tell_if_few(MANY_ROWS);
             }
         }
