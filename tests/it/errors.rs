@@ -123,7 +123,7 @@ fn tracks_that_cannot_be_forecast_are_refused() {
     let whole = format!("{FORECAST} --whole");
     place.fails(&whole, &["tracks.csv", "was tracked for all 8 steps", "10 frames"]);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(1));
-    place.fails(FORECAST, &["tracks.csv", "2 consecutive time steps", "--fps"]);
+    place.fails(FORECAST, &["tracks.csv", "has two rows that fit", "--fps"]);
     place.all_fail(&[
         "forecast --model run . => . is a folder",
         "forecast --model run . => ddl data .",
