@@ -146,8 +146,8 @@ impl LiveTracks {
         Self { completeness, ..self }
     }
 
-    /// The same tracks, in which pedestrians are carried on until their last row is so old (s); without it 0.4 s, or the
-    /// time between their last rows if that is longer. NaN and negative numbers count as 0: only pedestrians of the
+    /// The same tracks, in which pedestrians are carried on until their last row is so old (s); without it 0.4 s, or
+    /// the time between their last rows if that is longer. NaN and negative numbers count as 0: only pedestrians of the
     /// frame itself.
     #[must_use]
     pub fn with_max_age(self, seconds: f64) -> Self {

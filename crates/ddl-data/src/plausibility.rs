@@ -73,8 +73,8 @@ pub enum PlausibilityWarning {
     )]
     Restarted { count: usize },
     #[error(
-        "tracks that walk and then repeat one position for 4 s or longer, to their end: {count}; does the tracker repeat \
-         the last position of pedestrians that it has lost?"
+        "tracks that walk and then repeat one position for 4 s or longer, to their end: {count}; does the tracker \
+         repeat the last position of pedestrians that it has lost?"
     )]
     Frozen { count: usize },
     #[error("no pedestrian was tracked for 20 steps: these tracks cannot be used for training or evaluation")]

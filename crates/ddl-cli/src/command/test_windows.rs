@@ -20,8 +20,8 @@ pub(crate) struct TestWindows {
     /// own: the name of a file without its extension [default for own: all])
     #[arg(long)]
     pub(crate) fold: Option<String>,
-    /// Window rule: published, complete, observed, social-gan (at least 2 pedestrians) or social-gan-1 [default: that of
-    /// the convention's headline tables: published, social-gan, complete, observed]
+    /// Window rule: published, complete, observed, social-gan (at least 2 pedestrians) or social-gan-1 [default: that
+    /// of the convention's headline tables: published, social-gan, complete, observed]
     #[arg(long)]
     window_rule: Option<WindowRule>,
 }

@@ -42,8 +42,8 @@ fn farthest(a: &[Position], b: &[Position]) -> f64 {
 }
 
 /// The posterior of a Gaussian process whose velocity is a Wiener process (spectral density 0.02, variance 2 at the
-/// first row, noise 0.02), solved as one system of equations with numpy 2.4. The moment is 0.1 s after the last row, the
-/// first position 0.05 s before the first row. Of eight rows 0.4 s apart the last position has the deviation
+/// first row, noise 0.02), solved as one system of equations with numpy 2.4. The moment is 0.1 s after the last row,
+/// the first position 0.05 s before the first row. Of eight rows 0.4 s apart the last position has the deviation
 /// 0.01842525, and the velocity 0.07588693; the quality says what is more.
 #[test]
 fn an_estimate_is_the_posterior_of_a_gaussian_process() {

@@ -146,7 +146,12 @@ proptest! {
 
     /// Rows after a tick may be changed, added and removed: no bit of a window up to it changes.
     #[test]
-    fn nothing_later_is_read((pace, rows) in films(), other in any::<u64>(), share in 0.2..0.9_f64, interval: Option<bool>) {
+    fn nothing_later_is_read(
+        (pace, rows) in films(),
+        other in any::<u64>(),
+        share in 0.2..0.9_f64,
+        interval: Option<bool>,
+    ) {
         let last = rows.iter().map(|row| row.frame).max().unwrap();
         let cut = (share * last as f64) as i64;
         let mut changed: Vec<_> = rows.iter().copied().filter(|row| row.frame <= cut).collect();

@@ -187,9 +187,9 @@ fn ties_go_by_age() {
     assert_eq!((sides(1), sides(2)), (vec![true], vec![true, false]));
 }
 
-/// A pedestrian at 1.2 m/s whose rows lie at other times than the steps after the first one: the positions at the steps lie
-/// between them. By the frames of 40 s and the frames of a step: 10 Hz, also with lost rows (four in a row, and those of
-/// two steps in a row), milliseconds that jitter, 7 and 1 frames a second in parts, every third frame at 25.
+/// A pedestrian at 1.2 m/s whose rows lie at other times than the steps after the first one: the positions at the steps
+/// lie between them. By the frames of 40 s and the frames of a step: 10 Hz, also with lost rows (four in a row, and
+/// those of two steps in a row), milliseconds that jitter, 7 and 1 frames a second in parts, every third frame at 25.
 #[test]
 fn rows_between_the_steps_give_segments() {
     let lost = |k: &i64| ![4, 5, 6, 7, 20, 24].contains(&(k % 30));

@@ -13,9 +13,9 @@ use std::borrow::Borrow;
 /// A forecaster for a live stream of frames, 0.4 s apart or faster, that keeps the observed tracks itself.
 ///
 /// Every [`push`](Self::push) forecasts all pedestrians that have been observed at 8 consecutive time steps, or as a
-/// [`Completeness`](ddl_data::Completeness) asks for. The forecast has the bits of [`Forecaster::forecast`] on the window
-/// that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With a
-/// memory, this window also holds the recalled tracks. Adaptive regions are the only other difference. For gaps, see
+/// [`Completeness`](ddl_data::Completeness) asks for. The forecast has the bits of [`Forecaster::forecast`] on the
+/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With
+/// a memory, this window also holds the recalled tracks. Adaptive regions are the only other difference. For gaps, see
 /// [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`, one model serves several
 /// places.
 ///
@@ -69,8 +69,8 @@ impl<M> LiveForecaster<M> {
         Self::with_tracks(model, LiveTracks::new())
     }
 
-    /// A forecaster with these tracks, which may have another clock, or also hold pedestrians that were tracked for less
-    /// than 8 steps. [`Window::quality`] says how well each pedestrian was observed.
+    /// A forecaster with these tracks, which may have another clock, or also hold pedestrians that were tracked for
+    /// less than 8 steps. [`Window::quality`] says how well each pedestrian was observed.
     #[must_use]
     pub fn with_tracks(model: M, tracks: LiveTracks) -> Self {
         Self {
