@@ -199,8 +199,8 @@ impl ObservedTracks {
     fn tell_who_is_missing(&self) {
         if let Some(&first) = self.never_forecast.first() {
             tell(format_args!(
-                "note: {} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most 2 s \
-                 apart",
+                "note: {} of {} pedestrians are never forecast, first {}: a forecast needs two rows that fit, at most \
+                 2 s apart",
                 self.never_forecast.len(),
                 self.recording.pedestrians().len(),
                 self.recording.names().of(first)

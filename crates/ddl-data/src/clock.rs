@@ -267,8 +267,8 @@ pub enum ClockError {
     #[error("the frame step must lie in 1..=2^31 raw frames, found {found}")]
     FrameStep { found: i64 },
     #[error(
-        "a frame must take more than 0 s and at most 400 s, and 0.4 s must be at most 2^31 frames; found {found:?} s per \
-         frame"
+        "a frame must take more than 0 s and at most 400 s, and 0.4 s must be at most 2^31 frames; found {found:?} s \
+         per frame"
     )]
     FrameTime { found: f64 },
     #[error(

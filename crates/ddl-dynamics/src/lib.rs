@@ -39,13 +39,10 @@
 //!
 //! | | guaranteed | condition |
 //! |---|---|---|
-//! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min`
-//! seconds | `P` positive definite: every [`CholeskyMetric`] |
-//! | [`AvoidingFlow`] | `Phi` falls outside the balls; no ball is entered; the goal is the only attractor | balls stand
-//! still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
+//! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min` seconds | `P` positive definite: every [`CholeskyMetric`] |
+//! | [`AvoidingFlow`] | `Phi` falls outside the balls; no ball is entered; the goal is the only attractor | balls stand still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
 //! | [`Euler`] | `Phi` falls in a step | only if `dt < 2 Phi u^T P u / \|P u\|^2`: never near the goal |
-//! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32`
-//! or `f64` |
+//! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32` or `f64` |
 //! | [`StableEuler`] | `Phi <= tolerance` in a bounded number of steps | eigenvalues within `[m, M]`, `m > 0` |
 //! | [`LyapunovCertificate`] | names the first step of a path that violates the decrease | none: any path |
 //!

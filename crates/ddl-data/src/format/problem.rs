@@ -5,8 +5,8 @@ use std::fmt::Display;
 use crate::clock::{Clock, TimeUnit};
 
 pub(super) const EMPTY: &str = "the file holds no observation; is it empty or cut off?";
-pub(super) const MIXED_TIMES: &str = "the time is of another kind than that of the first row; give all rows frame numbers, seconds, or dates, and call \
-     a column of seconds time";
+pub(super) const MIXED_TIMES: &str = "the time is of another kind than that of the first row; give all rows frame \
+    numbers, seconds, or dates, and call a column of seconds time";
 pub(super) const NOT_UTF8: &str = "the text is not UTF-8; export the file as plain UTF-8 or ASCII text";
 
 pub(super) fn field_count(expected: usize, found: usize, names: &str) -> String {
