@@ -63,7 +63,7 @@ impl Pace {
     }
 }
 
-/// Walkers for 14 s that turn and pause, with noise and lost rows, in some order.
+/// Pedestrians for 14 s that turn and pause, with noise and lost rows, in some order.
 fn film(pace: Pace, seed: u64, noise: f64, lost: f64) -> Vec<Observation> {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let lost = if pace == Pace::Rate(1.0) { 0.0 } else { lost }; // rows are at most 1.2 s apart
