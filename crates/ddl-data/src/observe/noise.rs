@@ -92,14 +92,6 @@ impl RecordingNoise {
     }
 }
 
-impl RecordingNoise {
-    /// Log-likelihood of a noise at its likeliest agility: each pedestrian has an agility of its own.
-    fn of_noise(&self, noise: usize) -> f64 {
-        let agilities = self.evidence.iter().skip(noise).step_by(NOISE.len());
-        agilities.copied().fold(f64::NEG_INFINITY, f64::max)
-    }
-}
-
 impl TrackNoise {
     pub(super) fn of_first(position: Position) -> Self {
         Self {
@@ -118,7 +110,7 @@ impl TrackNoise {
     pub(super) fn level(&self, recording: &RecordingNoise) -> NoiseLevel {
         let share = (OTHERS / recording.rows).min(1.0);
         likeliest(&std::array::from_fn(|level| {
-            self.evidence[level] + share * recording.of_noise(level % NOISE.len())
+            self.evidence[level] + share * recording.evidence[level]
         }))
     }
 
