@@ -14,8 +14,9 @@ use crate::observe::{Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Ro
 use crate::recording::Recording;
 
 const NAME: &str = "live";
-/// A frame is common if it shows one in so many of the pedestrians of the last 0.4 s: trackers lose rows.
-const COMMON: usize = 4;
+/// Pedestrians have common frames if at most so many frames with one of them come on each with several: trackers lose
+/// rows.
+const COMMON: u64 = 4;
 
 /// Which pedestrians are observed well enough for a window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -73,6 +74,9 @@ pub struct LiveTracks {
     is_moment: bool,
     /// Tick from which on there is the next window.
     next_moment: f64,
+    /// Number of frames with rows of several pedestrians, and of one, where several were seen within a step.
+    frames_of_several: u64,
+    frames_of_one: u64,
     noise: RecordingNoise,
     /// Shared between copies of the tracks, because a frame may change only some.
     pedestrians: BTreeMap<PedestrianId, Arc<LivePedestrian>>,
@@ -116,6 +120,8 @@ impl LiveTracks {
             last_frame: None,
             is_moment: false,
             next_moment: f64::NEG_INFINITY,
+            frames_of_several: 0,
+            frames_of_one: 0,
             noise: RecordingNoise::default(),
             pedestrians: BTreeMap::new(),
             misfits: Vec::new(),
@@ -273,18 +279,17 @@ impl LiveTracks {
     /// Decides whether there is a window at this tick, which has so many rows.
     fn decide_moment(&mut self, tick: i64, rows: usize) {
         let step = self.clock.frame_step();
-        let interval = self.interval.unwrap_or_else(|| {
-            // Some of those seen within a step have a row here: it is a common frame.
-            let recent = self
-                .pedestrians
-                .values()
-                .filter(|pedestrian| tick - pedestrian.last_row < step);
-            if COMMON * rows >= recent.count() {
-                0.0
-            } else {
-                step as f64
-            }
-        });
+        let recent = self
+            .pedestrians
+            .values()
+            .filter(|pedestrian| tick - pedestrian.last_row < step);
+        if recent.count() > 1 {
+            self.frames_of_several += u64::from(rows > 1);
+            self.frames_of_one += u64::from(rows == 1);
+        }
+        let have_common_frames = COMMON * self.frames_of_several >= self.frames_of_one;
+        let own = if have_common_frames { 0.0 } else { step as f64 };
+        let interval = self.interval.unwrap_or(own);
         // How late the frame is for the next window; a clock may jitter.
         let late = tick as f64 - self.next_moment + ON_STEP * step as f64;
         self.is_moment = interval == 0.0 || late >= 0.0;

@@ -19,8 +19,9 @@ pub struct ObservedRecording {
 }
 
 impl Recording {
-    /// Empty tracks with the name and clock of this recording. There is a window at every frame that shows a quarter
-    /// of the pedestrians of the last 0.4 s, and otherwise, where each pedestrian has a clock of its own, every 0.4 s.
+    /// Empty tracks with the name and clock of this recording. There is a window at every frame while
+    /// frames show several pedestrians, and every 0.4 s while each pedestrian has a clock of its own, by the frames so
+    /// far.
     #[must_use]
     pub fn live_tracks(&self) -> LiveTracks {
         LiveTracks::of(self)
