@@ -40,7 +40,7 @@ pub(crate) struct TrackOptions {
     /// the time between the last rows of a pedestrian if that is longer]
     #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     max_age: Option<f64>,
-    /// Least time between two forecasts [default: 0, every frame; 0.4 in files where each pedestrian has its own clock]
+    /// Time between two forecasts [default: 0, every frame; 0.4 in files where each pedestrian has its own clock]
     #[arg(long, requires = "file", value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true)]
     every: Option<f64>,
     /// Only the last frame with a forecast, instead of every frame

@@ -124,9 +124,7 @@ impl Units {
         let clock = clock.map_or_else(|| Clock::with_frame_step(recording.frame_step()), Ok)?;
         let recording = recording.on_clock(clock).with_context(place)?;
         if !recording.has_common_frames() {
-            notes.push(
-                "each pedestrian has a clock of its own: forecasts are at least 0.4 s apart (--every)".to_owned(),
-            );
+            notes.push("each pedestrian has a clock of its own: forecasts are about 0.4 s apart (--every)".to_owned());
         }
         Ok(ReadRecording {
             recording,
