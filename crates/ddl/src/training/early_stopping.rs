@@ -22,6 +22,8 @@ const PEDESTRIANS: usize = 1000;
 #[derive(Debug)]
 pub(crate) struct EarlyStopping {
     patience: usize,
+    /// What a forecaster sees of the windows: also their bystanders.
+    scenes: Vec<Window>,
     windows: Vec<Window>,
     goals: GuidedGoals,
     seed: u64,
@@ -37,12 +39,14 @@ impl EarlyStopping {
         };
         let (rule, share) = (data.window_rule, data.validation);
         let windows = TestSet::validation(fold, data.convention, rule, share, Some(PEDESTRIANS)).windows;
+        let scenes: Vec<Window> = windows.iter().map(Window::without_future).collect();
         Ok(Some(Self {
             patience,
             goals: GuidedGoals {
-                sets: goals.goals(&windows)?,
-                familiarity: windows.iter().map(|window| goals.familiarity(window)).collect(),
+                sets: goals.goals(&scenes)?,
+                familiarity: scenes.iter().map(|scene| goals.familiarity(scene)).collect(),
             },
+            scenes,
             windows,
             seed: config.training.seed,
             starts_trained: config.from.is_some(),
@@ -51,11 +55,12 @@ impl EarlyStopping {
 
     /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
-        let (windows, goals) = (&self.windows, self.goals.clone());
-        let forecasts = shaped::towards(network, self.seed, windows, goals, PathIntegrator::Stable(None))?;
+        let (scenes, goals) = (&self.scenes, self.goals.clone());
+        let forecasts = shaped::towards(network, self.seed, scenes, goals, PathIntegrator::Stable(None))?;
         let (mut sum, mut pedestrians) = (0.0, 0);
-        for (window, forecast) in windows.iter().zip(&forecasts) {
-            let errors = DisplacementErrors::of(&ScoredWindow::new(window, forecast)?);
+        for (window, forecast) in self.windows.iter().zip(forecasts) {
+            let forecast = forecast.without_bystanders(window);
+            let errors = DisplacementErrors::of(&ScoredWindow::new(window, &forecast)?);
             sum += (0..window.len()).map(|i| errors.min_ade(i)).sum::<f64>();
             pedestrians += window.len();
         }
