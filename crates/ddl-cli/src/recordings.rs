@@ -112,19 +112,26 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 
 /// Warns of suspicious speeds: with wrong units, training and evaluation are meaningless.
 pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
-    let warnings = read.iter().filter_map(|read| {
-        let warning = read.recording.speed_warning()?;
-        Some((read.recording.name(), words(&in_frames(read.clock, warning))))
-    });
-    tell_grouped("warning", warnings);
+    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
     for ReadRecording { recording, clock, .. } in read {
-        let misfits = recording.observe(recording.live_tracks()).misfits;
-        let is_fast = matches!(recording.speed_warning(), Some(PlausibilityWarning::Fast { .. }));
-        if let Some(words) = words_of_misfits(recording, *clock, &misfits).filter(|_| !is_fast) {
-            tell(format_args!("warning: {}: {words}", recording.name()));
-        }
+        let observed = recording.observe(recording.live_tracks());
+        let warning = recording.speed_warning();
+        let misfits = words_of_misfits(recording, *clock, &observed.misfits, warning.as_ref());
+        let warning = warning.map(|warning| words(&in_frames(*clock, warning)));
+        warnings.extend(
+            warning
+                .into_iter()
+                .chain(misfits)
+                .map(|words| (recording.name(), words)),
+        );
+        notes.extend((!observed.has_common_frames).then(|| (recording.name(), OWN_CLOCKS.to_owned())));
     }
+    tell_grouped("note", notes);
+    tell_grouped("warning", warnings);
 }
+
+/// What is assumed of recordings without common frames.
+pub(crate) const OWN_CLOCKS: &str = "each pedestrian has a clock of its own: moments are about 0.4 s apart";
 
 /// The warning with frame numbers of the file.
 pub(crate) fn in_frames(clock: Clock, warning: PlausibilityWarning) -> PlausibilityWarning {
@@ -140,8 +147,17 @@ pub(crate) fn in_frames(clock: Clock, warning: PlausibilityWarning) -> Plausibil
     }
 }
 
-/// A sentence about rows that do not fit their tracks.
-pub(crate) fn words_of_misfits(recording: &Recording, clock: Clock, misfits: &[Misfit]) -> Option<String> {
+/// A sentence about rows that do not fit their tracks. With a warning of fast steps, nearly all positions are in other
+/// units.
+pub(crate) fn words_of_misfits(
+    recording: &Recording,
+    clock: Clock,
+    misfits: &[Misfit],
+    warning: Option<&PlausibilityWarning>,
+) -> Option<String> {
+    if matches!(warning, Some(PlausibilityWarning::Fast { .. })) {
+        return None;
+    }
     Misfit::words(misfits, |misfit| {
         let name = recording.names().of(misfit.pedestrian);
         format!("pedestrian {name} at frame {}", clock.number(misfit.tick))

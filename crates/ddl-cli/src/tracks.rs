@@ -15,8 +15,6 @@ use std::path::{Path, PathBuf};
 
 /// Noise (m) from which on observed paths are smoothed.
 pub(crate) const NOISY: f64 = 0.04;
-/// Largest age and interval: tracks begin anew after a longer time without a row.
-const MOST_SECONDS: f64 = 2.0;
 
 /// The tracks to read, and their units. A command that needs them requires `file`.
 #[derive(Debug, Args)]
@@ -88,14 +86,7 @@ impl TrackOptions {
             Completeness::Partial
         };
         let tracks = tracks.with_completeness(completeness);
-        let tracks = match self.max_age {
-            None => tracks,
-            Some(max_age) => tracks.with_max_age(max_age),
-        };
-        match self.every {
-            None => tracks,
-            Some(every) => tracks.with_interval(every),
-        }
+        tracks.with_max_age(self.max_age).with_interval(self.every)
     }
 
     pub(crate) fn live_units(&self, run: &RunConfig) -> anyhow::Result<Units> {
@@ -117,6 +108,9 @@ impl TrackOptions {
             tell(format_args!("note: {note}"));
         }
         let observed = recording.observe(self.windows_of(recording.live_tracks()));
+        if !observed.has_common_frames && self.every.is_none() {
+            tell(format_args!("note: {} (--every)", recordings::OWN_CLOCKS));
+        }
         let mut windows = observed.windows;
         let warning = recording
             .speed_warning()
@@ -188,11 +182,10 @@ impl ObservedTracks {
 
     /// Warns of positions that are left out.
     pub(crate) fn warn_of_misfits(&self) {
-        let doubt = recordings::words_of_misfits(&self.recording, self.clock, &self.misfits);
-        // With other units, nearly every position is a jump.
-        let is_fast = matches!(self.warning, Some(PlausibilityWarning::Fast { .. }));
-        if let Some(doubt) = doubt.filter(|_| !is_fast) {
-            tell(format_args!("warning: {doubt}"));
+        let warning = self.warning.as_ref();
+        let words = recordings::words_of_misfits(&self.recording, self.clock, &self.misfits, warning);
+        if let Some(words) = words {
+            tell(format_args!("warning: {words}"));
         }
     }
 
@@ -234,9 +227,9 @@ pub(crate) fn steps_in_words(clock: Clock) -> String {
 
 fn seconds(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
-    if (0.0..=MOST_SECONDS).contains(&number) {
+    if (0.0..=LiveTracks::LONGEST_GAP).contains(&number) {
         Ok(number)
     } else {
-        Err(format!("must be a number from 0 to {MOST_SECONDS}"))
+        Err(format!("must be a number from 0 to {}", LiveTracks::LONGEST_GAP))
     }
 }

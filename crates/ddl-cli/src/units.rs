@@ -111,7 +111,7 @@ impl Units {
             );
         }
         let notes = recording.notes().iter().cloned().chain(self.note_of_rate(&recording));
-        let mut notes: Vec<String> = notes.chain(self.note_of_run(stated.is_none())).collect();
+        let notes: Vec<String> = notes.chain(self.note_of_run(stated.is_none())).collect();
         let given = clock_of(&self.rate())?;
         let clock = match given.or(stated) {
             Some(clock) => Some(clock),
@@ -123,9 +123,6 @@ impl Units {
         });
         let clock = clock.map_or_else(|| Clock::with_frame_step(recording.frame_step()), Ok)?;
         let recording = recording.on_clock(clock).with_context(place)?;
-        if !recording.has_common_frames() {
-            notes.push("each pedestrian has a clock of its own: forecasts are about 0.4 s apart (--every)".to_owned());
-        }
         Ok(ReadRecording {
             recording,
             clock,

@@ -19,7 +19,7 @@ pub use forecast::Forecast;
 pub use forecaster::Forecaster;
 pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 pub use position::{
-    FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, distance, is_finite, is_frame, is_frame_step,
+    FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, between, distance, is_finite, is_frame, is_frame_step,
 };
 pub use quality::ObservationQuality;
 pub use region::AdaptiveRegions;

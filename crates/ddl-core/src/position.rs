@@ -30,6 +30,11 @@ pub fn is_finite(position: Position) -> bool {
     position.iter().all(|coordinate| coordinate.is_finite())
 }
 
+/// The point at a share of the way from one position to another: 0 gives the first; above 1 lies beyond the second.
+pub fn between(from: Position, to: Position, share: f64) -> Position {
+    [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]))
+}
+
 /// Euclidean distance of two positions (m).
 pub fn distance(a: Position, b: Position) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_core::{HORIZON, OBSERVED, PedestrianId, Position, TIME_STEP, Window};
+use ddl_core::{HORIZON, OBSERVED, PedestrianId, Position, TIME_STEP, Window, between};
 
 use crate::observation::Observation;
 use crate::observe::ON_STEP;
@@ -73,6 +73,6 @@ pub(crate) fn position_at(track: &[&Observation], tick: i64, step: i64) -> Optio
     };
     let apart = (after.frame - before.frame) as f64;
     let share = (tick - before.frame) as f64 / apart;
-    let between = [0, 1].map(|axis| before.position[axis] + share * (after.position[axis] - before.position[axis]));
+    let between = between(before.position, after.position, share);
     (apart * TIME_STEP <= JOINED * step as f64).then_some(between)
 }

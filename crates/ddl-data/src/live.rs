@@ -10,7 +10,7 @@ use ddl_core::{
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observe::{Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
+use crate::observe::{self, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -37,7 +37,7 @@ pub enum Completeness {
 /// - Each pedestrian has its own clock: rows may come at any times, also at other times than those of other
 ///   pedestrians.
 /// - A pedestrian whose last row is not [too old](Self::with_max_age) is carried on to the frame.
-/// - A position where a pedestrian cannot be is left out, and [told](Self::misfits). If the next rows agree with it,
+/// - A position too far from the expected one is left out, and [reported](Self::misfits). If the next rows agree with it,
 ///   the track begins anew there, and also after 2 s without a row.
 /// - A pedestrian without a row for 2 s is forgotten.
 /// - An error changes nothing: the same frame can be pushed again, corrected.
@@ -99,6 +99,9 @@ impl Default for LiveTracks {
 
 #[expect(clippy::len_without_is_empty, reason = "no caller needs is_empty")]
 impl LiveTracks {
+    /// Time without a row (s) after which a track begins anew: no age or interval is longer.
+    pub const LONGEST_GAP: f64 = observe::LONGEST_GAP;
+
     /// Empty tracks; consecutive frame numbers are one step of 0.4 s apart. Windows hold only
     /// [whole](Completeness::Whole) observations.
     #[must_use]
@@ -152,21 +155,29 @@ impl LiveTracks {
         Self { completeness, ..self }
     }
 
-    /// The same tracks, in which pedestrians are carried on until their last row is so old (s); without it 0.4 s, or
-    /// the time between their last rows if that is longer. NaN and negative numbers count as 0: only pedestrians of the
-    /// frame itself.
+    /// The same tracks, in which pedestrians are carried on until their last row is so old (s). `None` changes nothing:
+    /// the age is 0.4 s, or the time between the last rows of a pedestrian if that is longer. NaN and negative numbers
+    /// count as 0: only pedestrians of the frame itself.
     #[must_use]
-    pub fn with_max_age(self, seconds: f64) -> Self {
-        let max_age = Some(self.ticks(seconds));
+    pub fn with_max_age(self, seconds: impl Into<Option<f64>>) -> Self {
+        let max_age = seconds.into().map(|seconds| self.ticks(seconds)).or(self.max_age);
         Self { max_age, ..self }
     }
 
-    /// The same tracks, with windows at least so long apart (s); 0 for one at every frame.
+    /// The same tracks, with windows so long apart (s), on the mean; 0 for one at every frame. `None` changes nothing.
     #[must_use]
-    pub fn with_interval(self, seconds: f64) -> Self {
+    pub fn with_interval(self, seconds: impl Into<Option<f64>>) -> Self {
+        let ticks = seconds.into().map(|seconds| self.ticks(seconds));
         // Less than a tick is every frame.
-        let interval = Some(self.ticks(seconds)).map(|ticks| if ticks < 1.0 { 0.0 } else { ticks });
+        let interval = ticks
+            .map(|ticks| if ticks < 1.0 { 0.0 } else { ticks })
+            .or(self.interval);
         Self { interval, ..self }
+    }
+
+    /// Whether frames show several pedestrians, or each pedestrian has a clock of its own, by the frames so far.
+    pub fn have_common_frames(&self) -> bool {
+        COMMON * self.frames_of_several >= self.frames_of_one
     }
 
     fn ticks(&self, seconds: f64) -> f64 {
@@ -256,7 +267,7 @@ impl LiveTracks {
                 }
             }
         }
-        let gone = |pedestrian: &LivePedestrian| (tick - pedestrian.last_row) as f64 * tick_time > Arrival::LONGEST_GAP;
+        let gone = |pedestrian: &LivePedestrian| (tick - pedestrian.last_row) as f64 * tick_time > Self::LONGEST_GAP;
         self.pedestrians.retain(|_, pedestrian| !gone(pedestrian));
         self.decide_moment(tick, rows);
         Ok(self.window())
@@ -287,9 +298,9 @@ impl LiveTracks {
             self.frames_of_several += u64::from(rows > 1);
             self.frames_of_one += u64::from(rows == 1);
         }
-        let have_common_frames = COMMON * self.frames_of_several >= self.frames_of_one;
-        let own = if have_common_frames { 0.0 } else { step as f64 };
-        let interval = self.interval.unwrap_or(own);
+        let interval = self
+            .interval
+            .unwrap_or(if self.have_common_frames() { 0.0 } else { step as f64 });
         // How late the frame is for the next window; a clock may jitter.
         let late = tick as f64 - self.next_moment + ON_STEP * step as f64;
         self.is_moment = interval == 0.0 || late >= 0.0;

@@ -9,8 +9,7 @@ mod track;
 pub(crate) use estimate::ON_STEP;
 pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;
-pub(crate) use track::Arrival;
-pub(crate) use track::{ObservedTrack, Row};
+pub(crate) use track::{LONGEST_GAP, ObservedTrack, Row};
 
 #[cfg(test)]
 mod tests;

@@ -12,8 +12,6 @@ use crate::observation::Observation;
 
 /// Spacing of the rows of a pedestrian (s) above which they no longer show the course of a track.
 const SLOWEST: f64 = 1.2;
-/// With more frames than so many times those of one clock, pedestrians have clocks of their own.
-const CROWDED: f64 = 1.5;
 
 /// All observations of one scene, sorted by frame and then by pedestrian.
 ///
@@ -102,7 +100,7 @@ impl Recording {
     }
 
     /// Creates a recording whose frame step is the most common difference between successive rows of a pedestrian (the
-    /// smaller of two equally common ones; 1 if nobody has two rows).
+    /// smaller of two equally common ones; 1 if no pedestrian has two rows).
     ///
     /// # Errors
     /// As [`Recording::new`].
@@ -132,20 +130,11 @@ impl Recording {
         differences.collect()
     }
 
-    /// Median difference of frame numbers between successive rows of a pedestrian; `None` if nobody has two rows.
+    /// Median difference of frame numbers between successive rows of a pedestrian; `None` if no pedestrian has two rows.
     pub(crate) fn usual_spacing(&self) -> Option<i64> {
         let mut differences = self.differences();
         differences.sort_unstable();
         differences.get(differences.len() / 2).copied()
-    }
-
-    /// Whether pedestrians are seen at common frames, or each on a clock of its own.
-    pub fn has_common_frames(&self) -> bool {
-        let span = self.frames[self.frames.len() - 1] - self.frames[0];
-        let expected = self
-            .usual_spacing()
-            .map_or(f64::INFINITY, |spacing| 1.0 + span as f64 / spacing as f64);
-        self.frames.len() as f64 <= CROWDED * expected
     }
 
     /// The recording in ticks of a clock, of which [`frame_step`](Self::frame_step) make 0.4 s.

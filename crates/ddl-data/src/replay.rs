@@ -14,6 +14,8 @@ pub struct ObservedRecording {
     pub windows: Vec<Window>,
     /// How exact the positions are.
     pub noise: RecordingNoise,
+    /// Whether frames show several pedestrians, or each pedestrian has a clock of its own.
+    pub has_common_frames: bool,
     /// The rows that were left out, or began a track anew.
     pub misfits: Vec<Misfit>,
 }
@@ -38,10 +40,10 @@ impl Recording {
             windows.extend(tracks.push(frame, rows).ok().flatten());
             misfits.extend_from_slice(tracks.misfits());
         }
-        let noise = tracks.noise().clone();
         ObservedRecording {
             windows,
-            noise,
+            noise: tracks.noise().clone(),
+            has_common_frames: tracks.have_common_frames(),
             misfits,
         }
     }

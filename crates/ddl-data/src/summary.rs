@@ -39,7 +39,7 @@ pub struct Summary {
     pub frame_step: i64,
     /// Time from the first frame to the last, s.
     pub seconds: f64,
-    /// Rows of a pedestrian per second, by the median time between two of them; `None` if nobody has two rows.
+    /// Rows of a pedestrian per second, by the median time between two of them; `None` if no pedestrian has two rows.
     pub rows_a_second: Option<f64>,
     /// Median deviation of that time (s) from its median, where no row is missing.
     pub jitter: f64,
@@ -196,7 +196,7 @@ impl Recording {
             seconds: seconds(last - first),
             rows_a_second: self.usual_spacing().map(|spacing| 1.0 / seconds(spacing)),
             jitter: seconds(self.jitter()),
-            common_frames: self.has_common_frames(),
+            common_frames: observed.has_common_frames,
             noise: observed.noise.metres(),
             misfits: observed.misfits,
             pedestrians: tracks.len(),

@@ -1,6 +1,6 @@
 //! The segments of one pedestrian, and the running track of a pedestrian that may be seen again.
 
-use ddl_data::Position;
+use ddl_data::{Position, between};
 use serde::{Deserialize, Serialize};
 
 use crate::piece::{FirstMotion, Piece, SHARED, is_remembered};
@@ -137,8 +137,7 @@ impl RunningTrack {
         {
             let due = self.last + step;
             let share = (due - from) as f64 / (frame - from) as f64;
-            let passed = [0, 1].map(|axis| start[axis] + share * (position[axis] - start[axis]));
-            let (added, removed) = self.add(due, passed, step);
+            let (added, removed) = self.add(due, between(start, position, share), step);
             (new, gone) = (new + added, gone + removed);
         }
         if frame < self.last + step {

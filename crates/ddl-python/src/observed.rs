@@ -7,9 +7,6 @@ use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// Largest age and interval (s): tracks begin anew after a longer time without a row.
-const MOST_SECONDS: f64 = 2.0;
-
 /// Which pedestrians are observed well enough to be forecast.
 pub(crate) fn completeness(whole: bool) -> Completeness {
     if whole {
@@ -33,10 +30,11 @@ impl WindowOptions {
     pub(crate) fn new(whole: bool, max_age: Option<f64>, every: Option<f64>) -> PyResult<Self> {
         for (name, seconds) in [("max_age", max_age), ("every", every)] {
             if let Some(seconds) = seconds
-                && !(0.0..=MOST_SECONDS).contains(&seconds)
+                && !(0.0..=LiveTracks::LONGEST_GAP).contains(&seconds)
             {
                 return Err(PyValueError::new_err(format!(
-                    "{name} must be a number of seconds from 0 to {MOST_SECONDS}; found {seconds}"
+                    "{name} must be a number of seconds from 0 to {}; found {seconds}",
+                    LiveTracks::LONGEST_GAP
                 )));
             }
         }
@@ -50,14 +48,7 @@ impl WindowOptions {
 
     pub(crate) fn of(self, tracks: LiveTracks) -> LiveTracks {
         let tracks = tracks.with_completeness(self.completeness);
-        let tracks = match self.max_age {
-            None => tracks,
-            Some(max_age) => tracks.with_max_age(max_age),
-        };
-        match self.every {
-            None => tracks,
-            Some(every) => tracks.with_interval(every),
-        }
+        tracks.with_max_age(self.max_age).with_interval(self.every)
     }
 }
 

@@ -161,24 +161,21 @@ fn facts(file: &Path, summary: &Summary, recording: &Recording, clock: Clock) ->
 }
 
 fn doubts(summary: &Summary, recording: &Recording, clock: Clock) -> Vec<String> {
-    let warnings = summary.warnings().into_iter();
-    let warnings = warnings.map(|warning| recordings::words(&recordings::in_frames(clock, warning)));
-    let mut doubts: Vec<String> = warnings.collect();
-    // With other units, nearly every position is a jump.
-    if !summary
-        .warnings()
+    let warnings = summary.warnings();
+    let fast = warnings
         .iter()
-        .any(|warning| matches!(warning, PlausibilityWarning::Fast { .. }))
-    {
-        doubts.extend(recordings::words_of_misfits(recording, clock, &summary.misfits));
-    }
-    doubts
+        .find(|warning| matches!(warning, PlausibilityWarning::Fast { .. }));
+    let misfits = recordings::words_of_misfits(recording, clock, &summary.misfits, fast);
+    let warnings = warnings
+        .into_iter()
+        .map(|warning| recordings::words(&recordings::in_frames(clock, warning)));
+    warnings.chain(misfits).collect()
 }
 
 /// The rate of the rows of a pedestrian, its jitter, and the noise.
 fn rows_in_words(s: &Summary) -> String {
     s.rows_a_second.map_or_else(
-        || "nobody has two".to_owned(),
+        || "no pedestrian has two".to_owned(),
         |rate| {
             let jitter = if s.jitter * rate > EVEN_CLOCK {
                 format!(", ± {:.0} ms", 1e3 * s.jitter)

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::forecast::Forecast;
 use crate::pedestrian::PedestrianId;
-use crate::position::{HORIZON, OBSERVED, Position};
+use crate::position::{HORIZON, OBSERVED, Position, between};
 use crate::region::tracked::{Outcomes, TrackedQuantiles};
 use crate::region_table::RegionTable;
 use crate::window::Window;
@@ -128,7 +128,7 @@ impl Pending {
                 return None;
             };
             let share = back as f64 / frame_step as f64;
-            Some([0, 1].map(|axis| last[axis] + share * (before[axis] - last[axis])))
+            Some(between(last, before, share))
         };
         let scores: Vec<f64> = self
             .pedestrians

@@ -80,6 +80,7 @@ pub struct FrameReader<R> {
     /// The scene of the last line.
     spoken_of: Option<SceneName>,
     first: Option<FirstRow>,
+    are_notes_taken: bool,
     /// Number of pedestrians in incomplete frames.
     unfinished: usize,
     idle_timeout: Duration,
@@ -145,6 +146,7 @@ impl<R: BufRead> FrameReader<R> {
             left: VecDeque::new(),
             spoken_of: None,
             first: None,
+            are_notes_taken: false,
             unfinished: 0,
             idle_timeout: IDLE_TIMEOUT,
             ended: false,
@@ -207,10 +209,13 @@ impl<R: BufRead> FrameReader<R> {
         self.first?.unit
     }
 
-    /// What was assumed while the lines were read, a sentence each.
-    pub fn notes(&self) -> Vec<String> {
+    /// Takes the notes on what was assumed while the lines were read, a sentence each: once, from the first row on.
+    pub fn take_notes(&mut self) -> Vec<String> {
         match &self.kind {
-            Some(Kind::Table(columns)) => columns.notes(),
+            Some(Kind::Table(columns)) if self.first.is_some() && !self.are_notes_taken => {
+                self.are_notes_taken = true;
+                columns.notes()
+            }
             _ => Vec::new(),
         }
     }

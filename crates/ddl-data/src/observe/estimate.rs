@@ -3,7 +3,7 @@
 use ddl_core::{OBSERVED, ObservationQuality, Position, TIME_STEP};
 
 use crate::observe::motion::{Motion, Walk};
-use crate::observe::noise::{NoiseLevel, RecordingNoise};
+use crate::observe::noise::{RecordingNoise, USUAL};
 use crate::observe::track::{ObservedTrack, Row};
 
 /// Largest distance of a row from a step that it is taken for, in steps: 2 ms.
@@ -23,7 +23,8 @@ pub(crate) struct Observed {
 
 impl ObservedTrack {
     /// The observation at a time, not before the last row; both in ticks of `tick_time` seconds, of which `step` make
-    /// 0.4 s. Rows at the steps pass unchanged unless the tracker is noisy. `None` with fewer than two rows.
+    /// 0.4 s. Rows at the steps pass unchanged unless the tracker is noisy. `None` with fewer
+    /// than two rows, and for a track that is too short for its speed.
     pub(crate) fn observed(
         &self,
         time: f64,
@@ -106,10 +107,7 @@ impl ObservedTrack {
 
 /// The motion of a pedestrian so agile after a row of a usual tracker at each of the 8 steps.
 fn clean_motion(agility: f64) -> Motion {
-    let walk = Walk {
-        agility,
-        ..NoiseLevel::usual().walk()
-    };
+    let walk = Walk { noise: USUAL, agility };
     let first = Motion::first_seen([0.0; 2], walk);
     (1..OBSERVED).fold(first, |motion, _| {
         motion.expected_after(TIME_STEP).corrected([0.0; 2], walk.noise)

@@ -4,7 +4,7 @@ use ddl_core::PedestrianId;
 
 use crate::observe::track::Arrival;
 
-/// A row where its pedestrian cannot be.
+/// A row too far from where its pedestrian was expected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Misfit {
@@ -14,11 +14,11 @@ pub struct Misfit {
     pub pedestrian: PedestrianId,
     /// Distance from where the pedestrian was expected (m).
     pub distance: f64,
-    /// What became of the row.
+    /// How the row is treated.
     pub treatment: MisfitTreatment,
 }
 
-/// What became of a row where its pedestrian cannot be.
+/// How a row is treated that is too far from where its pedestrian was expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MisfitTreatment {
     /// It is left out.
@@ -51,8 +51,8 @@ impl Misfit {
         let jumps = jumps.count();
         let left_out = match misfits.len() - jumps {
             0 => None,
-            1 => Some("1 position is left out, as nobody can be there".to_owned()),
-            count => Some(format!("{count} positions are left out, as nobody can be there")),
+            1 => Some("1 position is left out as implausible".to_owned()),
+            count => Some(format!("{count} positions are left out as implausible")),
         };
         let begun_anew = match jumps {
             0 => None,

@@ -1,5 +1,7 @@
 //! How exact the positions of a tracker are, measured by how far they lie from where they were expected.
 
+use std::sync::LazyLock;
+
 use ddl_core::Position;
 
 use crate::observe::motion::{Motion, Walk};
@@ -12,7 +14,7 @@ const AGILITY: [f64; 4] = [0.001, 0.005, 0.02, 0.08];
 /// Number of pairs of the two.
 const LEVELS: usize = NOISE.len() * AGILITY.len();
 /// What the ETH/UCY recordings have, which the models were trained on (m).
-const USUAL: f64 = 0.02;
+pub(super) const USUAL: f64 = 0.02;
 /// Agility without measurements.
 const USUAL_AGILITY: f64 = 0.02;
 /// Weight of the usual noise against measurements: some ten rows.
@@ -63,11 +65,6 @@ impl NoiseLevel {
     /// Whether positions are taken as they are.
     pub(super) fn is_trusted(self) -> bool {
         self.walk().noise <= TRUSTED
-    }
-
-    /// The level of the ETH/UCY recordings.
-    pub(super) fn usual() -> Self {
-        likeliest(&[0.0; LEVELS])
     }
 
     fn all() -> [Self; LEVELS] {
@@ -141,15 +138,16 @@ impl TrackNoise {
     }
 }
 
+/// What each level must be likelier by than the usual one.
+static UNUSUAL: LazyLock<Evidence> = LazyLock::new(|| {
+    NoiseLevel::all().map(|level| {
+        let Walk { noise, agility } = level.walk();
+        CERTAINTY * (noise / USUAL).ln().powi(2) + (agility / USUAL_AGILITY).ln().powi(2)
+    })
+});
+
 fn likeliest(evidence: &Evidence) -> NoiseLevel {
-    let with_prior = |level: usize| {
-        let Walk { noise, agility } = NoiseLevel(level).walk();
-        let unusual = [
-            CERTAINTY * (noise / USUAL).ln().powi(2),
-            (agility / USUAL_AGILITY).ln().powi(2),
-        ];
-        evidence[level] - unusual.iter().sum::<f64>()
-    };
+    let with_prior = |level: usize| evidence[level] - UNUSUAL[level];
     let best = (0..LEVELS).max_by(|&a, &b| with_prior(a).total_cmp(&with_prior(b)));
     NoiseLevel(best.unwrap_or_default())
 }

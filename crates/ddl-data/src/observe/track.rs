@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use ddl_core::{OBSERVED, Position, distance as distance_between};
+use ddl_core::{OBSERVED, Position, between, distance as distance_between};
 
 use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise};
 
@@ -54,10 +54,8 @@ pub(crate) enum Arrival {
     Jumped(f64),
 }
 
-impl Arrival {
-    /// Time without a row after which a track begins anew (s).
-    pub(crate) const LONGEST_GAP: f64 = 2.0;
-}
+/// Time without a row after which a track begins anew (s).
+pub(crate) const LONGEST_GAP: f64 = 2.0;
 
 /// The rows of one pedestrian up to now.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,7 +128,7 @@ impl ObservedTrack {
         known: &RecordingNoise,
         recording: &mut RecordingNoise,
     ) -> Arrival {
-        if (row.time - self.last_time()) * tick_time > Arrival::LONGEST_GAP {
+        if (row.time - self.last_time()) * tick_time > LONGEST_GAP {
             *self = Self::beginning(row.time, row.position);
             return Arrival::First;
         }
@@ -190,7 +188,7 @@ impl ObservedTrack {
         let before = self.rows.get(self.rows.len().checked_sub(2)?)?;
         let last = self.rows.back()?;
         let share = (time - last.time) / (last.time - before.time);
-        Some([0, 1].map(|axis| last.position[axis] + share * (last.position[axis] - before.position[axis])))
+        Some(between(before.position, last.position, 1.0 + share))
     }
 
     /// Leaves a row out, or begins anew where rows agree.

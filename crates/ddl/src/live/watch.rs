@@ -62,7 +62,7 @@ impl Watch {
             }
         };
         if let Some(place) = &mut self.place {
-            // Nobody walked where a row is left out.
+            // A row that is left out is no path of a pedestrian.
             let is_left_out = |id: PedestrianId| {
                 let mut misfits = tracks.misfits().iter();
                 misfits.any(|misfit| misfit.pedestrian == id && misfit.treatment == MisfitTreatment::LeftOut)

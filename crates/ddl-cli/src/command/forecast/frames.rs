@@ -17,11 +17,11 @@ pub(super) struct StatedTime {
 }
 
 impl StatedTime {
-    fn by<R: BufRead>(frames: &FrameReader<R>) -> Self {
+    fn by<R: BufRead>(frames: &mut FrameReader<R>) -> Self {
         Self {
             frames_a_second: frames.rate(),
             time_unit: frames.time_unit(),
-            notes: frames.notes(),
+            notes: frames.take_notes(),
         }
     }
 }
@@ -63,11 +63,11 @@ fn read<R: BufRead>(mut frames: FrameReader<R>, to: &SyncSender<Incoming>) {
     loop {
         let incoming = match frames.next_frame() {
             Ok(None) => return,
-            Ok(Some(frame)) => Incoming::Frame(frame, StatedTime::by(&frames)),
+            Ok(Some(frame)) => Incoming::Frame(frame, StatedTime::by(&mut frames)),
             Err(error @ DataError::Format(_)) if frames.names_scenes() => Incoming::Wrong(error),
             Err(error) => {
                 while let Some(frame) = frames.unfinished() {
-                    if to.send(Incoming::Frame(frame, StatedTime::by(&frames))).is_err() {
+                    if to.send(Incoming::Frame(frame, StatedTime::by(&mut frames))).is_err() {
                         return;
                     }
                 }

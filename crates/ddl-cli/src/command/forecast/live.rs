@@ -241,13 +241,13 @@ impl Stream<'_> {
 
     /// Adds a frame.
     fn take(&mut self, frame: Frame, stated: &StatedTime, units: &Units) -> anyhow::Result<()> {
-        if std::mem::take(&mut self.is_empty) {
-            for note in &stated.notes {
-                tell(format_args!("note: {note}"));
-            }
-            if let Some(memory) = &lock(self.watching).memory {
-                memory.ensure_fits(frame.scene.as_ref())?;
-            }
+        for note in &stated.notes {
+            tell(format_args!("note: {note}"));
+        }
+        if std::mem::take(&mut self.is_empty)
+            && let Some(memory) = &lock(self.watching).memory
+        {
+            memory.ensure_fits(frame.scene.as_ref())?;
         }
         self.taken += 1;
         if self.clock.is_none() {
