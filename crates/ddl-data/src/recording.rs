@@ -130,7 +130,7 @@ impl Recording {
         differences.collect()
     }
 
-    /// Median difference of frame numbers between successive rows of a pedestrian; `None` if no pedestrian has two rows.
+    /// Median difference of frame numbers between successive rows of a pedestrian; `None` if no pedestrian has two.
     pub(crate) fn usual_spacing(&self) -> Option<i64> {
         let mut differences = self.differences();
         differences.sort_unstable();
