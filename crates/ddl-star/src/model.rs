@@ -6,6 +6,7 @@
 mod attention;
 mod backend;
 mod batch;
+mod crowd;
 mod emission;
 mod flow;
 mod forecaster;
@@ -17,6 +18,7 @@ mod own_motion;
 mod parameters;
 mod rollout;
 mod scene_rows;
+mod shared_weights;
 mod tensor_backend;
 
 pub use backend::TorchBackend;

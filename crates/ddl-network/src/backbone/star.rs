@@ -87,7 +87,7 @@ impl<B: Backend> Backbone<B> for Star {
         let among = spatial_encoder(backend, &self.spatial[1], &fused, seen);
         let token = backend.temporal_attention(second, &among, &memory.caches[1]);
         for (cache, layer) in memory.caches.iter_mut().zip(self.temporal) {
-            cache.push(backend.key_values(layer, &token));
+            backend.remember(layer, &token, cache);
         }
         match self.frame {
             NetworkFrame::World => token,

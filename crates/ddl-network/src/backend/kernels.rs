@@ -290,7 +290,7 @@ impl Backend for KernelBackend {
         })
     }
 
-    fn key_values(&self, layer: EncoderLayer, x: &Rc<Rows>) -> Rc<RowKeyValues> {
+    fn remember(&self, layer: EncoderLayer, x: &Rc<Rows>, cache: &mut Vec<Rc<RowKeyValues>>) {
         let kernel = self.encoder(layer);
         let cached = Rc::new(RowKeyValues {
             rows: kernel.key_values(x),
@@ -303,7 +303,7 @@ impl Backend for KernelBackend {
                 x.add_gradient(kernel.key_values_backward(&x, &gradient, of_weights));
             }
         });
-        cached
+        cache.push(cached);
     }
 
     fn repeat_key_values(&self, cached: &Rc<RowKeyValues>, _: usize) -> Rc<RowKeyValues> {

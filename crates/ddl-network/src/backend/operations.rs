@@ -45,8 +45,8 @@ pub trait Backend: Debug + Sized + 'static {
     fn temporal_attention(&self, layer: EncoderLayer, newest: &Self::Tokens, cache: &[Self::KeyValues])
     -> Self::Tokens;
 
-    /// Keys and values of tokens in an encoder layer, to be cached.
-    fn key_values(&self, layer: EncoderLayer, x: &Self::Tokens) -> Self::KeyValues;
+    /// Adds the keys and values of tokens in an encoder layer to a cache.
+    fn remember(&self, layer: EncoderLayer, x: &Self::Tokens, cache: &mut Vec<Self::KeyValues>);
 
     /// Repeats the keys and values of a single batch entry `batch` times.
     fn repeat_key_values(&self, cached: &Self::KeyValues, batch: usize) -> Self::KeyValues;

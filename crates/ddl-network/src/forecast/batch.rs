@@ -7,9 +7,6 @@ use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
 
-/// Largest number of pedestrians in a batch of several windows. It is enough for efficient matrix products.
-const PEDESTRIANS_AT_ONCE: usize = 64;
-
 /// The pedestrians of a window with more than this are sorted by position, so that the keys and values that a query
 /// reads are close together in memory.
 const CROWD: usize = 128;
@@ -51,12 +48,13 @@ pub struct BatchRollout {
     pub factors: Option<Vec<[f64; 3]>>,
 }
 
+/// Batches of at most `at_once` pedestrians, or of one window.
 pub(super) fn batches<'a>(
     windows: &'a [Window],
     goals: &[Vec<Vec<Position>>],
     (noise, noise_width): (Noise, usize),
     rule: StepRule,
-    shares: Option<&[Vec<f64>]>,
+    (shares, at_once): (Option<&[Vec<f64>]>, usize),
 ) -> Result<Vec<ForecastBatch<'a>>, NetworkError> {
     check_shares(windows, shares)?;
     let goal_count = check_goals(windows, goals, noise)?;
@@ -73,7 +71,7 @@ pub(super) fn batches<'a>(
     while first < windows.len() {
         let mut last = first;
         let mut pedestrians = 0;
-        while last < windows.len() && (pedestrians == 0 || pedestrians + windows[last].len() <= PEDESTRIANS_AT_ONCE) {
+        while last < windows.len() && (pedestrians == 0 || pedestrians + windows[last].len() <= at_once) {
             pedestrians += windows[last].len();
             last += 1;
         }

@@ -18,6 +18,12 @@ pub trait ForecastWindows: Debug + Send + Sync {
     /// If the weights cannot be copied from their device.
     fn copy_weights(&self) -> Result<Weights, NetworkError>;
 
+    /// Largest number of pedestrians in a batch of several windows. The default is enough for efficient matrix products
+    /// of the kernels.
+    fn pedestrians_at_once(&self) -> usize {
+        64
+    }
+
     /// Forecasts one batch of windows.
     ///
     /// # Errors
@@ -44,7 +50,8 @@ pub trait ForecastWindows: Debug + Send + Sync {
     ) -> Result<Vec<WindowRollout>, NetworkError> {
         let noise_width = self.config().noise_width as usize;
         let mut rollouts = Vec::with_capacity(windows.len());
-        for batch in batches(windows, goals, (noise, noise_width), rule, shares)? {
+        let at_once = self.pedestrians_at_once();
+        for batch in batches(windows, goals, (noise, noise_width), rule, (shares, at_once))? {
             rollouts.extend(batch.windows_of(&self.roll_out(&batch)?));
         }
         Ok(rollouts)

@@ -132,7 +132,7 @@ impl Scenes {
     }
 
     /// Number of pedestrians in all scenes.
-    pub(crate) fn pedestrians(&self) -> usize {
+    pub fn pedestrians(&self) -> usize {
         self.ranges.last().map_or(0, |last| last.end)
     }
 

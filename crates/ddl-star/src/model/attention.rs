@@ -1,18 +1,21 @@
 //! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms that STAR needs.
 
 use crate::model::scene_rows::SeenNeighbours;
-use std::rc::Rc;
 use tch::Tensor;
 
 /// Attention of every pedestrian over its neighbours. Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or
 /// B -> `[B, P, width]`.
 pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &SeenNeighbours, dropout: f64) -> Tensor {
     let (entries, width) = (qkv.size()[0], qkv.size()[2] / 3);
-    let rows = seen.rows.in_rows(qkv);
+    let (rows_of_scenes, mask) = match seen {
+        SeenNeighbours::Rows { rows, mask } => (rows, mask),
+        SeenNeighbours::Lists(lists) => return lists.attention(qkv, heads, scale(width, heads)),
+    };
+    let rows = rows_of_scenes.in_rows(qkv);
     let (scenes, length) = (rows.size()[1], rows.size()[2]);
     let count = entries * scenes;
     let parts = rows.view([count, length, 3, heads, width / heads]).unbind(2);
-    let mask = seen.mask.expand([entries, scenes, length, length], false);
+    let mask = mask.expand([entries, scenes, length, length], false);
     let [query, key, value] = [0, 1, 2].map(|part: usize| parts[part].transpose(1, 2));
     let mixed = Tensor::scaled_dot_product_attention(
         &query,
@@ -25,19 +28,14 @@ pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &SeenNeighbours,
         false,
     );
     let mixed = mixed.transpose(1, 2).reshape([entries, scenes, length, width]);
-    seen.rows.out_of_rows(&mixed)
+    rows_of_scenes.out_of_rows(&mixed)
 }
 
-/// Attention of the newest token over itself and the cached tokens. Shapes: `newest` and each of `cache` `[B, P, 3 *
-/// width]` -> `[B, P, width]`.
-pub(super) fn temporal_attention(newest: &Tensor, heads: i64, cache: &[Rc<Tensor>]) -> Tensor {
-    let (batch, pedestrians, width) = (newest.size()[0], newest.size()[1], newest.size()[2] / 3);
-    let cached = cache.iter().map(|token| &**token);
-    let tokens: Vec<&Tensor> = cached.chain([newest]).collect();
-    // Stack all projections of all tokens: this is one copy, and one gradient for each token.
-    let parts = Tensor::stack(&tokens, 0)
-        .view([-1, batch, pedestrians, 3, heads, width / heads])
-        .unbind(3);
+/// Attention of the newest token over all tokens so far. Shapes: `tokens` `[t, B, P, 3 * width]`, the newest last ->
+/// `[B, P, width]`.
+pub(super) fn temporal_attention(tokens: &Tensor, heads: i64) -> Tensor {
+    let (batch, pedestrians, width) = (tokens.size()[1], tokens.size()[2], tokens.size()[3] / 3);
+    let parts = tokens.view([-1, batch, pedestrians, 3, heads, width / heads]).unbind(3);
     let (query, key, value) = (parts[0].narrow(0, -1, 1), &parts[1], &parts[2]);
     // With one query for each pedestrian and head, products and sums are faster than a batch of 1 x t matrix products.
     let scores = key * (query * scale(width, heads));
@@ -46,6 +44,23 @@ pub(super) fn temporal_attention(newest: &Tensor, heads: i64, cache: &[Rc<Tensor
     (value * weights)
         .sum_dim_intlist([0i64].as_slice(), false, None)
         .reshape([batch, pedestrians, width])
+}
+
+/// [`temporal_attention`] by libtorch's fused kernels, which need fewer launches forwards and backwards.
+pub(super) fn fused_temporal_attention(tokens: &Tensor, heads: i64) -> Tensor {
+    let (batch, pedestrians, width) = (tokens.size()[1], tokens.size()[2], tokens.size()[3] / 3);
+    let parts = tokens
+        .view([-1, batch * pedestrians, 3, heads, width / heads])
+        .unbind(2);
+    // [t, B P, heads, n] -> [B P, heads, t, n]
+    let [query, key, value] = [0, 1, 2].map(|part: usize| parts[part].permute([1, 2, 0, 3]));
+    let newest = query.narrow(2, -1, 1);
+    let scale = scale(width, heads);
+    Tensor::scaled_dot_product_attention(&newest, &key, &value, None::<Tensor>, 0.0, false, scale, false).reshape([
+        batch,
+        pedestrians,
+        width,
+    ])
 }
 
 fn scale(width: i64, heads: i64) -> f64 {

@@ -3,25 +3,53 @@
 use crate::model::attention;
 use crate::model::parameters::Parameters;
 use crate::model::scene_rows::SeenNeighbours;
+use crate::model::shared_weights::{LearnedMap, SharedWeights};
 use ddl_network::backend::{Backend, Mode};
 use ddl_network::weights::{EncoderLayer, Linear};
 use std::rc::Rc;
-use tch::Tensor;
+use tch::{TchError, Tensor};
 
 /// One pass of libtorch through a network.
 #[derive(Debug)]
 pub struct TorchBackend {
     tensors: Vec<Tensor>,
     mode: Mode,
+    /// Only in a pass of training.
+    shared: Option<SharedWeights>,
 }
 
 impl TorchBackend {
-    /// A pass with libtorch's own gradients.
+    /// A pass without gradients.
     pub(crate) fn new(parameters: &Parameters, mode: Mode) -> Self {
         let tensors = parameters.tensors().iter();
         Self {
             tensors: tensors.map(Tensor::shallow_clone).collect(),
             mode,
+            shared: None,
+        }
+    }
+
+    /// A pass of training, with a [`gradient`](Self::gradient).
+    pub(crate) fn training(parameters: &Parameters, mode: Mode) -> Self {
+        Self {
+            shared: Some(SharedWeights::default()),
+            ..Self::new(parameters, mode)
+        }
+    }
+
+    /// The gradient of a loss of this pass with respect to all learned numbers, as one vector.
+    pub(crate) fn gradient(&self, loss: &Tensor, parameters: &Parameters) -> Result<Tensor, TchError> {
+        match &self.shared {
+            Some(shared) => shared.gradient(loss, parameters),
+            None => parameters.gradient_of(loss),
+        }
+    }
+
+    fn mapped(&self, map: LearnedMap, x: &Tensor, weight: usize) -> Tensor {
+        let [of_weight, bias] = self.learned(weight);
+        match &self.shared {
+            Some(shared) => shared.used(map, x, &self.tensors, weight),
+            None => map.of(x, of_weight, bias),
         }
     }
 
@@ -33,8 +61,17 @@ impl TorchBackend {
     /// y = x W^T + b, with the weight of that index and the bias after it.
     /// Shapes: `x` `[.., inputs]` -> `[.., outputs]`.
     fn affine(&self, x: &Tensor, weight: usize) -> Tensor {
-        let [weight, bias] = self.learned(weight);
-        x.linear(weight, Some(bias))
+        self.mapped(LearnedMap::Affine, x, weight)
+    }
+
+    /// Queries, keys and values of the cached tokens and of a new one. Shapes: `x` `[B, P, width]`, `cached` `[t, B, P,
+    /// 3 * width]` -> `[t + 1, B, P, 3 * width]`.
+    fn with_newest(&self, layer: EncoderLayer, x: &Tensor, cached: Option<&Rc<Tensor>>) -> Tensor {
+        let newest = self.affine(x, layer.tensor).unsqueeze(0);
+        match cached {
+            None => newest,
+            Some(cached) => Tensor::cat(&[&**cached, &newest], 0),
+        }
     }
 
     /// The part of an encoder layer after attention.
@@ -48,10 +85,9 @@ impl TorchBackend {
         Rc::new(self.norm(&(x + fed), first + 10))
     }
 
-    /// Layer normalisation over the last dimension (Ba et al. 2016), eps = 1e-5.
+    /// Layer normalisation over the last dimension.
     fn norm(&self, x: &Tensor, weight: usize) -> Tensor {
-        let [weight, bias] = self.learned(weight);
-        x.layer_norm(weight.size(), Some(weight), Some(bias), 1e-5, true)
+        self.mapped(LearnedMap::Norm, x, weight)
     }
 }
 
@@ -95,18 +131,22 @@ impl Backend for TorchBackend {
     }
 
     fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Tensor>, cache: &[Rc<Tensor>]) -> Rc<Tensor> {
-        let qkv = self.affine(newest, layer.tensor);
-        let mixed = attention::temporal_attention(&qkv, layer.sizes.heads as i64, cache);
+        let tokens = self.with_newest(layer, newest, cache.first());
+        let heads = layer.sizes.heads as i64;
+        let mixed = match self.shared {
+            Some(_) => attention::fused_temporal_attention(&tokens, heads),
+            None => attention::temporal_attention(&tokens, heads),
+        };
         self.after_attention(layer, newest, &mixed)
     }
 
-    fn key_values(&self, layer: EncoderLayer, x: &Rc<Tensor>) -> Rc<Tensor> {
-        // The query is projected too, because the gradient of a slice of the weights would have the size of all weights
-        // at every token.
-        Rc::new(self.affine(x, layer.tensor))
+    fn remember(&self, layer: EncoderLayer, x: &Rc<Tensor>, cache: &mut Vec<Rc<Tensor>>) {
+        // One tensor for all tokens: the gradient of each of several would be added at every later step.
+        let tokens = self.with_newest(layer, x, cache.pop().as_ref());
+        cache.push(Rc::new(tokens));
     }
 
     fn repeat_key_values(&self, cached: &Rc<Tensor>, batch: usize) -> Rc<Tensor> {
-        Rc::new(cached.expand([batch as i64, -1, -1], false))
+        Rc::new(cached.expand([-1, batch as i64, -1, -1], false))
     }
 }

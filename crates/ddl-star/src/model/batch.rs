@@ -21,8 +21,8 @@ pub(crate) struct WindowBatch {
     /// The neighbours in each frame.
     pub(crate) scenes: Arc<Scenes>,
     pub(crate) rows: SceneRows,
-    /// The neighbours for libtorch, made at the first use: see [`SceneRows::mask`].
-    pub(crate) mask: Arc<Mutex<Option<Tensor>>>,
+    /// The neighbours in all frames for libtorch, made at the first use.
+    pub(crate) seen: Arc<Mutex<Option<SeenNeighbours>>>,
     /// Share of the network's metric in the metric of a step, `[1]` or `[1, P, 1]`.
     pub(crate) share: Tensor,
 }
@@ -65,7 +65,7 @@ impl WindowBatch {
             positions: tensor(&positions, &[t, p, 2], (kind, device))?,
             rows: SceneRows::new(scenes.ranges(), device, kind),
             scenes: Arc::new(scenes),
-            mask: Arc::default(),
+            seen: Arc::default(),
             share: Tensor::ones([1], (kind, device)),
         })
     }
@@ -84,19 +84,16 @@ impl WindowBatch {
             positions: self.positions.shallow_clone(),
             scenes: Arc::clone(&self.scenes),
             rows: self.rows.shallow_clone(),
-            mask: Arc::clone(&self.mask),
+            seen: Arc::clone(&self.seen),
             share: self.share.shallow_clone(),
         }
     }
 
     /// The neighbours for libtorch during `frames`: one frame serves every batch entry, several serve one entry each.
     pub(crate) fn seen(&self, frames: Range<usize>) -> Rc<SeenNeighbours> {
-        let mut mask = self.mask.lock().unwrap_or_else(PoisonError::into_inner);
-        let mask = mask.get_or_insert_with(|| self.rows.mask(&self.scenes));
-        Rc::new(SeenNeighbours {
-            rows: self.rows.shallow_clone(),
-            mask: mask.narrow(0, frames.start as i64, frames.len() as i64),
-        })
+        let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
+        let seen = seen.get_or_insert_with(|| SeenNeighbours::new(&self.rows, &self.scenes));
+        Rc::new(seen.during(frames))
     }
 
     /// The number of pedestrians in all windows.

@@ -15,6 +15,9 @@ use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, St
 use std::sync::{Mutex, PoisonError};
 use tch::Tensor;
 
+/// Many enough that a graphics card is busy for longer than launching its kernels takes.
+const PEDESTRIANS_AT_ONCE: usize = 2048;
+
 impl TorchNetwork {
     /// This network, computed by libtorch, as a `ForecastWindows`.
     #[must_use]
@@ -83,6 +86,10 @@ impl ForecastWindows for TorchForecaster {
     fn copy_weights(&self) -> Result<Weights, NetworkError> {
         let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
         Ok(network.parameters().to_weights()?)
+    }
+
+    fn pedestrians_at_once(&self) -> usize {
+        PEDESTRIANS_AT_ONCE
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {

@@ -18,6 +18,9 @@ pub struct Parameters {
     flat: Tensor,
 }
 
+/// Of the learned tensors, and of others.
+type Gradients = (Vec<Option<Tensor>>, Vec<Option<Tensor>>);
+
 impl Parameters {
     pub(crate) fn new(layout: Layout, initial: &[f64], device: Device, kind: Kind) -> Self {
         let _guard = tch::no_grad_guard();
@@ -99,18 +102,25 @@ impl Parameters {
 
     /// The gradient of a loss computed by libtorch's operations only, as one vector like [`flat`](Self::flat).
     pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
-        let rows = Tensor::f_run_backward(&[loss], &self.tensors, false, false)?
-            .iter()
-            .zip(&self.tensors)
-            .map(|(gradient, tensor)| {
-                if gradient.defined() {
-                    gradient.f_reshape([-1])
-                } else {
-                    tensor.f_zeros_like()?.f_reshape([-1])
-                }
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Tensor::f_cat(&rows, 0)
+        let (gradients, _) = self.gradients_of(loss, &[])?;
+        let rows = gradients.into_iter().zip(&self.tensors).map(|(gradient, tensor)| {
+            let gradient = gradient.map_or_else(|| tensor.f_zeros_like(), Ok)?;
+            gradient.f_reshape([-1])
+        });
+        Tensor::f_cat(&rows.collect::<Result<Vec<_>, _>>()?, 0)
+    }
+
+    /// The gradients of a loss with respect to the learned tensors, and to tensors of its computation; `None` for those
+    /// that it does not depend on.
+    pub(super) fn gradients_of(&self, loss: &Tensor, of: &[&Tensor]) -> Result<Gradients, tch::TchError> {
+        let asked: Vec<&Tensor> = self.tensors.iter().chain(of.iter().copied()).collect();
+        let found = Tensor::f_run_backward(&[loss], &asked, false, false)?;
+        let mut learned: Vec<Option<Tensor>> = found
+            .into_iter()
+            .map(|gradient| gradient.defined().then_some(gradient))
+            .collect();
+        let others = learned.split_off(self.tensors.len());
+        Ok((learned, others))
     }
 }
 

@@ -1,12 +1,16 @@
 //! Scenes in rows of the length of the largest one: means over scenes, and attention among their pedestrians.
 
+use crate::model::crowd::NeighbourLists;
 use ddl_network::backend::Scenes;
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
-/// The rows of S scenes, each padded to the length L of the largest one.
+/// The length of rows is a multiple of this: fused attention on CUDA then takes the mask without a copy.
+const ALIGNMENT: usize = 8;
+
+/// The rows of S scenes, each padded to a common length L.
 #[derive(Debug)]
-pub(crate) struct SceneRows {
+pub struct SceneRows {
     scenes: i64,
     length: i64,
     /// `[S * L]`, the pedestrians of each scene, padded with its first pedestrian.
@@ -20,6 +24,7 @@ pub(crate) struct SceneRows {
 impl SceneRows {
     pub(crate) fn new(scenes: &[Range<usize>], device: Device, kind: Kind) -> Self {
         let length = scenes.iter().map(Range::len).max().unwrap_or(0);
+        let length = length.next_multiple_of(ALIGNMENT);
         let (mut pedestrians, mut shares, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for scene in scenes {
             let padding = length - scene.len();
@@ -99,8 +104,40 @@ impl SceneRows {
 
 /// Which pedestrians see each other during one frame for all batch entries, or one frame for each.
 #[derive(Debug)]
-pub struct SeenNeighbours {
-    pub(crate) rows: SceneRows,
-    /// `[1 or B, S, L, L]`: see [`SceneRows::mask`].
-    pub(crate) mask: Tensor,
+pub enum SeenNeighbours {
+    /// Attention within rows.
+    Rows {
+        /// Rows of scenes.
+        rows: SceneRows,
+        /// `[1 or B, S, L, L]`: see [`SceneRows::mask`].
+        mask: Tensor,
+    },
+    /// Attention over lists, in large scenes.
+    Lists(NeighbourLists),
+}
+
+/// Scenes with more pedestrians than this have lists of neighbours: the mask of a frame would have millions of pairs.
+const LARGEST_ROW: i64 = 512;
+
+impl SeenNeighbours {
+    /// The neighbours in all frames of `scenes`, in `rows` if these are short.
+    pub(crate) fn new(rows: &SceneRows, scenes: &Scenes) -> Self {
+        if rows.length > LARGEST_ROW {
+            return Self::Lists(NeighbourLists::new(scenes, rows.shares.device(), rows.shares.kind()));
+        }
+        Self::Rows {
+            rows: rows.shallow_clone(),
+            mask: rows.mask(scenes),
+        }
+    }
+
+    pub(crate) fn during(&self, frames: Range<usize>) -> Self {
+        match self {
+            Self::Rows { rows, mask } => Self::Rows {
+                rows: rows.shallow_clone(),
+                mask: mask.narrow(0, frames.start as i64, frames.len() as i64),
+            },
+            Self::Lists(lists) => Self::Lists(lists.during(frames)),
+        }
+    }
 }

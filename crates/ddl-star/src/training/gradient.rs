@@ -23,10 +23,10 @@ pub(crate) fn by_torch(
     generator: MutexGuard<'_, ()>,
 ) -> Result<(Tensor, Tensor), StarError> {
     let parameters = network.parameters();
-    let torch = TorchBackend::new(parameters, Mode::Train);
+    let torch = TorchBackend::training(parameters, Mode::Train);
     let loss = loss(network.layers(), objective, batch, noise, Engine::Torch(&torch))?;
     drop(generator);
-    let gradient = parameters.gradient_of(&loss)?;
+    let gradient = torch.gradient(&loss, parameters)?;
     Ok((loss, gradient))
 }
 

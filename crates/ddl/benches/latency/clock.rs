@@ -7,11 +7,11 @@ use std::hint::black_box;
 /// Bytes read to empty the caches: more than they hold.
 const CACHES: usize = 256 << 20;
 
-#[derive(Clone, Copy)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) enum MeasuredTime {
     /// Processor time of all threads of the process.
     Processor,
-    #[cfg(feature = "torch")]
+    /// Of the clock on the wall.
     Wall,
 }
 
@@ -19,7 +19,6 @@ impl MeasuredTime {
     fn now(self) -> f64 {
         let time = clock_gettime(match self {
             Self::Processor => ClockId::ProcessCPUTime,
-            #[cfg(feature = "torch")]
             Self::Wall => ClockId::Monotonic,
         });
         time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64

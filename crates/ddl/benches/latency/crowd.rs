@@ -15,28 +15,48 @@ const DENSITY: f64 = 0.2;
 /// Noise of a position from frame to frame (metres).
 const JITTER: f64 = 0.01;
 
-/// Prints one row for each number of pedestrians: seconds of processor time, and the peak memory of the process.
-pub(crate) fn measure(sizes: &[usize]) -> Result<()> {
-    let model = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
-    let mut out = std::io::stdout().lock();
-    writeln!(
-        out,
-        "{DENSITY} pedestrians per square metre, one thread, processor time\n\
-         pedestrians | 20 hypotheses, s | ms a pedestrian | one, s | a live frame, one, s | MiB at most"
-    )?;
-    for &pedestrians in sizes {
-        let window = crowd(pedestrians)?;
-        let of_hypotheses = seconds(pedestrians, || Ok(model.forecast(&window).map(drop)?))?;
-        let of_one = seconds(pedestrians, || Ok(One(&model).forecast(&window).map(drop)?))?;
-        let frame = live_frame(&model, &window)?;
+/// What is measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Crowds {
+    /// On the CPU processor time is measured, on a card the time by the wall clock.
+    pub(crate) device: DeviceChoice,
+    /// Only one hypothesis for each pedestrian.
+    pub(crate) only_one: bool,
+}
+
+impl Crowds {
+    /// Prints one row for each number of pedestrians: seconds, and the peak memory of the process.
+    pub(crate) fn measure(self, sizes: &[usize]) -> Result<()> {
+        let model = Ddl::builtin(BuiltinModel::Hotel, self.device)?;
+        let clock = match self.device {
+            DeviceChoice::Cuda => MeasuredTime::Wall,
+            _ => MeasuredTime::Processor,
+        };
+        let mut out = std::io::stdout().lock();
         writeln!(
             out,
-            "{pedestrians} | {of_hypotheses:.4} | {:.3} | {of_one:.4} | {frame:.4} | {}",
-            1e3 * of_hypotheses / pedestrians as f64,
-            most_memory()?
+            "{DENSITY} pedestrians per square metre, {clock:?} time, threads: {}\n\
+             pedestrians | 20 hypotheses, s | ms a pedestrian | one, s | a live frame, one, s | MiB at most",
+            rayon::current_num_threads()
         )?;
+        for &pedestrians in sizes {
+            let window = crowd(pedestrians)?;
+            let of_hypotheses = if self.only_one {
+                f64::NAN
+            } else {
+                seconds(clock, pedestrians, || Ok(model.forecast(&window).map(drop)?))?
+            };
+            let of_one = seconds(clock, pedestrians, || Ok(One(&model).forecast(&window).map(drop)?))?;
+            let frame = live_frame(clock, &model, &window)?;
+            writeln!(
+                out,
+                "{pedestrians} | {of_hypotheses:.4} | {:.3} | {of_one:.4} | {frame:.4} | {}",
+                1e3 * of_hypotheses / pedestrians as f64,
+                most_memory()?
+            )?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
 /// Pedestrians at random positions in a square. Each walks in a straight line at its own speed.
@@ -76,7 +96,7 @@ impl Forecaster for One<'_> {
 }
 
 /// Seconds to push the eighth frame of a stream, the first with a forecast for all pedestrians.
-fn live_frame(model: &Ddl, window: &Window) -> Result<f64> {
+fn live_frame(clock: MeasuredTime, model: &Ddl, window: &Window) -> Result<f64> {
     let mut live = LiveForecaster::new(One(model));
     let frame = |t: usize| {
         let pedestrians = window.pedestrians().iter().enumerate();
@@ -86,18 +106,18 @@ fn live_frame(model: &Ddl, window: &Window) -> Result<f64> {
     for t in 0..last {
         live.push(t as i64, frame(t))?;
     }
-    seconds(window.len(), || {
+    seconds(clock, window.len(), || {
         Ok(live.clone().push(last as i64, frame(last)).map(drop)?)
     })
 }
 
-/// Processor time of the work, the minimum of three turns. A turn repeats the work of a small window until it is long
+/// Time of the work, the minimum of three turns. A turn repeats the work of a small window until it is long
 /// enough for the clock; a long turn is not repeated.
-fn seconds(pedestrians: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
+fn seconds(clock: MeasuredTime, pedestrians: usize, mut work: impl FnMut() -> Result<()>) -> Result<f64> {
     let repetitions = (400 / pedestrians).max(1);
     let mut least = f64::INFINITY;
     for _ in 0..3 {
-        let spent = MeasuredTime::Processor.seconds(|| (0..repetitions).try_for_each(|_| work()))?;
+        let spent = clock.seconds(|| (0..repetitions).try_for_each(|_| work()))?;
         least = least.min(spent / repetitions as f64);
         if spent > LONG {
             break;

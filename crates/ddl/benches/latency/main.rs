@@ -5,8 +5,10 @@
 //! 261 pedestrians with initial weights. The results are medians of several turns, each with empty caches: processor
 //! time for one thread, wall-clock time for two.
 //!
-//! `cargo bench -p ddl-forecast --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead, and
-//! `-- crowd 100 400` only these numbers of pedestrians.
+//! `cargo bench -p ddl-forecast --bench latency -- crowd` measures forecasts of 1 to 20,000 pedestrians instead,
+//! `-- crowd 100 400` only these numbers of pedestrians, and `-- crowd one 100000` only with one hypothesis each. With
+//! `cuda` (and `--features torch`) forecasts and training steps are measured on a card, by the wall clock and with all
+//! threads.
 
 mod clock;
 mod crowd;
@@ -15,6 +17,7 @@ mod scene;
 mod step;
 
 use clock::{MeasuredTime, side_by_side};
+use crowd::Crowds;
 use ddl::data::{Dataset, Position, Window};
 use ddl::memory::SceneMemory;
 use ddl::network::{BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule};
@@ -29,30 +32,50 @@ fn main() -> Result<()> {
     let given = |name: &str| arguments.iter().any(|argument| argument == name);
     // `cargo bench` passes this argument; `cargo test` only checks that the benchmark runs.
     let is_measured = given("--bench");
+    let device = if given("cuda") {
+        DeviceChoice::Cuda
+    } else {
+        DeviceChoice::Cpu
+    };
+    ddl::prepare(device, None)?;
     if given("crowd") || !is_measured {
         let mut sizes: Vec<usize> = arguments.iter().filter_map(|it| it.parse().ok()).collect();
         if sizes.is_empty() {
             sizes.extend(&CROWDS[..if is_measured { CROWDS.len() } else { 3 }]);
         }
-        let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-        one.install(|| crowd::measure(&sizes))?;
+        let measured = Crowds {
+            device,
+            only_one: given("one"),
+        };
+        match device {
+            DeviceChoice::Cuda => measured.measure(&sizes)?,
+            _ => one_thread()?.install(|| measured.measure(&sizes))?,
+        }
         if is_measured {
             return Ok(());
         }
     }
     let turns = if is_measured { 21 } else { 1 };
     let dataset = Dataset::simulated(1);
-    let window = scene::of(&dataset)?;
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let memory = memory_of(&dataset, if turns > 1 { FULL } else { 1 })?;
-    let forecasts = one.install(|| forecast(&window, &memory, turns))?;
     let mut out = std::io::stdout().lock();
+    #[cfg(feature = "torch")]
+    if device == DeviceChoice::Cuda {
+        writeln!(out, "{}", step::measured(&dataset, None, turns)?)?;
+        return Ok(());
+    }
+    let window = scene::of(&dataset)?;
+    let memory = memory_of(&dataset, if turns > 1 { FULL } else { 1 })?;
+    let forecasts = one_thread()?.install(|| forecast(&window, &memory, turns))?;
     writeln!(out, "\n{forecasts}")?;
     #[cfg(feature = "torch")]
     for threads in [1, 2] {
-        writeln!(out, "{}", step::measured(&dataset, threads, turns)?)?;
+        writeln!(out, "{}", step::measured(&dataset, Some(threads), turns)?)?;
     }
     Ok(())
+}
+
+fn one_thread() -> Result<rayon::ThreadPool> {
+    Ok(rayon::ThreadPoolBuilder::new().num_threads(1).build()?)
 }
 
 const CROWDS: [usize; 9] = [1, 10, 25, 100, 400, 1_600, 5_000, 10_000, 20_000];

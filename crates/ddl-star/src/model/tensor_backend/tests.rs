@@ -79,9 +79,9 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Engine
         let gradient = pass.gradient(&loss, network.layers(), parameters.count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
     } else {
-        let torch = TorchBackend::new(parameters, Mode::Evaluate);
+        let torch = TorchBackend::training(parameters, Mode::Evaluate);
         let loss = loss(&network, Engine::Torch(&torch));
-        let gradient = parameters.gradient_of(&loss).unwrap();
+        let gradient = torch.gradient(&loss, parameters).unwrap();
         (loss, gradient)
     };
     (loss.double_value(&[]), gradient.to_kind(Kind::Double))
