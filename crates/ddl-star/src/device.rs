@@ -2,6 +2,8 @@
 
 use crate::StarError;
 use ddl_network::DeviceChoice;
+#[cfg(target_os = "linux")]
+use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
 use std::sync::OnceLock;
 
 /// The libtorch version that this crate is built for.
@@ -67,39 +69,56 @@ impl Drop for OneThread {
     }
 }
 
-fn open_cuda() -> Result<(), StarError> {
-    static OPENED: OnceLock<Result<(), String>> = OnceLock::new();
-    OPENED
-        .get_or_init(load_cuda)
-        .clone()
-        .map_err(|problem| StarError::Device {
-            device: "cuda".into(),
-            problem,
-        })
+/// The error when CUDA cannot be used.
+pub(crate) fn no_cuda(problem: String) -> StarError {
+    StarError::Device {
+        device: "cuda".into(),
+        problem,
+    }
 }
 
-fn load_cuda() -> Result<(), String> {
-    #[cfg(target_os = "linux")]
-    {
-        use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
-        // SAFETY: loading the library runs its initialisers, which register the CUDA backend with the libtorch in this
-        // process. The library is the matching build (same release). It is opened once, before any tensor exists, and
-        // never unloaded.
-        #[allow(unsafe_code)]
-        let library = unsafe { Library::open(Some("libtorch_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
-        match library {
-            Ok(library) => std::mem::forget(library),
-            Err(error) => {
-                return Err(format!(
-                    "libtorch_cuda.so cannot be loaded ({error}); put the lib folder of a CUDA \
-                     build of torch 2.11.0 on LD_LIBRARY_PATH (docs/libtorch.md), or use --device cpu"
-                ));
+fn open_cuda() -> Result<(), StarError> {
+    static FOUND: OnceLock<Result<(), String>> = OnceLock::new();
+    FOUND
+        .get_or_init(|| {
+            load_cuda()?;
+            if tch::Cuda::is_available() {
+                Ok(())
+            } else {
+                Err("libtorch finds no CUDA device; check the driver, or use --device cpu".into())
             }
-        }
-    }
-    if tch::Cuda::is_available() {
-        Ok(())
-    } else {
-        Err("libtorch finds no CUDA device; check the driver, or use --device cpu".into())
-    }
+        })
+        .clone()
+        .map_err(no_cuda)
+}
+
+#[cfg(not(target_os = "linux"))]
+fn load_cuda() -> Result<(), String> {
+    Ok(())
+}
+
+/// `libtorch_cuda.so`, after CUDA was opened.
+#[cfg(target_os = "linux")]
+static CUDA: OnceLock<Library> = OnceLock::new();
+
+#[cfg(target_os = "linux")]
+pub(crate) fn cuda_library() -> Option<&'static Library> {
+    CUDA.get()
+}
+
+#[cfg(target_os = "linux")]
+fn load_cuda() -> Result<(), String> {
+    // SAFETY: loading the library runs its initialisers, which register the CUDA backend with the libtorch in this
+    // process. The library is the matching build (same release). It is opened once, before any tensor exists, and
+    // never unloaded.
+    #[allow(unsafe_code)]
+    let library = unsafe { Library::open(Some("libtorch_cuda.so"), RTLD_NOW | RTLD_GLOBAL) };
+    let library = library.map_err(|error| {
+        format!(
+            "libtorch_cuda.so cannot be loaded ({error}); put the lib folder of a CUDA build of torch 2.11.0 on \
+             LD_LIBRARY_PATH (docs/libtorch.md), or use --device cpu"
+        )
+    })?;
+    CUDA.get_or_init(|| library);
+    Ok(())
 }

@@ -52,6 +52,8 @@
 //! training computes parts of a batch on rayon's threads, with the same results for every number of them. It seeds
 //! libtorch's process-wide generator at every step, for jitter and dropout.
 
+#[cfg(target_os = "linux")]
+mod cuda_graph;
 mod device;
 mod error;
 mod model;

@@ -6,6 +6,8 @@ mod gradient;
 mod loss;
 pub(crate) mod optimizer;
 mod prepared;
+#[cfg(target_os = "linux")]
+mod recorded;
 mod schedule;
 mod trainer;
 

@@ -23,6 +23,24 @@ pub(crate) struct StepDraw {
 }
 
 impl StepDraw {
+    /// The same draws in other tensors.
+    pub(crate) fn copied(&self) -> Self {
+        Self {
+            noise: self.noise.copy(),
+            turn: self.turn.as_ref().map(Tensor::copy),
+            ..*self
+        }
+    }
+
+    /// Takes the numbers of another step into the same tensors.
+    pub(crate) fn set(&mut self, other: &Self) -> Result<(), StarError> {
+        self.noise.f_copy_(&other.noise)?;
+        if let (Some(turn), Some(other)) = (&mut self.turn, &other.turn) {
+            turn.f_copy_(other)?;
+        }
+        Ok(())
+    }
+
     /// The draws of a step, which depend on the seed and the number of the step alone.
     pub(crate) fn new(
         step: u64,

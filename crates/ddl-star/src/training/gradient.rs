@@ -11,21 +11,19 @@ use ddl_network::seed::{Stage, stream};
 use ddl_network::{Objective, StepRule};
 use rand::Rng as _;
 use rayon::prelude::*;
-use std::sync::{Arc, MutexGuard};
+use std::sync::Arc;
 use tch::Tensor;
 
-/// By libtorch, whose generator draws the dropout; it is released before the backward pass.
+/// By libtorch, whose generator draws the dropout.
 pub(crate) fn by_torch(
     network: &TorchNetwork,
     objective: Objective,
     batch: &TrainingBatch,
     noise: Tensor,
-    generator: MutexGuard<'_, ()>,
 ) -> Result<(Tensor, Tensor), StarError> {
     let parameters = network.parameters();
     let torch = TorchBackend::training(parameters, Mode::Train);
     let loss = loss(network.layers(), objective, batch, noise, Engine::Torch(&torch))?;
-    drop(generator);
     let gradient = torch.gradient(&loss, parameters)?;
     Ok((loss, gradient))
 }

@@ -31,6 +31,19 @@ pub(crate) struct TrainingBatch {
 }
 
 impl TrainingBatch {
+    /// The batch under the rotation and mirror of a step, with [jitter](Self::jittered) if there is any.
+    pub(crate) fn varied(&self, turn: Option<&Tensor>, jitter: f64) -> Self {
+        let turned = match turn {
+            Some(images) => self.turned(images),
+            None => self.shared(),
+        };
+        if jitter > 0.0 {
+            turned.jittered(jitter)
+        } else {
+            turned
+        }
+    }
+
     /// The batch with all positions transformed by the images of the axes, the rows of `images` `[2, 2]`.
     pub(crate) fn turned(&self, images: &Tensor) -> Self {
         Self {

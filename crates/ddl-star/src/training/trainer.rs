@@ -8,6 +8,8 @@ use crate::training::draws::StepDraw;
 use crate::training::gradient;
 use crate::training::optimizer::Adam;
 use crate::training::prepared::{PreparedBatches, TrainingBatch};
+#[cfg(target_os = "linux")]
+use crate::training::recorded::RecordedSteps;
 use crate::training::schedule::Schedule;
 use ddl_core::WorkDone;
 use ddl_data::{Position, Window};
@@ -18,7 +20,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::PoisonError;
 use std::time::Instant;
-use tch::Tensor;
+use tch::{Device, Tensor};
 
 /// Least mean number of pedestrians in the parts of a batch. On the CPU, several threads compute the parts, and their
 /// gradients are added. Smaller parts take more processor time.
@@ -33,6 +35,9 @@ pub struct Trainer {
     adam: Adam,
     schedule: Schedule,
     batches: PreparedBatches,
+    /// On a card.
+    #[cfg(target_os = "linux")]
+    recorded: Option<RecordedSteps>,
     config: TrainingConfig,
     progress: TrainerProgress,
 }
@@ -65,6 +70,11 @@ impl Trainer {
             return Err(StarError::NoTrainingWindows);
         }
         let kernels = network.kernels()?;
+        #[cfg(target_os = "linux")]
+        let recorded = match network.device() {
+            Device::Cuda(_) => Some(RecordedSteps::new(schedule.batches())?),
+            _ => None,
+        };
         let batches = PreparedBatches::new(
             (windows, goals),
             schedule.batches(),
@@ -78,6 +88,8 @@ impl Trainer {
             network,
             schedule,
             batches,
+            #[cfg(target_os = "linux")]
+            recorded,
             config,
             progress: TrainerProgress::default(),
         })
@@ -181,31 +193,32 @@ impl Trainer {
     }
 
     /// The loss of a step and its gradient with respect to all learned numbers, as one vector.
-    fn gradient(&self, step: u64, draw: &StepDraw) -> Result<(Tensor, Tensor), StarError> {
+    fn gradient(&mut self, step: u64, draw: &StepDraw) -> Result<(Tensor, Tensor), StarError> {
         let index = self.schedule.batch_index(step);
-        let parts = self.batches.batch(index, self.schedule.batch(index))?.iter();
-        let turned = parts.map(|part| match &draw.turn {
-            Some(images) => part.turned(images),
-            None => part.shared(),
-        });
+        let parts = self.batches.batch(index, self.schedule.batch(index))?;
+        let network = &self.network;
+        let TrainingConfig { objective, jitter, .. } = self.config;
         // Held from seeding to the last draw: of jitter, and of dropout by libtorch.
         let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         tch::manual_seed(draw.libtorch);
-        let jitter = self.config.jitter;
-        let parts: Vec<TrainingBatch> = if jitter > 0.0 {
-            turned.map(|part| part.jittered(jitter)).collect()
-        } else {
-            turned.collect()
-        };
-        let (network, objective) = (&self.network, self.config.objective);
         if let Some(kernels) = &self.kernels {
+            let varied = parts.iter().map(|part| part.varied(draw.turn.as_ref(), jitter));
+            let varied: Vec<TrainingBatch> = varied.collect();
             drop(generator);
-            return gradient::by_kernels(network, kernels, objective, parts, draw);
+            return gradient::by_kernels(network, kernels, objective, varied, draw);
         }
-        let [batch] = &parts[..] else {
+        let [batch] = parts else {
             unreachable!("without kernels, batches are whole")
         };
-        gradient::by_torch(network, objective, batch, draw.noise.shallow_clone(), generator)
+        let compute = |draw: &StepDraw| {
+            let batch = batch.varied(draw.turn.as_ref(), jitter);
+            gradient::by_torch(network, objective, &batch, draw.noise.shallow_clone())
+        };
+        #[cfg(target_os = "linux")]
+        if let Some(recorded) = &mut self.recorded {
+            return recorded.gradient(index, batch, draw, compute);
+        }
+        compute(draw)
     }
 
     fn ensure_finite(&self, quantities: [(&'static str, f64); 2]) -> Result<(), StarError> {

@@ -59,7 +59,7 @@ fn every_device_gives_the_same_gradients() {
             ..training
         };
         let gradient = |device: ComputeDevice, kind: Kind| {
-            let trainer = of_large_batches(&star, &training, (device, kind));
+            let mut trainer = of_large_batches(&star, &training, (device, kind));
             let parts = trainer.batches.batch(0, trainer.schedule.batch(0)).unwrap();
             let sizes: Vec<usize> = parts.iter().map(|part| part.scenes.pedestrians()).collect();
             let by_kernels = (device, kind) == (cpu, Kind::Float);
