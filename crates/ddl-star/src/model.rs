@@ -4,9 +4,9 @@
 //! time steps 0.4 s apart.
 
 mod attention;
+mod attention_blocks;
 mod backend;
 mod batch;
-mod crowd;
 mod emission;
 mod flow;
 mod forecaster;

@@ -6,6 +6,7 @@ use crate::seed::{Stage, stream};
 use ddl_data::{HORIZON, OBSERVED, Position, Window};
 use rand::RngExt as _;
 use rand_distr::StandardNormal;
+use rayon::prelude::*;
 
 /// The pedestrians of a window with more than this are sorted by position, so that the keys and values that a query
 /// reads are close together in memory.
@@ -148,13 +149,19 @@ impl ForecastBatch<'_> {
 }
 
 /// The paths of some `rows`: from `[12, H, P]` to `[rows, H, 12]`.
-fn paths<T: Copy>(steps: &[T], rows: &[usize], (hypotheses, pedestrians): (usize, usize)) -> Vec<T> {
-    let mut paths = Vec::with_capacity(rows.len() * hypotheses * HORIZON);
-    for &row in rows {
-        for h in 0..hypotheses {
-            paths.extend((0..HORIZON).map(|t| steps[(t * hypotheses + h) * pedestrians + row]));
+fn paths<T: Copy + Send + Sync>(steps: &[T], rows: &[usize], (hypotheses, pedestrians): (usize, usize)) -> Vec<T> {
+    let Some(&any) = steps.first() else {
+        return Vec::new();
+    };
+    let of_row = hypotheses * HORIZON;
+    let mut paths = vec![any; rows.len() * of_row];
+    paths.par_chunks_mut(of_row).zip(rows).for_each(|(paths, row)| {
+        for (h, path) in paths.chunks_mut(HORIZON).enumerate() {
+            for (t, number) in path.iter_mut().enumerate() {
+                *number = steps[(t * hypotheses + h) * pedestrians + row];
+            }
         }
-    }
+    });
     paths
 }
 

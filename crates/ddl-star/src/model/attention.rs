@@ -1,34 +1,23 @@
 //! Multi-head attention (Vaswani et al. 2017, section 3.2) of projected tokens, in the two forms that STAR needs.
 
-use crate::model::scene_rows::SeenNeighbours;
+use crate::model::attention_blocks::AttentionBlocks;
 use tch::Tensor;
 
 /// Attention of every pedestrian over its neighbours. Shapes: `qkv` `[B, P, 3 * width]`; `seen` during one time step or
 /// B -> `[B, P, width]`.
-pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &SeenNeighbours, dropout: f64) -> Tensor {
+pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &AttentionBlocks, dropout: f64) -> Tensor {
     let (entries, width) = (qkv.size()[0], qkv.size()[2] / 3);
-    let (rows_of_scenes, mask) = match seen {
-        SeenNeighbours::Rows { rows, mask } => (rows, mask),
-        SeenNeighbours::Lists(lists) => return lists.attention(qkv, heads, scale(width, heads)),
-    };
-    let rows = rows_of_scenes.in_rows(qkv);
-    let (scenes, length) = (rows.size()[1], rows.size()[2]);
-    let count = entries * scenes;
-    let parts = rows.view([count, length, 3, heads, width / heads]).unbind(2);
-    let mask = mask.expand([entries, scenes, length, length], false);
-    let [query, key, value] = [0, 1, 2].map(|part: usize| parts[part].transpose(1, 2));
-    let mixed = Tensor::scaled_dot_product_attention(
-        &query,
-        &key,
-        &value,
-        Some(&mask.reshape([count, 1, length, length])),
-        dropout,
-        false,
-        scale(width, heads),
-        false,
-    );
-    let mixed = mixed.transpose(1, 2).reshape([entries, scenes, length, width]);
-    rows_of_scenes.out_of_rows(&mixed)
+    let queries = seen.queries_of(&qkv.narrow(2, 0, width));
+    let (blocks, length) = (queries.size()[1], queries.size()[2]);
+    let count = entries * blocks;
+    let query = queries.view([count, length, heads, width / heads]).transpose(1, 2);
+    let pairs = seen.keys_of(&qkv.narrow(2, width, 2 * width));
+    let parts = pairs.view([count, -1, 2, heads, width / heads]).unbind(2);
+    let [key, value] = [0, 1].map(|part: usize| parts[part].transpose(1, 2));
+    let (mask, scale) = (seen.mask(entries), scale(width, heads));
+    let mixed = Tensor::scaled_dot_product_attention(&query, &key, &value, Some(&mask), dropout, false, scale, false);
+    let mixed = mixed.transpose(1, 2).reshape([entries, blocks, length, width]);
+    seen.out_of_blocks(&mixed)
 }
 
 /// Attention of the newest token over all tokens so far. Shapes: `tokens` `[t, B, P, 3 * width]`, the newest last ->

@@ -2,7 +2,7 @@
 
 use crate::model::attention;
 use crate::model::parameters::Parameters;
-use crate::model::scene_rows::SeenNeighbours;
+use crate::model::attention_blocks::AttentionBlocks;
 use crate::model::shared_weights::{LearnedMap, SharedWeights};
 use ddl_network::backend::{Backend, Mode};
 use ddl_network::weights::{EncoderLayer, Linear};
@@ -94,7 +94,7 @@ impl TorchBackend {
 impl Backend for TorchBackend {
     type Tokens = Rc<Tensor>;
     type KeyValues = Rc<Tensor>;
-    type Seen = Rc<SeenNeighbours>;
+    type Seen = Rc<AttentionBlocks>;
 
     fn entries(&self, x: &Rc<Tensor>) -> usize {
         x.size()[0] as usize
@@ -120,7 +120,7 @@ impl Backend for TorchBackend {
         }
     }
 
-    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &Rc<SeenNeighbours>) -> Rc<Tensor> {
+    fn spatial_attention(&self, layer: EncoderLayer, x: &Rc<Tensor>, seen: &Rc<AttentionBlocks>) -> Rc<Tensor> {
         let p = match self.mode {
             Mode::Train => layer.dropout,
             Mode::Evaluate => 0.0,

@@ -2,7 +2,8 @@
 
 use crate::StarError;
 use crate::model::numbers::tensor;
-use crate::model::scene_rows::{SceneRows, SeenNeighbours};
+use crate::model::attention_blocks::AttentionBlocks;
+use crate::model::scene_rows::SceneRows;
 use ddl_data::Window;
 use ddl_network::backend::Scenes;
 use ddl_network::{NetworkError, visibility};
@@ -22,7 +23,7 @@ pub(crate) struct WindowBatch {
     pub(crate) scenes: Arc<Scenes>,
     pub(crate) rows: SceneRows,
     /// The neighbours in all frames for libtorch, made at the first use.
-    pub(crate) seen: Arc<Mutex<Option<SeenNeighbours>>>,
+    pub(crate) seen: Arc<Mutex<Option<AttentionBlocks>>>,
     /// Share of the network's metric in the metric of a step, `[1]` or `[1, P, 1]`.
     pub(crate) share: Tensor,
 }
@@ -90,9 +91,12 @@ impl WindowBatch {
     }
 
     /// The neighbours for libtorch during `frames`: one frame serves every batch entry, several serve one entry each.
-    pub(crate) fn seen(&self, frames: Range<usize>) -> Rc<SeenNeighbours> {
+    pub(crate) fn seen(&self, frames: Range<usize>) -> Rc<AttentionBlocks> {
         let mut seen = self.seen.lock().unwrap_or_else(PoisonError::into_inner);
-        let seen = seen.get_or_insert_with(|| SeenNeighbours::new(&self.rows, &self.scenes));
+        let seen = seen.get_or_insert_with(|| {
+            let (device, kind) = (self.positions.device(), self.positions.kind());
+            AttentionBlocks::new(&self.scenes, device, kind)
+        });
         Rc::new(seen.during(frames))
     }
 

@@ -282,8 +282,8 @@ impl GoalModel {
     /// unfamiliar.
     fn within_reach(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
         let time_step = self.config.star.time_step;
-        let of_window = |(window, sets)| {
-            let sets = reach::within(window, sets, time_step).into_iter();
+        let of_window = |(window, sets): (&Window, Vec<GoalSet>)| {
+            let sets = reach::within(window, sets, time_step).into_par_iter();
             let familiarity = self.familiarity(window);
             let tempered = |(set, familiarity)| Calibration::fitted().tempered(set, familiarity);
             sets.zip(familiarity).map(tempered).collect()

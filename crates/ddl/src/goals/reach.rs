@@ -3,6 +3,7 @@
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_goal::GoalSet;
 use ddl_network::motion_bounds;
+use rayon::prelude::*;
 
 /// Widening of the goals for each metre that the observation adds to the standard deviation of an endpoint. Chosen on
 /// dut with noise of 10 and 20 cm (docs/tried.md): more gains nothing there; citr gains as much, juelich nothing.
@@ -17,5 +18,5 @@ pub(crate) fn within(window: &Window, sets: Vec<GoalSet>, time_step: f64) -> Vec
         let top_speed = motion_bounds(observed, time_step, 0.0).top_speed();
         set.clamped_to(observed[OBSERVED - 1], top_speed * time_step * HORIZON as f64)
     };
-    sets.into_iter().enumerate().map(reachable).collect()
+    sets.into_par_iter().enumerate().map(reachable).collect()
 }

@@ -3,6 +3,7 @@
 use ddl_core::ForecastError;
 use ddl_data::{Position, Window};
 use ddl_goal::{GoalEstimator, GoalSet};
+use rayon::prelude::*;
 
 /// The retrieved goal sets of every pedestrian of every window.
 ///
@@ -30,7 +31,7 @@ pub(crate) fn retrieved(estimator: &GoalEstimator, windows: &[Window]) -> Result
 /// so they do not show how steady a motion is.
 pub(crate) fn with_central_only(windows: &[Window], sets: &[Vec<GoalSet>]) -> Vec<Vec<GoalSet>> {
     let of_window = |(window, sets): (&Window, &Vec<GoalSet>)| {
-        let pedestrians = sets.iter().enumerate();
+        let pedestrians = sets.par_iter().enumerate();
         pedestrians
             .map(|(i, set)| set.with_central_only(&window.observed(i)[window.quality(i).unseen..]))
             .collect()
