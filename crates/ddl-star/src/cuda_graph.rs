@@ -61,14 +61,15 @@ impl Recorder {
             let functions = GraphFunctions {
                 construct: *symbol(cuda, "_ZN2at4cuda9CUDAGraphC1Eb")?,
                 destroy: *symbol(cuda, "_ZN2at4cuda9CUDAGraphD1Ev")?,
-                begin: *symbol(cuda, "_ZN2at4cuda9CUDAGraph13capture_beginESt4pairIyyE21cudaStreamCaptureMode")?,
+                begin: *symbol(
+                    cuda,
+                    "_ZN2at4cuda9CUDAGraph13capture_beginESt4pairIyyE21cudaStreamCaptureMode",
+                )?,
                 end: *symbol(cuda, "_ZN2at4cuda9CUDAGraph11capture_endEv")?,
                 replay: *symbol(cuda, "_ZN2at4cuda9CUDAGraph6replayEv")?,
             };
-            let new_pool = symbol::<unsafe extern "C-unwind" fn() -> TwoWords>(
-                cuda,
-                "_ZN2at4cuda17graph_pool_handleEv",
-            )?;
+            let new_pool =
+                symbol::<unsafe extern "C-unwind" fn() -> TwoWords>(cuda, "_ZN2at4cuda17graph_pool_handleEv")?;
             let stream = symbol::<unsafe extern "C-unwind" fn(bool, i8) -> TwoWords>(
                 &c10,
                 "_ZN3c104cuda17getStreamFromPoolEba",

@@ -26,30 +26,14 @@ pub(super) fn temporal_attention(tokens: &Tensor, heads: i64) -> Tensor {
     let (batch, pedestrians, width) = (tokens.size()[1], tokens.size()[2], tokens.size()[3] / 3);
     let parts = tokens.view([-1, batch, pedestrians, 3, heads, width / heads]).unbind(3);
     let (query, key, value) = (parts[0].narrow(0, -1, 1), &parts[1], &parts[2]);
-    // With one query for each pedestrian and head, products and sums are faster than a batch of 1 x t matrix products.
+    // With one query for each pedestrian and head, products and sums are faster than a batch of 1 x t matrix products,
+    // and on a card than fused attention (48 us forwards, 145 us backwards).
     let scores = key * (query * scale(width, heads));
     let scores = scores.sum_dim_intlist([-1i64].as_slice(), true, None);
     let weights = scores.softmax(0, scores.kind());
     (value * weights)
         .sum_dim_intlist([0i64].as_slice(), false, None)
         .reshape([batch, pedestrians, width])
-}
-
-/// [`temporal_attention`] by libtorch's fused kernels, which need fewer launches forwards and backwards.
-pub(super) fn fused_temporal_attention(tokens: &Tensor, heads: i64) -> Tensor {
-    let (batch, pedestrians, width) = (tokens.size()[1], tokens.size()[2], tokens.size()[3] / 3);
-    let parts = tokens
-        .view([-1, batch * pedestrians, 3, heads, width / heads])
-        .unbind(2);
-    // [t, B P, heads, n] -> [B P, heads, t, n]
-    let [query, key, value] = [0, 1, 2].map(|part: usize| parts[part].permute([1, 2, 0, 3]));
-    let newest = query.narrow(2, -1, 1);
-    let scale = scale(width, heads);
-    Tensor::scaled_dot_product_attention(&newest, &key, &value, None::<Tensor>, 0.0, false, scale, false).reshape([
-        batch,
-        pedestrians,
-        width,
-    ])
 }
 
 fn scale(width: i64, heads: i64) -> f64 {

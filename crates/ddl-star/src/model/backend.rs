@@ -1,8 +1,8 @@
 //! The operations of a backbone on libtorch: on any device, in any precision, with automatic gradients.
 
 use crate::model::attention;
-use crate::model::parameters::Parameters;
 use crate::model::attention_blocks::AttentionBlocks;
+use crate::model::parameters::Parameters;
 use crate::model::shared_weights::{LearnedMap, SharedWeights};
 use ddl_network::backend::{Backend, Mode};
 use ddl_network::weights::{EncoderLayer, Linear};
@@ -132,11 +132,7 @@ impl Backend for TorchBackend {
 
     fn temporal_attention(&self, layer: EncoderLayer, newest: &Rc<Tensor>, cache: &[Rc<Tensor>]) -> Rc<Tensor> {
         let tokens = self.with_newest(layer, newest, cache.first());
-        let heads = layer.sizes.heads as i64;
-        let mixed = match self.shared {
-            Some(_) => attention::fused_temporal_attention(&tokens, heads),
-            None => attention::temporal_attention(&tokens, heads),
-        };
+        let mixed = attention::temporal_attention(&tokens, layer.sizes.heads as i64);
         self.after_attention(layer, newest, &mixed)
     }
 

@@ -1,8 +1,8 @@
 //! Several windows concatenated into tensors.
 
 use crate::StarError;
-use crate::model::numbers::tensor;
 use crate::model::attention_blocks::AttentionBlocks;
+use crate::model::numbers::tensor;
 use crate::model::scene_rows::SceneRows;
 use ddl_data::Window;
 use ddl_network::backend::Scenes;

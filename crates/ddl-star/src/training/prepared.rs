@@ -37,11 +37,7 @@ impl TrainingBatch {
             Some(images) => self.turned(images),
             None => self.shared(),
         };
-        if jitter > 0.0 {
-            turned.jittered(jitter)
-        } else {
-            turned
-        }
+        if jitter > 0.0 { turned.jittered(jitter) } else { turned }
     }
 
     /// The batch with all positions transformed by the images of the axes, the rows of `images` `[2, 2]`.

@@ -60,19 +60,18 @@ impl RecordedSteps {
         let inputs = self.inputs.get_or_insert_with(|| draw.copied());
         inputs.set(draw)?;
         let place = &mut self.steps[index];
-        let step = match place {
-            Some(step) => step,
-            None => {
-                // Copied to the card before the record.
-                let _ = batch.scenes.seen(0..1);
-                let (recording, computed) = self.recorder.record(|| compute(inputs));
-                let (loss, gradient) = computed?;
-                place.insert(RecordedStep {
-                    recording,
-                    loss: loss.detach(),
-                    gradient,
-                })
-            }
+        let step = if let Some(step) = place {
+            step
+        } else {
+            // Copied to the card before the record.
+            let _ = batch.scenes.seen(0..1);
+            let (recording, computed) = self.recorder.record(|| compute(inputs));
+            let (loss, gradient) = computed?;
+            place.insert(RecordedStep {
+                recording,
+                loss: loss.detach(),
+                gradient,
+            })
         };
         step.recording.replay();
         Ok((step.loss.shallow_clone(), step.gradient.shallow_clone()))
