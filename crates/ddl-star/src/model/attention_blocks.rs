@@ -21,8 +21,8 @@ pub struct AttentionBlocks {
     keys: Tensor,
     /// `[P]`, the place of each pedestrian among the queries.
     places: Tensor,
-    /// `[F, S, L, M]`: 0 for a key that the query sees, -inf elsewhere. A padded query sees one key, so that its weights
-    /// are finite.
+    /// `[F, S, L, M]`: 0 for a key that the query sees, -inf elsewhere. A padded query sees one key, so that its
+    /// weights are finite.
     mask: Tensor,
 }
 
@@ -206,7 +206,10 @@ mod tests {
             let blocks = AttentionBlocks::new(&scenes, cpu, kind);
             let ours = spatial_attention(&qkv, heads, &blocks.during(frames.clone()), 0.0);
             // All pairs, with the same definition of attention.
-            let all = |part: i64| qkv.narrow(2, part * width, width).view([2, -1, heads, width / heads]).transpose(1, 2);
+            let all = |part: i64| {
+                let of_heads = qkv.narrow(2, part * width, width).view([2, -1, heads, width / heads]);
+                of_heads.transpose(1, 2)
+            };
             let [query, key, value] = [0, 1, 2].map(all);
             let unseen = Tensor::ones([2, 1, pedestrians, pedestrians], (Kind::Bool, cpu));
             for (entry, frame) in frames.enumerate() {
