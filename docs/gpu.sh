@@ -1,6 +1,6 @@
 #!/bin/bash
 # Measures a card (gpu.md). Without one: DEV=cpu SHORT=1 bash gpu.sh
-DEV=${DEV:-cuda} OUT=${OUT:-out} R=${R:-/tmp/runs} FOLDS="eth hotel univ zara1 zara2"
+DEV=${DEV:-cuda} OUT=${OUT:-out} R=${R:-/tmp/runs} F="eth hotel univ zara1 zara2"
 mkdir -p $OUT
 torch=$(python3 -c "import os,torch;print(os.path.dirname(torch.__file__))")
 export PATH=$PATH:/usr/local/nvidia/bin:/usr/local/cuda/bin
@@ -10,12 +10,12 @@ E="--epochs 3" P="25 400 10000" ONE=100000
 part() { n=$1 t=$2; shift 2; timeout $t "$@" >$OUT/$n.txt 2>&1; echo $n: $?; }
 train() { ./ddl train --device $DEV --threads 3 "$@"; }
 published() { train --recipe published --goals retrieved "$@"; }
-five() { for f in $FOLDS; do published --fold $f $E --out $R/$1-$f & done; wait; tail -n 2 $R/$1-*/*.jsonl; }
-forecasts() { for m in $FOLDS; do for d in cpu $DEV; do
+five() { for f in $F; do published --fold $f $E --out $R/$1-$f & done; wait; tail -n 2 $R/$1-*/*.jsonl; }
+forecasts() { for m in $F; do for d in cpu $DEV; do
   ./ddl forecast walk.csv --fps 2.5 --last --model $m --device $d -o $OUT/$m-$d.csv; done
   paste -d, $OUT/$m-{cpu,$DEV}.csv | awk -F, -v m=$m 'NR>1{n=NF/2;for(i=1;i<=n;i++){d=$i-$(i+n);d*=d;if(d>w)w=d}}
     END{print m,NR,"rows, at most",sqrt(w),"apart"}'; done; }
-export -f train published five forecasts; export DEV R E FOLDS
+export -f train published five forecasts; export DEV R E F
 part info 30 bash -c "./ddl info; nvidia-smi"
 part gradients 60 ./gradients every_device
 part forecasts 60 bash -c forecasts
