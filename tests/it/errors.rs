@@ -19,12 +19,56 @@ fn a_missing_model_is_reported() {
     place.fails(FORECAST, &["not finished", "ddl train"]);
 }
 
+/// No output of any command may be one of its inputs, whatever the options, links included.
 #[test]
-fn the_input_file_is_not_overwritten() {
+fn no_input_is_overwritten() {
     let place = Place::with_model();
-    for command in ["forecast", "view", "goals"] {
-        let line = format!("{command} tracks.csv --output ./tracks.csv");
-        place.fails(&line, &["tracks.csv", "the input file", "give another"]);
+    place.write("H.txt", "1 0 0\n0 1 0\n0 0 1\n");
+    place.write("folder/tracks.csv", place.read("tracks.csv"));
+    place.write("recipe.json", "{}");
+    place.write("results/report.json", "{}");
+    place.write("results/moments.json", "{}");
+    place.write("runs/a/report.json", "{}");
+    std::fs::hard_link(place.at("tracks.csv"), place.at("hard.csv")).unwrap();
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("tracks.csv", place.at("link.csv")).unwrap();
+    let lines = [
+        "forecast tracks.csv --output ./tracks.csv",
+        "forecast tracks.csv --output hard.csv",
+        #[cfg(unix)]
+        "forecast tracks.csv --output link.csv",
+        "forecast tracks.csv --homography H.txt --output H.txt",
+        "forecast tracks.csv --model run/model.safetensors --output run/model.safetensors",
+        "forecast - --memory tracks.csv --output tracks.csv",
+        "view tracks.csv --output tracks.csv",
+        "view tracks.csv --homography H.txt --output H.txt",
+        "goals tracks.csv --output tracks.csv",
+        "goals --measure test --data tracks.csv --svg tracks.csv",
+        "goals --measure test --data folder --output folder/tracks.csv",
+        "goals --measure test --data folder --svg new.svg --output new.svg",
+        "data tracks.csv --svg tracks.csv",
+        "windows --convention own --data tracks.csv --output tracks.csv",
+        "windows --convention own --data folder --output folder/tracks.csv",
+        "evaluate --data tracks.csv --forecasts results/report.json --out results",
+        "evaluate --data tracks.csv --model results/moments.json --out results",
+        "report runs/a --out runs/a",
+        "pack --model run --out run/model.safetensors",
+        "pack --model run --out run/config.json",
+    ];
+    let contents = || -> Vec<Vec<u8>> {
+        let files = [
+            "tracks.csv",
+            "H.txt",
+            "folder/tracks.csv",
+            "results/report.json",
+            "run/model.safetensors",
+        ];
+        files.into_iter().map(|file| place.read(file)).collect()
+    };
+    let before = contents();
+    for line in lines {
+        place.fails(line, &["give another"]);
+        assert!(contents() == before, "{line}");
     }
 }
 

@@ -143,7 +143,7 @@ fn unusable_memory_files_are_refused_at_once_and_not_overwritten() {
     }
     // The memory would overwrite the forecasts.
     let same = place.run_on(&input, &format!("{LINE} {KEPT} --output hall.memory"));
-    assert!(same.fails().contains("name the same file"));
+    assert!(same.fails().contains("would be lost"));
     let after = ["slow.memory", "damaged.memory", "tracks.csv"].map(|file| place.read(file));
     assert!(before == after);
     place.all_fail(&[

@@ -3,6 +3,7 @@
 
 mod command;
 mod interrupt;
+mod kept_inputs;
 mod output;
 mod progress;
 mod recordings;
@@ -11,7 +12,7 @@ mod telling;
 mod tracks;
 mod units;
 
-use clap::{CommandFactory as _, Parser, Subcommand};
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use std::ffi::OsString;
 
 /// Forecasts of pedestrians, along stable paths to their goals.
@@ -57,7 +58,27 @@ enum Command {
 /// Writes to the process's standard output and standard error. Arguments that cannot be parsed end the process with
 /// exit code 2, `--help` and `--version` with 0.
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
-    let result = match Cli::parse_from(arguments).command {
+    let matches = Cli::command().get_matches_from(arguments);
+    let command = Cli::from_arg_matches(&matches)
+        .unwrap_or_else(|error| error.exit())
+        .command;
+    let kept = kept_inputs::ensure_kept(&Cli::command(), &matches);
+    let result = kept.and_then(|()| run_command(command));
+    match result {
+        Ok(()) => 0,
+        // for example `ddl info | head -1`
+        Err(error) if telling::reader_has_gone(&error) => 0,
+        Err(error) => {
+            let interrupted = matches!(error.downcast_ref::<ddl::DdlError>(), Some(ddl::DdlError::Interrupted));
+            let source = if interrupted { "ddl" } else { "error" };
+            telling::tell(format_args!("{source}: {}", telling::words(&error)));
+            if interrupted { 130 } else { 1 }
+        }
+    }
+}
+
+fn run_command(command: Command) -> anyhow::Result<()> {
+    match command {
         Command::Forecast(command) => command.run(),
         Command::View(command) => command.run(),
         Command::Goals(command) => command.run(),
@@ -72,16 +93,5 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
         Command::Info(command) => command.run(),
         Command::Completions(command) => command.run(Cli::command()),
         Command::Man(command) => command.run(Cli::command()),
-    };
-    match result {
-        Ok(()) => 0,
-        // for example `ddl info | head -1`
-        Err(error) if telling::reader_has_gone(&error) => 0,
-        Err(error) => {
-            let interrupted = matches!(error.downcast_ref::<ddl::DdlError>(), Some(ddl::DdlError::Interrupted));
-            let source = if interrupted { "ddl" } else { "error" };
-            telling::tell(format_args!("{source}: {}", telling::words(&error)));
-            if interrupted { 130 } else { 1 }
-        }
     }
 }

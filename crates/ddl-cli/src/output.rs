@@ -4,18 +4,6 @@ use anyhow::Context as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Refuses to overwrite the input file: recordings cannot be recovered.
-pub(crate) fn ensure_not_input(output: Option<&Path>, input: &Path) -> anyhow::Result<()> {
-    let place = |path: &Path| path.canonicalize().ok();
-    match output.and_then(place) {
-        Some(file) if file.is_file() && Some(&file) == place(input).as_ref() => anyhow::bail!(
-            "{} is the input file and would be lost; give another output file",
-            input.display()
-        ),
-        _ => Ok(()),
-    }
-}
-
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
     match path {

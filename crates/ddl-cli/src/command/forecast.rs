@@ -11,7 +11,7 @@ mod table;
 
 pub(crate) use arguments::ForecastCommand;
 
-use crate::output::{ensure_not_input, write_output};
+use crate::output::write_output;
 use crate::telling::tell;
 use anyhow::bail;
 use moment::{SceneWindows, StreamState};
@@ -38,19 +38,9 @@ impl ForecastCommand {
                  --latest`"
             );
         }
-        if let Some(memory) = &self.memory {
-            ensure_not_input(self.output.as_deref(), memory)?;
-            if self.output.as_ref() == Some(memory) {
-                bail!(
-                    "--output and --memory name the same file, {}; give another file for the forecasts",
-                    memory.display()
-                );
-            }
-        }
         if self.tracks.are_live() {
             return live::run(&self);
         }
-        ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         let model = self.model()?;
         let observed = self.tracks.observed(model.config())?;
         let windows = SceneWindows {

@@ -1,7 +1,7 @@
 //! `ddl goals`: goals of pedestrians, and their quality.
 
 use crate::command::{Machine, ModelChoice, Telling, convention_of, dataset};
-use crate::output::{ensure_not_input, table_metres, write_output};
+use crate::output::{table_metres, write_output};
 use crate::tracks::{ObservedTracks, TrackOptions};
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
@@ -91,7 +91,6 @@ impl Goals {
                          prints the goals"
                     );
                 }
-                ensure_not_input(self.output.as_deref(), tracks.file())?;
                 self.machine.prepare_for_little()?;
                 let model = self.model.load_goals(self.machine.device)?;
                 let observed = tracks.observed(model.config())?;

@@ -42,7 +42,6 @@ impl View {
         if self.tracks.are_live() {
             bail!("a page needs a file of tracks; for live tracks, use `ddl forecast -`");
         }
-        output::ensure_not_input(self.output.as_deref(), self.tracks.file())?;
         self.machine.prepare_for_little()?;
         let model = self.clear.of(self.model.load(self.machine.device)?)?;
         let observed = self.tracks.observed(model.config())?;

@@ -1,6 +1,6 @@
 //! Summary and picture of the memory of a place.
 
-use crate::output::{ensure_not_input, write_output};
+use crate::output::write_output;
 use crate::telling::many;
 use anyhow::bail;
 use clap::Args;
@@ -130,7 +130,6 @@ impl MemoryPicture {
                 }
             );
         };
-        ensure_not_input(Some(picture), file)?;
         let tracks: Vec<Vec<Position>> = memory.tracks().collect();
         let title = file.file_name().unwrap_or_default().to_string_lossy();
         let drawn = figure::place(&title, &memories[0].numbers(), &tracks);
