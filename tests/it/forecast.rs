@@ -104,6 +104,20 @@ fn check_certificate(start: Position, hypothesis: &Hypothesis) -> Vec<f64> {
 }
 
 #[test]
+fn the_extension_of_the_output_is_its_format_and_a_dash_is_standard_output() {
+    let place = Place::with_model();
+    let forecast = "forecast --model run tracks.csv";
+    let lines = place.ok(&format!("{forecast} --format jsonl"));
+    let _ = place.ok(&format!("{forecast} --output out.jsonl"));
+    assert_eq!(place.text("out.jsonl"), lines);
+    let table = place.ok(forecast);
+    assert_eq!(place.ok(&format!("{forecast} --output -")), table);
+    let _ = place.ok(&format!("{forecast} --output given.jsonl --format csv"));
+    assert_eq!(place.text("given.jsonl"), table);
+    assert!(!place.at("-").exists());
+}
+
+#[test]
 fn every_format_has_the_same_hypotheses_and_certificates() {
     let place = Place::with_model();
     let tracks = own_tracks::three_pedestrians(10);

@@ -33,7 +33,7 @@ fn a_packed_run_has_the_results_of_the_run_without_its_library() {
     let place = Place::with_model();
     let said = place.ok("pack --model run --out packed.safetensors");
     assert!(said.contains("packed.safetensors"), "{said}");
-    let measure = "--protocol fair --protocol single --test-pedestrians 120 --threads 1";
+    let measure = "--protocol fair,single --test-pedestrians 120 --threads 1";
     let _ = place.ok(&format!("evaluate --model run {measure}"));
     let before = folder_contents::read(place.path());
     let line = format!("evaluate --model packed.safetensors {measure}");

@@ -4,9 +4,14 @@ use anyhow::Context as _;
 use std::io::Write as _;
 use std::path::Path;
 
+/// The file of an output; `None` for standard output, which `-` names too.
+pub(crate) fn file_of(path: Option<&Path>) -> Option<&Path> {
+    path.filter(|path| *path != Path::new("-"))
+}
+
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
-    match path {
+    match file_of(path) {
         // A device or a pipe cannot be replaced.
         Some(path) if path.exists() && !path.is_file() => {
             std::fs::write(path, text).with_context(|| format!("cannot write to {}", path.display()))

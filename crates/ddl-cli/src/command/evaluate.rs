@@ -36,8 +36,8 @@ pub(crate) struct Evaluate {
     other: OtherProgram,
     #[command(flatten)]
     recordings: RecordingsAt,
-    /// Protocol: published, fair, single, online or online-single; may be repeated
-    #[arg(long = "protocol", default_values = ["fair", "single"])]
+    /// Protocol: published, fair, single, online or online-single; several as in `fair,single`
+    #[arg(long = "protocol", value_delimiter = ',', default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
     /// Evaluate on the validation part of the training recordings instead of the test scene. For own recordings that
     /// the model was not trained on: the part that training would keep, which is the last fifth of each, or every fifth

@@ -11,7 +11,7 @@ mod table;
 
 pub(crate) use arguments::ForecastCommand;
 
-use crate::output::write_output;
+use crate::output::{file_of, write_output};
 use crate::telling::tell;
 use anyhow::bail;
 use moment::{SceneWindows, StreamState};
@@ -56,7 +56,7 @@ impl ForecastCommand {
 
     /// Notes how to reduce large output: thousands of lines on a terminal, or a large file.
     fn warn_of_flood(&self, text: &str) {
-        let on_terminal = self.output.is_none() && std::io::stdout().is_terminal();
+        let on_terminal = file_of(self.output.as_deref()).is_none() && std::io::stdout().is_terminal();
         if on_terminal && text.lines().nth(LOOKED_THROUGH).is_some() {
             let lines = text.lines().count();
             tell(format_args!(

@@ -64,6 +64,9 @@ impl View {
         });
         output::write_output(Some(&path), &page)?;
         observed.warn_of_misfits();
+        if output::file_of(Some(&path)).is_none() {
+            return Ok(());
+        }
         output::print(&format!("{}\n", path.display()))?;
         if !self.no_open && std::io::stdout().is_terminal() {
             open(&path)?;

@@ -25,12 +25,13 @@ pub(crate) struct ForecastCommand {
     pub(super) model: ModelChoice,
     #[command(flatten)]
     pub(super) tracks: TrackOptions,
-    /// File to write [default: standard output]
+    /// File to write [default: standard output, also as `-`]
     #[arg(long, short)]
     pub(super) output: Option<PathBuf>,
     /// Format: csv (one row per position, to 0.1 mm) or jsonl (one JSON object per pedestrian, with all digits)
-    #[arg(long, value_enum, default_value = "csv")]
-    pub(super) format: OutputFormat,
+    /// [default: jsonl for a file of that extension, else csv]
+    #[arg(long, value_enum)]
+    pub(super) format: Option<OutputFormat>,
     /// One hypothesis per pedestrian instead of 20: to a central goal that represents the 20
     #[arg(long)]
     pub(super) one: bool,
@@ -104,10 +105,19 @@ impl ForecastCommand {
         warn_of_violation(&moments);
         state.warned = state.warned || self.warn_of_unfamiliar(&moments);
         let headed = !std::mem::replace(&mut state.headed, true);
-        match self.format {
+        match self.format() {
             OutputFormat::Csv => table::csv(&moments, headed, &self.region),
             OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),
         }
+    }
+
+    fn format(&self) -> OutputFormat {
+        let extension = self.output.as_ref().and_then(|path| path.extension());
+        self.format.unwrap_or(if extension.is_some_and(|it| it == "jsonl") {
+            OutputFormat::Jsonl
+        } else {
+            OutputFormat::Csv
+        })
     }
 
     fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<WindowForecasts> {

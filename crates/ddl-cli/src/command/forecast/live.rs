@@ -6,6 +6,7 @@ use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::interrupt::Interrupt;
+use crate::output::file_of;
 use crate::recordings;
 use crate::telling::{tell, words};
 use crate::tracks::{NOISY, steps_in_words};
@@ -405,7 +406,7 @@ impl ForecastOutput {
             file.with_context(|| format!("cannot write {}", path.display()))
         };
         Ok(Self {
-            file: path.map(open).transpose()?,
+            file: file_of(path).map(open).transpose()?,
             begun: false,
         })
     }
