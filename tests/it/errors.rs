@@ -70,6 +70,13 @@ fn no_input_is_overwritten() {
         place.fails(line, &["give another"]);
         assert!(contents() == before, "{line}");
     }
+    // Results may be replaced, and lie beside the recordings.
+    place.write_recordings();
+    for _ in 0..2 {
+        let _ = place.ok("windows --convention own --data mine --output mine/windows.jsonl");
+        let _ = place.ok("pack --model run --out run/packed.safetensors");
+    }
+    assert!(contents() == before);
 }
 
 #[test]

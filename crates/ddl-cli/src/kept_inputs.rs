@@ -89,12 +89,16 @@ fn paths<'a>(argument: &Arg, matches: &'a ArgMatches) -> Vec<Named<'a>> {
     if argument.get_value_parser().type_id() != TypeId::of::<PathBuf>() {
         return Vec::new();
     }
-    let option = match argument.get_long() {
-        Some(long) => format!("--{long}"),
-        None => argument.get_id().as_str().to_uppercase(),
+    let option = if let Some(long) = argument.get_long() {
+        format!("--{long}")
+    } else {
+        let names = argument.get_value_names().and_then(<[_]>::first);
+        names.map_or_else(|| argument.get_id().to_string().to_uppercase(), ToString::to_string)
     };
     let given = matches.try_get_many::<PathBuf>(argument.get_id().as_str());
+    // `-` is standard input or output.
     let given = given.ok().flatten().into_iter().flatten();
+    let given = given.filter(|path| *path != Path::new("-"));
     given
         .map(|path| Named {
             option: option.clone(),
@@ -117,13 +121,22 @@ fn lost(output: &Path, Named { option, path: input }: &Named<'_>) -> Option<Path
     } else if output.is_file() {
         // A packed model may be kept beside the files of its run.
         let of_run = ["--model", "--from", "--benchmark"].contains(&option.as_str());
-        let inside = there.parent() == Some(&*here) && (!of_run || is_written(&there));
+        let read = if of_run { is_written(&there) } else { !is_result(&there) };
+        let inside = there.parent() == Some(&*here) && read;
         inside || there == here || is_same_file(output, input)
     } else {
         // Nothing is there yet, but both would be written, as with --memory.
         there == here
     };
-    replaced.then(|| if input.is_dir() { output } else { input }.to_owned())
+    // Not `/dev/stdin`.
+    let is_named = input.is_file() && output.is_dir();
+    replaced.then(|| if is_named { input } else { output }.to_owned())
+}
+
+/// Whether a file has a format that commands write and no recording has.
+fn is_result(file: &Path) -> bool {
+    let extension = file.extension().and_then(std::ffi::OsStr::to_str);
+    extension.is_some_and(|it| ["html", "json", "jsonl", "md", "svg"].contains(&it))
 }
 
 /// The options of two outputs that name one file.

@@ -113,11 +113,12 @@ impl ForecastCommand {
 
     fn format(&self) -> OutputFormat {
         let extension = self.output.as_ref().and_then(|path| path.extension());
-        self.format.unwrap_or(if extension.is_some_and(|it| it == "jsonl") {
-            OutputFormat::Jsonl
-        } else {
-            OutputFormat::Csv
-        })
+        self.format
+            .unwrap_or(if extension.is_some_and(|it| it.eq_ignore_ascii_case("jsonl")) {
+                OutputFormat::Jsonl
+            } else {
+                OutputFormat::Csv
+            })
     }
 
     fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<WindowForecasts> {
