@@ -1,5 +1,6 @@
 //! No command may write over what it reads: one guard for all options that name a file or folder.
 
+use crate::recordings::EXTENSIONS;
 use anyhow::bail;
 use clap::{Arg, ArgMatches, Command};
 use std::any::TypeId;
@@ -8,19 +9,25 @@ use std::path::{Path, PathBuf};
 /// Options whose file or folder is written.
 const OUTPUTS: [&str; 4] = ["output", "out", "svg", "folder"];
 
-/// Names of files that commands write into the folder of `--out`.
-const WRITTEN: [&str; 11] = [
+/// Options that name a run, of which every command writes and reads the same files.
+const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
+
+/// Names of files that commands write into the folder of `--out`, and those of a run.
+const WRITTEN: [&str; 14] = [
     "config.json",
+    "evaluation.json",
+    "experts.safetensors",
     "metrics.jsonl",
+    "model.safetensors",
     "moments.json",
+    "optimizer.safetensors",
     "plan.json",
+    "proposal-state.safetensors",
+    "proposal.safetensors",
     "report.html",
     "report.json",
     "report.md",
     "report.tex",
-    "model.safetensors",
-    "optimizer.safetensors",
-    "experts.safetensors",
 ];
 
 /// A path among the arguments, with the name of its option as users type it.
@@ -47,7 +54,10 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         paths.collect()
     };
     let (outputs, mut inputs) = (named(outputs), named(inputs));
-    let default = std::env::var_os("DDL_DATASETS").map(PathBuf::from);
+    let reads_recordings =
+        inputs.iter().any(|input| input.option == "--data") || matches.try_contains_id("data").is_ok();
+    let default = std::env::var_os("DDL_DATASETS").filter(|root| reads_recordings && !root.is_empty());
+    let default = default.map(PathBuf::from);
     inputs.extend(default.as_deref().map(|path| Named {
         option: "DDL_DATASETS".into(),
         path,
@@ -63,7 +73,7 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
     for output in &outputs {
         for input in &inputs {
             // A report reads the results in the folders of runs. Other commands add to a run.
-            let of_report = name == "report" && place(output.path) == place(input.path);
+            let of_report = name == "report" && output.path.is_dir() && place(output.path) == place(input.path);
             let lost = lost(output.path, input).or_else(|| of_report.then(|| input.path.to_owned()));
             if let Some(lost) = lost {
                 bail!(
@@ -110,33 +120,31 @@ fn paths<'a>(argument: &Arg, matches: &'a ArgMatches) -> Vec<Named<'a>> {
 /// The input that writing to `output` would replace.
 fn lost(output: &Path, Named { option, path: input }: &Named<'_>) -> Option<PathBuf> {
     let (there, here) = (place(output)?, place(input)?);
-    let is_written = |file: &Path| {
-        WRITTEN
-            .iter()
-            .any(|name| file.file_name().is_some_and(|it| it == *name))
-    };
     let replaced = if output.is_dir() {
         // Recordings have other names, and may lie in the folder of the results.
         here.parent() == Some(&*there) && is_written(&here)
     } else if output.is_file() {
-        // A packed model may be kept beside the files of its run.
-        let of_run = ["--model", "--from", "--benchmark"].contains(&option.as_str());
-        let read = if of_run { is_written(&there) } else { !is_result(&there) };
-        let inside = there.parent() == Some(&*here) && read;
-        inside || there == here || is_same_file(output, input)
+        let is_read = if RUNS.contains(&option.as_str()) {
+            // A packed model may be kept beside the files of its run.
+            is_written(&there) || there.parent() == Some(&*here.join("epochs"))
+        } else {
+            // Recordings also lie in folders of folders.
+            let extension = there.extension().and_then(std::ffi::OsStr::to_str);
+            extension.is_some_and(|it| EXTENSIONS.contains(&it) || it == "memory")
+        };
+        there == here || (is_read && there.starts_with(&here)) || is_same_file(output, input)
     } else {
-        // Nothing is there yet, but both would be written, as with --memory.
-        there == here
+        // Nothing is there yet, but both would be written.
+        option == "--memory" && there == here
     };
     // Not `/dev/stdin`.
     let is_named = input.is_file() && output.is_dir();
     replaced.then(|| if is_named { input } else { output }.to_owned())
 }
 
-/// Whether a file has a format that commands write and no recording has.
-fn is_result(file: &Path) -> bool {
-    let extension = file.extension().and_then(std::ffi::OsStr::to_str);
-    extension.is_some_and(|it| ["html", "json", "jsonl", "md", "svg"].contains(&it))
+fn is_written(file: &Path) -> bool {
+    let name = file.file_name().and_then(std::ffi::OsStr::to_str);
+    name.is_some_and(|name| WRITTEN.contains(&name))
 }
 
 /// The options of two outputs that name one file.
@@ -148,8 +156,7 @@ fn same<'a>(outputs: &'a [Named<'_>]) -> Option<[&'a str; 2]> {
     })
 }
 
-/// The absolute path without links; the last part need not exist. `None` for paths that cannot be resolved, as of
-/// models with a name.
+/// The absolute path without links; the last part need not exist.
 fn place(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok().or_else(|| {
         let folder = match path.parent()? {

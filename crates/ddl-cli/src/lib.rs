@@ -60,7 +60,7 @@ enum Command {
 pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) -> u8 {
     let matches = Cli::command().get_matches_from(arguments);
     let command = Cli::from_arg_matches(&matches)
-        .unwrap_or_else(|error| error.exit())
+        .unwrap_or_else(|error| error.format(&mut Cli::command()).exit())
         .command;
     let kept = kept_inputs::ensure_kept(&Cli::command(), &matches);
     let result = kept.and_then(|()| run_command(command));

@@ -7,7 +7,7 @@ use ddl::data::{Clock, Misfit, PlausibilityWarning, Recording};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
-const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
+pub(crate) const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
 /// Number of unreadable files that are reported individually.
 const MOST_REPORTED: usize = 10;
 

@@ -7,6 +7,8 @@
 use crate::StarError;
 use crate::device::{cuda_library, no_cuda};
 use libloading::os::unix::{Library, RTLD_GLOBAL, RTLD_NOW};
+use std::marker::PhantomData;
+use std::mem::ManuallyDrop;
 
 /// Two words in registers: `MempoolId_t`, a `std::pair`, and `CUDAStream`.
 #[repr(C)]
@@ -16,7 +18,7 @@ struct TwoWords(u64, u64);
 /// Room for an object `at::cuda::CUDAGraph`, which has less than 300 bytes in this release.
 type GraphObject = [u128; 64];
 
-/// Functions of libtorch 2.11.0. Their exceptions end the process with their message.
+/// Functions of libtorch 2.11.0. Their exceptions end the process: Rust cannot catch them.
 #[derive(Debug, Clone, Copy)]
 struct GraphFunctions {
     construct: unsafe extern "C-unwind" fn(*mut GraphObject, bool),
@@ -32,6 +34,8 @@ struct GraphFunctions {
 pub(crate) struct Recorder {
     functions: GraphFunctions,
     pool: TwoWords,
+    /// The stream is that of one thread.
+    _of_thread: PhantomData<*const ()>,
 }
 
 /// Recorded work.
@@ -82,7 +86,11 @@ impl Recorder {
             set_stream(stream(false, 0));
             let pool = new_pool();
             std::mem::forget(c10);
-            Ok(Self { functions, pool })
+            Ok(Self {
+                functions,
+                pool,
+                _of_thread: PhantomData,
+            })
         }
     }
 
@@ -90,16 +98,18 @@ impl Recorder {
     /// the processor's memory, or seed the generator; a replay draws from the generator like the work itself.
     pub(crate) fn record<T>(&self, work: impl FnOnce() -> T) -> (Recording, T) {
         let functions = self.functions;
-        let mut object = Box::new([0; 64]);
+        // Leaked if the work panics: the recording is then still open.
+        let mut object = ManuallyDrop::new(Box::new([0; 64]));
         // SAFETY: the object has room and alignment, and stays in its place until it is destroyed. The thread works on
         // a stream of its own (`begin`).
         unsafe {
-            (functions.construct)(&raw mut *object, false);
-            (functions.begin)(&raw mut *object, self.pool, 0);
+            (functions.construct)(&raw mut **object, false);
+            (functions.begin)(&raw mut **object, self.pool, 0);
         }
         let made = work();
         // SAFETY: recording has begun.
-        unsafe { (functions.end)(&raw mut *object) };
+        unsafe { (functions.end)(&raw mut **object) };
+        let object = ManuallyDrop::into_inner(object);
         (Recording { functions, object }, made)
     }
 }

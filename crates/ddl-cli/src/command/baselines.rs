@@ -22,7 +22,7 @@ pub(crate) struct Baselines {
     #[arg(long = "fold")]
     folds: Vec<String>,
     /// Protocol: published, fair or single; may be repeated
-    #[arg(long = "protocol", default_values = ["fair", "single"])]
+    #[arg(long = "protocol", value_delimiter = ',', default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
     /// Evaluate a seeded part of the test windows, about this many pedestrians per fold under the widest window rule
     /// [default: all]

@@ -155,7 +155,8 @@ fn paths<T: Copy + Send + Sync>(steps: &[T], rows: &[usize], (hypotheses, pedest
     };
     let of_row = hypotheses * HORIZON;
     let mut paths = vec![any; rows.len() * of_row];
-    paths.par_chunks_mut(of_row).zip(rows).for_each(|(paths, row)| {
+    let rows = paths.par_chunks_mut(of_row).zip(rows).with_min_len(64);
+    rows.for_each(|(paths, row)| {
         for (h, path) in paths.chunks_mut(HORIZON).enumerate() {
             for (t, number) in path.iter_mut().enumerate() {
                 *number = steps[(t * hypotheses + h) * pedestrians + row];

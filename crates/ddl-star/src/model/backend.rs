@@ -19,7 +19,7 @@ pub struct TorchBackend {
 }
 
 impl TorchBackend {
-    /// A pass without gradients.
+    /// A pass with libtorch's own gradients, if any.
     pub(crate) fn new(parameters: &Parameters, mode: Mode) -> Self {
         let tensors = parameters.tensors().iter();
         Self {

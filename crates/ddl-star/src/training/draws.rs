@@ -24,6 +24,7 @@ pub(crate) struct StepDraw {
 
 impl StepDraw {
     /// The same draws in other tensors.
+    #[cfg(target_os = "linux")]
     pub(crate) fn copied(&self) -> Self {
         Self {
             noise: self.noise.copy(),
@@ -33,6 +34,7 @@ impl StepDraw {
     }
 
     /// Takes the numbers of another step into the same tensors.
+    #[cfg(target_os = "linux")]
     pub(crate) fn set(&mut self, other: &Self) -> Result<(), StarError> {
         self.noise.f_copy_(&other.noise)?;
         if let (Some(turn), Some(other)) = (&mut self.turn, &other.turn) {

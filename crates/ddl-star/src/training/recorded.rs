@@ -1,4 +1,4 @@
-//! Training steps on a card, recorded for each batch at its first visit and replayed at the others.
+//! Training steps on a card: a batch that is visited often is recorded and replayed.
 
 use crate::StarError;
 use crate::cuda_graph::{Recorder, Recording};
@@ -6,8 +6,11 @@ use crate::training::draws::StepDraw;
 use crate::training::prepared::TrainingBatch;
 use tch::Tensor;
 
-/// Steps before the first record: libtorch sets up its libraries and their memory while it computes.
-const FIRST_STEPS: usize = 2;
+/// Visits of a batch before it is recorded, which takes longer than computing. libtorch sets up its libraries and their
+/// memory in the first.
+const COMPUTED_VISITS: usize = 2;
+/// Most recorded batches; more are computed at every visit. 143 batches of the published size take 6 GB.
+const MOST_RECORDED: usize = 512;
 
 /// The recorded steps of a training.
 #[derive(Debug)]
@@ -15,16 +18,20 @@ pub(crate) struct RecordedSteps {
     recorder: Recorder,
     /// The tensors that records read instead of the draws of a step.
     inputs: Option<StepDraw>,
-    computed: usize,
+    recorded: usize,
     /// Of each batch.
-    steps: Vec<Option<RecordedStep>>,
+    steps: Vec<BatchStep>,
 }
 
 #[derive(Debug)]
-struct RecordedStep {
-    recording: Recording,
-    loss: Tensor,
-    gradient: Tensor,
+enum BatchStep {
+    /// After this number of visits.
+    Computed(usize),
+    Recorded {
+        recording: Recording,
+        loss: Tensor,
+        gradient: Tensor,
+    },
 }
 
 impl RecordedSteps {
@@ -36,8 +43,8 @@ impl RecordedSteps {
         Ok(Self {
             recorder: Recorder::begin()?,
             inputs: None,
-            computed: 0,
-            steps: (0..batches).map(|_| None).collect(),
+            recorded: 0,
+            steps: (0..batches).map(|_| BatchStep::Computed(0)).collect(),
         })
     }
 
@@ -53,27 +60,38 @@ impl RecordedSteps {
         draw: &StepDraw,
         compute: impl Fn(&StepDraw) -> Result<(Tensor, Tensor), StarError>,
     ) -> Result<(Tensor, Tensor), StarError> {
-        if self.computed < FIRST_STEPS {
-            self.computed += 1;
-            return compute(draw);
-        }
-        let inputs = self.inputs.get_or_insert_with(|| draw.copied());
-        inputs.set(draw)?;
-        let place = &mut self.steps[index];
-        let step = if let Some(step) = place {
-            step
-        } else {
+        let step = &mut self.steps[index];
+        if let BatchStep::Computed(visits) = step {
+            if *visits < COMPUTED_VISITS || self.recorded >= MOST_RECORDED {
+                *visits += 1;
+                return compute(draw);
+            }
             // Copied to the card before the record.
             let _ = batch.scenes.seen(0..1);
+            let inputs = self.inputs.get_or_insert_with(|| draw.copied());
             let (recording, computed) = self.recorder.record(|| compute(inputs));
             let (loss, gradient) = computed?;
-            place.insert(RecordedStep {
+            let loss = loss.detach();
+            *step = BatchStep::Recorded {
                 recording,
-                loss: loss.detach(),
+                loss,
                 gradient,
-            })
-        };
-        step.recording.replay();
-        Ok((step.loss.shallow_clone(), step.gradient.shallow_clone()))
+            };
+            self.recorded += 1;
+        }
+        if let Some(inputs) = &mut self.inputs {
+            inputs.set(draw)?;
+        }
+        match step {
+            BatchStep::Computed(_) => compute(draw),
+            BatchStep::Recorded {
+                recording,
+                loss,
+                gradient,
+            } => {
+                recording.replay();
+                Ok((loss.shallow_clone(), gradient.shallow_clone()))
+            }
+        }
     }
 }

@@ -20,7 +20,7 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::PoisonError;
 use std::time::Instant;
-use tch::{Device, Tensor};
+use tch::Tensor;
 
 /// Least mean number of pedestrians in the parts of a batch. On the CPU, several threads compute the parts, and their
 /// gradients are added. Smaller parts take more processor time.
@@ -72,7 +72,7 @@ impl Trainer {
         let kernels = network.kernels()?;
         #[cfg(target_os = "linux")]
         let recorded = match network.device() {
-            Device::Cuda(_) => Some(RecordedSteps::new(schedule.batches())?),
+            tch::Device::Cuda(_) => Some(RecordedSteps::new(schedule.batches())?),
             _ => None,
         };
         let batches = PreparedBatches::new(
@@ -198,7 +198,7 @@ impl Trainer {
         let parts = self.batches.batch(index, self.schedule.batch(index))?;
         let network = &self.network;
         let TrainingConfig { objective, jitter, .. } = self.config;
-        // Held from seeding to the last draw: of jitter, and of dropout by libtorch.
+        // Held until the last draw: of jitter, and in a pass of libtorch of dropout.
         let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         tch::manual_seed(draw.libtorch);
         if let Some(kernels) = &self.kernels {
