@@ -54,8 +54,7 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         paths.collect()
     };
     let (outputs, mut inputs) = (named(outputs), named(inputs));
-    let reads_recordings =
-        inputs.iter().any(|input| input.option == "--data") || matches.try_contains_id("data").is_ok();
+    let reads_recordings = matches.try_contains_id("data").is_ok();
     let default = std::env::var_os("DDL_DATASETS").filter(|root| reads_recordings && !root.is_empty());
     let default = default.map(PathBuf::from);
     inputs.extend(default.as_deref().map(|path| Named {

@@ -27,7 +27,7 @@ pub(super) fn temporal_attention(tokens: &Tensor, heads: i64) -> Tensor {
     let parts = tokens.view([-1, batch, pedestrians, 3, heads, width / heads]).unbind(3);
     let (query, key, value) = (parts[0].narrow(0, -1, 1), &parts[1], &parts[2]);
     // With one query for each pedestrian and head, products and sums are faster than a batch of 1 x t matrix products,
-    // and on a card than fused attention (48 us forwards, 145 us backwards).
+    // and fused attention takes 145 us backwards on a card.
     let scores = key * (query * scale(width, heads));
     let scores = scores.sum_dim_intlist([-1i64].as_slice(), true, None);
     let weights = scores.softmax(0, scores.kind());
