@@ -1,4 +1,4 @@
-//! Neighbours of pedestrians within a box, and a spatial index of positions.
+//! A spatial index of positions, for the neighbours of pedestrians.
 
 use ddl_core::Position;
 use rstar::primitives::GeomWithData;
@@ -12,14 +12,6 @@ pub struct SpatialIndex {
 
 /// A position with its index.
 type Place = GeomWithData<Position, u32>;
-
-/// The neighbour relation of N pedestrians, which is symmetric. Indices out of range panic.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Neighbours {
-    /// The neighbours of pedestrian i, ascending, lie from `ends[i - 1]` to `ends[i]`.
-    near: Vec<u32>,
-    ends: Vec<usize>,
-}
 
 impl SpatialIndex {
     /// An index of these positions (m, finite). A place is identified by its index in `positions`.
@@ -67,35 +59,5 @@ impl SpatialIndex {
         let corner = |sign: f64| centre.map(|x| x + sign * reach);
         let envelope = AABB::from_corners(corner(-1.0), corner(1.0));
         self.tree.locate_in_envelope(envelope)
-    }
-}
-
-impl Neighbours {
-    /// Pedestrians i and j are neighbours if i != j, |dx| <= w and |dy| <= w, where w is the half width (m).
-    ///
-    /// The box is aligned with the axes: as in the published code, neighbours are found before a scene is rotated.
-    #[must_use]
-    pub fn within_box(positions: &[Position], half_width_m: f64) -> Self {
-        let places = SpatialIndex::new(positions);
-        let (mut near, mut ends) = (Vec::new(), Vec::with_capacity(positions.len()));
-        for (i, &position) in positions.iter().enumerate() {
-            let first = near.len();
-            let others = places.within_box(position, half_width_m);
-            near.extend(others.filter(|&j| j != i).map(|j| j as u32));
-            near[first..].sort_unstable();
-            ends.push(near.len());
-        }
-        Self { near, ends }
-    }
-
-    /// The neighbours of i, ascending.
-    pub fn of(&self, i: usize) -> &[u32] {
-        let first = i.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.near[first..self.ends[i]]
-    }
-
-    /// Every ordered pair (i, j) of neighbours: two pedestrians close to each other make two pairs.
-    pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        (0..self.ends.len()).flat_map(|i| self.of(i).iter().map(move |&j| (i, j as usize)))
     }
 }
