@@ -8,11 +8,11 @@ use rand::RngExt as _;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-/// The pedestrians of a window with more than this are sorted by position, so that the keys and values that a query
-/// reads are close together in memory.
+/// The pedestrians of a window with more than this are sorted along a Hilbert curve: the keys and values that a query
+/// reads are then close together in memory, and successive queries read the same.
 const CROWD: usize = 128;
-/// Width of the strips by which they are sorted, metres.
-const STRIP: f64 = 2.5;
+/// Smallest distance that changes their order, metres.
+const CELL: f64 = 0.5;
 
 /// Several windows with their goals. The P pedestrians are in the order of the windows; those of a large window are
 /// sorted by position.
@@ -132,24 +132,26 @@ impl ForecastBatch<'_> {
                     rows[i] = first + place;
                 }
                 first += order.len();
-                let mut positions = paths(&rollout.positions, &rows, (hypotheses, pedestrians));
-                for position in &mut positions {
-                    *position = [position[0] + x, position[1] + y];
-                }
+                let shape = (hypotheses, pedestrians);
                 let factors = rollout.factors.as_ref();
                 WindowRollout {
                     pedestrians: window.len(),
                     hypotheses,
-                    positions,
-                    factors: factors.map(|factors| paths(factors, &rows, (hypotheses, pedestrians))),
+                    positions: paths(&rollout.positions, &rows, shape, |of| [of[0] + x, of[1] + y]),
+                    factors: factors.map(|factors| paths(factors, &rows, shape, |of| of)),
                 }
             })
             .collect()
     }
 }
 
-/// The paths of some `rows`: from `[12, H, P]` to `[rows, H, 12]`.
-fn paths<T: Copy + Send + Sync>(steps: &[T], rows: &[usize], (hypotheses, pedestrians): (usize, usize)) -> Vec<T> {
+/// The paths of some `rows`: from `[12, H, P]` to `[rows, H, 12]`, with `changed` applied to each number.
+fn paths<T: Copy + Send + Sync>(
+    steps: &[T],
+    rows: &[usize],
+    (hypotheses, pedestrians): (usize, usize),
+    changed: impl Fn(T) -> T + Sync,
+) -> Vec<T> {
     let Some(&any) = steps.first() else {
         return Vec::new();
     };
@@ -159,7 +161,7 @@ fn paths<T: Copy + Send + Sync>(steps: &[T], rows: &[usize], (hypotheses, pedest
     rows.for_each(|(paths, row)| {
         for (h, path) in paths.chunks_mut(HORIZON).enumerate() {
             for (t, number) in path.iter_mut().enumerate() {
-                *number = steps[(t * hypotheses + h) * pedestrians + row];
+                *number = changed(steps[(t * hypotheses + h) * pedestrians + row]);
             }
         }
     });
@@ -174,11 +176,11 @@ fn origin(window: &Window) -> Position {
 fn order(window: &Window) -> Vec<usize> {
     let mut order: Vec<usize> = (0..window.len()).collect();
     if window.len() > CROWD {
-        let last = |i: usize| window.observed(i)[OBSERVED - 1];
-        let strip = |i: usize| (last(i)[0] / STRIP).floor();
-        order.sort_by(|&i, &j| {
-            let along = || last(i)[1].total_cmp(&last(j)[1]);
-            strip(i).total_cmp(&strip(j)).then_with(along)
+        // Whoever is further than 16 km from the first pedestrian counts as at the edge.
+        let cell = |metres: f64| (metres / CELL + f64::from(1 << 15)) as u16;
+        order.sort_by_cached_key(|&i| {
+            let [x, y] = relative(window.observed(i)[OBSERVED - 1], origin(window)).map(cell);
+            fast_hilbert::xy2h(x, y, 16)
         });
     }
     order

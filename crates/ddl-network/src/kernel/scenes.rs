@@ -146,14 +146,16 @@ impl Scenes {
         self.frames
     }
 
-    /// All ordered pairs of pedestrians, indexed over all scenes, of which the first sees the second in a frame.
+    /// The ordered pairs of pedestrians, indexed over all scenes, of which the first is one of `queries` and sees the
+    /// second in a frame.
     ///
     /// # Panics
     /// If the frame does not exist.
-    pub fn pairs(&self, frame: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
+    pub fn pairs(&self, frame: usize, queries: Range<usize>) -> impl Iterator<Item = (usize, usize)> + '_ {
         let scenes = self.during(frame..frame + 1).of_entry(0);
-        scenes.flat_map(|scene| {
-            (0..scene.pedestrians).flat_map(move |i| {
+        scenes.flat_map(move |scene| {
+            let within = |i: usize| i.saturating_sub(scene.first).min(scene.pedestrians);
+            (within(queries.start)..within(queries.end)).flat_map(move |i| {
                 let seen = scene.of(i / 2).iter();
                 let seen = seen.filter(move |seen| seen.code() >> (i % 2) & 1 == 1);
                 seen.map(move |seen| (scene.first + i, scene.first + seen.key()))
@@ -262,8 +264,9 @@ mod tests {
         assert_eq!(codes_of(scenes.during(0..1), 1), first);
         assert_eq!(codes_of(scenes.during(1..2), 5), visible);
         let pairs = [(0, 0), (1, 1), (1, 2), (2, 2), (2, 3), (3, 1), (3, 3)];
-        assert_eq!(scenes.pairs(0).collect::<Vec<_>>(), pairs);
-        assert_eq!(scenes.pairs(1).count(), 10);
+        assert_eq!(scenes.pairs(0, 0..4).collect::<Vec<_>>(), pairs);
+        assert_eq!(scenes.pairs(0, 1..3).collect::<Vec<_>>(), pairs[1..5]);
+        assert_eq!(scenes.pairs(1, 0..9).count(), 10);
     }
 
     #[test]
