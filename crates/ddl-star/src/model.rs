@@ -26,7 +26,7 @@ pub(crate) use batch::WindowBatch;
 pub(crate) use emission::NoiseInput;
 pub(crate) use network::Layers;
 pub use network::TorchNetwork;
-pub(crate) use numbers::{numbers, tensor};
+pub(crate) use numbers::{arrays, tensor};
 pub use parameters::Parameters;
 pub(crate) use rollout::ForecastSteps;
 pub(crate) use tensor_backend::{Engine, KernelPass};

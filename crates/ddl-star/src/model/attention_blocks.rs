@@ -1,6 +1,8 @@
 //! The queries and keys of attention among the pedestrians of several scenes, in blocks.
 
 use ddl_network::backend::Scenes;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::ops::Range;
 use tch::{Device, Kind, Tensor};
 
@@ -111,56 +113,32 @@ fn blocks(scenes: &Scenes) -> Vec<Block> {
         let starts = scene.clone().step_by(QUERIES);
         starts.map(move |start| start..end.min(start + QUERIES))
     };
-    let mut blocks: Vec<Block> = scenes
-        .ranges()
-        .iter()
-        .flat_map(of_scene)
-        .map(|queries| Block {
-            queries,
-            keys: Vec::new(),
-        })
-        .collect();
-    // The last block that listed each pedestrian. Queries come in order in every frame.
-    let mut listed = vec![usize::MAX; scenes.pedestrians()];
-    for frame in 0..scenes.frames() {
-        let mut index = 0;
-        for (query, key) in scenes.pairs(frame) {
-            while query >= blocks[index].queries.end {
-                index += 1;
-            }
-            if listed[key] != index {
-                listed[key] = index;
-                blocks[index].keys.push(key);
-            }
-        }
-    }
-    for block in &mut blocks {
-        block.keys.sort_unstable();
-        block.keys.dedup();
-    }
-    blocks
+    let queries: Vec<Range<usize>> = scenes.ranges().iter().flat_map(of_scene).collect();
+    let block = |queries: Range<usize>| {
+        let frames = 0..scenes.frames();
+        let seen = frames.flat_map(|frame| scenes.pairs(frame, queries.clone()));
+        let keys: BTreeSet<usize> = seen.map(|(_, key)| key).collect();
+        let keys = keys.into_iter().collect();
+        Block { queries, keys }
+    };
+    queries.into_par_iter().map(block).collect()
 }
 
 /// `[F, S, L, M]`: whether a query sees a key.
 fn seen(scenes: &Scenes, blocks: &[Block], [length, width]: [usize; 2]) -> Vec<bool> {
     let of_block = length * width;
     let mut seen = vec![false; scenes.frames() * blocks.len() * of_block];
-    // The place of each pedestrian among the keys of the present block.
-    let mut columns = vec![0; scenes.pedestrians()];
-    for (frame, seen) in seen.chunks_mut(blocks.len() * of_block).enumerate() {
-        let mut pairs = scenes.pairs(frame).peekable();
-        for (block, seen) in blocks.iter().zip(seen.chunks_mut(of_block)) {
-            for (column, &key) in block.keys.iter().enumerate() {
-                columns[key] = column;
-            }
-            for padding in block.queries.len()..length {
-                seen[padding * width] = true;
-            }
-            while let Some((query, key)) = pairs.next_if(|(query, _)| block.queries.contains(query)) {
-                seen[(query - block.queries.start) * width + columns[key]] = true;
-            }
+    let parts = seen.par_chunks_mut(of_block).enumerate();
+    parts.for_each(|(part, seen)| {
+        let (frame, Block { queries, keys }) = (part / blocks.len(), &blocks[part % blocks.len()]);
+        for padding in queries.len()..length {
+            seen[padding * width] = true;
         }
-    }
+        for (query, key) in scenes.pairs(frame, queries.clone()) {
+            let column = keys.partition_point(|&before| before < key);
+            seen[(query - queries.start) * width + column] = true;
+        }
+    });
     seen
 }
 
@@ -213,7 +191,7 @@ mod tests {
             let [query, key, value] = [0, 1, 2].map(all);
             let unseen = Tensor::ones([2, 1, pedestrians, pedestrians], (Kind::Bool, cpu));
             for (entry, frame) in frames.enumerate() {
-                for (query, key) in scenes.pairs(frame) {
+                for (query, key) in scenes.pairs(frame, 0..scenes.pedestrians()) {
                     let _ = unseen.get(entry as i64).get(0).get(query as i64).get(key as i64).fill_(0.0);
                 }
             }

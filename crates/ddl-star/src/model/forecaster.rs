@@ -5,7 +5,7 @@ use crate::model::backend::TorchBackend;
 use crate::model::batch::WindowBatch;
 use crate::model::emission::NoiseInput;
 use crate::model::network::TorchNetwork;
-use crate::model::numbers::{numbers, tensor};
+use crate::model::numbers::{arrays, tensor};
 use crate::model::rollout::{ForecastSteps, Rollout};
 use crate::model::tensor_backend::Engine;
 use ddl_data::{HORIZON, OBSERVED, Window};
@@ -13,7 +13,6 @@ use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
 use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, StarConfig};
 use std::sync::{Mutex, PoisonError};
-use tch::Tensor;
 
 /// Many enough that a graphics card is busy for longer than launching its kernels takes.
 const PEDESTRIANS_AT_ONCE: usize = 2048;
@@ -62,13 +61,6 @@ impl TorchNetwork {
             factors: factors.as_ref().map(arrays).transpose()?,
         })
     }
-}
-
-/// The last dimension as arrays of N.
-fn arrays<const N: usize>(tensor: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
-    let numbers = numbers(tensor)?;
-    let (groups, _) = numbers.as_chunks::<N>();
-    Ok(groups.to_vec())
 }
 
 /// Forecasts by libtorch. Tensors can move between threads but not be shared, so one forecast runs at a time.

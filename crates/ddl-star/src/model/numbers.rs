@@ -9,8 +9,10 @@ pub(crate) fn tensor(numbers: &[f64], shape: &[i64], (kind, device): (Kind, Devi
     Ok(tensor.f_to_kind(kind)?.f_to_device(device)?)
 }
 
-/// The numbers of a tensor in row-major order.
-pub(crate) fn numbers(tensor: &Tensor) -> Result<Vec<f64>, StarError> {
-    let here = tensor.f_to_device(Device::Cpu)?.f_to_kind(Kind::Double)?;
-    Ok(Vec::try_from(here.f_contiguous()?.f_reshape([-1])?)?)
+/// The numbers of a tensor in row-major order, as arrays along the last dimension, which is N.
+pub(crate) fn arrays<const N: usize>(tensor: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
+    let numbers = tensor.f_to_kind(Kind::Double)?.f_contiguous()?;
+    let mut arrays = vec![[0.0; N]; numbers.numel() / N];
+    numbers.f_copy_data(arrays.as_flattened_mut(), numbers.numel())?;
+    Ok(arrays)
 }

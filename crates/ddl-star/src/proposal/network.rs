@@ -2,7 +2,7 @@
 
 use crate::StarError;
 use crate::device::ComputeDevice;
-use crate::model::{Parameters, numbers};
+use crate::model::{Parameters, arrays};
 use crate::proposal::data::Views;
 use ddl_core::motion::RECENT_STEPS;
 use ddl_data::{HORIZON, OBSERVED, Position, WINDOW};
@@ -110,9 +110,9 @@ impl TorchProposals {
             let members = self.config.members as f64;
             let listed = |proposals: &Proposals| -> Result<_, StarError> {
                 let weights = proposals.logits.softmax(-1, Kind::Double) / members;
-                let ends = numbers(&proposals.ends.transpose(0, 1))?;
-                let ends: Vec<Position> = ends.as_chunks::<2>().0.to_vec();
-                Ok((ends, numbers(&weights.transpose(0, 1))?))
+                let ends: Vec<Position> = arrays(&proposals.ends.transpose(0, 1))?;
+                let weights = arrays::<1>(&weights.transpose(0, 1))?;
+                Ok((ends, weights.into_flattened()))
             };
             let (endpoints, weights) = listed(&alone)?;
             let endpoints = endpoints.chunks_exact(per_pedestrian).map(<[_]>::to_vec);
