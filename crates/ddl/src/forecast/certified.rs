@@ -96,14 +96,14 @@ pub(crate) struct Walked<'a> {
 
 impl Walked<'_> {
     /// The forecast. If there is a flow, it states which certificates hold.
-    pub(crate) fn forecast(self) -> Result<Forecast, ForecastError> {
-        if self.factors.is_some() {
-            // Certificates of a crowd take more memory than its forecast: drop each after its check.
-            let (positions, held) = self.walks(|certificate| certificate.verify().is_ok())?;
-            return Ok(self.at(positions)?.with_certified(held)?);
+    pub(crate) fn forecast(mut self) -> Result<Forecast, ForecastError> {
+        let rolled_out = std::mem::take(&mut self.rolled_out);
+        if self.factors.is_none() {
+            return self.at(rolled_out);
         }
-        let positions = self.rolled_out.clone();
-        self.at(positions)
+        // Certificates of a crowd take more memory than its forecast: drop each after its check.
+        let (positions, held) = self.walks(rolled_out, |certificate| certificate.verify().is_ok())?;
+        Ok(self.at(positions)?.with_certified(held)?)
     }
 
     /// The forecast of these positions, with its spread if there are several hypotheses.
@@ -119,10 +119,10 @@ impl Walked<'_> {
             return Ok(forecast);
         }
         let calibration = Calibration::fitted();
-        let goals = self.goals.chunks_exact(hypotheses);
-        let pairs = goals.zip(self.weights.chunks_exact(hypotheses)).enumerate();
+        let goals = self.goals.par_chunks_exact(hypotheses);
+        let pairs = goals.zip(self.weights.par_chunks_exact(hypotheses)).enumerate();
         let spread = pairs
-            .flat_map(|(i, (goals, weights))| {
+            .flat_map_iter(|(i, (goals, weights))| {
                 let time_step = self.config.time_step;
                 let spread = calibration.spread(self.window.observed(i), goals, weights, time_step);
                 let quality = self.window.quality(i);
@@ -134,8 +134,9 @@ impl Walked<'_> {
         Ok(forecast.with_std_dev(spread, Calibration::shared_regions())?)
     }
 
-    pub(crate) fn certified(self) -> Result<CertifiedForecast, ForecastError> {
-        let (positions, certificates) = self.walks(|certificate| certificate)?;
+    pub(crate) fn certified(mut self) -> Result<CertifiedForecast, ForecastError> {
+        let rolled_out = std::mem::take(&mut self.rolled_out);
+        let (positions, certificates) = self.walks(rolled_out, |certificate| certificate)?;
         let held = certificates
             .iter()
             .map(|certificate| certificate.verify().is_ok())
@@ -148,33 +149,35 @@ impl Walked<'_> {
     /// plain Euler steps the positions are those of the network's own rollout.
     fn walks<R: Send>(
         &self,
+        rolled_out: Vec<Position>,
         keep: impl Fn(LyapunovCertificate<f64>) -> R + Sync,
     ) -> Result<(Vec<Position>, Vec<R>), ForecastError> {
         let Some(factors) = &self.factors else {
             return Err(no_flow(self.config.variant));
         };
-        let judged = |walk: Walk| (walk.positions, keep(walk.certificate));
-        let walks = match self.integrator {
-            PathIntegrator::PlainEuler => {
-                let certificates = self.each(factors, |pair, approach, factors| {
-                    let path = &self.rolled_out[pair * HORIZON..][..HORIZON];
-                    approach.certify(path, factors).map(&keep)
-                })?;
-                return Ok((self.rolled_out.clone(), certificates));
-            }
-            PathIntegrator::Stable(None) => {
-                self.each(factors, |_, approach, factors| approach.walk(factors).map(judged))?
-            }
+        // Another path of the same length replaces each.
+        let mut positions = rolled_out;
+        positions.resize(factors.len(), [0.0; 2]);
+        let put = |path: &mut [Position], walk: Walk| {
+            path.copy_from_slice(&walk.positions);
+            keep(walk.certificate)
+        };
+        let certificates = match self.integrator {
+            PathIntegrator::PlainEuler => self.each(factors, &mut positions, |_, approach, factors, path| {
+                approach.certify(path, factors).map(&keep)
+            })?,
+            PathIntegrator::Stable(None) => self.each(factors, &mut positions, |_, approach, factors, path| {
+                Ok(put(path, approach.walk(factors)?))
+            })?,
             PathIntegrator::Stable(Some(clearance)) => {
                 let others = self.others(factors, clearance)?;
-                self.each(factors, |pair, approach, factors| {
+                self.each(factors, &mut positions, |pair, approach, factors, path| {
                     let near = others.near(pair / self.hypotheses, approach.start, approach.goal)?;
-                    approach.walk_among(&near, factors).map(judged)
+                    Ok(put(path, approach.walk_among(&near, factors)?))
                 })?
             }
         };
-        let (positions, certificates): (Vec<_>, Vec<_>) = walks.into_iter().unzip();
-        Ok((positions.into_flattened(), certificates))
+        Ok((positions, certificates))
     }
 
     /// The obstacles of all pedestrians: the paths to their most likely goals, each computed without the others.
@@ -205,16 +208,24 @@ impl Walked<'_> {
         }
     }
 
-    /// Applies `of` to every hypothesis, in order. Its arguments are the index (pedestrian x hypotheses + hypothesis),
-    /// the approach and the factors. The error is that of the first hypothesis that fails.
+    /// Applies `integrate` to every hypothesis, in order. Its arguments are the index (pedestrian x hypotheses +
+    /// hypothesis), the approach, the factors and the place of the path. The error is that of the first hypothesis that
+    /// fails.
     fn each<R: Send>(
         &self,
         factors: &[[f64; 3]],
-        integrate: impl Fn(usize, &Approach, &[[f64; 3]]) -> Result<R, DynamicsError> + Sync,
+        positions: &mut [Position],
+        integrate: impl Fn(usize, &Approach, &[[f64; 3]], &mut [Position]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
         let bounds: Vec<_> = (0..self.window.len()).map(|i| self.bounds(i)).collect();
         let pairs = factors.par_chunks_exact(HORIZON).enumerate();
-        let results = pairs.map(|(pair, factors)| self.one(pair, &bounds[pair / self.hypotheses], factors, &integrate));
+        let pairs = pairs.zip(positions.par_chunks_exact_mut(HORIZON));
+        let results = pairs.map(|((pair, factors), path)| {
+            let bounds = &bounds[pair / self.hypotheses];
+            self.one(pair, bounds, factors, |pair, approach, factors| {
+                integrate(pair, approach, factors, path)
+            })
+        });
         // A parallel collect into a `Result` could return the error of any hypothesis.
         results.collect::<Vec<_>>().into_iter().collect()
     }

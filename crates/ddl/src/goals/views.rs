@@ -3,6 +3,10 @@
 use ddl_data::{OBSERVED, Position, RememberedTrack, SpatialIndex, Window};
 use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, length_unit};
+use rayon::prelude::*;
+
+/// Fewest pedestrians for which another thread is woken.
+const WORTH_WAKING: usize = 16;
 
 /// A pedestrian's own frame, its unit of length, and the view from it.
 #[derive(Debug)]
@@ -18,29 +22,29 @@ pub(crate) struct FramedView {
 pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<FramedView>, TrackError> {
     let last = window.positions_at(OBSERVED - 1);
     let places = SpatialIndex::new(&last);
-    (0..window.len())
-        .map(|i| {
-            let frame = HeadingFrame::new(window.observed(i))?;
-            let unit = length_unit(window.observed(i), time_step);
-            let view = PedestrianView {
-                own: in_frame(&frame, unit, window.observed(i)),
-                neighbours: places
-                    .nearest_others(i, last[i], neighbours)
-                    .into_iter()
-                    .map(|j| in_frame(&frame, unit, window.observed(j)))
-                    .collect(),
-                remembered: window
-                    .remembered(i)
-                    .iter()
-                    .map(|other| RememberedTrack {
-                        track: in_frame(&frame, unit, &other.track),
-                        ..*other
-                    })
-                    .collect(),
-            };
-            Ok(FramedView { frame, unit, view })
-        })
-        .collect()
+    let views = (0..window.len()).into_par_iter().with_min_len(WORTH_WAKING).map(|i| {
+        let frame = HeadingFrame::new(window.observed(i))?;
+        let unit = length_unit(window.observed(i), time_step);
+        let view = PedestrianView {
+            own: in_frame(&frame, unit, window.observed(i)),
+            neighbours: places
+                .nearest_others(i, last[i], neighbours)
+                .into_iter()
+                .map(|j| in_frame(&frame, unit, window.observed(j)))
+                .collect(),
+            remembered: window
+                .remembered(i)
+                .iter()
+                .map(|other| RememberedTrack {
+                    track: in_frame(&frame, unit, &other.track),
+                    ..*other
+                })
+                .collect(),
+        };
+        Ok(FramedView { frame, unit, view })
+    });
+    // A parallel collect into a `Result` could return the error of any pedestrian.
+    views.collect::<Vec<_>>().into_iter().collect()
 }
 
 /// Training examples: every pedestrian of the windows with its future. Windows without a future are left out.
