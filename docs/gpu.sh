@@ -28,3 +28,4 @@ nvidia-cuda-mps-control -d
 export CUDA_MPS_ACTIVE_THREAD_PERCENTAGE=50
 part runs ${LONG:-120} ./ddl benchmark --profile paper --protocol published --device $DEV --out $R/runs
 cp $R/runs/report.md $OUT
+echo quit | nvidia-cuda-mps-control

@@ -29,7 +29,7 @@ struct GraphFunctions {
 }
 
 /// Records the work of this thread on its own stream. All records share a pool of memory, so what one replay has
-/// computed must be read before the next one.
+/// computed must be read before the next one, and they must be replayed in the order in which they were recorded.
 #[derive(Debug)]
 pub(crate) struct Recorder {
     functions: GraphFunctions,
@@ -115,7 +115,8 @@ impl Recorder {
 }
 
 impl Recording {
-    /// Does the work again, on the memory that it was recorded with.
+    /// Does the work again, on the memory that it was recorded with: every tensor that the work read or returned must
+    /// still be there.
     pub(crate) fn replay(&mut self) {
         // SAFETY: the recording is complete.
         unsafe { (self.functions.replay)(&raw mut *self.object) };

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// The pedestrians of a window with more than this are sorted along a Hilbert curve: the keys and values that a query
 /// reads are then close together in memory, and successive queries read the same.
 const CROWD: usize = 128;
-/// Smallest distance that changes their order, metres.
+/// Side of a cell of the curve, metres.
 const CELL: f64 = 0.5;
 
 /// Several windows with their goals. The P pedestrians are in the order of the windows; those of a large window are

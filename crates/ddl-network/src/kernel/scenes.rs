@@ -152,10 +152,13 @@ impl Scenes {
     /// # Panics
     /// If the frame does not exist.
     pub fn pairs(&self, frame: usize, queries: Range<usize>) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let scenes = self.during(frame..frame + 1).of_entry(0);
+        let Range { start, end } = queries;
+        let first = self.ranges.partition_point(|scene| scene.end <= start);
+        let scenes = self.during(frame..frame + 1).of_entry(0).skip(first);
+        let scenes = scenes.take_while(move |scene| scene.first < end);
         scenes.flat_map(move |scene| {
             let within = |i: usize| i.saturating_sub(scene.first).min(scene.pedestrians);
-            (within(queries.start)..within(queries.end)).flat_map(move |i| {
+            (within(start)..within(end)).flat_map(move |i| {
                 let seen = scene.of(i / 2).iter();
                 let seen = seen.filter(move |seen| seen.code() >> (i % 2) & 1 == 1);
                 seen.map(move |seen| (scene.first + i, scene.first + seen.key()))

@@ -13,6 +13,7 @@ use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
 use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, StarConfig};
 use std::sync::{Mutex, PoisonError};
+use tch::{Device, Kind};
 
 /// Many enough that a graphics card is busy for longer than launching its kernels takes.
 const PEDESTRIANS_AT_ONCE: usize = 2048;
@@ -23,16 +24,14 @@ impl TorchNetwork {
     pub fn into_forecaster(self) -> Box<dyn ForecastWindows> {
         Box::new(TorchForecaster {
             config: self.config().clone(),
+            options: (self.kind(), self.device()),
             network: Mutex::new(self),
         })
     }
 
-    fn roll_out_batch(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, StarError> {
+    fn roll_out_batch(&self, batch: &ForecastBatch<'_>, mut scenes: WindowBatch) -> Result<BatchRollout, StarError> {
         let _guard = tch::no_grad_guard();
         let (device, kind) = (self.device(), self.kind());
-        let views: Vec<&Window> = batch.windows.iter().collect();
-        let half_box = self.config().neighbour_box;
-        let mut scenes = WindowBatch::new(&views, OBSERVED, OBSERVED, half_box, device, kind)?;
         let tensor = |values: &[f64], shape: &[i64]| tensor(values, shape, (kind, device));
         let pedestrians = scenes.pedestrians() as i64;
         if let Some(shares) = &batch.shares {
@@ -67,6 +66,7 @@ impl TorchNetwork {
 #[derive(Debug)]
 struct TorchForecaster {
     config: StarConfig,
+    options: (Kind, Device),
     network: Mutex<TorchNetwork>,
 }
 
@@ -85,7 +85,13 @@ impl ForecastWindows for TorchForecaster {
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
+        // Made on several threads before the lock: a thread that waits for others inside it could be given another
+        // forecast, which would wait for the lock.
+        let views: Vec<&Window> = batch.windows.iter().collect();
+        let (kind, device) = self.options;
+        let scenes = WindowBatch::new(&views, OBSERVED, OBSERVED, self.config.neighbour_box, device, kind)?;
+        let _ = scenes.seen(0..OBSERVED);
         let network = self.network.lock().unwrap_or_else(PoisonError::into_inner);
-        Ok(network.roll_out_batch(batch)?)
+        Ok(network.roll_out_batch(batch, scenes)?)
     }
 }

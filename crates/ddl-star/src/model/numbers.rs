@@ -9,7 +9,7 @@ pub(crate) fn tensor(numbers: &[f64], shape: &[i64], (kind, device): (Kind, Devi
     Ok(tensor.f_to_kind(kind)?.f_to_device(device)?)
 }
 
-/// The numbers of a tensor in row-major order, as arrays along the last dimension, which is N.
+/// The numbers of a tensor in row-major order, in groups of N, which divides their number.
 pub(crate) fn arrays<const N: usize>(tensor: &Tensor) -> Result<Vec<[f64; N]>, StarError> {
     let numbers = tensor.f_to_kind(Kind::Double)?.f_contiguous()?;
     let mut arrays = vec![[0.0; N]; numbers.numel() / N];

@@ -11,7 +11,7 @@ use tch::{Kind, TchError, Tensor};
 
 /// Added to the variance of a normalised row.
 const EPSILON: f64 = 1e-5;
-/// Numbers in many rows.
+/// With more numbers than this, [`norm_of_many`] is used on a card.
 const MANY: usize = 1 << 20;
 
 /// A map of rows with a learned weight and, at the next index, a learned bias.

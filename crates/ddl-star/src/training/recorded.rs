@@ -3,7 +3,6 @@
 use crate::StarError;
 use crate::cuda_graph::{Recorder, Recording};
 use crate::training::draws::StepDraw;
-use crate::training::prepared::TrainingBatch;
 use tch::Tensor;
 
 /// Visits of a batch before it is recorded, which takes longer than computing. libtorch sets up its libraries and their
@@ -49,14 +48,13 @@ impl RecordedSteps {
     }
 
     /// Loss and gradient of a step, with the generator seeded before: what `compute` returns for the batch of that
-    /// index and these draws. They are valid until the next call.
+    /// index and these draws. They are valid until the next call. The batch is on the card already.
     ///
     /// # Errors
-    /// Those of `compute`.
+    /// Those of `compute`. One that it meets while it is recorded ends the process.
     pub(crate) fn gradient(
         &mut self,
         index: usize,
-        batch: &TrainingBatch,
         draw: &StepDraw,
         compute: impl Fn(&StepDraw) -> Result<(Tensor, Tensor), StarError>,
     ) -> Result<(Tensor, Tensor), StarError> {
@@ -66,8 +64,6 @@ impl RecordedSteps {
                 *visits += 1;
                 return compute(draw);
             }
-            // Copied to the card before the record.
-            let _ = batch.scenes.seen(0..1);
             let inputs = self.inputs.get_or_insert_with(|| draw.copied());
             let (recording, computed) = self.recorder.record(|| compute(inputs));
             let (loss, gradient) = computed?;

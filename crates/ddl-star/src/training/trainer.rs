@@ -198,6 +198,12 @@ impl Trainer {
         let parts = self.batches.batch(index, self.schedule.batch(index))?;
         let network = &self.network;
         let TrainingConfig { objective, jitter, .. } = self.config;
+        if self.kernels.is_none() {
+            // On several threads, so before the lock.
+            for part in parts {
+                let _ = part.scenes.seen(0..1);
+            }
+        }
         // Held until the last draw: of jitter, and in a pass of libtorch of dropout.
         let generator = GENERATOR.lock().unwrap_or_else(PoisonError::into_inner);
         tch::manual_seed(draw.libtorch);
@@ -216,7 +222,7 @@ impl Trainer {
         };
         #[cfg(target_os = "linux")]
         if let Some(recorded) = &mut self.recorded {
-            return recorded.gradient(index, batch, draw, compute);
+            return recorded.gradient(index, draw, compute);
         }
         compute(draw)
     }

@@ -145,7 +145,7 @@ impl Walked<'_> {
         Ok(CertifiedForecast { forecast, certificates })
     }
 
-    /// The positions of every hypothesis, `[N][K][12]`, and the result of `of` for its certificate, `[N][K]`. With
+    /// The positions of every hypothesis, `[N][K][12]`, and the result of `keep` for its certificate, `[N][K]`. With
     /// plain Euler steps the positions are those of the network's own rollout.
     fn walks<R: Send>(
         &self,
@@ -155,9 +155,12 @@ impl Walked<'_> {
         let Some(factors) = &self.factors else {
             return Err(no_flow(self.config.variant));
         };
-        // Another path of the same length replaces each.
         let mut positions = rolled_out;
-        positions.resize(factors.len(), [0.0; 2]);
+        if let PathIntegrator::Stable(_) = self.integrator {
+            // Another path replaces each.
+            positions.resize(factors.len(), [0.0; 2]);
+        }
+        assert_eq!(positions.len(), factors.len(), "a position for each factor");
         let put = |path: &mut [Position], walk: Walk| {
             path.copy_from_slice(&walk.positions);
             keep(walk.certificate)
@@ -230,7 +233,7 @@ impl Walked<'_> {
         results.collect::<Vec<_>>().into_iter().collect()
     }
 
-    /// Runs `of` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.
+    /// Runs `integrate` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.
     fn one<R>(
         &self,
         pair: usize,

@@ -5,8 +5,8 @@ use ddl_goal::{HeadingFrame, TrackError};
 use ddl_network::{PedestrianView, ProposalExample, length_unit};
 use rayon::prelude::*;
 
-/// Fewest pedestrians for which another thread is woken.
-const WORTH_WAKING: usize = 16;
+/// Least pedestrians in the part of a thread.
+const PART: usize = 16;
 
 /// A pedestrian's own frame, its unit of length, and the view from it.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub(crate) struct FramedView {
 pub(crate) fn of_window(window: &Window, neighbours: usize, time_step: f64) -> Result<Vec<FramedView>, TrackError> {
     let last = window.positions_at(OBSERVED - 1);
     let places = SpatialIndex::new(&last);
-    let views = (0..window.len()).into_par_iter().with_min_len(WORTH_WAKING).map(|i| {
+    let views = (0..window.len()).into_par_iter().with_min_len(PART).map(|i| {
         let frame = HeadingFrame::new(window.observed(i))?;
         let unit = length_unit(window.observed(i), time_step);
         let view = PedestrianView {
