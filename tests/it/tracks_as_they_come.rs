@@ -151,13 +151,13 @@ fn the_rate_of_scenes_is_used() {
     for (line, note, same_as) in [
         (
             "two.ndjson",
-            "note: the file's scenes give 2 frames per second, and its frame numbers increase by 10: read as --fps \
+            "note: the file gives 2 frames per second, and its frame numbers increase by 10: read as --fps \
              20\n",
             "plain.ndjson --fps 20",
         ),
         (
             "two.ndjson --fps 25",
-            "note: read as --fps 25, although the file's scenes give 2 frames per second, and its frame numbers \
+            "note: read as --fps 25, although the file gives 2 frames per second, and its frame numbers \
              increase by 10 (--fps 20)\n",
             "plain.ndjson --fps 25",
         ),
@@ -166,7 +166,7 @@ fn the_rate_of_scenes_is_used() {
     ] {
         let finished = ask(line);
         let notes = finished.stderr.split_inclusive('\n');
-        let of_rate: String = notes.filter(|note| note.contains("scenes")).collect();
+        let of_rate: String = notes.filter(|note| note.contains("the file gives")).collect();
         assert_eq!(of_rate, note);
         assert_eq!(finished.succeeds(), ask(same_as).succeeds());
     }

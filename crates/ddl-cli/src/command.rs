@@ -212,8 +212,8 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
     }
     if units.are_given() {
         bail!(
-            "--fps, --dt, --frame-step and --homography describe your own recordings (--convention own); those of \
-             {convention} have fixed units"
+            "--fps, --dt, --frame-step, --homography, --columns, --keep and --unit describe your own recordings \
+             (--convention own); those of {convention} have fixed units"
         );
     }
     if convention == Convention::Simulated {

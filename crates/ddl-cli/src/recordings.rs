@@ -7,7 +7,7 @@ use ddl::data::{Clock, Misfit, PlausibilityWarning, Recording};
 use std::path::{Path, PathBuf};
 
 /// Extensions of recordings; other files in a folder are ignored.
-pub(crate) const EXTENSIONS: [&str; 3] = ["csv", "txt", "ndjson"];
+pub(crate) const EXTENSIONS: [&str; 4] = ["csv", "tsv", "txt", "ndjson"];
 /// Number of unreadable files that are reported individually.
 const MOST_REPORTED: usize = 10;
 
@@ -40,7 +40,7 @@ fn in_folder(folder: &Path, units: &Units) -> anyhow::Result<Vec<PathBuf>> {
     }
     if files.is_empty() {
         bail!(
-            "{} holds no recordings: it needs files that end in .csv, .txt or .ndjson (subfolders are not read)",
+            "{} holds no recordings: it needs files that end in .csv, .tsv, .txt or .ndjson (subfolders are not read)",
             folder.display()
         );
     }

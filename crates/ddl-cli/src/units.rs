@@ -4,7 +4,7 @@ use crate::output::shell_word;
 use crate::telling::many;
 use anyhow::{Context as _, bail};
 use clap::Args;
-use ddl::data::{Clock, Format, Homography, Recording, TIME_STEP, parse_recording};
+use ddl::data::{Clock, ColumnChoice, Format, Homography, Recording, TIME_STEP, parse_columns};
 use ddl::{RunConfig, TrackUnits};
 use std::path::{Path, PathBuf};
 
@@ -26,6 +26,15 @@ pub(crate) struct Units {
     /// [default: that of the run's training, if any]
     #[arg(long, value_name = "FILE")]
     homography: Option<PathBuf>,
+    /// The columns of a table, where their names do not say it: frame (or time), pedestrian, x, y, class, scene
+    #[arg(long, value_name = "ROLE=NAME,...", value_parser = columns)]
+    columns: Option<ColumnChoice>,
+    /// Only rows with this value count: of the column of classes (class=Pedestrian), or of any other
+    #[arg(long, value_name = "COLUMN=VALUE", value_parser = kept)]
+    keep: Option<Kept>,
+    /// The unit of positions [default: that in the names of the columns, or m]
+    #[arg(long, value_parser = ["m", "cm", "mm", "px"])]
+    unit: Option<String>,
     /// The units of the run's training.
     #[arg(skip)]
     remembered: TrackUnits,
@@ -39,6 +48,18 @@ pub(crate) struct ReadRecording {
     pub(crate) guessed: Option<String>,
     /// Notes on its rate, for [`tell_notes`](crate::recordings::tell_notes).
     pub(crate) notes: Vec<String>,
+}
+
+/// The value of `--keep`.
+#[derive(Debug, Clone)]
+struct Kept(String);
+
+fn columns(text: &str) -> Result<ColumnChoice, String> {
+    ColumnChoice::default().with_columns(text)
+}
+
+fn kept(text: &str) -> Result<Kept, String> {
+    ColumnChoice::default().keeping(text).map(|_| Kept(text.to_owned()))
 }
 
 /// Rates with a smaller relative difference count as equal.
@@ -72,7 +93,20 @@ impl Units {
     }
 
     pub(crate) fn are_given(&self) -> bool {
-        has_rate(&self.rate()) || self.homography.is_some()
+        let of_columns = self.columns.is_some() || self.keep.is_some() || self.unit.is_some();
+        has_rate(&self.rate()) || self.homography.is_some() || of_columns
+    }
+
+    /// What the options say of the columns of text.
+    pub(crate) fn choice(&self) -> anyhow::Result<ColumnChoice> {
+        let mut choice = self.columns.clone().unwrap_or_default();
+        if let Some(Kept(text)) = &self.keep {
+            choice = choice.keeping(text).map_err(anyhow::Error::msg)?;
+        }
+        match &self.unit {
+            Some(unit) => choice.in_unit(unit).map_err(anyhow::Error::msg),
+            None => Ok(choice),
+        }
     }
 
     /// The option that gives the rate, with its value.
@@ -84,7 +118,12 @@ impl Units {
         let homography = self.homography.as_ref();
         let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
         let rate = rate_option(&self.rate()).map(|rate| format!(" {rate}"));
-        rate.unwrap_or_default() + &homography.unwrap_or_default()
+        let columns = self.columns.as_ref().map(|columns| ("columns", columns.to_string()));
+        let keep = self.keep.as_ref().map(|Kept(text)| ("keep", text.clone()));
+        let unit = self.unit.as_ref().map(|unit| ("unit", unit.clone()));
+        let of_columns = columns.into_iter().chain(keep).chain(unit);
+        let of_columns = of_columns.map(|(option, value)| format!(" --{option} {}", shell_word(Path::new(&value))));
+        rate.unwrap_or_default() + &homography.unwrap_or_default() + &of_columns.collect::<String>()
     }
 
     /// Whether this file is the homography, which may be stored in the folder of the recordings.
@@ -140,8 +179,7 @@ impl Units {
         let otherwise = if has_rate(&given) { given } else { self.remembered };
         let otherwise = frame_time(&otherwise).or(otherwise.frame_step.map(of_step));
         let same = (otherwise.unwrap_or(of_step(apart)) / told - 1.0).abs() <= SAME;
-        let scenes =
-            format!("the file's scenes give {rate} frames per second, and its frame numbers increase by {apart}");
+        let scenes = format!("the file gives {rate} frames per second, and its frame numbers increase by {apart}");
         let of_file = format!("--fps {}", rounded(1.0 / told));
         match rate_option(&given) {
             _ if same => None,
@@ -180,9 +218,9 @@ impl Units {
             );
         }
         let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let format = Format::guess(file, &bytes);
+        let format = Format::guess(file, &bytes)?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
-        let recording = parse_recording(&bytes, &file.display().to_string(), format)?;
+        let recording = parse_columns(&bytes, &file.display().to_string(), format, &self.choice()?)?;
         let recording = recording.with_name(&*name);
         match self.homography()? {
             None => Ok(recording),

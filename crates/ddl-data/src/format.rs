@@ -1,24 +1,32 @@
 //! File formats of recordings: parsers from text to a checked [`Recording`]. A parser refuses anything that it does not
-//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ allows lines and
-//! fields of other kinds, and overlapping scenes that repeat a track.
+//! understand, and names file, line and field. The order of the rows does not matter. Only TrajNet++ allows lines of
+//! other kinds, and overlapping scenes that repeat a track; text may have further columns and comments.
 
-mod blanks;
+mod choice;
+mod column_names;
 mod field;
+mod header;
 mod kind;
+mod layouts;
 mod numbering;
+mod order;
 mod place;
 mod problem;
+mod recognise;
 mod rows;
+mod separator;
 mod star_csv;
 mod stream;
-mod table;
+mod text;
 mod trajnet;
 mod write;
 
 use std::path::Path;
 
+pub use choice::ColumnChoice;
 pub use kind::Format;
 pub use stream::{Frame, FrameReader};
+pub(crate) use text::PIXELS;
 pub use write::write_recording;
 
 use crate::error::DataError;
@@ -61,6 +69,19 @@ pub fn read_recording(path: &Path, format: Format) -> Result<Recording, DataErro
 /// );
 /// ```
 pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Recording, DataError> {
+    parse_columns(bytes, origin, format, &ColumnChoice::default())
+}
+
+/// Parses tracks from bytes, with the columns of text as the user says.
+///
+/// # Errors
+/// As [`parse_recording`], and if columns are chosen in a format whose columns have no names.
+pub fn parse_columns(
+    bytes: &[u8],
+    origin: &str,
+    format: Format,
+    choice: &ColumnChoice,
+) -> Result<Recording, DataError> {
     if COMPRESSED.iter().any(|magic| bytes.starts_with(magic)) {
         let problem = "the file is compressed; unpack it, or export the spreadsheet as csv";
         return Err(FilePlace::line(1).wrong(origin, problem).into());
@@ -71,24 +92,22 @@ pub fn parse_recording(bytes: &[u8], origin: &str, format: Format) -> Result<Rec
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if matches!(format, Format::StarCsv | Format::TrajNet) && *choice != ColumnChoice::default() {
+        let problem = format!("the columns of the format {format} cannot be chosen");
+        return Err(FilePlace::line(1).wrong(origin, problem).into());
+    }
     let (mut rate, mut notes) = (None, Vec::new());
     let rows = match format {
         Format::StarCsv => star_csv::parse(text, origin),
-        Format::SocialGan => blanks::parse(text, origin, blanks::social_gan),
-        Format::Table => table::parse(text, origin).map(|(rows, of_columns)| {
-            notes = of_columns;
-            rows
-        }),
         Format::TrajNet => trajnet::parse(text, origin).map(|(rows, stated)| {
             rate = stated.frames_a_second;
             rows
         }),
-        Format::Obsmat => blanks::parse(text, origin, blanks::obsmat),
+        _ => text::parse(text, origin, format, choice).map(|file| {
+            (rate, notes) = (file.rate, file.notes);
+            file.rows
+        }),
     }?;
-    let is_text = matches!(format, Format::SocialGan | Format::Obsmat);
-    if is_text && rows.first().is_some_and(|row| row.unit.is_some()) {
-        notes.push("the first column has fractions: it is read as seconds".to_owned());
-    }
     Ok(rows::into_recording(rows, origin)?.with_rate(rate).with_notes(notes))
 }
 

@@ -103,7 +103,9 @@ pub use ddl_core::{
 };
 pub use error::{DataError, FormatError, RecordingError};
 pub use fold::{Fold, TrainingSplit};
-pub use format::{Format, Frame, FrameReader, parse_recording, read_recording, write_recording};
+pub use format::{
+    ColumnChoice, Format, Frame, FrameReader, parse_columns, parse_recording, read_recording, write_recording,
+};
 pub use future::Futures;
 pub use homography::{Homography, HomographyError};
 pub use live::{Completeness, LiveError, LiveTracks, checked_frame};

@@ -204,7 +204,7 @@ impl Recording {
                 let path = path.clone();
                 raised(ddl::DdlError::Io { path, source })
             })?;
-            Format::guess(&path, &bytes)
+            Format::guess(&path, &bytes).map_err(of_any)?
         };
         let mut tracks = py.detach(|| read_recording(&path, format)).map_err(raised)?;
         if let Some(rows) = homography {

@@ -5,10 +5,10 @@ import pickle
 import ddl_forecast as ddl
 import numpy as np
 import pytest
-from ddl_forecast._recording import FORMATS
+from ddl_forecast._recording import WRITTEN
 
 
-@pytest.mark.parametrize("format", FORMATS)
+@pytest.mark.parametrize("format", WRITTEN)
 def test_a_written_recording_is_read_back(format, tmp_path, tracks):
     recording = ddl.read(tracks)
     path = tmp_path / (

@@ -17,7 +17,9 @@ pub(super) fn read(bytes: &[u8]) {
         return;
     };
     let name = NAMES[usize::from(*name) % NAMES.len()];
-    let format = Format::guess(name.as_ref(), text);
+    let Ok(format) = Format::guess(name.as_ref(), text) else {
+        return;
+    };
     let Ok(recording) = parse_recording(text, name, format) else {
         return;
     };

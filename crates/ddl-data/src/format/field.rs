@@ -13,6 +13,9 @@ use crate::observation::COORDINATE_LIMIT;
 /// Longest piece of a file that an error message quotes, in characters.
 const QUOTED: usize = 40;
 
+/// Longest word that names a pedestrian, in bytes.
+const LONGEST_WORD: usize = 256;
+
 /// A frame or pedestrian number. Files write them as `12`, `12.0` or `1.2e1`.
 pub(super) fn integer(text: &str, name: &str) -> Result<i64, String> {
     let text = text.trim();
@@ -112,8 +115,33 @@ pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, Stri
             Ok(PedestrianField::Number(number, (!is_plain).then(|| text.into())))
         }
         Err(problem) if text.is_empty() || is_fraction_or_infinite(text) => Err(problem),
-        Err(_) => Ok(PedestrianField::Word(text.into())),
+        Err(_) => word(text, name),
     }
+}
+
+/// A pedestrian that is named by a word. Control characters, which would act on terminals, are replaced by their
+/// escapes.
+pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, String> {
+    if text.len() > LONGEST_WORD {
+        let (found, length) = (quoted(text), text.len());
+        return Err(format!(
+            "{name} has {length} bytes, at most {LONGEST_WORD} are read, found {found:?}"
+        ));
+    }
+    if !text.contains(char::is_control) {
+        return Ok(PedestrianField::Word(text.into()));
+    }
+    let escaped: String = text
+        .chars()
+        .map(|letter| {
+            if letter.is_control() {
+                letter.escape_default().to_string()
+            } else {
+                letter.to_string()
+            }
+        })
+        .collect();
+    Ok(PedestrianField::Word(escaped.into()))
 }
 
 /// Whether a text is a fraction, NaN or infinite. `12e4567` is not: it is too large for a number and counts as a word.
@@ -128,9 +156,10 @@ fn is_fraction_or_infinite(text: &str) -> bool {
     })
 }
 
-pub(super) fn coordinate(text: &str, name: &str) -> Result<f64, String> {
+/// A coordinate in metres, written in units of which `per_metre` make a metre.
+pub(super) fn coordinate(text: &str, name: &str, per_metre: f64) -> Result<f64, String> {
     let text = text.trim();
-    match text.parse::<f64>() {
+    match text.parse::<f64>().map(|number| number / per_metre) {
         Ok(number) if number.abs() <= COORDINATE_LIMIT => Ok(number),
         Ok(number) if number.is_finite() => Err(format!(
             "{name} must lie within {COORDINATE_LIMIT} m of the origin, found {:?}; use an origin near the scene",
@@ -172,6 +201,8 @@ mod tests {
         for text in ["7f3e", "12e4567", "5e20", "9007199254740992", " a b "] {
             assert_eq!(read(text), Ok(PedestrianField::Word(text.trim().into())));
         }
+        assert_eq!(read("a\u{1b}[2Jb"), Ok(PedestrianField::Word("a\\u{1b}[2Jb".into())));
+        assert!(read(&"w".repeat(256)).is_ok() && read(&"w".repeat(257)).is_err());
         for text in ["", " ", "1.5", "NaN", "inf", "-inf"] {
             assert!(integer(text, "frame").is_err() && read(text).is_err(), "{text}");
         }
@@ -179,9 +210,9 @@ mod tests {
             assert!(integer(text, "frame").is_err(), "{text}");
         }
         for text in ["10000000.1", "1.2.3", "one", "-Infinity", "1e999"] {
-            assert!(coordinate(text, "x").is_err(), "{text}");
+            assert!(coordinate(text, "x", 1.0).is_err(), "{text}");
         }
-        assert_eq!(coordinate("-1e7", "x"), Ok(-1e7));
+        assert_eq!(coordinate("-1e7", "x", 1.0), Ok(-1e7));
         assert_eq!(quoted(&"ä".repeat(500)).chars().count(), QUOTED + 3);
     }
 }

@@ -6,15 +6,13 @@ use ddl_core::{PedestrianId, PedestrianNames, Position};
 
 use crate::clock::TimeUnit;
 use crate::error::{DataError, FormatError};
-use crate::format::field::{self, PedestrianField};
+use crate::format::field::PedestrianField;
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
 use crate::format::problem::{EMPTY, MIXED_TIMES, duplicate, when};
 use crate::observation::Observation;
 use crate::recording::Recording;
 use crate::scene_name::SceneName;
-
-pub(super) const FIELDS: &str = "frame, pedestrian, x, y";
 
 #[derive(Debug)]
 pub(super) struct TrackRow {
@@ -30,29 +28,6 @@ pub(super) struct TrackRow {
 }
 
 type Placed = (Observation, FilePlace);
-
-impl TrackRow {
-    /// The observation in frame (or time), pedestrian, x and y of a line, each given with the number of its field.
-    pub(super) fn of(
-        line: usize,
-        origin: &str,
-        unit: Option<TimeUnit>,
-        [(f, frame), (p, pedestrian), (i, x), (j, y)]: [(usize, &str); 4],
-    ) -> Result<Self, FormatError> {
-        let place = |field: usize| FilePlace::field(line, field);
-        Ok(Self {
-            scene: None,
-            frame: place(f).read(origin, field::frame(frame, "frame", unit))?,
-            unit,
-            pedestrian: place(p).read(origin, field::pedestrian(pedestrian, "pedestrian"))?,
-            position: [
-                place(i).read(origin, field::coordinate(x, "x"))?,
-                place(j).read(origin, field::coordinate(y, "y"))?,
-            ],
-            place: FilePlace::line(line),
-        })
-    }
-}
 
 /// The recording of all rows, with an inferred frame step.
 pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Recording, DataError> {

@@ -38,8 +38,8 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         let frame = place(1).read(origin, field::integer(frames[index], "frame"))?;
         let pedestrian = place(2).read(origin, pedestrian)?;
         // The third line is y and the fourth x, as in the published code of STAR and DDL.
-        let y = place(3).read(origin, field::coordinate(ys[index], "y"))?;
-        let x = place(4).read(origin, field::coordinate(xs[index], "x"))?;
+        let y = place(3).read(origin, field::coordinate(ys[index], "y", 1.0))?;
+        let x = place(4).read(origin, field::coordinate(xs[index], "x", 1.0))?;
         Ok(TrackRow {
             scene: None,
             frame,

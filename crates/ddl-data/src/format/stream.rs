@@ -11,14 +11,15 @@ use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position};
 
 use crate::clock::TimeUnit;
 use crate::error::{DataError, FormatError};
-use crate::format::field::{self, PedestrianField};
+use crate::format::choice::ColumnChoice;
+use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
 use crate::format::problem::{MIXED_TIMES, NOT_UTF8, duplicate, when};
 use crate::format::rows::TrackRow;
-use crate::format::table::TrackColumns;
-use crate::format::{blanks, trajnet};
+use crate::format::text::{TrackColumns, is_comment, rate_of};
+use crate::format::trajnet;
 use crate::scene_name::SceneName;
 
 const LONGEST_LINE: usize = 1 << 16;
@@ -51,8 +52,8 @@ pub struct Frame {
 /// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation per line.
 ///
 /// A frame is complete when a line of a later frame arrives, at an empty line, or at the end. The first line determines
-/// the format: a header (`table`), a JSON object (`trajnet`), or four or eight columns (`social-gan`, `obsmat`). Files
-/// of the `star` convention are not in order of time and cannot be streamed.
+/// the format, by its header, as a JSON object (`trajnet`), or by its columns: four are frame, pedestrian, x and y.
+/// Files of the `star` convention are not in order of time and cannot be streamed.
 ///
 /// Pedestrians may be named by words, by numbers or by both. Memory is bounded by the pedestrians of incomplete frames,
 /// 100,000 at most, and the last 200,000 words. A word that has been forgotten gets a new pedestrian number.
@@ -69,6 +70,9 @@ pub struct FrameReader<R> {
     origin: String,
     lines: usize,
     kind: Option<Kind>,
+    choice: ColumnChoice,
+    /// The last comment before the first observation.
+    comment: Option<String>,
     /// The frame rate stated by scenes.
     rate: trajnet::SceneRate,
     words: Numbering,
@@ -125,10 +129,8 @@ struct Growing {
 
 #[derive(Debug)]
 enum Kind {
-    Table(TrackColumns),
+    Text(Box<TrackColumns>),
     TrajNet,
-    SocialGan,
-    Obsmat,
 }
 
 impl<R: BufRead> FrameReader<R> {
@@ -139,6 +141,8 @@ impl<R: BufRead> FrameReader<R> {
             origin: origin.into(),
             lines: 0,
             kind: None,
+            choice: ColumnChoice::default(),
+            comment: None,
             rate: trajnet::SceneRate::default(),
             words: Numbering::remembering(MOST_WORDS),
             numbers: BTreeSet::new(),
@@ -157,6 +161,12 @@ impl<R: BufRead> FrameReader<R> {
     #[must_use]
     pub fn forgetting_after(self, idle_timeout: Duration) -> Self {
         Self { idle_timeout, ..self }
+    }
+
+    /// Takes the columns of text as the user says.
+    #[must_use]
+    pub fn with_columns(self, choice: ColumnChoice) -> Self {
+        Self { choice, ..self }
     }
 
     /// Waits for the next complete frame; `None` at the end.
@@ -212,9 +222,9 @@ impl<R: BufRead> FrameReader<R> {
     /// Takes the notes on what was assumed while the lines were read, a sentence each: once, from the first row on.
     pub fn take_notes(&mut self) -> Vec<String> {
         match &self.kind {
-            Some(Kind::Table(columns)) if self.first.is_some() && !self.are_notes_taken => {
+            Some(Kind::Text(columns)) if self.first.is_some() && !self.are_notes_taken => {
                 self.are_notes_taken = true;
-                columns.notes()
+                columns.notes(false)
             }
             _ => Vec::new(),
         }
@@ -273,28 +283,29 @@ impl<R: BufRead> FrameReader<R> {
 
     fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
         let (line, origin) = (self.lines, self.origin.as_str());
-        let first_field = || text.split_ascii_whitespace().next().unwrap_or_default();
-        let unit = match &self.first {
-            Some(first) => first.unit,
-            None => field::has_fraction(first_field()).then_some(TimeUnit::Seconds),
-        };
+        if is_comment(text) && !matches!(self.kind, Some(Kind::TrajNet)) {
+            self.rate.frames_a_second = self.rate.frames_a_second.or(rate_of(text));
+            if self.kind.is_none() {
+                self.comment = Some(text.to_owned());
+            }
+            return Ok(None);
+        }
         let Some(kind) = &mut self.kind else {
-            let kind = match Format::guess("".as_ref(), text.as_bytes()) {
-                Format::TrajNet => Kind::TrajNet,
-                Format::SocialGan => Kind::SocialGan,
-                Format::Obsmat => Kind::Obsmat,
-                Format::Table | Format::StarCsv => {
-                    self.kind = Some(Kind::Table(TrackColumns::of_line(text, line, origin)?));
-                    return Ok(None);
-                }
+            let comment = self.comment.take();
+            let comments: Vec<&str> = comment.as_deref().into_iter().collect();
+            let begin = comments.concat() + text;
+            let format = Format::guess("".as_ref(), begin.as_bytes())?;
+            let (kind, is_header) = if format == Format::TrajNet {
+                (Kind::TrajNet, false)
+            } else {
+                let (columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, line, origin)?;
+                (Kind::Text(Box::new(columns)), is_header)
             };
             self.kind = Some(kind);
-            return self.row(text);
+            return if is_header { Ok(None) } else { self.row(text) };
         };
         match kind {
-            Kind::Table(columns) => columns.row_of_line(text, line, origin).map(Some),
-            Kind::SocialGan => blanks::social_gan(text, line, origin, unit).map(Some),
-            Kind::Obsmat => blanks::obsmat(text, line, origin, unit).map(Some),
+            Kind::Text(columns) => columns.row_of_line(text, line, origin),
             Kind::TrajNet => trajnet::observation(text, line, origin, &mut self.rate),
         }
     }

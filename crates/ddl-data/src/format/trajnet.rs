@@ -174,15 +174,15 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     let frame = field::frame(&when, "track.f", unit)?;
     let pedestrian = match track.p {
         // A quoted pedestrian is a word, even if it holds only digits.
-        Some(Value::String(word)) if !word.trim().is_empty() => PedestrianField::Word(word.trim().into()),
+        Some(Value::String(word)) if !word.trim().is_empty() => field::word(word.trim(), "track.p")?,
         Some(Value::Number(number)) => field::pedestrian(&number.to_string(), "track.p")?,
         other => {
             let number = field::integer(&text(other, "track.p")?, "track.p")?;
             PedestrianField::Number(number, None)
         }
     };
-    let x = field::coordinate(&text(track.x, "track.x")?, "track.x")?;
-    let y = field::coordinate(&text(track.y, "track.y")?, "track.y")?;
+    let x = field::coordinate(&text(track.x, "track.x")?, "track.x", 1.0)?;
+    let y = field::coordinate(&text(track.y, "track.y")?, "track.y", 1.0)?;
     let scene = match track.scene {
         None => None,
         Some(Value::String(name)) => Some(SceneName::new(&name).map_err(|error| error.to_string())?),

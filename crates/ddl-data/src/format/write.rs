@@ -81,6 +81,14 @@ pub fn write_recording(recording: &Recording, format: Format) -> Result<Vec<u8>,
                 text.push('\n');
             }
         }
+        _ => {
+            let problem = format!(
+                "the format {format} is only read; use the format {} or {}",
+                Format::Table,
+                Format::TrajNet
+            );
+            return Err(DataError::Own { problem });
+        }
     }
     Ok(text.into_bytes())
 }

@@ -3,6 +3,7 @@
 
 mod clock;
 mod folds;
+mod formats;
 mod frames;
 mod homography;
 mod live;

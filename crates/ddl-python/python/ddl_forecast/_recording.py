@@ -11,8 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from ddl_forecast import _core
 from ddl_forecast._arrays import Floats, column, moments, numbered
 
-#: Formats of files of tracks, by name.
-FORMATS = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
+#: Formats of files of tracks that are read and written, by name.
+WRITTEN = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
+#: Formats that are read.
+FORMATS = (*WRITTEN, "id-first", "petrack", "petrack-cm", "sdd", "mot", "mot-truth", "atc", "kitti", "apolloscape")
 
 
 class Recording:
@@ -104,7 +106,7 @@ class Recording:
         return self._core.doubt()
 
     def write(self, path: str | os.PathLike[str], *, format: str = "table") -> None:
-        """Write a file that :func:`read` restores position by position, in one of :data:`FORMATS`.
+        """Write a file that :func:`read` restores position by position, in one of :data:`WRITTEN`.
 
         The file is either complete or missing. Only ``table`` and ``trajnet`` can hold words as ids, or times. No
         format holds ``fps``: give it to :func:`read` again.

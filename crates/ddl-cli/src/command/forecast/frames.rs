@@ -1,6 +1,6 @@
 //! Frames of standard input, read on a separate thread, so that forecasts do not wait for input.
 
-use ddl::data::{DataError, Frame, FrameReader, TimeUnit};
+use ddl::data::{ColumnChoice, DataError, Frame, FrameReader, TimeUnit};
 use std::io::{BufRead, stdin};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
@@ -37,12 +37,12 @@ pub(super) enum Incoming {
 pub(super) struct IncomingFrames(Receiver<Incoming>);
 
 impl IncomingFrames {
-    pub(super) fn of_standard_input() -> anyhow::Result<Self> {
+    pub(super) fn of_standard_input(columns: ColumnChoice) -> anyhow::Result<Self> {
         let (send, received) = sync_channel(AHEAD);
         let name = "standard input";
         let thread = thread::Builder::new().name(name.to_owned());
         // The thread ends with the input, when the receiver is dropped, or with the process.
-        thread.spawn(move || read(FrameReader::new(stdin().lock(), name), &send))?;
+        thread.spawn(move || read(FrameReader::new(stdin().lock(), name).with_columns(columns), &send))?;
         Ok(Self(received))
     }
 

@@ -85,7 +85,7 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
         taken: 0,
         answered: 0,
     };
-    stream.follow(&IncomingFrames::of_standard_input()?, &units)?;
+    stream.follow(&IncomingFrames::of_standard_input(units.choice()?)?, &units)?;
     if !forecast.latest && !forecast.tracks.are_thinned() {
         stream.left_out.tell_if_few(1);
     }

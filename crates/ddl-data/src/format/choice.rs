@@ -1,0 +1,99 @@
+//! What the user says of the columns of text.
+
+use std::fmt;
+
+use crate::format::column_names::{LengthUnit, Role};
+
+/// What the columns of text are and which rows count, where their names do not say it.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ColumnChoice {
+    /// Roles, each with the name of its column.
+    pub(super) roles: Vec<(Role, String)>,
+    /// Only rows with this value in this column count.
+    pub(super) keep: Option<(String, String)>,
+    pub(super) unit: Option<LengthUnit>,
+}
+
+/// The roles that can be given, by name.
+const ROLES: [(&str, Role); 7] = [
+    ("frame", Role::Frame),
+    ("time", Role::Time),
+    ("pedestrian", Role::Pedestrian),
+    ("x", Role::X),
+    ("y", Role::Y),
+    ("class", Role::Class),
+    ("scene", Role::Scene),
+];
+
+impl ColumnChoice {
+    /// Names the columns that hold the frame (or time), pedestrian, x, y, class or scene, such as
+    /// `frame=frame_id,x=xCenter`. Columns that are not named keep the meaning of their names.
+    ///
+    /// # Errors
+    /// When the text has another form; the message says which.
+    pub fn with_columns(mut self, text: &str) -> Result<Self, String> {
+        for part in text.split(',') {
+            let pair = part.split_once('=').map(|(role, name)| (role.trim(), name.trim()));
+            let role = |word: &str| ROLES.iter().find(|(name, _)| *name == word).map(|(_, role)| *role);
+            let given = pair.and_then(|(word, name)| Some((role(word)?, name.to_owned())));
+            let Some((role, name)) = given.filter(|(_, name)| !name.is_empty()) else {
+                let roles: Vec<&str> = ROLES.iter().map(|(name, _)| *name).collect();
+                return Err(format!(
+                    "must be like frame=frame_id,x=xCenter, with any of {}, found {part:?}",
+                    roles.join(", ")
+                ));
+            };
+            if self.roles.iter().any(|(other, _)| *other == role) {
+                return Err(format!("gives {part:?} a second time"));
+            }
+            self.roles.push((role, name));
+        }
+        Ok(self)
+    }
+
+    /// Only rows with a value in a column count, such as `class=Pedestrian`: `class`, or the name of a column.
+    ///
+    /// # Errors
+    /// When the text has another form.
+    pub fn keeping(mut self, text: &str) -> Result<Self, String> {
+        let pair = text.split_once('=').map(|(name, value)| (name.trim(), value.trim()));
+        let Some((name, value)) = pair.filter(|(name, value)| !name.is_empty() && !value.is_empty()) else {
+            return Err(format!("must be like class=Pedestrian, found {text:?}"));
+        };
+        self.keep = Some((name.to_owned(), value.to_owned()));
+        Ok(self)
+    }
+
+    /// The positions are in `m`, `cm`, `mm` or `px`.
+    ///
+    /// # Errors
+    /// For another unit.
+    pub fn in_unit(mut self, unit: &str) -> Result<Self, String> {
+        self.unit = Some(match unit {
+            "m" => LengthUnit::PerMetre(1.0),
+            "cm" => LengthUnit::PerMetre(100.0),
+            "mm" => LengthUnit::PerMetre(1000.0),
+            "px" => LengthUnit::Pixels,
+            _ => return Err(format!("must be m, cm, mm or px, found {unit:?}")),
+        });
+        Ok(self)
+    }
+}
+
+impl fmt::Display for ColumnChoice {
+    /// The columns, as [`with_columns`](Self::with_columns) reads them.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let word = |role: Role| {
+            ROLES
+                .iter()
+                .find(|(_, other)| *other == role)
+                .map_or("", |(word, _)| word)
+        };
+        let columns: Vec<String> = self
+            .roles
+            .iter()
+            .map(|(role, name)| format!("{}={name}", word(*role)))
+            .collect();
+        f.write_str(&columns.join(","))
+    }
+}

@@ -1,0 +1,182 @@
+//! What the names of columns say: their role and their unit.
+
+use crate::clock::TimeUnit;
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Role {
+    Frame,
+    Time,
+    Pedestrian,
+    X,
+    Y,
+    Scene,
+    /// From here on columns may be there and not be read.
+    Class,
+    Left,
+    Top,
+    Right,
+    Bottom,
+    Width,
+    Height,
+}
+
+/// The roles with their names, in small letters without blanks and signs.
+const NAMES: [(Role, &str); 13] = [
+    (
+        Role::Frame,
+        "frame frames frameid frameidx frameindex framenumber frameno framenum framenr fr",
+    ),
+    (
+        Role::Time,
+        "time t timestamp seconds milliseconds microseconds nanoseconds datetime",
+    ),
+    (
+        Role::Pedestrian,
+        "pedestrian pedestrianid ped pedid id agent agentid track trackid trackerid tid person personid \
+         object objectid obj objid identity",
+    ),
+    (
+        Role::X,
+        "x posx xpos positionx xposition centerx xcenter centrex xcentre worldx xworld px xest coordx \
+         xcoord locx xloc",
+    ),
+    (
+        Role::Y,
+        "y posy ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest coordy \
+         ycoord locy yloc",
+    ),
+    (Role::Scene, "scene"),
+    (Role::Class, "class classname label type agenttype objecttype category"),
+    (Role::Left, "left xmin x1 bbleft bboxleft"),
+    (Role::Top, "top ymin y1 bbtop bboxtop"),
+    (Role::Right, "right xmax x2 bbright bboxright"),
+    (Role::Bottom, "bottom ymax y2 bbbottom bboxbottom"),
+    (Role::Width, "width w bbwidth bboxwidth"),
+    (Role::Height, "height h bbheight bboxheight"),
+];
+
+/// The last word of a name, if it is a unit.
+const TIME_UNITS: [(&str, TimeUnit); 6] = [
+    ("s", TimeUnit::Seconds),
+    ("sec", TimeUnit::Seconds),
+    ("seconds", TimeUnit::Seconds),
+    ("ms", TimeUnit::Milliseconds),
+    ("us", TimeUnit::Microseconds),
+    ("ns", TimeUnit::Nanoseconds),
+];
+const LENGTH_UNITS: [(&str, LengthUnit); 5] = [
+    ("m", LengthUnit::PerMetre(1.0)),
+    ("cm", LengthUnit::PerMetre(100.0)),
+    ("mm", LengthUnit::PerMetre(1000.0)),
+    ("px", LengthUnit::Pixels),
+    ("pixel", LengthUnit::Pixels),
+];
+
+/// A unit of length that a name gives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum LengthUnit {
+    PerMetre(f64),
+    Pixels,
+}
+
+/// A column of a header.
+pub(super) struct Named {
+    pub(super) index: usize,
+    pub(super) role: Role,
+    pub(super) time_unit: Option<TimeUnit>,
+    pub(super) length: Option<LengthUnit>,
+}
+
+impl LengthUnit {
+    /// Units per metre; `None` for pixels.
+    pub(super) fn per_metre(self) -> Option<f64> {
+        match self {
+            Self::PerMetre(count) => Some(count),
+            Self::Pixels => None,
+        }
+    }
+}
+
+impl Role {
+    /// Whether a column of this role takes the place of one of the other.
+    pub(super) fn stands_for(self, other: Self) -> bool {
+        let is_time = |role: Self| matches!(role, Self::Frame | Self::Time);
+        self == other || is_time(self) && is_time(other)
+    }
+}
+
+/// The column of that name; `None` for an unknown one.
+pub(super) fn named(index: usize, name: &str) -> Option<Named> {
+    let words = words(name);
+    let role = |words: &[String]| {
+        let plain = words.concat();
+        let mut names = NAMES.iter();
+        let (role, _) = names.find(|(_, names)| names.split(' ').any(|name| name == plain))?;
+        Some(*role)
+    };
+    let whole = role(&words);
+    let (last, rest) = words.split_last()?;
+    let of_time = |unit: &str| TIME_UNITS.iter().find(|(name, _)| *name == unit).map(|(_, unit)| *unit);
+    let of_length = |unit: &str| {
+        LENGTH_UNITS
+            .iter()
+            .find(|(name, _)| *name == unit)
+            .map(|(_, unit)| *unit)
+    };
+    let (role, unit) = match whole {
+        Some(role) => (role, None),
+        None => (role(rest)?, Some(last.as_str())),
+    };
+    let named = Named {
+        index,
+        role,
+        time_unit: None,
+        length: None,
+    };
+    match (role, unit) {
+        (Role::Time, None) => {
+            let unit = match words.concat().as_str() {
+                "seconds" => Some(TimeUnit::Seconds),
+                "milliseconds" => Some(TimeUnit::Milliseconds),
+                "microseconds" => Some(TimeUnit::Microseconds),
+                "nanoseconds" => Some(TimeUnit::Nanoseconds),
+                _ => None,
+            };
+            Some(Named {
+                time_unit: unit,
+                ..named
+            })
+        }
+        (_, None) => Some(named),
+        (Role::Time, Some(unit)) => Some(Named {
+            time_unit: Some(of_time(unit)?),
+            ..named
+        }),
+        (Role::X | Role::Y, Some(unit)) => Some(Named {
+            length: Some(of_length(unit)?),
+            ..named
+        }),
+        (_, Some(_)) => None,
+    }
+}
+
+/// The words of a name in small letters: `trackId`, `track_id` and `Track ID` have the words track and id.
+pub(super) fn words(name: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut was_small = false;
+    for letter in name.chars() {
+        let begins = letter.is_uppercase() && was_small;
+        if (begins || !letter.is_alphanumeric()) && words.last().is_some_and(|word| !word.is_empty()) {
+            words.push(String::new());
+        }
+        if letter.is_alphanumeric()
+            && let Some(word) = words.last_mut()
+        {
+            word.extend(letter.to_lowercase());
+        }
+        was_small = letter.is_lowercase();
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}

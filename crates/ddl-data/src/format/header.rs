@@ -1,0 +1,275 @@
+//! The header of a table: what its columns hold, by the names that people give them.
+
+use crate::clock::TimeUnit;
+use crate::format::choice::ColumnChoice;
+use crate::format::column_names::{Named, Role, named, words};
+use crate::format::field::quoted;
+use crate::format::layouts::Place;
+
+/// Number of unknown columns that a message names.
+const NAMED: usize = 5;
+const RULE: &str = "the header must name the columns frame (or time), pedestrian, x and y, each once";
+
+/// What the first column counts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum TimeColumn {
+    /// Frames, unless a value has a fraction: then seconds.
+    Frame,
+    /// Seconds or dates, as the first value says.
+    Time,
+    /// Frames, without a unit, or times.
+    Known(Option<TimeUnit>),
+}
+
+/// The columns that a header names.
+#[derive(Debug)]
+pub(super) struct Header {
+    pub(super) time: TimeColumn,
+    pub(super) frame: usize,
+    pub(super) pedestrian: usize,
+    pub(super) place: Place,
+    /// Units of length per metre; `None` for pixels.
+    pub(super) per_metre: Option<f64>,
+    pub(super) scene: Option<usize>,
+    pub(super) class: Option<usize>,
+    /// The column and the value of the rows that count.
+    pub(super) keep: Option<(usize, String)>,
+    /// Names of further columns.
+    pub(super) unread: Vec<String>,
+}
+
+/// A fault of a header: the field, counted from 0, and the text.
+pub(super) type Fault = (Option<usize>, String);
+
+/// The columns of a header with and without a role.
+struct Roles<'a> {
+    names: &'a [&'a str],
+    found: Vec<Named>,
+    unknown: Vec<usize>,
+}
+
+impl Header {
+    /// # Errors
+    /// The first field that is wrong, and everything that is wrong.
+    pub(super) fn of(names: &[&str], choice: &ColumnChoice) -> Result<Self, Fault> {
+        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+            let detail = "found numbers; put the line frame,pedestrian,x,y above them";
+            return Err((None, format!("{RULE}: {detail}")));
+        }
+        let mut roles = Roles {
+            names,
+            found: Vec::new(),
+            unknown: Vec::new(),
+        };
+        for (index, name) in names.iter().enumerate() {
+            let chosen = choice
+                .roles
+                .iter()
+                .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
+            let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
+            let by_name = named(index, name);
+            match (chosen, by_name) {
+                (Some(&(role, _)), by_name) => roles.found.push(Named {
+                    index,
+                    role,
+                    time_unit: by_name.as_ref().and_then(|named| named.time_unit),
+                    length: by_name.and_then(|named| named.length),
+                }),
+                (None, Some(named)) if !is_given(named.role) => roles.found.push(named),
+                _ if name.is_empty() => {}
+                _ => roles.unknown.push(index),
+            }
+        }
+        let mut header = roles.header(choice)?;
+        if let Some(unit) = choice.unit {
+            header.per_metre = unit.per_metre();
+        }
+        Ok(header)
+    }
+}
+
+impl Roles<'_> {
+    fn of(&self, role: Role) -> Option<&Named> {
+        self.found.iter().find(|named| named.role == role)
+    }
+
+    fn header(&self, choice: &ColumnChoice) -> Result<Header, Fault> {
+        let mut faults = self.repeated();
+        faults.extend(self.not_there(choice));
+        faults.extend(self.other_rows());
+        faults.extend(self.mixed_units());
+        let time = self.of(Role::Time).or(self.of(Role::Frame));
+        let parts = time.zip(self.of(Role::Pedestrian)).zip(self.place());
+        let Some(((time, pedestrian), place)) = parts.filter(|_| faults.is_empty()) else {
+            faults.extend(self.missing());
+            let field = faults.iter().find_map(|(field, _)| *field);
+            let details: Vec<String> = faults.into_iter().map(|(_, detail)| detail).collect();
+            return Err((field, format!("{RULE}: {}", details.join("; "))));
+        };
+        let is_point = matches!(place, Place::Point(_));
+        let of_length = self.of(Role::X).and_then(|named| named.length);
+        let of_length = of_length.or(self.of(Role::Y).and_then(|named| named.length));
+        // The columns of a box are not read beside x and y.
+        let beside = self.found.iter().filter(|named| is_point && named.role > Role::Class);
+        let mut unread: Vec<usize> = beside
+            .map(|named| named.index)
+            .chain(self.unknown.iter().copied())
+            .collect();
+        unread.sort_unstable();
+        Ok(Header {
+            time: match (time.role, time.time_unit) {
+                (Role::Frame, _) => TimeColumn::Frame,
+                (_, None) => TimeColumn::Time,
+                (_, Some(unit)) => TimeColumn::Known(Some(unit)),
+            },
+            frame: time.index,
+            pedestrian: pedestrian.index,
+            place,
+            per_metre: match of_length {
+                _ if !is_point => None,
+                None => Some(1.0),
+                Some(unit) => unit.per_metre(),
+            },
+            scene: self.of(Role::Scene).map(|named| named.index),
+            class: self.of(Role::Class).map(|named| named.index),
+            keep: choice
+                .keep
+                .as_ref()
+                .and_then(|(name, value)| Some((self.kept(name)?, value.clone()))),
+            unread: unread.into_iter().map(|index| quoted(self.names[index])).collect(),
+        })
+    }
+
+    fn place(&self) -> Option<Place> {
+        let index = |role: Role| self.of(role).map(|named| named.index);
+        if let Some((x, y)) = index(Role::X).zip(index(Role::Y)) {
+            return Some(Place::Point([x, y]));
+        }
+        let corner = index(Role::Left).zip(index(Role::Top));
+        let (left, top) = corner?;
+        let size = index(Role::Width).zip(index(Role::Height));
+        let other = index(Role::Right).zip(index(Role::Bottom));
+        let foot = size.map(|(width, height)| Place::Foot([left, top, width, height]));
+        foot.or(other.map(|(right, bottom)| Place::FootOfCorners([left, top, right, bottom])))
+    }
+
+    /// The column that `--keep` names, by its role or its name.
+    fn kept(&self, name: &str) -> Option<usize> {
+        let of_role = self
+            .of(Role::Class)
+            .filter(|_| name == "class")
+            .map(|named| named.index);
+        of_role.or_else(|| self.names.iter().position(|column| column.eq_ignore_ascii_case(name)))
+    }
+
+    /// Columns that are named and not there.
+    fn not_there(&self, choice: &ColumnChoice) -> Vec<Fault> {
+        let is_there = |name: &str| self.names.iter().any(|column| column.eq_ignore_ascii_case(name));
+        let chosen = choice.roles.iter().map(|(_, name)| name).filter(|name| !is_there(name));
+        let kept = choice
+            .keep
+            .iter()
+            .map(|(name, _)| name)
+            .filter(|name| self.kept(name).is_none());
+        let fault = |name: &String| (None, format!("there is no column {:?}", quoted(name)));
+        chosen.chain(kept).map(fault).collect()
+    }
+
+    /// Two columns that say the same.
+    fn repeated(&self) -> Vec<Fault> {
+        let is_time = |role: Role| matches!(role, Role::Frame | Role::Time);
+        let mut faults = Vec::new();
+        for (at, named) in self.found.iter().enumerate() {
+            let same = |other: &&Named| other.role.stands_for(named.role);
+            if named.role < Role::Class
+                && let Some(first) = self.found[..at].iter().find(same)
+            {
+                let [first, again] = [first.index, named.index].map(|index| quoted(self.names[index]));
+                let both = if is_time(named.role) {
+                    "say when"
+                } else {
+                    "say the same"
+                };
+                let fault = format!(
+                    "the columns {first:?} and {again:?} both {both}; leave one of the two out (or choose: --columns)"
+                );
+                faults.push((Some(named.index), fault));
+            }
+        }
+        faults
+    }
+
+    /// A column that says that the rows are no tracks of one scene.
+    fn other_rows(&self) -> Option<Fault> {
+        let plain = |name: &str| words(name).concat();
+        self.unknown.iter().find_map(|&index| {
+            let name = self.names[index];
+            let detail = match plain(name).as_str() {
+                "observeduntil" => "this is a table of forecasts; give the tracks that they were made from",
+                "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if self.of(Role::Scene).is_none() => {
+                    "for `ddl forecast -` rename it scene, for anything else leave it out"
+                }
+                _ if self.place().is_none() && self.names[0].starts_with(['{', '[']) => {
+                    "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line"
+                }
+                _ => return None,
+            };
+            Some((Some(index), format!("column {:?}: {detail}", quoted(name))))
+        })
+    }
+
+    fn mixed_units(&self) -> Option<Fault> {
+        let [x, y] = [self.of(Role::X)?, self.of(Role::Y)?];
+        (x.length.is_some() && y.length.is_some() && x.length != y.length).then(|| {
+            let [of_x, of_y] = [x, y].map(|named| quoted(self.names[named.index]));
+            (
+                Some(y.index),
+                format!("the columns {of_x:?} and {of_y:?} have different units"),
+            )
+        })
+    }
+
+    fn missing(&self) -> Option<Fault> {
+        let has_time = self.of(Role::Time).or(self.of(Role::Frame)).is_some();
+        let lacks = |role: Role| self.of(role).is_none();
+        let no_place = self.place().is_none();
+        let missing = [
+            ("frame", !has_time),
+            ("pedestrian", lacks(Role::Pedestrian)),
+            ("x", no_place && lacks(Role::X)),
+            ("y", no_place && lacks(Role::Y)),
+        ];
+        let missing: Vec<&str> = missing
+            .into_iter()
+            .filter_map(|(name, lacks)| lacks.then_some(name))
+            .collect();
+        if missing.is_empty() {
+            return None;
+        }
+        let unknown = self
+            .unknown
+            .iter()
+            .map(|&index| format!("{:?}", quoted(self.names[index])));
+        let unknown: Vec<String> = unknown.collect();
+        let rename = match &unknown[..] {
+            [] => String::new(),
+            unknown => format!(
+                "; rename the column that holds it, or name it (--columns {}=NAME): unknown are {}",
+                missing[0],
+                first_of(unknown)
+            ),
+        };
+        Some((
+            self.unknown.first().copied(),
+            format!("still missing: {}{rename}", missing.join(", ")),
+        ))
+    }
+}
+
+/// The names, at most five of them.
+pub(super) fn first_of(names: &[String]) -> String {
+    match names.len() {
+        0..=NAMED => names.join(", "),
+        all => format!("{} and {} more", names[..NAMED].join(", "), all - NAMED),
+    }
+}

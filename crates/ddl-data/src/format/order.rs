@@ -1,0 +1,86 @@
+//! Which of two columns counts the frames: the one along which each pedestrian moves in small steps.
+
+use ddl_core::Position;
+
+/// Rows that are looked at.
+pub(super) const MOST_ROWS: usize = 10_000;
+/// If the steps of one reading are so many times as long as those of the other, it is wrong.
+const LONGER: f64 = 1.5;
+/// If the tracks of one reading have so many times as many rows as those of the other, it is right.
+const MORE: f64 = 2.0;
+
+/// What the first two of four or more columns are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Order {
+    FrameFirst,
+    PedestrianFirst,
+    /// Both readings give tracks alike: the median length of their steps.
+    Unclear([f64; 2]),
+}
+
+/// The tracks of a reading.
+struct Tracks {
+    /// Median distance between successive rows of a pedestrian.
+    step: f64,
+    /// Rows per pedestrian.
+    rows: f64,
+    /// The greatest number that divides all differences of frames.
+    unit: u64,
+}
+
+/// Finds the order from rows of the first two columns with a position.
+pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
+    let rows = &rows[..rows.len().min(MOST_ROWS)];
+    let [first, second] = [0, 1].map(|frame| tracks(rows, frame));
+    let (first, second) = match (first, second) {
+        (_, None) => return Order::FrameFirst,
+        (None, Some(_)) => return Order::PedestrianFirst,
+        (Some(first), Some(second)) => (first, second),
+    };
+    let is_first = if first.step.max(second.step) > LONGER * first.step.min(second.step) {
+        first.step < second.step
+    } else if (first.unit > 1) != (second.unit > 1) {
+        // Frames of a film have a step, pedestrians are counted one by one.
+        first.unit > 1
+    } else if first.rows.max(second.rows) > MORE * first.rows.min(second.rows) {
+        first.rows > second.rows
+    } else {
+        return Order::Unclear([first.step, second.step]);
+    };
+    if is_first {
+        Order::FrameFirst
+    } else {
+        Order::PedestrianFirst
+    }
+}
+
+/// The tracks, if this column is the frame and the other one the pedestrian; `None` if no pedestrian has two rows.
+fn tracks(rows: &[([f64; 2], Position)], frame: usize) -> Option<Tracks> {
+    let mut sorted: Vec<(f64, f64, Position)> = rows.iter().map(|(of, at)| (of[1 - frame], of[frame], *at)).collect();
+    sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    let of_pedestrians = sorted.chunk_by(|a, b| a.0.total_cmp(&b.0).is_eq());
+    let pedestrians = of_pedestrians.clone().count();
+    let mut steps = Vec::new();
+    let mut unit = 0;
+    for track in of_pedestrians {
+        for [before, row] in track.array_windows() {
+            let [x, y] = [0, 1].map(|axis| row.2[axis] - before.2[axis]);
+            steps.push(x.hypot(y));
+            unit = greatest_divisor(unit, (row.1 - before.1) as u64);
+        }
+    }
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    let (_, &mut step, _) = steps.select_nth_unstable_by(middle, f64::total_cmp);
+    Some(Tracks {
+        step,
+        rows: rows.len() as f64 / pedestrians as f64,
+        unit,
+    })
+}
+
+fn greatest_divisor(a: u64, b: u64) -> u64 {
+    if b == 0 { a } else { greatest_divisor(b, a % b) }
+}

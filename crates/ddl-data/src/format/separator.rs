@@ -1,0 +1,73 @@
+//! Lines of text as fields.
+
+use std::borrow::Cow;
+
+use crate::error::FormatError;
+use crate::format::place::FilePlace;
+
+/// What stands between the fields of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Separator {
+    Comma,
+    Semicolon,
+    Tab,
+    /// Any number of blanks and tabs.
+    Blanks,
+}
+
+impl Separator {
+    /// The separator of a line.
+    pub(super) fn of(line: &str) -> Self {
+        let count = |separator: char| line.matches(separator).count();
+        let (commas, semicolons) = (count(','), count(';'));
+        if semicolons > commas {
+            Self::Semicolon
+        } else if commas > 0 {
+            Self::Comma
+        } else if count('\t') > 0 {
+            Self::Tab
+        } else {
+            Self::Blanks
+        }
+    }
+
+    /// The separator of rows without a header, which have no empty fields.
+    pub(super) fn of_numbers(line: &str) -> Self {
+        match Self::of(line) {
+            Self::Tab => Self::Blanks,
+            other => other,
+        }
+    }
+
+    fn letter(self) -> char {
+        match self {
+            Self::Comma => ',',
+            Self::Semicolon => ';',
+            Self::Tab => '\t',
+            Self::Blanks => ' ',
+        }
+    }
+
+    /// The fields of a line, without blanks around them and quotes.
+    pub(super) fn fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {
+        if self == Self::Blanks {
+            let fields = text.split_ascii_whitespace();
+            return Ok(fields.map(|field| field.trim_matches('"').into()).collect());
+        }
+        // A CSV reader is costly to create for every line, and is only needed for quoted fields.
+        let plain = text.trim_end_matches(['\r', '\n']);
+        if !plain.contains(['"', '\r', '\n']) {
+            return Ok(plain.split(self.letter()).map(|field| field.trim().into()).collect());
+        }
+        let mut reader = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .delimiter(self.letter() as u8)
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let mut record = csv::StringRecord::new();
+        let read = reader.read_record(&mut record);
+        read.map_err(|error| FilePlace::line(line).wrong(origin, format!("not a well-formed table: {error}")))?;
+        Ok(record.iter().map(|field| field.to_owned().into()).collect())
+    }
+}

@@ -1,0 +1,273 @@
+//! Files as people have them: their columns in any order, under any of the usual names, and formats of others.
+
+use ddl_data::{Format, FrameReader, Observation, PedestrianId, Recording, parse_recording};
+use proptest::prelude::*;
+use std::path::Path;
+
+/// Reads a file like the program: its format is recognised.
+fn read(name: &str, text: &str) -> Result<Recording, String> {
+    let format = Format::guess(Path::new(name), text.as_bytes()).map_err(|error| error.to_string())?;
+    parse_recording(text.as_bytes(), name, format).map_err(|error| error.to_string())
+}
+
+/// Names of frame, pedestrian, x and y, and units per metre.
+const NAMES: [([&str; 4], f64); 10] = [
+    (["frame", "pedestrian", "x", "y"], 1.0),
+    (["frame_id", "track_id", "pos_x", "pos_y"], 1.0),
+    (["Frame", "ID", "X", "Y"], 1.0),
+    (["frameIndex", "agentId", "xCenter", "yCenter"], 1.0),
+    (["frame_number", "ped_id", "x/m", "y/m"], 1.0),
+    (["FR", "personID", "x [m]", "y [m]"], 1.0),
+    (["frame no", "object id", "x(cm)", "y(cm)"], 100.0),
+    (["frame", "TrackID", "x_mm", "y_mm"], 1000.0),
+    (["frame", "id", "x [cm]", "y [cm]"], 100.0),
+    (["frames", "person", "world_x", "world_y"], 1.0),
+];
+const SEPARATORS: [&str; 5] = [",", ";", "\t", ", ", " ; "];
+/// Names of further columns.
+const FURTHER: [&str; 4] = ["v_x", "", "note", "xVelocity"];
+
+proptest! {
+    /// Whatever the order of the columns, their names and what stands between them: the file is read as it was written.
+    #[test]
+    fn a_table_is_read_as_it_was_written(
+        (names, per_metre) in prop::sample::select(&NAMES[..]),
+        separator in prop::sample::select(&SEPARATORS[..]),
+        order in Just((0..8_usize).collect::<Vec<_>>()).prop_shuffle(),
+        further in 0..=4_usize,
+        (trailing, comment) in any::<(bool, bool)>(),
+        rows in prop::collection::btree_map((0..50_i64, 0..6_i64), prop::array::uniform2(-500..500_i32), 1..30),
+    ) {
+        let columns: Vec<usize> = order.into_iter().filter(|&column| column < 4 + further).collect();
+        let line = |field: &dyn Fn(usize) -> String| {
+            let fields: Vec<String> = columns.iter().map(|&column| field(column)).collect();
+            fields.join(separator) + if trailing { separator.trim_end_matches(' ') } else { "" } + "\n"
+        };
+        let mut text = String::new();
+        if comment {
+            text += "# made by a tracker\n";
+        }
+        text += &line(&|column| names.get(column).unwrap_or_else(|| &FURTHER[column - 4]).to_string());
+        let mut expected = Vec::new();
+        for (&(frame, pedestrian), place) in &rows {
+            let place = place.map(|hundredths| f64::from(hundredths) / 100.0);
+            expected.push(Observation::new(frame, PedestrianId(pedestrian), place));
+            text += &line(&|column| match column {
+                0 => frame.to_string(),
+                1 => pedestrian.to_string(),
+                2 | 3 => format!("{:.2}", place[column - 2] * per_metre),
+                _ => "7.5".to_owned(),
+            });
+        }
+        let recording = read("t.csv", &text).unwrap();
+        for (found, expected) in recording.observations().iter().zip(&expected) {
+            prop_assert_eq!((found.frame, found.pedestrian), (expected.frame, expected.pedestrian));
+            prop_assert!((0..2).all(|axis| (found.position[axis] - expected.position[axis]).abs() < 1e-9));
+        }
+        prop_assert_eq!(recording.observations().len(), expected.len());
+        // A stream reads the same.
+        let mut frames = FrameReader::new(text.as_bytes(), "t");
+        let streamed = std::iter::from_fn(|| frames.next_frame().unwrap()).map(|frame| frame.pedestrians.len());
+        prop_assert_eq!(streamed.sum::<usize>(), expected.len());
+    }
+
+    /// Of two columns of whole numbers the one along which pedestrians walk is the time; the other way round the file
+    /// is refused or read alike.
+    #[test]
+    fn four_columns_are_read_as_they_were_written_or_refused(
+        step in prop::sample::select(vec![1_i64, 6, 10]),
+        people in prop::collection::vec((prop::array::uniform2(-10.0..10.0_f64), 0.5..1.8_f64, 0..8_i64), 1..12),
+        (frame_first, by_frame) in any::<(bool, bool)>(),
+    ) {
+        let mut rows = Vec::new();
+        for (id, &([x, y], speed, first)) in (1..).zip(&people) {
+            rows.extend((first..first + 12).map(|t| (t * step, id, x + 0.4 * speed * t as f64, y)));
+        }
+        rows.sort_by_key(|&(frame, id, ..)| if by_frame { (frame, id) } else { (id, frame) });
+        let lines = rows.iter().map(|(frame, id, x, y)| {
+            let [first, second] = if frame_first { [frame, id] } else { [id, frame] };
+            format!("{first} {second} {x:.3} {y:.3}\n")
+        });
+        match read("t.txt", &lines.collect::<String>()) {
+            Ok(recording) => {
+                rows.sort_by_key(|&(frame, id, ..)| (frame, id));
+                let found = recording.observations().iter().map(|seen| (seen.frame, seen.pedestrian.0));
+                prop_assert!(found.eq(rows.iter().map(|&(frame, id, ..)| (frame, id))), "{people:?}");
+            }
+            Err(problem) => prop_assert!(problem.contains("write the line frame pedestrian x y, or"), "{problem}"),
+        }
+    }
+}
+
+/// A file, the expected format, the first observation (frame, pedestrian, x, y) and the number of observations.
+type Sample = (&'static str, &'static str, Format, (i64, i64, f64, f64), usize);
+
+const SAMPLES: [Sample; 15] = [
+    (
+        "sdd.txt",
+        "7 100 200 130 230 0 0 0 1 \"Pedestrian\"\n7 102 200 132 230 1 1 0 1 \"Pedestrian\"\n\
+         8 0 0 2 4 0 0 0 0 \"Biker\"\n",
+        Format::Sdd,
+        (0, 7, 115.0, 215.0),
+        1,
+    ),
+    (
+        "mot.txt",
+        "1,3,300,200,40,110,0.9,-1,-1,-1\n2,3,304,201,40,110,0.9,-1,-1,-1\n",
+        Format::Mot,
+        (1, 3, 320.0, 310.0),
+        2,
+    ),
+    (
+        "gt.txt",
+        "1,3,300,200,40,110,1,1,0.8\n1,4,0,0,40,110,1,3,1\n",
+        Format::MotTruth,
+        (1, 3, 320.0, 310.0),
+        1,
+    ),
+    (
+        "atc.csv",
+        "1351039227.1,21,1500,-2500,1700,900,0.1,0.2\n1351039227.2,21,1590,-2500,1700,900,0.1,0.2\n",
+        Format::Atc,
+        (1_351_039_227_100_000, 21, 1.5, -2.5),
+        2,
+    ),
+    (
+        "kitti.txt",
+        "0 2 Pedestrian 0 0 -1.5 1 2 3 4 1.8 0.6 0.5 3.5 1.6 12.25 0.1\n\
+         0 3 Car 0 0 -1.5 1 2 3 4 1.8 0.6 0.5 3.5 1.6 12.2 0.1\n",
+        Format::Kitti,
+        (0, 2, 3.5, 12.25),
+        1,
+    ),
+    (
+        "apollo.txt",
+        "0 5 3 10.5 -2.5 0.1 0.5 0.5 1.7 0.3\n0 6 1 11 -2 0.1 4 2 1.5 0.3\n",
+        Format::ApolloScape,
+        (0, 5, 10.5, -2.5),
+        1,
+    ),
+    (
+        "petrack.txt",
+        "1 0 100.0 300.0 170.0\n1 1 108.0 300.0 170.0\n",
+        Format::PeTrackCm,
+        (0, 1, 1.0, 3.0),
+        2,
+    ),
+    (
+        "petrack.txt",
+        "# framerate: 25 fps\n# id frame x/m y/m z/m\n1 0 1.0 3.0 1.7\n1 1 1.08 3.0 1.7\n",
+        Format::Table,
+        (0, 1, 1.0, 3.0),
+        2,
+    ),
+    (
+        "jupedsim.txt",
+        "# description: jpsvis\n#framerate: 16.00\n#ID\tFR\tX\tY\tZ\n1\t0\t1.0\t3.0\t0\n1\t1\t1.08\t3.0\t0\n",
+        Format::Table,
+        (0, 1, 1.0, 3.0),
+        2,
+    ),
+    (
+        "trajnet.txt",
+        "800 2.0 13.6 5.8\n810 2.0 13.1 5.82\n820 2.0 ? ?\n",
+        Format::SocialGan,
+        (800, 2, 13.6, 5.8),
+        2,
+    ),
+    (
+        "ind.csv",
+        "recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length\n7,0,10,0,5.25,-1.5,0,0,0\n",
+        Format::Table,
+        (10, 0, 5.25, -1.5),
+        1,
+    ),
+    (
+        "sind.csv",
+        "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy\n",
+        Format::Table,
+        (0, 0, 0.0, 0.0),
+        0,
+    ),
+    (
+        "dut.csv",
+        "id,frame,label,x_est,y_est,vx_est,vy_est\n1,4,ped,20.5,3.25,0,0\n2,4,veh,0,0,0,0\n",
+        Format::Table,
+        (4, 1, 20.5, 3.25),
+        1,
+    ),
+    (
+        "tracker.csv",
+        "frame,track_id,x1,y1,x2,y2,score\n3,9,10,20,30,80,0.5\n",
+        Format::Table,
+        (3, 9, 20.0, 80.0),
+        1,
+    ),
+    (
+        "numpy.txt",
+        "# frame pedestrian x y\n0 1 2.5 3.5\n",
+        Format::Table,
+        (0, 1, 2.5, 3.5),
+        1,
+    ),
+];
+
+#[test]
+fn formats_of_others_are_read() {
+    for (name, text, format, (frame, pedestrian, x, y), count) in SAMPLES {
+        assert_eq!(Format::guess(Path::new(name), text.as_bytes()), Ok(format), "{name}");
+        match read(name, text) {
+            Ok(recording) => {
+                let expected = Observation::new(frame, PedestrianId(pedestrian), [x, y]);
+                assert_eq!(recording.observations()[0], expected, "{name}");
+                assert_eq!(recording.observations().len(), count, "{name}");
+            }
+            Err(problem) => {
+                assert_eq!(count, 0, "{problem}");
+                assert!(problem.contains("both say when"), "{problem}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_was_assumed_and_left_out_is_told() {
+    let notes = |name: &str, text: &str| read(name, text).unwrap().notes().join("; ");
+    let of = |index: usize| notes(SAMPLES[index].0, SAMPLES[index].1);
+    assert!(of(0).contains("Stanford Drone") && of(0).contains("1 marked lost") && of(0).contains("1 of class Biker"));
+    assert!(of(1).contains("the positions are in pixels"));
+    assert!(of(6).contains("in centimetres (PeTrack)"));
+    assert!(of(9).contains("1 with ? for a position to forecast"));
+    assert!(of(12).contains("1 of class veh"));
+    assert_eq!(read(SAMPLES[7].0, SAMPLES[7].1).unwrap().rate(), Some(25.0));
+    let cm = notes("a.csv", "frame,id,x_cm,y_cm\n0,1,100,200\n");
+    assert_eq!(cm, "the positions are in centimetres");
+}
+
+/// Detections that look like the table of ETH, and others.
+#[test]
+fn what_is_read_wrongly_elsewhere_is_refused() {
+    for (name, text, problem) in [
+        (
+            "yolo.txt",
+            "9 0 .48 .41 .51 .46 .50 .44\n8 0 .59 .48 .62 .53 .60 .50\n",
+            "the fourth, the height, changes",
+        ),
+        (
+            "two.txt",
+            "0 1 0 0\n0 2 0.5 0\n1 1 0.5 0\n1 2 1 0\n",
+            "may be frame and pedestrian, or pedestrian and frame",
+        ),
+        (
+            "pandas.csv",
+            ",a,b,c,d\n0,0,1,2,3\n",
+            "still missing: frame, pedestrian, x, y",
+        ),
+    ] {
+        let found = read(name, text).unwrap_err();
+        assert!(found.contains(problem), "{found}");
+    }
+    let commas = ",".repeat(200_000) + "\n";
+    let message = read("commas.csv", &commas).unwrap_err();
+    assert!(message.len() < 400, "{message}");
+}
