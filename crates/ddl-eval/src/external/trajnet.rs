@@ -198,7 +198,11 @@ impl<'w, 'a> Reading<'w, 'a> {
             let numbers: Vec<i64> = predictions.keys().copied().collect();
             let numbered = self.numbering.check(&numbers, &who.named());
             numbered.map_err(|problem| (line, in_field("prediction_number", problem)))?;
-            let forecast = forecast(predictions, window).map_err(|wrong| (line, wrong))?;
+            let ahead = window.map_or_else(
+                || vec![self.unknown_ahead(&scene)],
+                |window| frames_ahead(window).into(),
+            );
+            let forecast = forecast(predictions, &ahead).map_err(|wrong| (line, wrong))?;
             let put = self.expected.put(&who, forecast, line, primary);
             put.map_err(|wrong| (line, wrong))?;
         }
@@ -207,6 +211,13 @@ impl<'w, 'a> Reading<'w, 'a> {
 
     fn unknown_last(&self, scene: &NdjsonScene) -> i64 {
         scene.e.saturating_sub(HORIZON as i64 * self.step())
+    }
+
+    /// The forecast frames of a scene that starts with no window.
+    fn unknown_ahead(&self, scene: &NdjsonScene) -> Vec<i64> {
+        let last = self.unknown_last(scene);
+        let steps = 1..=HORIZON as i64;
+        steps.map(|step| last.saturating_add(step * self.step())).collect()
     }
 
     fn step(&self) -> i64 {
@@ -237,7 +248,8 @@ fn wrong_end(window: &Window, scene: &NdjsonScene) -> Wrong {
     in_field(format!("scene {}", scene.id), problem)
 }
 
-fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<PedestrianForecast, Wrong> {
+/// The forecast of a pedestrian, at any of these frames.
+fn forecast(predictions: Predictions, ahead: &[Vec<i64>]) -> Result<PedestrianForecast, Wrong> {
     let mut forecast = PedestrianForecast::default();
     for (number, mut rows) in predictions {
         let path = || format!("prediction_number {number}");
@@ -246,11 +258,8 @@ fn forecast(predictions: Predictions, window: Option<&Window>) -> Result<Pedestr
             return Err(in_field(path(), wrong_length(rows.len())));
         }
         let frames: Vec<i64> = rows.iter().map(|&(frame, _)| frame).collect();
-        if let Some(window) = window {
-            let ahead = frames_ahead(window);
-            if !ahead.contains(&frames) {
-                return Err(in_field(path(), wrong_frames(&frames, &ahead[0])));
-            }
+        if !ahead.contains(&frames) {
+            return Err(in_field(path(), wrong_frames(&frames, &ahead[0])));
         }
         forecast
             .positions

@@ -59,6 +59,22 @@ fn scenes_of_trajnet_stand_for_windows() {
     }
 }
 
+/// A scene that starts with no window is matched by its end, but its forecasts must be of the frames before it.
+#[test]
+fn forecasts_of_other_frames_are_refused() {
+    let early = scene(0, 3, 0).replace("\"s\": 0,", "\"s\": -50,");
+    let read = |tracks: String| {
+        read(
+            &(early.clone() + &tracks),
+            ExternalFormat::TrajNet,
+            Coverage::Intersection,
+        )
+    };
+    assert_eq!(read(tracks(0, 3, 0, 70, 1.0)).unwrap().forecasts.len(), 1);
+    let refused = read(tracks(0, 3, 0, 1_000_070, 1.0)).unwrap_err().to_string();
+    assert!(refused.contains("the forecast has the frames 1000080"), "{refused}");
+}
+
 #[test]
 fn pedestrians_may_have_words_for_names() {
     let words = ["7f3e-aa41", "007"];
