@@ -167,7 +167,10 @@ fn recordings_that_cannot_be_trained_on_are_refused() {
 fn tracks_that_cannot_be_forecast_are_refused() {
     let place = Place::with_model();
     let nowhere = "view tracks.csv --output nowhere/page.html";
-    place.fails(nowhere, &["the folder nowhere does not exist"]);
+    place.fails(
+        nowhere,
+        &["--output: the folder nowhere does not exist; create it first"],
+    );
     let missing = "cannot read nowhere.csv: No such file or directory (os error 2)";
     assert_eq!(place.run("forecast nowhere.csv").fails(), missing);
     place.write_tracks("tracks.csv", &own_tracks::three_pedestrians(7));
@@ -193,6 +196,8 @@ fn an_invalid_homography_or_rate_is_reported() {
     place.fails(&options, &["H.txt", "No such file"]);
     place.write("H.txt", "1 0 0\n1 0 0\n0 0 1\n");
     place.fails(&options, &["H.txt", "singular"]);
+    place.write("H.txt", "1 ".repeat(1 << 20));
+    place.fails(&options, &["H.txt: more than a megabyte"]);
     place.write("H.txt", "0 0 1\n0 1 0\n1 0 0\n"); // x = 0 is the horizon
     place.fails(&options, &["tracks.csv", "pedestrian 1, frame 0", "horizon"]);
     // The rows are 10 frames apart.
@@ -203,5 +208,10 @@ fn an_invalid_homography_or_rate_is_reported() {
         "forecast tracks.csv --dt=-1 => above 0",
         "forecast tracks.csv --fps 25 --dt 0.04 => cannot be used with",
         "forecast tracks.csv --fps 25 --frame-step 10 => cannot be used with",
+        "forecast tracks.csv --columns frame => must be like frame=frame_id,x=xCenter",
+        "forecast tracks.csv --columns x=a,x=b => a second time",
+        "forecast tracks.csv --keep class => must be like class=Pedestrian",
+        "forecast tracks.csv --unit km => possible values: m, cm, mm, px",
+        "goals --data . => --measure",
     ]);
 }

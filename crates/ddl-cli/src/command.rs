@@ -217,6 +217,12 @@ fn dataset(convention: Convention, data: Option<&Path>, units: &Units) -> anyhow
         );
     }
     if convention == Convention::Simulated {
+        if let Some(data) = data {
+            bail!(
+                "--data {} has no effect: the simulated crowd has no files",
+                data.display()
+            );
+        }
         return Ok(Dataset::simulated(SIMULATION_SEED));
     }
     Ok(Dataset::load(convention, &folder(convention, data)?)?)

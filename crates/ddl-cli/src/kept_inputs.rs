@@ -9,6 +9,9 @@ use std::path::{Path, PathBuf};
 /// Options whose file or folder is written.
 const OUTPUTS: [&str; 4] = ["output", "out", "svg", "folder"];
 
+/// Those of them that name a file, in a folder that must exist.
+const OUTPUT_FILES: [&str; 2] = ["--output", "--svg"];
+
 /// Options that name a run, of which every command writes and reads the same files.
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 
@@ -36,10 +39,10 @@ struct Named<'a> {
     path: &'a Path,
 }
 
-/// Refuses arguments whose output would replace one of their inputs, also through links.
+/// Refuses arguments whose output would replace one of their inputs, also through links, or cannot be written.
 ///
 /// # Errors
-/// Names both options and the file.
+/// Names the options and the file or folder.
 pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Result<()> {
     let Some((name, matches)) = matches.subcommand() else {
         return Ok(());
@@ -70,6 +73,18 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         });
     }
     for output in &outputs {
+        // Said before the work.
+        if OUTPUT_FILES.contains(&output.option.as_str())
+            && let Some(folder) = output.path.parent()
+            && !folder.as_os_str().is_empty()
+            && !folder.is_dir()
+        {
+            bail!(
+                "{}: the folder {} does not exist; create it first",
+                output.option,
+                folder.display()
+            );
+        }
         for input in &inputs {
             // A report reads the results in the folders of runs. Other commands add to a run.
             let of_report = name == "report" && output.path.is_dir() && place(output.path) == place(input.path);

@@ -8,6 +8,7 @@ mod output;
 mod progress;
 mod recordings;
 mod result_lines;
+mod small_file;
 mod telling;
 mod tracks;
 mod units;

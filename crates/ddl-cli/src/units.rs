@@ -1,6 +1,7 @@
 //! The units of tracks: the frame rate, and the homography of pixels.
 
 use crate::output::shell_word;
+use crate::small_file;
 use crate::telling::many;
 use anyhow::{Context as _, bail};
 use clap::Args;
@@ -131,7 +132,7 @@ impl Units {
         let place = |path: &Path| path.canonicalize().ok();
         let homography = self.homography.as_deref().and_then(place);
         let says = |homography: Homography| {
-            let text = std::fs::read_to_string(file);
+            let text = small_file::read(file);
             text.is_ok_and(|text| text.parse() == Ok(homography))
         };
         (homography.is_some() && homography == place(file)) || self.remembered.homography.is_some_and(says)
@@ -236,7 +237,7 @@ impl Units {
             Some(none) if none.as_os_str() == "none" => return Ok(None),
             Some(path) => path,
         };
-        let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+        let text = small_file::read(path)?;
         let homography = text.parse().with_context(|| path.display().to_string())?;
         Ok(Some(homography))
     }

@@ -24,6 +24,10 @@ const JUMP: f64 = 12.0;
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
+/// Largest side (m) of an area in which three people stand but do not walk, and the share of it that a walker crosses.
+const NARROW: f64 = 1.5;
+const CROSSED: f64 = 0.2;
+const A_CROWD: usize = 3;
 /// Time without any motion (s) that people do not reach, even standing, and speed before it (m/s), of a frozen track.
 const FROZEN: f64 = 4.0;
 const WALKING: f64 = 0.3;
@@ -54,6 +58,11 @@ pub enum PlausibilityWarning {
         "no pedestrian moves farther than {farthest:.3} m; are the positions in metres, or in degrees or kilometres?"
     )]
     Still { farthest: f64 },
+    #[error(
+        "all {pedestrians} pedestrians are within {side:.1} m, and walk through it; are the positions in metres, or in \
+         shares of a picture (0 to 1) or kilometres?"
+    )]
+    Narrow { pedestrians: usize, side: f64 },
     #[error(
         "{:.0} % of the rows between the first and the last of each pedestrian are missing; positions there are \
          estimated",
@@ -102,6 +111,9 @@ pub(crate) struct Speeds {
     pub(crate) brisk: Option<f64>,
     /// Largest distance between the first and last position of any pedestrian, m.
     pub(crate) farthest: f64,
+    pub(crate) pedestrians: usize,
+    /// The longer side of the area of all positions, m.
+    pub(crate) side: f64,
 }
 
 impl Speeds {
@@ -113,6 +125,11 @@ impl Speeds {
         if self.farthest < STILL && self.steps >= MANY_STEPS {
             let farthest = self.farthest;
             Some(PlausibilityWarning::Still { farthest })
+        } else if self.is_narrow() {
+            Some(PlausibilityWarning::Narrow {
+                pedestrians: self.pedestrians,
+                side: self.side,
+            })
         } else if median > IMPLAUSIBLE {
             Some(PlausibilityWarning::Fast { median })
         } else if fastest.speed > JUMP {
@@ -121,6 +138,13 @@ impl Speeds {
             let brisk = self.brisk.filter(|&brisk| brisk < CREEPING);
             brisk.map(|brisk| PlausibilityWarning::Slow { brisk })
         }
+    }
+}
+
+impl Speeds {
+    fn is_narrow(&self) -> bool {
+        let crosses = self.farthest > CROSSED * self.side;
+        self.side < NARROW && self.pedestrians >= A_CROWD && self.steps >= MANY_STEPS && crosses
     }
 }
 
@@ -134,6 +158,7 @@ impl Recording {
 
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {
         let step = self.frame_step();
+        let (low, high) = self.corners();
         let mut speeds: Vec<(f64, &Observation)> = Vec::new();
         let mut walking: Vec<f64> = Vec::new();
         for track in tracks.values() {
@@ -159,6 +184,8 @@ impl Recording {
             }),
             brisk: walking.get(walking.len() * 9 / 10).copied(),
             farthest: tracks.values().map(|track| way(track)).fold(0.0, f64::max),
+            pedestrians: tracks.len(),
+            side: (high[0] - low[0]).max(high[1] - low[1]),
         }
     }
 }
@@ -171,8 +198,12 @@ pub(crate) fn frozen(count: usize) -> Option<PlausibilityWarning> {
     (count > 0).then_some(PlausibilityWarning::Frozen { count })
 }
 
-/// Whether a track walks, and then repeats one position to its end.
-pub(crate) fn is_frozen(track: &[&Observation], step: i64) -> bool {
+/// The number of tracks that walk, and then repeat one position to their end.
+pub(crate) fn count_frozen(tracks: &BTreeMap<PedestrianId, Vec<&Observation>>, step: i64) -> usize {
+    tracks.values().filter(|track| is_frozen(track, step)).count()
+}
+
+fn is_frozen(track: &[&Observation], step: i64) -> bool {
     let last = track[track.len() - 1];
     let same = |row: &&&Observation| row.position.map(f64::to_bits) == last.position.map(f64::to_bits);
     let frozen = track.iter().rev().take_while(same).count();

@@ -111,6 +111,8 @@ impl Summary {
             fastest: self.fastest.clone(),
             brisk: self.brisk_speed,
             farthest: self.farthest,
+            pedestrians: self.pedestrians,
+            side: (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]),
         };
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
         plausibility::restarted(self.restarts)
@@ -150,12 +152,15 @@ impl Recording {
         off.get(off.len() / 2).copied().unwrap_or(0)
     }
 
-    /// The least or largest coordinates, by `pick`, starting from `from`.
-    fn corner(&self, pick: fn(f64, f64) -> f64, from: f64) -> Position {
-        let places = self.observations().iter().map(|seen| seen.position);
-        places.fold([from; 2], |corner, place| {
-            [0, 1].map(|axis| pick(corner[axis], place[axis]))
-        })
+    /// The least and the largest coordinates.
+    pub(crate) fn corners(&self) -> (Position, Position) {
+        let corner = |pick: fn(f64, f64) -> f64, from: f64| {
+            let places = self.observations().iter().map(|seen| seen.position);
+            places.fold([from; 2], |corner, place| {
+                [0, 1].map(|axis| pick(corner[axis], place[axis]))
+            })
+        };
+        (corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY))
     }
 
     /// A summary of the recording.
@@ -165,6 +170,7 @@ impl Recording {
         let speeds = self.speeds(&tracks);
         let step = self.frame_step();
         let spacing = self.usual_spacing().unwrap_or(step);
+        let (low, high) = self.corners();
         let pairs = tracks.values().flat_map(|track| track.windows(2));
         let gaps: Vec<Gap> = pairs
             .filter(|pair| {
@@ -201,17 +207,14 @@ impl Recording {
             misfits: observed.misfits,
             pedestrians: tracks.len(),
             observations: self.observations().len(),
-            low: self.corner(f64::min, f64::INFINITY),
-            high: self.corner(f64::max, f64::NEG_INFINITY),
+            low,
+            high,
             steps: speeds.steps,
             median_speed: speeds.median,
             fastest: speeds.fastest,
             brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
-            frozen: tracks
-                .values()
-                .filter(|track| plausibility::is_frozen(track, step))
-                .count(),
+            frozen: plausibility::count_frozen(&tracks, step),
             restarts: self.restarts(),
             unseen: self.unseen(&tracks),
             holes: gaps.len(),

@@ -33,7 +33,7 @@ pub(crate) struct Goals {
     memory: Option<MemoryOption>,
     /// Recordings to evaluate on: the folder of the model's convention, or your own folder or file [default:
     /// `$DDL_DATASETS`, then `datasets/eth_ucy`]
-    #[arg(long)]
+    #[arg(long, requires = "measure")]
     data: Option<PathBuf>,
     #[command(flatten)]
     telling: Telling,

@@ -7,6 +7,7 @@ use crate::command::recipe::Recipe;
 use crate::command::test_windows::ensure_scene_of_star;
 use crate::command::{Machine, RecordingsAt, Reporting};
 use crate::interrupt::Interrupt;
+use crate::small_file;
 use crate::telling::tell;
 use anyhow::{Context as _, bail};
 use bars::TrainingBars;
@@ -298,7 +299,7 @@ impl Train {
 
     fn goal_recipe(&self, further: bool) -> anyhow::Result<GoalRecipe> {
         if let Some(path) = &self.goal_recipe {
-            let text = std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
+            let text = small_file::read(path)?;
             let wrong = || format!("{} holds no settings of goals", path.display());
             let mut recipe: serde_json::Value =
                 serde_json::from_str(&text).with_context(|| format!("{} is not JSON", path.display()))?;

@@ -84,7 +84,6 @@ pub struct FrameReader<R> {
     /// The scene of the last line.
     spoken_of: Option<SceneName>,
     first: Option<FirstRow>,
-    are_notes_taken: bool,
     /// Number of pedestrians in incomplete frames.
     unfinished: usize,
     idle_timeout: Duration,
@@ -150,7 +149,6 @@ impl<R: BufRead> FrameReader<R> {
             left: VecDeque::new(),
             spoken_of: None,
             first: None,
-            are_notes_taken: false,
             unfinished: 0,
             idle_timeout: IDLE_TIMEOUT,
             ended: false,
@@ -219,13 +217,10 @@ impl<R: BufRead> FrameReader<R> {
         self.first?.unit
     }
 
-    /// Takes the notes on what was assumed while the lines were read, a sentence each: once, from the first row on.
+    /// Takes the notes on what was assumed and left out since the last call, a sentence each; none before the first row.
     pub fn take_notes(&mut self) -> Vec<String> {
-        match &self.kind {
-            Some(Kind::Text(columns)) if self.first.is_some() && !self.are_notes_taken => {
-                self.are_notes_taken = true;
-                columns.notes(false)
-            }
+        match &mut self.kind {
+            Some(Kind::Text(columns)) if self.first.is_some() => columns.new_notes(),
             _ => Vec::new(),
         }
     }

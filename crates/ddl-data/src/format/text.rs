@@ -50,6 +50,8 @@ const VEHICLES: [&str; 22] = [
     "cart",
     "trucks",
 ];
+/// Reasons to leave rows out that are counted, each for itself.
+const MOST_REASONS: usize = 20;
 /// A position that is to be forecast (TrajNet).
 const UNKNOWN: &str = "?";
 
@@ -85,6 +87,8 @@ pub(super) struct TrackColumns {
     unread: Vec<String>,
     note: Option<&'static str>,
     left_out: BTreeMap<String, usize>,
+    /// For how many reasons a stream has told that it leaves rows out; `None` before its first notes.
+    told: Option<usize>,
 }
 
 #[derive(Debug)]
@@ -131,7 +135,7 @@ pub(super) fn parse(text: &str, origin: &str, format: Format, choice: &ColumnCho
     let rate = comments.iter().find_map(|comment| rate_of(comment));
     Ok(TextFile {
         rows: read,
-        notes: columns.notes(true),
+        notes: columns.notes().into_iter().chain(columns.count_of_rows()).collect(),
         rate,
     })
 }
@@ -221,6 +225,7 @@ impl TrackColumns {
             unread: header.unread,
             note: None,
             left_out: BTreeMap::new(),
+            told: None,
         }
     }
 
@@ -267,6 +272,7 @@ impl TrackColumns {
             unread: Vec::new(),
             note: layout.note,
             left_out: BTreeMap::new(),
+            told: None,
         })
     }
 
@@ -287,8 +293,32 @@ impl TrackColumns {
         row
     }
 
-    /// What a reader should know of the columns and, with `counted`, of the rows that were left out.
-    pub(super) fn notes(&self, counted: bool) -> Vec<String> {
+    /// What a stream has not told yet.
+    pub(super) fn new_notes(&mut self) -> Vec<String> {
+        let reasons = self.left_out.len();
+        let mut notes = match self.told {
+            None => self.notes(),
+            Some(_) => Vec::new(),
+        };
+        if self.told.replace(reasons).unwrap_or(0) < reasons {
+            let reasons: Vec<String> = self.left_out.keys().cloned().collect();
+            notes.push(format!("rows are left out: {}", first_of(&reasons)));
+        }
+        notes
+    }
+
+    /// The rows that were left out, counted by reason.
+    fn count_of_rows(&self) -> Option<String> {
+        let rows: Vec<String> = self
+            .left_out
+            .iter()
+            .map(|(why, count)| format!("{count} {why}"))
+            .collect();
+        (!rows.is_empty()).then(|| format!("rows left out: {}", first_of(&rows)))
+    }
+
+    /// What a reader should know of the columns.
+    fn notes(&self) -> Vec<String> {
         let mut notes: Vec<String> = self.note.into_iter().map(str::to_owned).collect();
         notes.extend(self.assumed_seconds.map(str::to_owned));
         match &self.unread[..] {
@@ -301,14 +331,6 @@ impl TrackColumns {
             Some(1000.0) if self.note.is_none() => notes.push("the positions are in millimetres".to_owned()),
             Some(100.0) if self.note.is_none() => notes.push("the positions are in centimetres".to_owned()),
             Some(_) => {}
-        }
-        if counted && !self.left_out.is_empty() {
-            let rows: Vec<String> = self
-                .left_out
-                .iter()
-                .map(|(why, count)| format!("{count} {why}"))
-                .collect();
-            notes.push(format!("rows left out: {}", first_of(&rows)));
         }
         notes
     }
@@ -338,7 +360,10 @@ impl TrackColumns {
         if found < names - unnamed || fields[names.min(found)..].iter().any(|field| !field.is_empty()) {
             return Err(FilePlace::line(line).wrong(origin, self.wrong_count(found)));
         }
-        if let Some(why) = self.left_out(&fields) {
+        if let Some(mut why) = self.left_out(&fields) {
+            if self.left_out.len() == MOST_REASONS && !self.left_out.contains_key(&why) {
+                "of other classes".clone_into(&mut why);
+            }
             *self.left_out.entry(why).or_default() += 1;
             return Ok(None);
         }

@@ -271,3 +271,20 @@ fn what_is_read_wrongly_elsewhere_is_refused() {
     let message = read("commas.csv", &commas).unwrap_err();
     assert!(message.len() < 400, "{message}");
 }
+
+/// A stream tells what it assumes at its first frame, and that it leaves rows out when it first does.
+#[test]
+fn a_stream_tells_each_thing_once() {
+    let text = "frame,id,label,x_cm,y_cm\n0,1,ped,0,0\n1,1,ped,9,0\n1,2,car,9,0\n2,1,ped,18,0\n2,2,car,9,0\n";
+    let mut frames = FrameReader::new(text.as_bytes(), "t");
+    let mut told = Vec::new();
+    while let Some(frame) = frames.next_frame().unwrap() {
+        assert_eq!(frame.pedestrians.len(), 1);
+        told.push(frames.take_notes().join("; "));
+    }
+    assert_eq!(
+        told[..2],
+        ["the positions are in centimetres", "rows are left out: of class car"]
+    );
+    assert!(told[2].is_empty());
+}

@@ -76,3 +76,23 @@ fn holes_and_training_samples_are_counted() {
     let few = Recording::new("yard", 1, walk(0.5)[..12].to_vec()).unwrap();
     assert_eq!(few.summary().warnings(), [PlausibilityWarning::NothingToLearnFrom]);
 }
+
+/// Coordinates from 0 to 1 of a picture; people who stand together are no such case.
+#[test]
+fn shares_of_a_picture_are_doubted() {
+    let crowd = |scale: f64, walk: f64| -> Vec<Observation> {
+        let places = (0..3_i64).flat_map(|id| (0..12_i64).map(move |t| (id, t)));
+        let place = |(id, t): (i64, i64)| [scale * (0.1 * id as f64 + walk * t as f64), scale * 0.3 * id as f64];
+        places
+            .map(|(id, t)| Observation::new(t, PedestrianId(id), place((id, t))))
+            .collect()
+    };
+    let is_doubted = |seen| {
+        let warnings = warnings(seen);
+        warnings
+            .iter()
+            .any(|warning| matches!(warning, PlausibilityWarning::Narrow { .. }))
+    };
+    assert!(is_doubted(crowd(1.0, 0.05)));
+    assert!(!is_doubted(crowd(10.0, 0.05)) && !is_doubted(crowd(1.0, 0.001)));
+}
