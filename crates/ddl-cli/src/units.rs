@@ -101,6 +101,9 @@ impl Units {
     /// What the options say of the columns of text.
     pub(crate) fn choice(&self) -> anyhow::Result<ColumnChoice> {
         let mut choice = self.columns.clone().unwrap_or_default();
+        if self.homography()?.is_some() {
+            choice = choice.mapped();
+        }
         if let Some(Kept(text)) = &self.keep {
             choice = choice.keeping(text).map_err(anyhow::Error::msg)?;
         }
@@ -219,7 +222,7 @@ impl Units {
             );
         }
         let bytes = std::fs::read(file).with_context(|| format!("cannot read {}", file.display()))?;
-        let format = Format::guess(file, &bytes)?;
+        let format = Format::guess_with(file, &bytes, &self.choice()?)?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = parse_columns(&bytes, &file.display().to_string(), format, &self.choice()?)?;
         let recording = recording.with_name(&*name);

@@ -4,6 +4,7 @@
 
 mod choice;
 mod column_names;
+mod comments;
 mod field;
 mod header;
 mod kind;
@@ -13,11 +14,13 @@ mod order;
 mod place;
 mod problem;
 mod recognise;
+mod row_filter;
 mod rows;
 mod separator;
 mod star_csv;
 mod stream;
 mod text;
+mod track_columns;
 mod trajnet;
 mod write;
 
@@ -26,7 +29,6 @@ use std::path::Path;
 pub use choice::ColumnChoice;
 pub use kind::Format;
 pub use stream::{Frame, FrameReader};
-pub(crate) use text::PIXELS;
 pub use write::write_recording;
 
 use crate::error::DataError;
@@ -92,11 +94,11 @@ pub fn parse_columns(
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    if matches!(format, Format::StarCsv | Format::TrajNet) && *choice != ColumnChoice::default() {
-        let problem = format!("the columns of the format {format} cannot be chosen");
-        return Err(FilePlace::line(1).wrong(origin, problem).into());
+    if matches!(format, Format::StarCsv | Format::TrajNet) {
+        let allowed = choice.refuse_for(format);
+        allowed.map_err(|problem| FilePlace::line(1).wrong(origin, problem))?;
     }
-    let (mut rate, mut notes) = (None, Vec::new());
+    let (mut rate, mut frame_rate, mut notes) = (None, None, Vec::new());
     let rows = match format {
         Format::StarCsv => star_csv::parse(text, origin),
         Format::TrajNet => trajnet::parse(text, origin).map(|(rows, stated)| {
@@ -104,11 +106,15 @@ pub fn parse_columns(
             rows
         }),
         _ => text::parse(text, origin, format, choice).map(|file| {
-            (rate, notes) = (file.rate, file.notes);
+            (frame_rate, notes) = (file.rate, file.notes);
             file.rows
         }),
     }?;
-    Ok(rows::into_recording(rows, origin)?.with_rate(rate).with_notes(notes))
+    let recording = rows::into_recording(rows, origin)?;
+    // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
+    let of_rows = frame_rate.filter(|_| recording.time_unit().is_none());
+    let of_rows = of_rows.map(|rate: f64| rate / recording.frame_step() as f64);
+    Ok(recording.with_rate(rate.or(of_rows)).with_notes(notes))
 }
 
 /// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.

@@ -5,7 +5,6 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::error::RecordingError;
-use crate::format::PIXELS;
 use crate::observation::{COORDINATE_LIMIT, Observation};
 use crate::recording::Recording;
 
@@ -77,8 +76,6 @@ impl Homography {
         for seen in &mut observations {
             seen.position = self.place(seen, recording.names())?;
         }
-        let notes = recording.notes().iter().filter(|note| *note != PIXELS).cloned();
-        let recording = recording.clone().with_notes(notes.collect());
         Ok(recording.with_observations(recording.frame_step(), observations)?)
     }
 }

@@ -24,7 +24,8 @@ const JUMP: f64 = 12.0;
 /// even a standing pedestrian moves more than this, and so does the noise of a tracker.
 const STILL: f64 = 0.02;
 const MANY_STEPS: usize = 20;
-/// Largest side (m) of an area in which three people stand but do not walk, and the share of it that a walker crosses.
+/// Largest side (m) of an area in which three people stand but do not walk, and the share of it that is crossed
+/// in a walk.
 const NARROW: f64 = 1.5;
 const CROSSED: f64 = 0.2;
 const A_CROWD: usize = 3;

@@ -6,8 +6,8 @@ use crate::interruptible::run;
 use crate::moments::{Moments, clock_of_rate, name_of, unit_named};
 use crate::observed::WindowOptions;
 use ddl::data::{
-    Clock, Completeness, Format, Homography, Misfit, Observation, PedestrianId, PedestrianName, PlausibilityWarning,
-    Recording as Tracks, RecordingError, Window, read_recording, write_recording,
+    Clock, ColumnChoice, Completeness, Format, Homography, Misfit, Observation, PedestrianId, PedestrianName,
+    PlausibilityWarning, Recording as Tracks, RecordingError, Window, parse_columns, write_recording,
 };
 use numpy::{PyReadonlyArray1, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
@@ -188,25 +188,28 @@ impl Recording {
     }
 
     #[staticmethod]
-    #[pyo3(signature = (path, *, format = None, fps = None, frame_step = None, homography = None))]
+    #[pyo3(signature = (path, *, format = None, rate = (None, None), homography = None, choice = (None, None, None)))]
     fn read(
         py: Python<'_>,
         path: PathBuf,
         format: Option<&str>,
-        fps: Option<f64>,
-        frame_step: Option<i64>,
+        rate: (Option<f64>, Option<i64>),
         homography: Option<[[f64; 3]; 3]>,
+        choice: (Option<String>, Option<String>, Option<String>),
     ) -> PyResult<Self> {
-        let format = if let Some(name) = format {
-            format_named(name)?
-        } else {
-            let bytes = std::fs::read(&path).map_err(|source| {
-                let path = path.clone();
-                raised(ddl::DdlError::Io { path, source })
-            })?;
-            Format::guess(&path, &bytes).map_err(of_any)?
+        let (fps, frame_step) = rate;
+        let choice = choice_of(choice, homography.is_some()).map_err(PyValueError::new_err)?;
+        let bytes = std::fs::read(&path).map_err(|source| {
+            let path = path.clone();
+            raised(ddl::DdlError::Io { path, source })
+        })?;
+        let format = match format {
+            Some(name) => format_named(name)?,
+            None => Format::guess_with(&path, &bytes, &choice).map_err(of_any)?,
         };
-        let mut tracks = py.detach(|| read_recording(&path, format)).map_err(raised)?;
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        let read = py.detach(|| parse_columns(&bytes, &path.display().to_string(), format, &choice));
+        let mut tracks = read.map_err(raised)?.with_name(&*name);
         if let Some(rows) = homography {
             let homography = Homography::try_from(rows).map_err(of_any)?;
             tracks = homography.to_ground(&tracks).map_err(of_any)?;
@@ -218,6 +221,12 @@ impl Recording {
     fn write(&self, path: PathBuf, format: &str) -> PyResult<()> {
         let bytes = write_recording(&self.rows, format_named(format)?).map_err(raised)?;
         ddl::write_atomically(&path, &bytes).map_err(raised)
+    }
+
+    /// What was assumed or left out by the reader, a sentence each.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.rows.notes().to_vec()
     }
 
     #[getter]
@@ -300,6 +309,26 @@ impl Recording {
     fn count_as_given(&self, tick: &mut i64) {
         *tick = self.moments.clock.number(*tick).nearest();
     }
+}
+
+/// Columns, rows and unit that the caller gives.
+fn choice_of(
+    (columns, keep, unit): (Option<String>, Option<String>, Option<String>),
+    is_mapped: bool,
+) -> Result<ColumnChoice, String> {
+    let mut choice = ColumnChoice::default();
+    if let Some(columns) = columns {
+        choice = choice
+            .with_columns(&columns)
+            .map_err(|problem| format!("columns {problem}"))?;
+    }
+    if let Some(keep) = keep {
+        choice = choice.keeping(&keep).map_err(|problem| format!("keep {problem}"))?;
+    }
+    if let Some(unit) = unit {
+        choice = choice.in_unit(&unit).map_err(|problem| format!("unit {problem}"))?;
+    }
+    Ok(if is_mapped { choice.mapped() } else { choice })
 }
 
 pub(crate) fn format_named(name: &str) -> PyResult<Format> {

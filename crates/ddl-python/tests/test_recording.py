@@ -86,3 +86,19 @@ def test_an_error_names_the_fault(tmp_path):
         ddl.read(bad, format="excel")
     fast = ddl.Recording(np.arange(20), np.ones(20, int), np.arange(20) * 40.0, np.zeros(20))
     assert fast.doubt()
+
+
+def test_columns_rows_and_units_can_be_chosen(tmp_path):
+    path = tmp_path / "camera.csv"
+    path.write_text("frame,who,east,north,class\n0,1,150,250,ped\n10,1,160,250,ped\n0,2,0,0,cyclist\n")
+    columns = {"pedestrian": "who", "x": "east", "y": "north"}
+    with pytest.warns(ddl.DoubtWarning, match="1 of class cyclist"):
+        recording = ddl.read(path, columns=columns, unit="cm")
+    assert (recording.x[0], recording.y[0]) == (1.5, 2.5) and len(recording) == 2
+    with pytest.warns(ddl.DoubtWarning, match="2 with class ped"):
+        other = ddl.read(path, columns=columns, keep={"class": "cyclist"})
+    assert len(other) == 1
+    with pytest.raises(ValueError, match="still missing: pedestrian, x, y"):
+        ddl.read(path)
+    with pytest.raises(ValueError, match="unit must be m, cm, mm or px"):
+        ddl.read(path, unit="km")

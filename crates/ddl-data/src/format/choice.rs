@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::format::column_names::{LengthUnit, Role};
+use crate::format::kind::Format;
 
 /// What the columns of text are and which rows count, where their names do not say it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -12,10 +13,12 @@ pub struct ColumnChoice {
     /// Only rows with this value in this column count.
     pub(super) keep: Option<(String, String)>,
     pub(super) unit: Option<LengthUnit>,
+    /// Whether a homography maps the positions.
+    pub(super) is_mapped: bool,
 }
 
 /// The roles that can be given, by name.
-const ROLES: [(&str, Role); 7] = [
+const ROLES: [(&str, Role); 13] = [
     ("frame", Role::Frame),
     ("time", Role::Time),
     ("pedestrian", Role::Pedestrian),
@@ -23,10 +26,16 @@ const ROLES: [(&str, Role); 7] = [
     ("y", Role::Y),
     ("class", Role::Class),
     ("scene", Role::Scene),
+    ("left", Role::Left),
+    ("top", Role::Top),
+    ("right", Role::Right),
+    ("bottom", Role::Bottom),
+    ("width", Role::Width),
+    ("height", Role::Height),
 ];
 
 impl ColumnChoice {
-    /// Names the columns that hold the frame (or time), pedestrian, x, y, class or scene, such as
+    /// Names the columns that hold the frame (or time), pedestrian, x, y, the sides of a box, class or scene, such as
     /// `frame=frame_id,x=xCenter`. Columns that are not named keep the meaning of their names.
     ///
     /// # Errors
@@ -49,6 +58,27 @@ impl ColumnChoice {
             self.roles.push((role, name));
         }
         Ok(self)
+    }
+
+    /// A homography will map the positions, which are then in pixels.
+    #[must_use]
+    pub fn mapped(self) -> Self {
+        Self {
+            is_mapped: true,
+            ..self
+        }
+    }
+
+    /// # Errors
+    /// When something is chosen, and the format has neither columns nor other units.
+    pub(super) fn refuse_for(&self, format: Format) -> Result<(), String> {
+        if self.roles.is_empty() && self.keep.is_none() && self.unit.is_none() {
+            Ok(())
+        } else {
+            Err(format!(
+                "the format {format} is in metres and has no columns to choose; leave out --columns, --keep and --unit"
+            ))
+        }
     }
 
     /// Only rows with a value in a column count, such as `class=Pedestrian`: `class`, or the name of a column.

@@ -65,12 +65,15 @@ const TIME_UNITS: [(&str, TimeUnit); 6] = [
     ("us", TimeUnit::Microseconds),
     ("ns", TimeUnit::Nanoseconds),
 ];
-const LENGTH_UNITS: [(&str, LengthUnit); 5] = [
-    ("m", LengthUnit::PerMetre(1.0)),
-    ("cm", LengthUnit::PerMetre(100.0)),
-    ("mm", LengthUnit::PerMetre(1000.0)),
-    ("px", LengthUnit::Pixels),
-    ("pixel", LengthUnit::Pixels),
+const LENGTH_UNITS: [(&str, LengthUnit); 8] = [
+    ("m metre metres meter meters", LengthUnit::PerMetre(1.0)),
+    ("cm centimetres centimeters", LengthUnit::PerMetre(100.0)),
+    ("mm millimetres millimeters", LengthUnit::PerMetre(1000.0)),
+    ("km kilometres kilometers", LengthUnit::PerMetre(0.001)),
+    ("ft feet foot", LengthUnit::PerMetre(3.280_839_895_013_123)),
+    ("in inch inches", LengthUnit::PerMetre(39.370_078_740_157_48)),
+    ("px pixel", LengthUnit::Pixels),
+    ("pixels pix", LengthUnit::Pixels),
 ];
 
 /// A unit of length that a name gives.
@@ -102,8 +105,38 @@ impl Role {
     /// Whether a column of this role takes the place of one of the other.
     pub(super) fn stands_for(self, other: Self) -> bool {
         let is_time = |role: Self| matches!(role, Self::Frame | Self::Time);
-        self == other || is_time(self) && is_time(other)
+        let is_point = |role: Self| matches!(role, Self::X | Self::Y);
+        let is_corner = |role: Self| matches!(role, Self::Left | Self::Top);
+        let both = |is: &dyn Fn(Self) -> bool, of: &dyn Fn(Self) -> bool| is(self) && of(other);
+        self == other || both(&is_time, &is_time) || both(&is_point, &is_corner) || both(&is_corner, &is_point)
     }
+}
+
+fn of_time(unit: &str) -> Option<TimeUnit> {
+    let found = TIME_UNITS.iter().find(|(name, _)| *name == unit);
+    found.map(|(_, unit)| *unit)
+}
+
+fn of_length(unit: &str) -> Option<LengthUnit> {
+    let mut units = LENGTH_UNITS.iter();
+    let found = units.find(|(names, _)| names.split(' ').any(|name| name == unit));
+    found.map(|(_, unit)| *unit)
+}
+
+/// The column of that name with a role that the user gives. The last word of its name may be a unit.
+pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
+    let last = words(name).pop().unwrap_or_default();
+    Named {
+        index,
+        role,
+        time_unit: of_time(&last).filter(|_| role == Role::Time),
+        length: of_length(&last).filter(|_| matches!(role, Role::X | Role::Y)),
+    }
+}
+
+/// Whether a column of that name is known.
+pub(super) fn is_known(name: &str) -> bool {
+    named(0, name).is_some()
 }
 
 /// The column of that name; `None` for an unknown one.
@@ -117,13 +150,6 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
     };
     let whole = role(&words);
     let (last, rest) = words.split_last()?;
-    let of_time = |unit: &str| TIME_UNITS.iter().find(|(name, _)| *name == unit).map(|(_, unit)| *unit);
-    let of_length = |unit: &str| {
-        LENGTH_UNITS
-            .iter()
-            .find(|(name, _)| *name == unit)
-            .map(|(_, unit)| *unit)
-    };
     let (role, unit) = match whole {
         Some(role) => (role, None),
         None => (role(rest)?, Some(last.as_str())),

@@ -131,17 +131,7 @@ pub(super) fn word(text: &str, name: &str) -> Result<PedestrianField, String> {
     if !text.contains(char::is_control) {
         return Ok(PedestrianField::Word(text.into()));
     }
-    let escaped: String = text
-        .chars()
-        .map(|letter| {
-            if letter.is_control() {
-                letter.escape_default().to_string()
-            } else {
-                letter.to_string()
-            }
-        })
-        .collect();
-    Ok(PedestrianField::Word(escaped.into()))
+    Ok(PedestrianField::Word(escaped(text).into()))
 }
 
 /// Whether a text is a fraction, NaN or infinite. `12e4567` is not: it is too large for a number and counts as a word.
@@ -177,11 +167,25 @@ pub(super) fn number(text: &str, name: &str) -> Result<(), String> {
     }
 }
 
+/// A piece of a file for a message, without control characters.
 pub(super) fn quoted(text: &str) -> String {
-    match text.char_indices().nth(QUOTED) {
-        Some((end, _)) => format!("{}...", &text[..end]),
-        None => text.to_owned(),
+    let (text, rest) = match text.char_indices().nth(QUOTED) {
+        Some((end, _)) => (&text[..end], "..."),
+        None => (text, ""),
+    };
+    escaped(text) + rest
+}
+
+fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        if letter.is_control() {
+            escaped.extend(letter.escape_default());
+        } else {
+            escaped.push(letter);
+        }
     }
+    escaped
 }
 
 #[cfg(test)]

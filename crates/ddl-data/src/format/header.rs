@@ -1,11 +1,15 @@
 //! The header of a table: what its columns hold, by the names that people give them.
 
 use crate::clock::TimeUnit;
+use std::collections::BTreeMap;
+
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::{Named, Role, named, words};
+use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, named, words};
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
+/// Most faults of columns that say the same in a message.
+const MOST_FAULTS: usize = 5;
 /// Number of unknown columns that a message names.
 const NAMED: usize = 5;
 const RULE: &str = "the header must name the columns frame (or time), pedestrian, x and y, each once";
@@ -30,12 +34,16 @@ pub(super) struct Header {
     pub(super) place: Place,
     /// Units of length per metre; `None` for pixels.
     pub(super) per_metre: Option<f64>,
+    /// Whether the names or the user say that positions are in metres or parts of them.
+    pub(super) has_unit: bool,
     pub(super) scene: Option<usize>,
     pub(super) class: Option<usize>,
-    /// The column and the value of the rows that count.
-    pub(super) keep: Option<(usize, String)>,
+    /// The column by which the user keeps rows.
+    pub(super) keep: Option<usize>,
     /// Names of further columns.
     pub(super) unread: Vec<String>,
+    /// What the reader should know of the choice of columns.
+    pub(super) remarks: Vec<String>,
 }
 
 /// A fault of a header: the field, counted from 0, and the text.
@@ -53,8 +61,10 @@ impl Header {
     /// The first field that is wrong, and everything that is wrong.
     pub(super) fn of(names: &[&str], choice: &ColumnChoice) -> Result<Self, Fault> {
         if names.iter().all(|name| name.parse::<f64>().is_ok()) {
-            let detail = "found numbers; put the line frame,pedestrian,x,y above them";
-            return Err((None, format!("{RULE}: {detail}")));
+            let count = names.len();
+            let detail = format!("found numbers; put a line with the names of the {count} columns above them");
+            let example = if count == 4 { ": frame,pedestrian,x,y" } else { "" };
+            return Err((None, format!("{RULE}: {detail}{example}")));
         }
         let mut roles = Roles {
             names,
@@ -66,15 +76,11 @@ impl Header {
                 .roles
                 .iter()
                 .find(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
+            // x and y that are given stand for a box as well, and a box for x and y.
             let is_given = |role: Role| choice.roles.iter().any(|(given, _)| given.stands_for(role));
             let by_name = named(index, name);
             match (chosen, by_name) {
-                (Some(&(role, _)), by_name) => roles.found.push(Named {
-                    index,
-                    role,
-                    time_unit: by_name.as_ref().and_then(|named| named.time_unit),
-                    length: by_name.and_then(|named| named.length),
-                }),
+                (Some(&(role, _)), _) => roles.found.push(chosen_as(role, index, name)),
                 (None, Some(named)) if !is_given(named.role) => roles.found.push(named),
                 _ if name.is_empty() => {}
                 _ => roles.unknown.push(index),
@@ -83,6 +89,7 @@ impl Header {
         let mut header = roles.header(choice)?;
         if let Some(unit) = choice.unit {
             header.per_metre = unit.per_metre();
+            header.has_unit = unit != LengthUnit::Pixels;
         }
         Ok(header)
     }
@@ -117,6 +124,7 @@ impl Roles<'_> {
             .collect();
         unread.sort_unstable();
         Ok(Header {
+            remarks: self.remarks(time, is_point),
             time: match (time.role, time.time_unit) {
                 (Role::Frame, _) => TimeColumn::Frame,
                 (_, None) => TimeColumn::Time,
@@ -125,6 +133,7 @@ impl Roles<'_> {
             frame: time.index,
             pedestrian: pedestrian.index,
             place,
+            has_unit: is_point && matches!(of_length, Some(LengthUnit::PerMetre(_))),
             per_metre: match of_length {
                 _ if !is_point => None,
                 None => Some(1.0),
@@ -132,25 +141,62 @@ impl Roles<'_> {
             },
             scene: self.of(Role::Scene).map(|named| named.index),
             class: self.of(Role::Class).map(|named| named.index),
-            keep: choice
-                .keep
-                .as_ref()
-                .and_then(|(name, value)| Some((self.kept(name)?, value.clone()))),
+            keep: choice.keep.as_ref().and_then(|(name, _)| self.kept(name)),
             unread: unread.into_iter().map(|index| quoted(self.names[index])).collect(),
         })
     }
 
-    fn place(&self) -> Option<Place> {
-        let index = |role: Role| self.of(role).map(|named| named.index);
-        if let Some((x, y)) = index(Role::X).zip(index(Role::Y)) {
-            return Some(Place::Point([x, y]));
+    /// What was chosen although it may be otherwise.
+    fn remarks(&self, time: &Named, is_point: bool) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if let Some(frame) = self.of(Role::Frame).filter(|frame| frame.index != time.index) {
+            let [when, other] = [time, frame].map(|named| quoted(self.names[named.index]));
+            remarks.push(format!(
+                "the times are those of the column {when}; --columns frame={other} takes the frames"
+            ));
         }
-        let corner = index(Role::Left).zip(index(Role::Top));
-        let (left, top) = corner?;
-        let size = index(Role::Width).zip(index(Role::Height));
-        let other = index(Role::Right).zip(index(Role::Bottom));
+        if is_point && self.is_corner() {
+            remarks.push(
+                "x and y are read as the position; if they are the corner of the box, give --columns left=x,top=y"
+                    .to_owned(),
+            );
+        }
+        if self.names.iter().any(|name| name.eq_ignore_ascii_case("trackLifetime")) {
+            remarks
+                .push("the classes of the tracks are in another file (tracksMeta): vehicles are read too".to_owned());
+        }
+        remarks
+    }
+
+    fn place(&self) -> Option<Place> {
+        self.point().or_else(|| self.corner())
+    }
+
+    fn index(&self, role: Role) -> Option<usize> {
+        self.of(role).map(|named| named.index)
+    }
+
+    fn point(&self) -> Option<Place> {
+        Some(Place::Point([self.index(Role::X)?, self.index(Role::Y)?]))
+    }
+
+    /// The foot of a box.
+    fn corner(&self) -> Option<Place> {
+        let (left, top) = (self.index(Role::Left)?, self.index(Role::Top)?);
+        let size = self.index(Role::Width).zip(self.index(Role::Height));
+        let other = self.index(Role::Right).zip(self.index(Role::Bottom));
         let foot = size.map(|(width, height)| Place::Foot([left, top, width, height]));
         foot.or(other.map(|(right, bottom)| Place::FootOfCorners([left, top, right, bottom])))
+    }
+
+    /// Whether x and y may be the corner of a box with width and height.
+    fn is_corner(&self) -> bool {
+        let is_plain = |role: Role, name: &str| {
+            self.index(role)
+                .is_some_and(|i| self.names[i].eq_ignore_ascii_case(name))
+        };
+        let size = self.index(Role::Width).zip(self.index(Role::Height));
+        is_plain(Role::X, "x") && is_plain(Role::Y, "y") && size.is_some()
     }
 
     /// The column that `--keep` names, by its role or its name.
@@ -175,26 +221,28 @@ impl Roles<'_> {
         chosen.chain(kept).map(fault).collect()
     }
 
-    /// Two columns that say the same.
+    /// Columns that say the same.
     fn repeated(&self) -> Vec<Fault> {
-        let is_time = |role: Role| matches!(role, Role::Frame | Role::Time);
+        let mut first_of_role: BTreeMap<Role, usize> = BTreeMap::new();
         let mut faults = Vec::new();
-        for (at, named) in self.found.iter().enumerate() {
-            let same = |other: &&Named| other.role.stands_for(named.role);
-            if named.role < Role::Class
-                && let Some(first) = self.found[..at].iter().find(same)
-            {
-                let [first, again] = [first.index, named.index].map(|index| quoted(self.names[index]));
-                let both = if is_time(named.role) {
-                    "say when"
-                } else {
-                    "say the same"
-                };
-                let fault = format!(
-                    "the columns {first:?} and {again:?} both {both}; leave one of the two out (or choose: --columns)"
-                );
-                faults.push((Some(named.index), fault));
-            }
+        for named in &self.found {
+            let Some(&first) = first_of_role.get(&named.role) else {
+                first_of_role.insert(named.role, named.index);
+                continue;
+            };
+            let [first, again] = [first, named.index].map(|index| quoted(self.names[index]));
+            let fault = format!("the columns {first:?} and {again:?} both say the same");
+            faults.push((Some(named.index), fault));
+        }
+        if let (Some(Place::Point([x, _])), Some(corner)) = (self.point(), self.corner()) {
+            let [x, corner] = [x, corner.columns()[0]].map(|index| quoted(self.names[index]));
+            let fault = format!("the columns {x:?} and {corner:?} both say where");
+            faults.push((None, fault));
+        }
+        if !faults.is_empty() {
+            faults.truncate(MOST_FAULTS);
+            let choose = "leave one of two out, or choose (--columns x=NAME,y=NAME, left=NAME,...)".to_owned();
+            faults.push((None, choose));
         }
         faults
     }

@@ -14,8 +14,8 @@ const MORE: f64 = 2.0;
 pub(super) enum Order {
     FrameFirst,
     PedestrianFirst,
-    /// Both readings give tracks alike: the median length of their steps.
-    Unclear([f64; 2]),
+    /// Both readings give tracks alike, or what speaks for one of them is contradicted.
+    Unclear,
 }
 
 /// The tracks of a reading.
@@ -28,29 +28,36 @@ struct Tracks {
     unit: u64,
 }
 
-/// Finds the order from rows of the first two columns with a position.
+/// Finds the order from rows of the first two columns with a position. It is clear if nothing speaks against it.
 pub(super) fn order(rows: &[([f64; 2], Position)]) -> Order {
     let rows = &rows[..rows.len().min(MOST_ROWS)];
-    let [first, second] = [0, 1].map(|frame| tracks(rows, frame));
-    let (first, second) = match (first, second) {
-        (_, None) => return Order::FrameFirst,
-        (None, Some(_)) => return Order::PedestrianFirst,
-        (Some(first), Some(second)) => (first, second),
+    // Only times have fractions.
+    let fractions = [0, 1].map(|column| rows.iter().any(|(of, _)| of[column].fract() != 0.0));
+    let (first, second) = match [0, 1].map(|frame| tracks(rows, frame)) {
+        [_, None] => return Order::FrameFirst,
+        [None, Some(second)] if second.unit > 1 || fractions[1] => return Order::PedestrianFirst,
+        // One pedestrian, or all pedestrians of one frame.
+        [None, Some(_)] => return Order::Unclear,
+        [Some(first), Some(second)] => (first, second),
     };
-    let is_first = if first.step.max(second.step) > LONGER * first.step.min(second.step) {
-        first.step < second.step
-    } else if (first.unit > 1) != (second.unit > 1) {
+    let unlike = |a: f64, b: f64, ratio: f64| a.max(b) > ratio * a.min(b);
+    let votes = [
+        (fractions[0] != fractions[1]).then_some(fractions[0]),
+        unlike(first.step, second.step, LONGER).then_some(first.step < second.step),
         // Frames of a film have a step, pedestrians are counted one by one.
-        first.unit > 1
-    } else if first.rows.max(second.rows) > MORE * first.rows.min(second.rows) {
-        first.rows > second.rows
-    } else {
-        return Order::Unclear([first.step, second.step]);
-    };
-    if is_first {
-        Order::FrameFirst
-    } else {
-        Order::PedestrianFirst
+        ((first.unit > 1) != (second.unit > 1)).then_some(first.unit > 1),
+        unlike(first.rows, second.rows, MORE).then_some(first.rows > second.rows),
+    ];
+    let mut votes = votes.into_iter().flatten();
+    match votes.next() {
+        Some(vote) if votes.all(|other| other == vote) => {
+            if vote {
+                Order::FrameFirst
+            } else {
+                Order::PedestrianFirst
+            }
+        }
+        _ => Order::Unclear,
     }
 }
 

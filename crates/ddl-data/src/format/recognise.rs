@@ -4,11 +4,11 @@ use std::path::Path;
 
 use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
+use crate::format::comments::{is_comment, names_in_comment};
 use crate::format::kind::Format;
 use crate::format::order::{MOST_ROWS, Order, order};
 use crate::format::place::FilePlace;
 use crate::format::separator::Separator;
-use crate::format::text::{in_comment, is_comment};
 
 /// Least height in the fifth column of a file in centimetres: people in metres are lower.
 const LEAST_CENTIMETRES: f64 = 20.0;
@@ -25,6 +25,14 @@ impl Format {
     /// # Errors
     /// Where both columns may count the frames; `path` names the file.
     pub fn guess(path: &Path, bytes: &[u8]) -> Result<Self, FormatError> {
+        Self::guess_with(path, bytes, &ColumnChoice::default())
+    }
+
+    /// As [`guess`](Self::guess), with the columns that the user names.
+    ///
+    /// # Errors
+    /// As [`guess`](Self::guess).
+    pub fn guess_with(path: &Path, bytes: &[u8], choice: &ColumnChoice) -> Result<Self, FormatError> {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or("");
         let named = |name: &str| extension.eq_ignore_ascii_case(name);
         let text = String::from_utf8_lossy(bytes);
@@ -40,42 +48,49 @@ impl Format {
             return Ok(Self::TrajNet);
         }
         let separator = Separator::of_numbers(first);
-        let has_header = !fields(Separator::of(first), first).iter().any(|field| is_number(field));
-        if has_header || lines.has_header_in_comment() {
+        let first = fields(separator, first);
+        let has_header = !lines.first_fields().iter().any(|field| is_number(field));
+        if has_header || lines.has_header_in_comment(first.len(), choice) {
             // A word of text that is no table, such as that of another file, is a row with too few fields.
-            let is_row = separator == Separator::Blanks && fields(separator, first).len() < 3 && !named("csv");
+            let is_row = separator == Separator::Blanks && first.len() < 3 && !named("csv");
             return Ok(if is_row { Self::SocialGan } else { Self::Table });
+        }
+        if let Some(format) = of_columns(&first, separator) {
+            return Ok(format);
         }
         if separator == Separator::Comma && lines.are_star() {
             return Ok(Self::StarCsv);
         }
-        if let Some(format) = of_columns(&fields(separator, first), separator) {
-            return Ok(format);
-        }
-        match (separator, fields(separator, first).len()) {
-            (Separator::Blanks, 4) => lines
+        match (first.len(), separator) {
+            (4, _) => lines
                 .of_four(separator)
                 .map_err(|problem| FilePlace::line(1).wrong(&path.display().to_string(), problem)),
-            (Separator::Blanks, 5) => Ok(lines.of_five(separator)),
-            (Separator::Blanks, _) if !named("csv") => Ok(Self::SocialGan),
+            (5, Separator::Blanks) => Ok(lines.of_five(separator)),
+            (_, Separator::Blanks) if !named("csv") => Ok(Self::SocialGan),
             _ => Ok(Self::Table),
         }
     }
 }
 
-/// The format of rows of numbers whose first is this one, if their number and kind show it.
+/// The format of rows of numbers whose first is this one, if their number and content show it.
 fn of_columns(fields: &[String], separator: Separator) -> Option<Format> {
-    let by_commas = separator == Separator::Comma;
+    let number = |index: usize| fields[index].parse::<f64>().ok();
     let numeric = fields.iter().all(|field| is_number(field));
-    let is_time = || fields[0].parse::<f64>().is_ok_and(|time| time > LEAST_TIME);
+    let is = |index: usize, holds: &dyn Fn(f64) -> bool| number(index).is_some_and(holds);
+    let class = |index: usize| is(index, &|class| class.fract() == 0.0 && (1.0..=13.0).contains(&class));
     match fields.len() {
         10 if !is_number(&fields[9]) => Some(Format::Sdd),
-        10 if numeric && by_commas => Some(Format::Mot),
-        10 if numeric => Some(Format::ApolloScape),
-        9 if numeric => Some(Format::MotTruth),
-        8 if numeric && by_commas && is_time() => Some(Format::Atc),
+        // Columns of the world are -1 where there is none.
+        10 if numeric && (7..10).all(|index| is(index, &|world| (world + 1.0).abs() < 1e-9)) => Some(Format::Mot),
+        10 if numeric && separator == Separator::Blanks && class(2) && is(6, &|length| length > 0.0) => {
+            Some(Format::ApolloScape)
+        }
+        9 if numeric && separator == Separator::Comma && class(7) && is(8, &|seen| (0.0..=1.0).contains(&seen)) => {
+            Some(Format::MotTruth)
+        }
+        8 if numeric && separator == Separator::Comma && is(0, &|time| time > LEAST_TIME) => Some(Format::Atc),
         8 if separator == Separator::Blanks => Some(Format::Obsmat),
-        17.. if !by_commas && !is_number(&fields[2]) => Some(Format::Kitti),
+        17.. if separator == Separator::Blanks && !is_number(&fields[2]) => Some(Format::Kitti),
         _ => None,
     }
 }
@@ -98,10 +113,17 @@ impl<'a> Lines<'a> {
         lines.filter(|line| !line.trim().is_empty() && !is_comment(line))
     }
 
-    fn has_header_in_comment(self) -> bool {
+    /// The fields of the first line, as those of a header.
+    fn first_fields(self) -> Vec<String> {
+        self.filled()
+            .next()
+            .map_or_else(Vec::new, |line| fields(Separator::of(line), line))
+    }
+
+    fn has_header_in_comment(self, count: usize, choice: &ColumnChoice) -> bool {
         let lines = self.text.split(self.end);
         let mut comments = lines.take_while(|line| line.trim().is_empty() || is_comment(line));
-        comments.any(|comment| in_comment(comment, &ColumnChoice::default()).is_some())
+        comments.any(|comment| names_in_comment(comment, count, choice).is_some())
     }
 
     /// Whether the lines are four of numbers. Four lines of four numbers may also be a table whose header was
@@ -121,29 +143,36 @@ impl<'a> Lines<'a> {
 
     fn of_four(self, separator: Separator) -> Result<Format, String> {
         let rows = self.filled().filter_map(|line| {
-            let fields = fields(separator, line);
+            let fields = separator.fields(line, 1, "").ok()?;
             let number = |index: usize| fields.get(index)?.parse::<f64>().ok();
             Some(([number(0)?, number(1)?], [number(2)?, number(3)?]))
         });
         match order(&rows.take(MOST_ROWS).collect::<Vec<_>>()) {
             Order::FrameFirst => Ok(Format::SocialGan),
             Order::PedestrianFirst => Ok(Format::IdFirst),
-            Order::Unclear([first, second]) => Err(format!(
-                "the first two columns may be frame and pedestrian, or pedestrian and frame: both give tracks alike \
-                 ({first:.2} and {second:.2} m from row to row); write the line frame pedestrian x y, or pedestrian \
-                 frame x y, above them"
-            )),
+            Order::Unclear => Err(
+                "the first two columns may be frame and pedestrian, or pedestrian and frame: both give tracks; write \
+                 the line frame,pedestrian,x,y above them, or pedestrian,frame,x,y (with the separators of the rows)"
+                    .to_owned(),
+            ),
         }
     }
 
+    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column.
     fn of_five(self, separator: Separator) -> Format {
-        let is_high = |line: &str| {
-            let height = fields(separator, line)
-                .get(4)
-                .and_then(|height| height.parse::<f64>().ok());
-            height.is_some_and(|height| height >= LEAST_CENTIMETRES)
+        let rows = || {
+            self.filled().filter_map(move |line| {
+                let fields = separator.fields(line, 1, "").ok()?;
+                let number = |index: usize| fields.get(index)?.parse::<f64>().ok();
+                Some(([number(0)?, number(1)?], [number(2)?, number(3)?], number(4)?))
+            })
         };
-        if self.filled().all(is_high) {
+        let placed: Vec<_> = rows().take(MOST_ROWS).map(|(of, at, _)| (of, at)).collect();
+        // One pedestrian alone is no frame.
+        let has_frames_first = order(&placed) == Order::FrameFirst && placed.len() > 1;
+        if has_frames_first {
+            Format::SocialGan
+        } else if rows().all(|(.., height)| height >= LEAST_CENTIMETRES) {
             Format::PeTrackCm
         } else {
             Format::PeTrack
@@ -179,7 +208,8 @@ a.txt::0\t1\t2\t3\n => social-gan
 a::0 1 2 3\n => social-gan
 a.csv::0,1,2,3,4\n1,1,1,1,1\n0,0,0,0,0\n1,1,1,1,1\n => star-csv
 a.csv::frame,pedestrian,x,y\n0,1,2,3\n => table
-a.csv::0,1,2,3\n0,1,2,3\n0,1,2,3\n0,1,2,3\n => table
+a.csv::0,1,2,3\n1,1,2,3\n2,1,2,3\n3,1,2,3\n => social-gan
+a.csv::0,1,2\n => table
 a.csv:: => table
 a.txt:: => social-gan
 a.txt::frame,pedestrian,x,y\n0,1,2,3\n => table

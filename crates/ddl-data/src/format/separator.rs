@@ -56,7 +56,11 @@ impl Separator {
         }
         // A CSV reader is costly to create for every line, and is only needed for quoted fields.
         let plain = text.trim_end_matches(['\r', '\n']);
-        if !plain.contains(['"', '\r', '\n']) {
+        if plain.contains('\r') {
+            let problem = "a carriage return stands within the line; end each line with a line feed";
+            return Err(FilePlace::line(line).wrong(origin, problem));
+        }
+        if !plain.contains('"') {
             return Ok(plain.split(self.letter()).map(|field| field.trim().into()).collect());
         }
         let mut reader = csv::ReaderBuilder::new()

@@ -12,13 +12,14 @@ use ddl_core::{PedestrianId, PedestrianName, PedestrianNames, Position};
 use crate::clock::TimeUnit;
 use crate::error::{DataError, FormatError};
 use crate::format::choice::ColumnChoice;
+use crate::format::comments::{is_comment, rate_of};
 use crate::format::field::PedestrianField;
 use crate::format::kind::Format;
 use crate::format::numbering::Numbering;
 use crate::format::place::FilePlace;
 use crate::format::problem::{MIXED_TIMES, NOT_UTF8, duplicate, when};
 use crate::format::rows::TrackRow;
-use crate::format::text::{TrackColumns, is_comment, rate_of};
+use crate::format::track_columns::TrackColumns;
 use crate::format::trajnet;
 use crate::scene_name::SceneName;
 
@@ -52,8 +53,8 @@ pub struct Frame {
 /// Reads tracks frame by frame, as a tracker writes them: in order of time, one observation per line.
 ///
 /// A frame is complete when a line of a later frame arrives, at an empty line, or at the end. The first line determines
-/// the format, by its header, as a JSON object (`trajnet`), or by its columns: four are frame, pedestrian, x and y.
-/// Files of the `star` convention are not in order of time and cannot be streamed.
+/// the format, by its header, as a JSON object (`trajnet`), or by its columns: four are frame, pedestrian, x and y,
+/// which is told once. Files of the `star` convention are not in order of time and cannot be streamed.
 ///
 /// Pedestrians may be named by words, by numbers or by both. Memory is bounded by the pedestrians of incomplete frames,
 /// 100,000 at most, and the last 200,000 words. A word that has been forgotten gets a new pedestrian number.
@@ -71,8 +72,10 @@ pub struct FrameReader<R> {
     lines: usize,
     kind: Option<Kind>,
     choice: ColumnChoice,
-    /// The last comment before the first observation.
-    comment: Option<String>,
+    /// The comments before the first observation.
+    comments: String,
+    /// What has been assumed and not yet told.
+    remarks: Vec<String>,
     /// The frame rate stated by scenes.
     rate: trajnet::SceneRate,
     words: Numbering,
@@ -141,7 +144,8 @@ impl<R: BufRead> FrameReader<R> {
             lines: 0,
             kind: None,
             choice: ColumnChoice::default(),
-            comment: None,
+            comments: String::new(),
+            remarks: Vec::new(),
             rate: trajnet::SceneRate::default(),
             words: Numbering::remembering(MOST_WORDS),
             numbers: BTreeSet::new(),
@@ -217,12 +221,13 @@ impl<R: BufRead> FrameReader<R> {
         self.first?.unit
     }
 
-    /// Takes the notes on what was assumed and left out since the last call, a sentence each; none before the first row.
+    /// Takes the notes on what was assumed and left out since the last call, a sentence each.
     pub fn take_notes(&mut self) -> Vec<String> {
-        match &mut self.kind {
-            Some(Kind::Text(columns)) if self.first.is_some() => columns.new_notes(),
-            _ => Vec::new(),
+        let mut notes = std::mem::take(&mut self.remarks);
+        if let Some(Kind::Text(columns)) = &mut self.kind {
+            notes.extend(columns.new_notes());
         }
+        notes
     }
 
     /// Frames per second, if a line so far states it: the `fps` of TrajNet++ scenes.
@@ -278,22 +283,29 @@ impl<R: BufRead> FrameReader<R> {
 
     fn row(&mut self, text: &str) -> Result<Option<TrackRow>, FormatError> {
         let (line, origin) = (self.lines, self.origin.as_str());
-        if is_comment(text) && !matches!(self.kind, Some(Kind::TrajNet)) {
-            self.rate.frames_a_second = self.rate.frames_a_second.or(rate_of(text));
-            if self.kind.is_none() {
-                self.comment = Some(text.to_owned());
-            }
-            return Ok(None);
-        }
         let Some(kind) = &mut self.kind else {
-            let comment = self.comment.take();
-            let comments: Vec<&str> = comment.as_deref().into_iter().collect();
-            let begin = comments.concat() + text;
-            let format = Format::guess("".as_ref(), begin.as_bytes())?;
+            if is_comment(text) {
+                if let Some(rate) = rate_of(text) {
+                    self.remarks
+                        .push(format!("a comment says {rate} frames a second: --fps {rate} uses it"));
+                }
+                if self.comments.len() + text.len() <= LONGEST_LINE {
+                    self.comments += text;
+                }
+                return Ok(None);
+            }
+            let comments = std::mem::take(&mut self.comments);
+            let begin = comments.clone() + text;
+            let format = Format::guess_with("".as_ref(), begin.as_bytes(), &self.choice)?;
             let (kind, is_header) = if format == Format::TrajNet {
+                self.choice
+                    .refuse_for(format)
+                    .map_err(|problem| FilePlace::line(line).wrong(origin, problem))?;
                 (Kind::TrajNet, false)
             } else {
-                let (columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, line, origin)?;
+                let comments: Vec<&str> = comments.lines().collect();
+                let (mut columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, line, origin)?;
+                columns.tell_layout();
                 (Kind::Text(Box::new(columns)), is_header)
             };
             self.kind = Some(kind);

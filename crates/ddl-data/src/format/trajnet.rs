@@ -49,6 +49,15 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRat
             }
         }
     }
+    if rows.is_empty() && !text.trim().is_empty() && !text.contains("\"track\"") && !text.contains("\"scene\"") {
+        let problem = r#"no line has a track; TrajNet++ writes {"track": {"f": 0, "p": 1, "x": 2.0, "y": 3.0}}"#;
+        return Err(FilePlace::line(1).wrong(origin, problem));
+    }
+    if rows.is_empty() && text.contains("\"prediction_number\"") {
+        let problem = "the tracks are forecasts (prediction_number), none is observed; score them with `ddl evaluate \
+                       --forecasts`";
+        return Err(FilePlace::line(1).wrong(origin, problem));
+    }
     Ok((rows, rate))
 }
 

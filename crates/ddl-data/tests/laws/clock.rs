@@ -217,7 +217,6 @@ time,pedestrian,x,y|2026-05-31T12:00:00Z,7,0,0|12.5,7,0,0 => line 3, field 1: ti
 time_ms,pedestrian,x,y|2026-05-31T12:00:00Z,7,0,0 => line 2, field 1: time must be a time, found "2026-05 => SAME
 time_s,pedestrian,x,y|1700000000100,7,0,0 => line 2, field 1: time 1700000000100 is after the year 2250 => SAME
 time,pedestrian,x,y|noon,7,0,0 => line 2, field 1: time must be a time, found "noon" => SAME
-time,frame,pedestrian,x,y|0,0,7,0,0 => line 1, field 2: the header must name => both say when
 frame,pedestrian,x,y|0,7,0,0|0.4,7,0,0 => NONE => line 3, field 1: frame must be a whole number below 2^53 in size
 0.4 7 0 0|0.8 7 0 0 => NONE => NONE
 0 7 0 0|0.4 7 0 0 => NONE => line 2, field 1: frame must be a whole number

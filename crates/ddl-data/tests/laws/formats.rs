@@ -1,6 +1,8 @@
 //! Files as people have them: their columns in any order, under any of the usual names, and formats of others.
 
-use ddl_data::{Format, FrameReader, Observation, PedestrianId, Recording, parse_recording};
+use ddl_data::{
+    ColumnChoice, Format, FrameReader, Observation, PedestrianId, Recording, parse_columns, parse_recording,
+};
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -94,7 +96,7 @@ proptest! {
                 let found = recording.observations().iter().map(|seen| (seen.frame, seen.pedestrian.0));
                 prop_assert!(found.eq(rows.iter().map(|&(frame, id, ..)| (frame, id))), "{people:?}");
             }
-            Err(problem) => prop_assert!(problem.contains("write the line frame pedestrian x y, or"), "{problem}"),
+            Err(problem) => prop_assert!(problem.contains("write the line frame,pedestrian,x,y"), "{problem}"),
         }
     }
 }
@@ -184,10 +186,10 @@ const SAMPLES: [Sample; 15] = [
     ),
     (
         "sind.csv",
-        "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy\n",
+        "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy\n4,7,700.0,pedestrian,2.5,3.5,0,0\n",
         Format::Table,
-        (0, 0, 0.0, 0.0),
-        0,
+        (700_000, 4, 2.5, 3.5),
+        1,
     ),
     (
         "dut.csv",
@@ -216,17 +218,16 @@ const SAMPLES: [Sample; 15] = [
 fn formats_of_others_are_read() {
     for (name, text, format, (frame, pedestrian, x, y), count) in SAMPLES {
         assert_eq!(Format::guess(Path::new(name), text.as_bytes()), Ok(format), "{name}");
-        match read(name, text) {
-            Ok(recording) => {
-                let expected = Observation::new(frame, PedestrianId(pedestrian), [x, y]);
-                assert_eq!(recording.observations()[0], expected, "{name}");
-                assert_eq!(recording.observations().len(), count, "{name}");
-            }
-            Err(problem) => {
-                assert_eq!(count, 0, "{problem}");
-                assert!(problem.contains("both say when"), "{problem}");
-            }
-        }
+        let recording = read(name, text).unwrap();
+        let expected = Observation::new(frame, PedestrianId(pedestrian), [x, y]);
+        assert_eq!(recording.observations()[0], expected, "{name}");
+        assert_eq!(recording.observations().len(), count, "{name}");
+        // A stream reads the same.
+        let mut frames = FrameReader::new(text.as_bytes(), "t");
+        let streamed = std::iter::from_fn(|| frames.next_frame().unwrap());
+        let streamed: Vec<_> = streamed.flat_map(|frame| frame.pedestrians).collect();
+        assert_eq!(streamed.len(), count, "{name}");
+        assert_eq!(streamed[0], (PedestrianId(pedestrian), [x, y]), "{name}");
     }
 }
 
@@ -287,4 +288,80 @@ fn a_stream_tells_each_thing_once() {
         ["the positions are in centimetres", "rows are left out: of class car"]
     );
     assert!(told[2].is_empty());
+}
+
+/// What names do not say can be said.
+#[test]
+fn columns_rows_and_units_can_be_chosen() {
+    let text = "when,who,east,north,zone,class\n0,a,150,250,A,ped\n1,a,160,250,B,ped\n1,b,0,0,A,car\n";
+    let choice = || {
+        ColumnChoice::default()
+            .with_columns("frame=when,pedestrian=who,x=east,y=north")
+            .unwrap()
+    };
+    let read = |text: &str, choice: ColumnChoice| {
+        parse_columns(text.as_bytes(), "t.csv", Format::Table, &choice).map_err(|error| error.to_string())
+    };
+    let recording = read(text, choice().in_unit("cm").unwrap()).unwrap();
+    assert_eq!(
+        recording.observations()[0].position.map(f64::to_bits),
+        [1.5, 2.5].map(f64::to_bits)
+    );
+    assert_eq!(recording.observations().len(), 2);
+    // A vehicle of the zone is still none.
+    let in_zone = read(text, choice().keeping("zone=A").unwrap()).unwrap();
+    assert_eq!(in_zone.observations().len(), 1);
+    let cars = read(text, choice().keeping("class=CAR").unwrap()).unwrap();
+    assert_eq!(cars.observations().len(), 1);
+    let none = read(text, choice().keeping("class=dog").unwrap());
+    assert!(none.is_err_and(|problem| problem.contains("no row is left; rows left out")));
+    for (choice, problem) in [
+        (
+            ColumnChoice::default().with_columns("x=west").unwrap(),
+            "there is no column \"west\"",
+        ),
+        (choice().keeping("colour=red").unwrap(), "there is no column \"colour\""),
+        (choice().in_unit("cm").unwrap().mapped(), "the homography maps pixels"),
+    ] {
+        let found = read(text, choice).unwrap_err();
+        assert!(found.contains(problem), "{found}");
+    }
+    let no_header = parse_columns(b"0 1 2 3\n", "t", Format::SocialGan, &choice())
+        .unwrap_err()
+        .to_string();
+    assert!(no_header.contains("there is no header"), "{no_header}");
+    let mut stream = FrameReader::new(&br#"{"track":{"f":0,"p":1,"x":2,"y":3}}"#[..], "t");
+    stream = stream.with_columns(ColumnChoice::default().in_unit("cm").unwrap());
+    assert!(
+        stream
+            .next_frame()
+            .unwrap_err()
+            .to_string()
+            .contains("leave out --columns")
+    );
+    // numpy's header, with names of one's own.
+    let numpy = "# t0 who east north\n0 1 2 3\n";
+    let choice = ColumnChoice::default()
+        .with_columns("frame=t0,pedestrian=who,x=east,y=north")
+        .unwrap();
+    let format = Format::guess_with(Path::new("n.txt"), numpy.as_bytes(), &choice).unwrap();
+    assert_eq!(
+        parse_columns(numpy.as_bytes(), "n", format, &choice)
+            .unwrap()
+            .observations()
+            .len(),
+        1
+    );
+}
+
+#[test]
+fn lines_with_a_sign_are_rows_or_comments() {
+    let text = "# made\n% by\nid,frame,x,y\n#1,0,0,0\n# a note\n#1,1,0.5,0\n2,1,0.5,5\n";
+    assert_eq!(read("t.csv", text).unwrap().observations().len(), 3);
+    let classes = "frame,id,class,x,y\n0,1,0,0,0\n0,2,2,5,5\n";
+    let notes = read("coco.csv", classes).unwrap().notes().join("; ");
+    assert!(
+        notes.contains("rows of class \"0\" and \"2\" are read as pedestrians"),
+        "{notes}"
+    );
 }

@@ -226,15 +226,14 @@ fn other_headers_are_read_or_explained() {
 observed_until,pedestrian,frame,x,y => this is a table of forecasts
 frame;pedestrian;x;y => line 2: 1 fields where 4 are expected
 frame,pedestrian,x,vx => still missing: y; rename the column that holds it, or name it (--columns y=NAME)
-frame,who,x [km],y [m] => still missing: pedestrian, x; rename
-frame,who,x [km],y [m] => (--columns pedestrian=NAME): unknown are "who", "x [km]"
+frame,who,x [mile],y [m] => still missing: pedestrian, x; rename
+frame,who,x [mile],y [m] => (--columns pedestrian=NAME): unknown are "who", "x [mile]"
 frame,pedestrian,x [cm],y [m] => different units
-frame,id,track_id,x,y => the columns "id" and "track_id" both say the same; leave one of the two out
-frame,t,ped,x,pos_x,y => the columns "frame" and "t" both say when; leave
+frame,id,track_id,x,y => the columns "id" and "track_id" both say the same; leave
 frame,t,ped,x,pos_x,y => the columns "x" and "pos_x" both
 frame,id,camera,x,y => rename it scene
 [{"frame": 0}] => not a table
-0,1,2.5,-3.0 => found numbers; put the line frame,pedestrian,x,y above them
+0,1,2.5,-3.0 => put a line with the names of the 4 columns above them: frame,pedestrian,x,y
 "#;
     for case in cases.trim().lines() {
         let (header, advice) = case.split_once(" => ").unwrap();

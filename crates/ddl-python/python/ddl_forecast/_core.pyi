@@ -92,11 +92,13 @@ class Recording:
         path: _Path,
         *,
         format: str | None = None,
-        fps: float | None = None,
-        frame_step: int | None = None,
+        rate: tuple[float | None, int | None] = ...,
         homography: list[list[float]] | None = None,
+        choice: tuple[str | None, str | None, str | None] = ...,
     ) -> Recording: ...
     def write(self, path: _Path, *, format: str = "table") -> None: ...
+    @property
+    def notes(self) -> list[str]: ...
     @property
     def name(self) -> str: ...
     @property

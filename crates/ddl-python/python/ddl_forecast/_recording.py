@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import warnings
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
 from ddl_forecast._arrays import Floats, column, moments, numbered
+from ddl_forecast._forecast import DoubtWarning
 
 #: Formats of files of tracks that are read and written, by name.
 WRITTEN = ("table", "trajnet", "social-gan", "star-csv", "obsmat")
@@ -147,21 +150,30 @@ def read(
     fps: float | None = None,
     frame_step: int | None = None,
     homography: ArrayLike | None = None,
+    columns: Mapping[str, str] | None = None,
+    keep: Mapping[str, str] | None = None,
+    unit: str | None = None,
 ) -> Recording:
-    """Read a file of tracks.
+    """Read a file of tracks. What is assumed or left out is a :class:`DoubtWarning`.
 
     Parameters
     ----------
     path
-        csv with the header ``frame,pedestrian,x,y`` (or ``time`` in seconds or as dates, ``time_ms``, ``time_us`` or
-        ``time_ns`` instead of ``frame``), ndjson of TrajNet++, ``obsmat.txt`` of ETH, or a file of Social-GAN or of
-        STAR.
+        A table with a header that names frame (or time), pedestrian, x and y by their usual names, or a file of one of
+        :data:`FORMATS`.
     format
         One of :data:`FORMATS`; default: recognised by the extension and the first lines.
     fps, frame_step
         As for :class:`Recording`; only for frame numbers.
     homography
         3 x 3 matrix from pixels to metres, for positions in pixels.
+    columns
+        Columns by role (``frame`` or ``time``, ``pedestrian``, ``x``, ``y``, ``left``, ``top``, ``right``, ``bottom``,
+        ``width``, ``height``, ``class``), where their names do not say it: ``{"x": "east", "y": "north"}``.
+    keep
+        Only rows with this value in a column: ``{"class": "Pedestrian"}``.
+    unit
+        Unit of the positions: ``"m"``, ``"cm"``, ``"mm"`` or ``"px"``; default: that in the names of the columns, or m.
 
     Raises
     ------
@@ -170,4 +182,12 @@ def read(
         The content is wrong: the message names the line and the field.
     """
     matrix = None if homography is None else np.asarray(homography, dtype=np.float64).tolist()
-    return Recording._of(_core.Recording.read(path, format=format, fps=fps, frame_step=frame_step, homography=matrix))
+    if keep is not None and len(keep) != 1:
+        raise ValueError(f"keep names one column and its value, found {len(keep)}")
+    pairs = [None if given is None else ",".join(map("=".join, given.items())) for given in (columns, keep)]
+    rows = _core.Recording.read(
+        path, format=format, rate=(fps, frame_step), homography=matrix, choice=(pairs[0], pairs[1], unit)
+    )
+    for note in rows.notes:
+        warnings.warn(f"{rows.name}: {note}", DoubtWarning, stacklevel=2)
+    return Recording._of(rows)

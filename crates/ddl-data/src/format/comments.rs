@@ -1,0 +1,43 @@
+//! Comments of text: lines that hold no observation, and what they say.
+
+use crate::format::choice::ColumnChoice;
+use crate::format::column_names::is_known;
+use crate::format::separator::Separator;
+
+/// Begin a line that holds no observation.
+const COMMENTS: [char; 2] = ['#', '%'];
+/// Known names of columns that make a comment a header: prose may have one or two.
+const KNOWN_NAMES: usize = 3;
+
+/// Comments, and the line in which a spreadsheet names its separator.
+pub(super) fn is_comment(text: &str) -> bool {
+    let text = text.trim_start();
+    text.starts_with(COMMENTS) || text.starts_with("//") || text.starts_with("sep=")
+}
+
+/// The rate that a comment states, such as `# framerate: 16 fps`.
+pub(super) fn rate_of(comment: &str) -> Option<f64> {
+    let text = comment.to_ascii_lowercase();
+    let after = ["framerate", "frame rate", "frame_rate", "fps"]
+        .iter()
+        .find_map(|word| {
+            let (_, after) = text.split_once(word)?;
+            Some(after)
+        })?;
+    let number = after.trim_start_matches([':', '=', ' ', '\t']);
+    let end = number
+        .find(|c: char| !(c.is_ascii_digit() || c == '.'))
+        .unwrap_or(number.len());
+    number[..end].parse().ok().filter(|rate| *rate > 0.0)
+}
+
+/// The names of `count` columns in a comment, as numpy writes them: at least three of them are known.
+pub(super) fn names_in_comment(comment: &str, count: usize, choice: &ColumnChoice) -> Option<Vec<String>> {
+    let text = comment.trim_start().trim_start_matches(COMMENTS).trim();
+    let text = text.rsplit_once(':').map_or(text, |(_, names)| names.trim());
+    let names = Separator::of(text).fields(text, 1, "").ok()?;
+    let names: Vec<String> = names.into_iter().map(std::borrow::Cow::into_owned).collect();
+    let is_known =
+        |name: &&String| is_known(name) || choice.roles.iter().any(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
+    (names.len() == count && names.iter().filter(is_known).count() >= KNOWN_NAMES).then_some(names)
+}

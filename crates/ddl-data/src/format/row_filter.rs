@@ -1,0 +1,142 @@
+//! Which rows of text count: people whose position is known.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::format::choice::ColumnChoice;
+use crate::format::field;
+use crate::format::header::{Header, first_of};
+use crate::format::layouts::Layout;
+
+/// Classes that are not people on foot. A row of one of them is left out.
+const VEHICLES: &str = "car cars veh vehicle truck trucks bus van trailer tram train bicycle bicyclist cyclist biker \
+                        bike motorcycle motorcyclist motorbike scooter skater cart";
+const PEOPLE: &str = "pedestrian pedestrians ped person people";
+/// Reasons to leave rows out that are counted, each for itself.
+const MOST_REASONS: usize = 20;
+/// A position that is to be forecast (TrajNet).
+const UNKNOWN: &str = "?";
+
+/// The rows that count, and those left out so far.
+#[derive(Debug, Default)]
+pub(super) struct RowFilter {
+    /// The column of classes, and the class that is read; `None` for all but vehicles.
+    class: Option<(usize, Option<&'static str>)>,
+    /// The column that the user names, its name, and its value in rows that count.
+    keep: Option<(usize, String, String)>,
+    lost: Option<usize>,
+    /// Classes without a known meaning that were read, at most two.
+    classes: BTreeSet<String>,
+    left_out: BTreeMap<String, usize>,
+    /// For how many reasons a stream has told that it leaves rows out.
+    told: usize,
+}
+
+impl RowFilter {
+    pub(super) fn of_header(header: &Header, choice: &ColumnChoice, names: &[String]) -> Self {
+        let keep = header.keep.zip(choice.keep.as_ref());
+        let keep = keep.map(|(index, (_, value))| (index, names[index].clone(), value.clone()));
+        let class = header.class.filter(|class| Some(*class) != header.keep);
+        Self {
+            class: class.map(|index| (index, None)),
+            keep,
+            ..Self::default()
+        }
+    }
+
+    /// # Errors
+    /// When the user keeps rows by a column that is not there.
+    pub(super) fn of_layout(layout: &Layout, choice: &ColumnChoice) -> Result<Self, String> {
+        let keep = match &choice.keep {
+            None => None,
+            Some((name, value)) => {
+                let index = layout.names.iter().position(|column| column.eq_ignore_ascii_case(name));
+                let index = index.ok_or_else(|| {
+                    let names = layout.names.join(", ");
+                    format!("there is no column {:?} among {names}", field::quoted(name))
+                })?;
+                Some((index, name.clone(), value.clone()))
+            }
+        };
+        let kept = keep.as_ref().map(|(index, ..)| *index);
+        // Another class may be kept.
+        let class = layout.class.filter(|(index, _)| Some(*index) != kept);
+        Ok(Self {
+            class: class.map(|(index, class)| (index, Some(class))),
+            keep,
+            lost: layout.lost,
+            ..Self::default()
+        })
+    }
+
+    /// Whether a row with these fields counts; `place` are the columns of its position. If not, it is counted.
+    pub(super) fn counts(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> bool {
+        let Some(mut why) = self.reason(fields, place) else {
+            return true;
+        };
+        if self.left_out.len() >= MOST_REASONS && !self.left_out.contains_key(&why) {
+            "of other values".clone_into(&mut why);
+        }
+        *self.left_out.entry(why).or_default() += 1;
+        false
+    }
+
+    fn reason(&mut self, fields: &[Cow<'_, str>], place: &[usize]) -> Option<String> {
+        if self.lost.is_some_and(|index| fields[index] == "1") {
+            return Some("marked lost".to_owned());
+        }
+        if let Some((index, name, value)) = &self.keep
+            && !are_alike(&fields[*index], value)
+        {
+            return Some(format!(
+                "with {} {}",
+                field::quoted(name),
+                field::quoted(&fields[*index])
+            ));
+        }
+        if let Some((index, kept)) = self.class {
+            let class = &*fields[index];
+            let is_one_of = |names: &str| names.split(' ').any(|name| class.eq_ignore_ascii_case(name));
+            if kept.map_or_else(|| is_one_of(VEHICLES), |kept| !class.eq_ignore_ascii_case(kept)) {
+                return Some(format!("of class {}", field::quoted(class)));
+            }
+            if kept.is_none() && !is_one_of(PEOPLE) && self.classes.len() < 2 {
+                self.classes.insert(field::quoted(class));
+            }
+        }
+        let is_unknown = place.iter().all(|&index| fields[index] == UNKNOWN);
+        is_unknown.then(|| "with ? for a position to forecast".to_owned())
+    }
+
+    /// The rows that were left out, counted by reason.
+    pub(super) fn left_out(&self) -> Option<String> {
+        let rows = self.left_out.iter().map(|(why, count)| format!("{count} {why}"));
+        let rows: Vec<String> = rows.collect();
+        (!rows.is_empty()).then(|| format!("rows left out: {}", first_of(&rows)))
+    }
+
+    /// The classes that are read although their meaning is not known.
+    pub(super) fn classes_read(&self) -> Option<String> {
+        let classes: Vec<String> = self.classes.iter().map(|class| format!("{class:?}")).collect();
+        (!classes.is_empty()).then(|| {
+            let classes = classes.join(" and ");
+            format!("rows of class {classes} are read as pedestrians; --keep class=... chooses")
+        })
+    }
+
+    /// The reasons to leave rows out, if a stream has not told the last one.
+    pub(super) fn new_reasons(&mut self) -> Option<String> {
+        if std::mem::replace(&mut self.told, self.left_out.len()) == self.left_out.len() {
+            return None;
+        }
+        let reasons: Vec<String> = self.left_out.keys().cloned().collect();
+        Some(format!("rows are left out: {}", first_of(&reasons)))
+    }
+}
+
+/// Whether two values are the same word or the same number.
+#[expect(clippy::float_cmp, reason = "1 and 1.0 are the same number")]
+fn are_alike(found: &str, asked: &str) -> bool {
+    let numbers = found.parse::<f64>().ok().zip(asked.parse::<f64>().ok());
+    found.eq_ignore_ascii_case(asked) || numbers.is_some_and(|(found, asked)| found == asked)
+}

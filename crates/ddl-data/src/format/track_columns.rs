@@ -1,0 +1,440 @@
+//! The columns of text, from a header or a layout, and the observations of its lines.
+
+use std::borrow::Cow;
+
+use ddl_core::Position;
+
+use crate::clock::TimeUnit;
+use crate::error::FormatError;
+use crate::format::choice::ColumnChoice;
+use crate::format::column_names::LengthUnit;
+use crate::format::comments::{is_comment, names_in_comment};
+use crate::format::field::{self, PedestrianField};
+use crate::format::header::{Header, TimeColumn, first_of};
+use crate::format::kind::Format;
+use crate::format::layouts::{Layout, Place};
+use crate::format::place::FilePlace;
+use crate::format::problem::field_count;
+use crate::format::row_filter::RowFilter;
+use crate::format::rows::TrackRow;
+use crate::format::separator::Separator;
+use crate::scene_name::SceneName;
+
+const FRACTIONS: &str = "the column frame has fractions: it is read as seconds";
+const WHOLE_TIMES: &str = "the times are whole numbers: they are read as seconds; call the column frame if they count \
+    frames, or time_ms, time_us or time_ns";
+const UNNAMED: &str = "the rows have no header: they are read as frame, pedestrian, x, y";
+const PIXELS: &str = "the positions are in pixels, and forecasts need metres: give --homography";
+
+/// The columns of a text, and what was found in its rows.
+#[derive(Debug)]
+pub(super) struct TrackColumns {
+    format: Format,
+    separator: Separator,
+    names: Vec<String>,
+    /// The least number of fields: rows and the header may end with separators.
+    needed: usize,
+    frame: usize,
+    pedestrian: usize,
+    place: Place,
+    per_metre: Option<f64>,
+    is_mapped: bool,
+    /// Whether names, the layout or the user say a unit of metres.
+    has_unit: bool,
+    scene: Option<usize>,
+    filter: RowFilter,
+    /// A column whose value stays the same, and its value.
+    constant: Option<(usize, Option<f64>)>,
+    /// Further columns that must hold numbers.
+    numbers: Vec<usize>,
+    time: TimeColumn,
+    /// Why the first column is read as seconds, if neither its name nor its values say so.
+    assumed_seconds: Option<&'static str>,
+    /// Names of further columns.
+    unread: Vec<String>,
+    note: Option<&'static str>,
+    remarks: Vec<String>,
+    /// Whether a stream has told its notes.
+    is_told: bool,
+}
+
+/// Whether a line of fields is one of observations and no header: some field is a number.
+pub(super) fn has_number(fields: &[Cow<'_, str>]) -> bool {
+    fields.iter().any(|field| field.parse::<f64>().is_ok())
+}
+
+impl TrackColumns {
+    /// The columns of a text that begins with these comments and this line, and whether the line is their header.
+    pub(super) fn of(
+        (format, choice): (Format, &ColumnChoice),
+        comments: &[&str],
+        first: &str,
+        line: usize,
+        origin: &str,
+    ) -> Result<(Self, bool), FormatError> {
+        let (columns, is_header) = Self::found((format, choice), comments, first, line, origin)?;
+        if choice.is_mapped && columns.has_unit {
+            let problem = "the columns say that positions are in metres or parts of them, and the homography maps \
+                           pixels; give --homography none, or --unit px if they are pixels";
+            return Err(FilePlace::line(line).wrong(origin, problem));
+        }
+        Ok((columns, is_header))
+    }
+
+    fn found(
+        (format, choice): (Format, &ColumnChoice),
+        comments: &[&str],
+        first: &str,
+        line: usize,
+        origin: &str,
+    ) -> Result<(Self, bool), FormatError> {
+        if let Some(layout) = Layout::of(format) {
+            let columns = Self::laid_out(layout, Separator::of_numbers(first), choice);
+            return Ok((
+                columns.map_err(|problem| FilePlace::line(line).wrong(origin, problem))?,
+                false,
+            ));
+        }
+        let separator = Separator::of(first);
+        let fields = separator.fields(first, line, origin)?;
+        if has_number(&fields)
+            && let Some(names) = comments
+                .iter()
+                .rev()
+                .find_map(|comment| names_in_comment(comment, fields.len(), choice))
+        {
+            let header = Header::of(&names.iter().map(String::as_str).collect::<Vec<_>>(), choice);
+            let header = header.map_err(|(_, problem)| FilePlace::line(1).wrong(origin, problem))?;
+            return Ok((Self::named(header, names, Separator::of_numbers(first), choice), false));
+        }
+        let names: Vec<&str> = fields.iter().map(|field| &**field).collect();
+        match Header::of(&names, choice) {
+            Ok(header) => {
+                let names = names.iter().map(|&name| name.to_owned()).collect();
+                Ok((Self::named(header, names, separator, choice), true))
+            }
+            Err((field, problem)) => {
+                let field = field.map(|index| index + 1);
+                Err(FilePlace { line, field }.wrong(origin, problem))
+            }
+        }
+    }
+
+    fn named(header: Header, names: Vec<String>, separator: Separator, choice: &ColumnChoice) -> Self {
+        let filter = RowFilter::of_header(&header, choice, &names);
+        let unnamed = names.iter().rev().take_while(|name| name.is_empty()).count();
+        Self {
+            format: Format::Table,
+            separator,
+            needed: names.len() - unnamed,
+            names,
+            frame: header.frame,
+            pedestrian: header.pedestrian,
+            place: header.place,
+            per_metre: header.per_metre,
+            is_mapped: choice.is_mapped,
+            has_unit: header.has_unit,
+            scene: header.scene,
+            filter,
+            constant: None,
+            numbers: Vec::new(),
+            time: header.time,
+            assumed_seconds: None,
+            unread: header.unread,
+            note: None,
+            remarks: header.remarks,
+            is_told: false,
+        }
+    }
+
+    fn laid_out(layout: &Layout, separator: Separator, choice: &ColumnChoice) -> Result<Self, String> {
+        if let Some((_, name)) = choice.roles.first() {
+            return Err(format!(
+                "there is no header, so no column is called {name:?}; write one above the rows"
+            ));
+        }
+        let filter = RowFilter::of_layout(layout, choice)?;
+        let is_class = |index: usize| layout.class.is_some_and(|(class, _)| class == index);
+        let of_row = [layout.frame, layout.pedestrian];
+        let numbers = (0..layout.names.len())
+            .filter(|index| !of_row.contains(index) && !layout.place.columns().contains(index) && !is_class(*index));
+        let is_as_usual = choice.unit.is_none() && choice.keep.is_none();
+        let mut remarks = Vec::new();
+        if !is_as_usual {
+            remarks.push(format!(
+                "read as {}, with the unit and the rows asked for",
+                layout.format
+            ));
+        }
+        if layout.format == Format::SocialGan && separator != Separator::Blanks {
+            remarks.push(UNNAMED.to_owned());
+        }
+        Ok(Self {
+            format: layout.format,
+            separator,
+            names: layout.names.iter().map(|&name| name.to_owned()).collect(),
+            needed: layout.names.len(),
+            frame: layout.frame,
+            pedestrian: layout.pedestrian,
+            place: layout.place,
+            per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
+            is_mapped: choice.is_mapped,
+            has_unit: choice
+                .unit
+                .map_or(layout.note.is_some() && layout.per_metre.is_some(), |unit| {
+                    unit != LengthUnit::Pixels
+                }),
+            scene: None,
+            numbers: numbers.collect(),
+            filter,
+            constant: layout.constant.map(|index| (index, None)),
+            time: match layout.names[layout.frame] {
+                "time" => TimeColumn::Known(Some(TimeUnit::Seconds)),
+                _ => TimeColumn::Frame,
+            },
+            assumed_seconds: None,
+            unread: Vec::new(),
+            note: layout.note.filter(|_| is_as_usual),
+            remarks,
+            is_told: false,
+        })
+    }
+
+    /// The observation of a line of a stream; `None` where it is left out.
+    pub(super) fn row_of_line(
+        &mut self,
+        text: &str,
+        line: usize,
+        origin: &str,
+    ) -> Result<Option<TrackRow>, FormatError> {
+        let before = (self.time, self.assumed_seconds);
+        let fields = self.separator.fields(text, line, origin)?;
+        if !self.is_comment(text, &fields) {
+            self.look_at(fields.get(self.frame).map(|field| &**field));
+        }
+        let row = self.row_of(text, &fields, line, origin);
+        if row.is_err() {
+            (self.time, self.assumed_seconds) = before;
+        }
+        row
+    }
+
+    /// Whether a line after the first row is a comment. A row may begin with the sign, in the name of a pedestrian.
+    fn is_comment(&self, text: &str, fields: &[Cow<'_, str>]) -> bool {
+        let has_time = || fields.get(self.frame).is_some_and(|time| time.parse::<f64>().is_ok());
+        is_comment(text) && !(fields.len() == self.names.len() && has_time())
+    }
+
+    /// Finds out what the column of the time counts: a fraction in any row shows seconds.
+    pub(super) fn look_at_all<'a>(&mut self, mut rows: impl Iterator<Item = &'a str>) {
+        let time = |text: &str| {
+            let fields = self.separator.fields(text, 1, "").ok()?;
+            fields.get(self.frame).map(ToString::to_string)
+        };
+        let shown = match self.time {
+            TimeColumn::Known(_) => None,
+            TimeColumn::Time => rows.next().and_then(time),
+            TimeColumn::Frame => rows
+                .filter(|text| text.contains('.'))
+                .filter_map(time)
+                .find(|time| field::has_fraction(time)),
+        };
+        self.look_at(shown.as_deref());
+    }
+
+    /// Tells that rows without a header are read as those of `social-gan`: a stream has no other evidence.
+    pub(super) fn tell_layout(&mut self) {
+        if self.format == Format::SocialGan && self.separator == Separator::Blanks {
+            self.remarks.push(UNNAMED.to_owned());
+        }
+    }
+
+    /// What a stream has not told yet.
+    pub(super) fn new_notes(&mut self) -> Vec<String> {
+        let mut notes = if self.is_told { Vec::new() } else { self.notes() };
+        self.is_told = true;
+        notes.extend(self.filter.new_reasons());
+        notes
+    }
+
+    /// What a reader of a whole file should know.
+    pub(super) fn notes_of_file(&self) -> Vec<String> {
+        let mut notes = self.notes();
+        notes.extend(self.filter.left_out());
+        notes.extend(self.filter.classes_read());
+        notes
+    }
+
+    /// The rows that were left out.
+    pub(super) fn left_out(&self) -> Option<String> {
+        self.filter.left_out()
+    }
+
+    /// What a reader should know of the columns.
+    fn notes(&self) -> Vec<String> {
+        let mut notes: Vec<String> = self.note.into_iter().map(str::to_owned).collect();
+        notes.extend(self.remarks.iter().cloned());
+        notes.extend(self.assumed_seconds.map(str::to_owned));
+        match &self.unread[..] {
+            [] => {}
+            [name] => notes.push(format!("the column {name} is not read")),
+            names => notes.push(format!("the columns {} are not read", first_of(names))),
+        }
+        match self.per_metre {
+            None if self.is_mapped => {}
+            None => notes.push(PIXELS.to_owned()),
+            Some(1000.0) if self.note.is_none() => notes.push("the positions are in millimetres".to_owned()),
+            Some(100.0) if self.note.is_none() => notes.push("the positions are in centimetres".to_owned()),
+            Some(_) => {}
+        }
+        notes
+    }
+
+    /// Finds out what the column of the time counts from a time: a first one, or one with a fraction.
+    fn look_at(&mut self, time: Option<&str>) {
+        let unit = match self.time {
+            TimeColumn::Known(unit) => unit,
+            TimeColumn::Time => time.map(field::unit_of),
+            TimeColumn::Frame => time.is_some_and(field::has_fraction).then_some(TimeUnit::Seconds),
+        };
+        let is_whole = |time: &str| !time.contains('.');
+        self.assumed_seconds = match self.time {
+            TimeColumn::Frame if unit.is_some() => Some(FRACTIONS),
+            TimeColumn::Time if unit == Some(TimeUnit::Seconds) && time.is_some_and(is_whole) => Some(WHOLE_TIMES),
+            _ => self.assumed_seconds,
+        };
+        self.time = TimeColumn::Known(unit);
+    }
+
+    /// The observation of a line; `None` where it is left out.
+    pub(super) fn row(&mut self, text: &str, line: usize, origin: &str) -> Result<Option<TrackRow>, FormatError> {
+        let fields = self.separator.fields(text, line, origin)?;
+        self.row_of(text, &fields, line, origin)
+    }
+
+    fn row_of(
+        &mut self,
+        text: &str,
+        fields: &[Cow<'_, str>],
+        line: usize,
+        origin: &str,
+    ) -> Result<Option<TrackRow>, FormatError> {
+        if self.is_comment(text, fields) {
+            return Ok(None);
+        }
+        let (names, found) = (self.names.len(), fields.len());
+        let beyond = fields.get(names..).unwrap_or_default();
+        if found < self.needed || self.format != Format::Kitti && beyond.iter().any(|field| !field.is_empty()) {
+            return Err(FilePlace::line(line).wrong(origin, self.wrong_count(found)));
+        }
+        if !self.filter.counts(fields, self.place.columns()) {
+            return Ok(None);
+        }
+        let place = |index: usize| FilePlace::field(line, index + 1);
+        let unit = match self.time {
+            TimeColumn::Known(unit) => unit,
+            TimeColumn::Frame | TimeColumn::Time => None,
+        };
+        let frame = place(self.frame).read(origin, field::frame(&fields[self.frame], "frame", unit))?;
+        let name = &*fields[self.pedestrian];
+        // Pedestrians are floats in this format, never words.
+        let pedestrian = if self.format == Format::Obsmat {
+            field::integer(name, "pedestrian").map(|number| PedestrianField::Number(number, None))
+        } else {
+            field::pedestrian(name, "pedestrian")
+        };
+        let pedestrian = place(self.pedestrian).read(origin, pedestrian)?;
+        if matches!(self.format, Format::Mot | Format::MotTruth) && pedestrian == PedestrianField::Number(-1, None) {
+            let problem = "the pedestrian is -1: these are detections without tracks; give the output of a tracker";
+            return Err(place(self.pedestrian).wrong(origin, problem));
+        }
+        let position = self.position(fields, line, origin)?;
+        // Columns that are not used. Checking that they are numbers confirms the order of the columns.
+        for &index in &self.numbers {
+            place(index).read(origin, field::number(&fields[index], &self.names[index]))?;
+        }
+        self.check_constant(fields, line, origin)?;
+        let scene = match self.scene {
+            None => None,
+            Some(index) => {
+                let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
+                Some(place(index).read(origin, scene)?)
+            }
+        };
+        Ok(Some(TrackRow {
+            scene,
+            frame,
+            unit,
+            pedestrian,
+            position,
+            place: FilePlace::line(line),
+        }))
+    }
+
+    fn position(&self, fields: &[Cow<'_, str>], line: usize, origin: &str) -> Result<Position, FormatError> {
+        let per_metre = self.per_metre.unwrap_or(1.0);
+        let axes = ["x", "y"];
+        let number = |index: usize, name: &str| {
+            let coordinate = field::coordinate(&fields[index], name, per_metre);
+            FilePlace::field(line, index + 1).read(origin, coordinate)
+        };
+        match self.place {
+            Place::Point([x, y]) => Ok([number(x, axes[0])?, number(y, axes[1])?]),
+            Place::Centre(columns) | Place::FootOfCorners(columns) => {
+                let [left, top, right, bottom] = columns.map(|index| number(index, &self.names[index]));
+                let (left, top, right, bottom) = (left?, top?, right?, bottom?);
+                let y = match self.place {
+                    Place::Centre(_) => 0.5 * (top + bottom),
+                    _ => bottom,
+                };
+                Ok([0.5 * (left + right), y])
+            }
+            Place::Foot(columns) => {
+                let [left, top, width, height] = columns.map(|index| number(index, &self.names[index]));
+                Ok([left? + 0.5 * width?, top? + height?])
+            }
+        }
+    }
+
+    #[expect(clippy::float_cmp, reason = "a constant is written with the same digits")]
+    fn check_constant(&mut self, fields: &[Cow<'_, str>], line: usize, origin: &str) -> Result<(), FormatError> {
+        let Some((index, first)) = &mut self.constant else {
+            return Ok(());
+        };
+        let Ok(number) = fields[*index].parse::<f64>() else {
+            return Ok(());
+        };
+        let known = *first.get_or_insert(number);
+        if known == number {
+            return Ok(());
+        }
+        let problem = format!(
+            "eight columns are read as those of obsmat.txt ({}), but the fourth, the height, changes from {known} to \
+             {number}; if they are others, write their names above the rows: frame, pedestrian, x, y, and any others",
+            self.names.join(", ")
+        );
+        Err(FilePlace::field(line, *index + 1).wrong(origin, problem))
+    }
+
+    fn wrong_count(&self, found: usize) -> String {
+        let expected = self.names.len();
+        let names: Vec<String> = self.names.iter().map(|name| field::quoted(name)).collect();
+        let names = first_of(&names);
+        let advice = match self.separator {
+            _ if found == 1 => "; the fields are not separated like those of the first line",
+            _ if found == expected + 1 => "; does each row begin with a name that the header lacks?",
+            Separator::Comma if found > expected => "; a comma stands between two fields and is not a decimal point",
+            _ => "",
+        };
+        field_count(expected, found, &names) + advice
+    }
+}
+
+impl Place {
+    pub(super) fn columns(&self) -> &[usize] {
+        match self {
+            Self::Point(columns) => columns,
+            Self::Centre(columns) | Self::Foot(columns) | Self::FootOfCorners(columns) => columns,
+        }
+    }
+}
