@@ -16,6 +16,8 @@ pub enum ParamsError {
     NoRestarts,
     #[error("clusters is {clusters}, of at most {limit}: one goal is estimated for each")]
     ManyClusters { clusters: usize, limit: usize },
+    #[error("restarts is {restarts}, of at most {limit}: each is a run of k-means for every pedestrian")]
+    ManyRestarts { restarts: usize, limit: usize },
     #[error("gamma is {gamma}: it must be finite and not negative (the paper uses 1)")]
     InvalidGamma { gamma: f64 },
     #[error("query is published-future and frame is heading: the query that reads the future requires frame world")]

@@ -5,8 +5,10 @@ use serde::{Deserialize, Serialize};
 use crate::error::ParamsError;
 use crate::span::QuerySpan;
 
-/// Largest number of goals for a pedestrian; a forecast has 20.
-const MOST_CLUSTERS: usize = 1 << 16;
+/// Largest number of goals for a pedestrian; a forecast has 20. A file that asks for more would take all memory.
+const MOST_CLUSTERS: usize = 1000;
+/// Largest number of runs of k-means for a pedestrian.
+const MOST_RESTARTS: usize = 1000;
 
 /// Coordinates in which pedestrians are compared and endpoints are transferred.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -107,6 +109,12 @@ impl GoalEstimatorParams {
         if self.restarts == 0 {
             return Err(ParamsError::NoRestarts);
         }
+        if self.restarts > MOST_RESTARTS {
+            return Err(ParamsError::ManyRestarts {
+                restarts: self.restarts,
+                limit: MOST_RESTARTS,
+            });
+        }
         if !(self.gamma.is_finite() && self.gamma >= 0.0) {
             return Err(ParamsError::InvalidGamma { gamma: self.gamma });
         }
@@ -151,6 +159,11 @@ mod tests {
             ..default()
         };
         assert_eq!(refused(restarts), ParamsError::NoRestarts);
+        let restarts = GoalEstimatorParams {
+            restarts: usize::MAX,
+            ..default()
+        };
+        assert!(matches!(refused(restarts), ParamsError::ManyRestarts { .. }));
         let with = |gamma| GoalEstimatorParams { gamma, ..default() };
         for gamma in [-1.0, f64::INFINITY, f64::NAN] {
             let error = refused(with(gamma)).to_string();
