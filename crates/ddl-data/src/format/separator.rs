@@ -48,6 +48,19 @@ impl Separator {
         }
     }
 
+    /// One field of a line, as [`fields`](Self::fields) gives it.
+    pub(super) fn field(self, text: &str, index: usize) -> Option<Cow<'_, str>> {
+        let plain = || text.trim_end_matches(['\r', '\n']);
+        match self {
+            Self::Blanks => text
+                .split_ascii_whitespace()
+                .nth(index)
+                .map(|field| field.trim_matches('"').into()),
+            _ if !text.contains('"') => plain().split(self.letter()).nth(index).map(|field| field.trim().into()),
+            _ => self.fields(text, 1, "").ok()?.into_iter().nth(index),
+        }
+    }
+
     /// The fields of a line, without blanks around them and quotes.
     pub(super) fn fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {
         if self == Self::Blanks {

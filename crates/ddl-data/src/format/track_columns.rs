@@ -226,19 +226,15 @@ impl TrackColumns {
     }
 
     /// Finds out what the column of the time counts: a fraction in any row shows seconds.
-    pub(super) fn look_at_all<'a>(&mut self, mut rows: impl Iterator<Item = &'a str>) {
-        let time = |text: &str| {
-            let fields = self.separator.fields(text, 1, "").ok()?;
-            fields.get(self.frame).map(ToString::to_string)
-        };
+    pub(super) fn look_at_all<'a>(&mut self, rows: impl Iterator<Item = &'a str>) {
+        let rows = rows.filter(|text| !is_comment(text));
+        let mut times = rows.filter_map(|text| self.separator.field(text, self.frame));
         let shown = match self.time {
             TimeColumn::Known(_) => None,
-            TimeColumn::Time => rows.next().and_then(time),
-            TimeColumn::Frame => rows
-                .filter(|text| text.contains('.'))
-                .filter_map(time)
-                .find(|time| field::has_fraction(time)),
+            TimeColumn::Time => times.next(),
+            TimeColumn::Frame => times.find(|time| field::has_fraction(time)),
         };
+        let shown = shown.map(Cow::into_owned);
         self.look_at(shown.as_deref());
     }
 

@@ -8,6 +8,9 @@ use crate::snapshot::ForecastSnapshot;
 const THEME_BUTTON: &str = include_str!("theme_button.html");
 const PLAYER: &str = include_str!("player.html");
 const STYLE: &str = include_str!("style.css");
+/// A page loads nothing and sends nothing, whatever names it shows.
+const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:; \
+    base-uri 'none'; form-action 'none'";
 /// Scripts of the player, run in this order inside one function.
 pub(super) const PLAYER_SCRIPTS: [&str; 12] = [
     include_str!("script/theme.js"),
@@ -31,6 +34,7 @@ pub(super) fn document(title: &str, body: &Markup) -> Markup {
         html lang="en" {
             head {
                 meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
                 title { (title) }
