@@ -170,7 +170,7 @@ pub(crate) fn warn_of(warning: &PlausibilityWarning) {
 
 pub(crate) fn words(warning: &PlausibilityWarning) -> String {
     let options = match warning {
-        PlausibilityWarning::Fast { .. } => " (--homography, --fps)",
+        PlausibilityWarning::Fast { .. } => " (--unit, --homography, --fps)",
         PlausibilityWarning::Slow { .. } | PlausibilityWarning::NoSteps { .. } => " (--fps)",
         _ => "",
     };

@@ -103,6 +103,7 @@ impl TrackOptions {
             clock,
             guessed,
             notes,
+            ..
         } = self.units.or_those_of(run).read(self.file())?;
         for note in notes.into_iter().chain(guessed) {
             tell(format_args!("note: {note}"));

@@ -43,6 +43,8 @@ pub(crate) struct Units {
 
 #[derive(Debug)]
 pub(crate) struct ReadRecording {
+    /// The recognised format of the file.
+    pub(crate) format: Format,
     pub(crate) recording: Recording,
     pub(crate) clock: Clock,
     /// A note on its frame step, if neither options nor the file give the rate.
@@ -144,7 +146,7 @@ impl Units {
     /// Reads the recording in the file, in metres and ticks of its clock. The format is recognised. The file is read
     /// once, so that it may be a pipe.
     pub(crate) fn read(&self, file: &Path) -> anyhow::Result<ReadRecording> {
-        let recording = self.in_metres(file)?;
+        let (recording, format) = self.in_metres(file)?;
         let place = || file.display().to_string();
         let stated = recording.stated_clock().transpose().with_context(place)?;
         if let (Some(option), Some(_)) = (self.rate_given(), recording.time_unit()) {
@@ -167,6 +169,7 @@ impl Units {
         let clock = clock.map_or_else(|| Clock::with_frame_step(recording.frame_step()), Ok)?;
         let recording = recording.on_clock(clock).with_context(place)?;
         Ok(ReadRecording {
+            format,
             recording,
             clock,
             guessed,
@@ -211,7 +214,7 @@ impl Units {
         })
     }
 
-    fn in_metres(&self, file: &Path) -> anyhow::Result<Recording> {
+    fn in_metres(&self, file: &Path) -> anyhow::Result<(Recording, Format)> {
         if file.as_os_str() == "-" {
             bail!("only `ddl forecast -` reads standard input; give a file of tracks");
         }
@@ -226,12 +229,13 @@ impl Units {
         let name = file.file_stem().unwrap_or_default().to_string_lossy();
         let recording = parse_columns(&bytes, &file.display().to_string(), format, &self.choice()?)?;
         let recording = recording.with_name(&*name);
-        match self.homography()? {
-            None => Ok(recording),
+        let recording = match self.homography()? {
+            None => recording,
             Some(homography) => homography
                 .to_ground(&recording)
-                .with_context(|| file.display().to_string()),
-        }
+                .with_context(|| file.display().to_string())?,
+        };
+        Ok((recording, format))
     }
 
     pub(crate) fn homography(&self) -> anyhow::Result<Option<Homography>> {

@@ -58,10 +58,14 @@ impl Data {
         let mut text = String::new();
         let mut of_each = Vec::new();
         let mut total = Total::default();
-        for (file, ReadRecording { recording, clock, .. }) in &read {
+        for (file, read) in &read {
+            let ReadRecording { recording, clock, .. } = read;
             let summary = recording.summary();
-            write_summary(&mut text, &file.display().to_string(), &summary, recording, *clock)?;
-            of_each.push(facts(file, &summary, recording, *clock)?);
+            writeln!(text, "{}\n  format       {}", file.display(), read.format)?;
+            write_summary(&mut text, &summary, recording, *clock)?;
+            let mut facts = facts(file, &summary, recording, *clock)?;
+            facts["format"] = read.format.name().into();
+            of_each.push(facts);
             total.add(&summary);
         }
         if self.telling.json {
@@ -198,7 +202,7 @@ fn rows_in_words(s: &Summary) -> String {
 }
 
 /// A quantity in each line, so that no line is wider than a terminal.
-fn write_summary(out: &mut String, file: &str, s: &Summary, recording: &Recording, clock: Clock) -> std::fmt::Result {
+fn write_summary(out: &mut String, s: &Summary, recording: &Recording, clock: Clock) -> std::fmt::Result {
     let speed = match (s.median_speed, &s.fastest) {
         (Some(median), Some(fastest)) => format!(
             "median {median:.2} m/s, fastest step {:.2} m/s (pedestrian {}, frame {})",
@@ -220,8 +224,7 @@ fn write_summary(out: &mut String, file: &str, s: &Summary, recording: &Recordin
     let windows = |count| many(count, "pedestrian-window", "pedestrian-windows");
     writeln!(
         out,
-        "{file}\n\
-         \x20 observed     {}, {}\n\
+        "\x20 observed     {}, {}\n\
          \x20 time         {:.1} s, frames {} to {} ({} per step of 0.4 s)\n\
          \x20 area         x {:.2} to {:.2} m, y {:.2} to {:.2} m\n\
          \x20 speed        {speed}\n\

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::clock::TimeUnit;
 use crate::format::column_names::{LengthUnit, Role};
 use crate::format::kind::Format;
 
@@ -10,6 +11,8 @@ use crate::format::kind::Format;
 pub struct ColumnChoice {
     /// Roles, each with the name of its column.
     pub(super) roles: Vec<(Role, String)>,
+    /// What a column of times counts.
+    pub(super) time_unit: Option<TimeUnit>,
     /// Only rows with this value in this column count.
     pub(super) keep: Option<(String, String)>,
     pub(super) unit: Option<LengthUnit>,
@@ -43,7 +46,11 @@ impl ColumnChoice {
     pub fn with_columns(mut self, text: &str) -> Result<Self, String> {
         for part in text.split(',') {
             let pair = part.split_once('=').map(|(role, name)| (role.trim(), name.trim()));
-            let role = |word: &str| ROLES.iter().find(|(name, _)| *name == word).map(|(_, role)| *role);
+            let time_unit = pair.and_then(|(word, _)| time_unit(word));
+            let role = |word: &str| {
+                let word = if time_unit.is_some() { "time" } else { word };
+                ROLES.iter().find(|(name, _)| *name == word).map(|(_, role)| *role)
+            };
             let given = pair.and_then(|(word, name)| Some((role(word)?, name.to_owned())));
             let Some((role, name)) = given.filter(|(_, name)| !name.is_empty()) else {
                 let roles: Vec<&str> = ROLES.iter().map(|(name, _)| *name).collect();
@@ -56,6 +63,7 @@ impl ColumnChoice {
                 return Err(format!("gives {part:?} a second time"));
             }
             self.roles.push((role, name));
+            self.time_unit = self.time_unit.or(time_unit);
         }
         Ok(self)
     }
@@ -110,14 +118,29 @@ impl ColumnChoice {
     }
 }
 
+/// The unit in the role of a column of times, such as `time_ms`.
+fn time_unit(role: &str) -> Option<TimeUnit> {
+    match role {
+        "time_s" => Some(TimeUnit::Seconds),
+        "time_ms" => Some(TimeUnit::Milliseconds),
+        "time_us" => Some(TimeUnit::Microseconds),
+        "time_ns" => Some(TimeUnit::Nanoseconds),
+        _ => None,
+    }
+}
+
 impl fmt::Display for ColumnChoice {
     /// The columns, as [`with_columns`](Self::with_columns) reads them.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let word = |role: Role| {
-            ROLES
-                .iter()
-                .find(|(_, other)| *other == role)
-                .map_or("", |(word, _)| word)
+        let word = |role: Role| match (role, self.time_unit) {
+            (Role::Time, Some(TimeUnit::Seconds)) => "time_s",
+            (Role::Time, Some(TimeUnit::Milliseconds)) => "time_ms",
+            (Role::Time, Some(TimeUnit::Microseconds)) => "time_us",
+            (Role::Time, Some(TimeUnit::Nanoseconds)) => "time_ns",
+            _ => {
+                let mut roles = ROLES.iter();
+                roles.find(|(_, other)| *other == role).map_or("", |(word, _)| word)
+            }
         };
         let columns: Vec<String> = self
             .roles

@@ -25,26 +25,26 @@ pub(super) enum Role {
 const NAMES: [(Role, &str); 13] = [
     (
         Role::Frame,
-        "frame frames frameid frameidx frameindex framenumber frameno framenum framenr fr",
+        "frame bild frames frameid frameidx frameindex framenumber frameno framenum framenr fr",
     ),
     (
         Role::Time,
-        "time t timestamp seconds milliseconds microseconds nanoseconds datetime",
+        "time zeit t timestamp seconds milliseconds microseconds nanoseconds datetime",
     ),
     (
         Role::Pedestrian,
-        "pedestrian pedestrianid ped pedid id agent agentid track trackid trackerid tid person personid \
-         object objectid obj objid identity",
+        "pedestrian pedestrianid ped pedid persid id agent agentid track trackid trackerid tid person personid \
+         object objectid obj objid identity subject participant",
     ),
     (
         Role::X,
-        "x posx xpos positionx xposition centerx xcenter centrex xcentre worldx xworld px xest coordx \
-         xcoord locx xloc",
+        "x posx posex posepositionx xpos positionx xposition centerx xcenter centrex xcentre worldx xworld px xest \
+         coordx xcoord locx xloc",
     ),
     (
         Role::Y,
-        "y posy ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest coordy \
-         ycoord locy yloc",
+        "y posy posey posepositiony ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest \
+         coordy ycoord locy yloc",
     ),
     (Role::Scene, "scene"),
     (Role::Class, "class classname label type agenttype objecttype category"),

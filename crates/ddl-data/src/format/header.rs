@@ -8,6 +8,8 @@ use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, named, wor
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
+/// Names of columns of heights.
+const HEIGHTS: &str = "z zm zcm zmm posz zpos positionz posez";
 /// Most faults of columns that say the same in a message.
 const MOST_FAULTS: usize = 5;
 /// Number of unknown columns that a message names.
@@ -87,6 +89,9 @@ impl Header {
             }
         }
         let mut header = roles.header(choice)?;
+        if choice.time_unit.is_some() {
+            header.time = TimeColumn::Known(choice.time_unit);
+        }
         if let Some(unit) = choice.unit {
             header.per_metre = unit.per_metre();
             header.has_unit = unit != LengthUnit::Pixels;
@@ -160,6 +165,13 @@ impl Roles<'_> {
                 "x and y are read as the position; if they are the corner of the box, give --columns left=x,top=y"
                     .to_owned(),
             );
+        }
+        let is_height = |name: &&&str| HEIGHTS.split(' ').any(|height| words(name).concat() == height);
+        if let Some(z) = self.names.iter().find(is_height).filter(|_| is_point) {
+            remarks.push(format!(
+                "{} is taken for the height; if y is, give --columns y={0}",
+                quoted(z)
+            ));
         }
         if self.names.iter().any(|name| name.eq_ignore_ascii_case("trackLifetime")) {
             remarks
@@ -236,7 +248,10 @@ impl Roles<'_> {
         }
         if let (Some(Place::Point([x, _])), Some(corner)) = (self.point(), self.corner()) {
             let [x, corner] = [x, corner.columns()[0]].map(|index| quoted(self.names[index]));
-            let fault = format!("the columns {x:?} and {corner:?} both say where");
+            let fault = format!(
+                "the columns {x:?} and {corner:?} both say where: --columns left={corner} takes the box, x={x} \
+                 the point"
+            );
             faults.push((None, fault));
         }
         if !faults.is_empty() {

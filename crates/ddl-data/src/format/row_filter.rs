@@ -28,8 +28,8 @@ pub(super) struct RowFilter {
     /// Classes without a known meaning that were read, at most two.
     classes: BTreeSet<String>,
     left_out: BTreeMap<String, usize>,
-    /// For how many reasons a stream has told that it leaves rows out.
-    told: usize,
+    /// How many reasons and classes a stream has told.
+    told: [usize; 2],
 }
 
 impl RowFilter {
@@ -124,13 +124,16 @@ impl RowFilter {
         })
     }
 
-    /// The reasons to leave rows out, if a stream has not told the last one.
-    pub(super) fn new_reasons(&mut self) -> Option<String> {
-        if std::mem::replace(&mut self.told, self.left_out.len()) == self.left_out.len() {
-            return None;
-        }
-        let reasons: Vec<String> = self.left_out.keys().cloned().collect();
-        Some(format!("rows are left out: {}", first_of(&reasons)))
+    /// What a stream has not told yet of the rows that are left out and the classes that are read.
+    pub(super) fn news(&mut self) -> Vec<String> {
+        let [reasons, classes] = [self.left_out.len(), self.classes.len()];
+        let before = std::mem::replace(&mut self.told, [reasons, classes]);
+        let rows = (before[0] < reasons).then(|| {
+            let reasons: Vec<String> = self.left_out.keys().cloned().collect();
+            format!("rows are left out: {}", first_of(&reasons))
+        });
+        let classes = (before[1] < classes).then(|| self.classes_read()).flatten();
+        rows.into_iter().chain(classes).collect()
     }
 }
 

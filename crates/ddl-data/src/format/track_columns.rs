@@ -249,7 +249,7 @@ impl TrackColumns {
     pub(super) fn new_notes(&mut self) -> Vec<String> {
         let mut notes = if self.is_told { Vec::new() } else { self.notes() };
         self.is_told = true;
-        notes.extend(self.filter.new_reasons());
+        notes.extend(self.filter.news());
         notes
     }
 
@@ -371,7 +371,13 @@ impl TrackColumns {
         let per_metre = self.per_metre.unwrap_or(1.0);
         let axes = ["x", "y"];
         let number = |index: usize, name: &str| {
-            let coordinate = field::coordinate(&fields[index], name, per_metre);
+            // Where no comma stands between fields, it is a decimal comma.
+            let is_decimal = self.separator != Separator::Comma && fields[index].contains(',');
+            let coordinate = if is_decimal {
+                field::coordinate(&fields[index].replacen(',', ".", 1), name, per_metre)
+            } else {
+                field::coordinate(&fields[index], name, per_metre)
+            };
             FilePlace::field(line, index + 1).read(origin, coordinate)
         };
         match self.place {

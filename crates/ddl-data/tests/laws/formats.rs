@@ -355,6 +355,21 @@ fn columns_rows_and_units_can_be_chosen() {
 }
 
 #[test]
+fn commas_in_numbers_and_units_of_times_are_read() {
+    let german = read("g.csv", "Bild;Person;X;Y\n0;1;3,75;-0,5\n").unwrap();
+    assert_eq!(
+        german.observations()[0],
+        Observation::new(0, PedestrianId(1), [3.75, -0.5])
+    );
+    let choice = ColumnChoice::default().with_columns("time_ms=stamp").unwrap();
+    assert_eq!(choice.to_string(), "time_ms=stamp");
+    let text = b"stamp,id,x,y,z\n1500,1,2,3,1.7\n";
+    let recording = parse_columns(text, "t", Format::Table, &choice).unwrap();
+    assert_eq!(recording.observations()[0].frame, 1_500_000);
+    assert!(recording.notes().join("; ").contains("z is taken for the height"));
+}
+
+#[test]
 fn lines_with_a_sign_are_rows_or_comments() {
     let text = "# made\n% by\nid,frame,x,y\n#1,0,0,0\n# a note\n#1,1,0.5,0\n2,1,0.5,5\n";
     assert_eq!(read("t.csv", text).unwrap().observations().len(), 3);
