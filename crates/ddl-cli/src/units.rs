@@ -32,7 +32,7 @@ pub(crate) struct Units {
     columns: Option<ColumnChoice>,
     /// Only rows with this value count: of the column of classes (class=Pedestrian), or of any other
     #[arg(long, value_name = "COLUMN=VALUE", value_parser = kept)]
-    keep: Option<Kept>,
+    keep: Option<String>,
     /// The unit of positions [default: that in the names of the columns, or m]
     #[arg(long, value_parser = ["m", "cm", "mm", "px"])]
     unit: Option<String>,
@@ -53,16 +53,12 @@ pub(crate) struct ReadRecording {
     pub(crate) notes: Vec<String>,
 }
 
-/// The value of `--keep`.
-#[derive(Debug, Clone)]
-struct Kept(String);
-
 fn columns(text: &str) -> Result<ColumnChoice, String> {
     ColumnChoice::default().with_columns(text)
 }
 
-fn kept(text: &str) -> Result<Kept, String> {
-    ColumnChoice::default().keeping(text).map(|_| Kept(text.to_owned()))
+fn kept(text: &str) -> Result<String, String> {
+    ColumnChoice::default().keeping(text).map(|_| text.to_owned())
 }
 
 /// Rates with a smaller relative difference count as equal.
@@ -106,7 +102,7 @@ impl Units {
         if self.homography()?.is_some() {
             choice = choice.mapped();
         }
-        if let Some(Kept(text)) = &self.keep {
+        if let Some(text) = &self.keep {
             choice = choice.keeping(text).map_err(anyhow::Error::msg)?;
         }
         match &self.unit {
@@ -125,7 +121,7 @@ impl Units {
         let homography = homography.map(|file| format!(" --homography {}", shell_word(file)));
         let rate = rate_option(&self.rate()).map(|rate| format!(" {rate}"));
         let columns = self.columns.as_ref().map(|columns| ("columns", columns.to_string()));
-        let keep = self.keep.as_ref().map(|Kept(text)| ("keep", text.clone()));
+        let keep = self.keep.as_ref().map(|text| ("keep", text.clone()));
         let unit = self.unit.as_ref().map(|unit| ("unit", unit.clone()));
         let of_columns = columns.into_iter().chain(keep).chain(unit);
         let of_columns = of_columns.map(|(option, value)| format!(" --{option} {}", shell_word(Path::new(&value))));

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::clock::TimeUnit;
-use crate::format::column_names::{LengthUnit, Role};
+use crate::format::column_names::{LengthUnit, Role, role_of_unit, unit_of_role};
 use crate::format::kind::Format;
 
 /// What the columns of text are and which rows count, where their names do not say it.
@@ -46,7 +46,7 @@ impl ColumnChoice {
     pub fn with_columns(mut self, text: &str) -> Result<Self, String> {
         for part in text.split(',') {
             let pair = part.split_once('=').map(|(role, name)| (role.trim(), name.trim()));
-            let time_unit = pair.and_then(|(word, _)| time_unit(word));
+            let time_unit = pair.and_then(|(word, _)| unit_of_role(word));
             let role = |word: &str| {
                 let word = if time_unit.is_some() { "time" } else { word };
                 ROLES.iter().find(|(name, _)| *name == word).map(|(_, role)| *role)
@@ -118,29 +118,16 @@ impl ColumnChoice {
     }
 }
 
-/// The unit in the role of a column of times, such as `time_ms`.
-fn time_unit(role: &str) -> Option<TimeUnit> {
-    match role {
-        "time_s" => Some(TimeUnit::Seconds),
-        "time_ms" => Some(TimeUnit::Milliseconds),
-        "time_us" => Some(TimeUnit::Microseconds),
-        "time_ns" => Some(TimeUnit::Nanoseconds),
-        _ => None,
-    }
-}
-
 impl fmt::Display for ColumnChoice {
     /// The columns, as [`with_columns`](Self::with_columns) reads them.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let word = |role: Role| match (role, self.time_unit) {
-            (Role::Time, Some(TimeUnit::Seconds)) => "time_s",
-            (Role::Time, Some(TimeUnit::Milliseconds)) => "time_ms",
-            (Role::Time, Some(TimeUnit::Microseconds)) => "time_us",
-            (Role::Time, Some(TimeUnit::Nanoseconds)) => "time_ns",
-            _ => {
-                let mut roles = ROLES.iter();
-                roles.find(|(_, other)| *other == role).map_or("", |(word, _)| word)
-            }
+        let of_time = self.time_unit.and_then(role_of_unit);
+        let word = |role: Role| {
+            let word = ROLES
+                .iter()
+                .find(|(_, other)| *other == role)
+                .map_or("", |(word, _)| word);
+            of_time.as_deref().filter(|_| role == Role::Time).unwrap_or(word)
         };
         let columns: Vec<String> = self
             .roles

@@ -57,23 +57,20 @@ const NAMES: [(Role, &str); 13] = [
 ];
 
 /// The last word of a name, if it is a unit.
-const TIME_UNITS: [(&str, TimeUnit); 6] = [
-    ("s", TimeUnit::Seconds),
-    ("sec", TimeUnit::Seconds),
-    ("seconds", TimeUnit::Seconds),
-    ("ms", TimeUnit::Milliseconds),
-    ("us", TimeUnit::Microseconds),
-    ("ns", TimeUnit::Nanoseconds),
+const TIME_UNITS: [(&str, TimeUnit); 4] = [
+    ("s sec seconds", TimeUnit::Seconds),
+    ("ms milliseconds", TimeUnit::Milliseconds),
+    ("us microseconds", TimeUnit::Microseconds),
+    ("ns nanoseconds", TimeUnit::Nanoseconds),
 ];
-const LENGTH_UNITS: [(&str, LengthUnit); 8] = [
+const LENGTH_UNITS: [(&str, LengthUnit); 7] = [
     ("m metre metres meter meters", LengthUnit::PerMetre(1.0)),
     ("cm centimetres centimeters", LengthUnit::PerMetre(100.0)),
     ("mm millimetres millimeters", LengthUnit::PerMetre(1000.0)),
     ("km kilometres kilometers", LengthUnit::PerMetre(0.001)),
     ("ft feet foot", LengthUnit::PerMetre(3.280_839_895_013_123)),
     ("in inch inches", LengthUnit::PerMetre(39.370_078_740_157_48)),
-    ("px pixel", LengthUnit::Pixels),
-    ("pixels pix", LengthUnit::Pixels),
+    ("px pix pixel pixels", LengthUnit::Pixels),
 ];
 
 /// A unit of length that a name gives.
@@ -112,15 +109,26 @@ impl Role {
     }
 }
 
-fn of_time(unit: &str) -> Option<TimeUnit> {
-    let found = TIME_UNITS.iter().find(|(name, _)| *name == unit);
+/// The unit of that name.
+fn unit_of<T: Copy>(units: &[(&str, T)], name: &str) -> Option<T> {
+    let found = units.iter().find(|(names, _)| is_one_of(names, name));
     found.map(|(_, unit)| *unit)
 }
 
-fn of_length(unit: &str) -> Option<LengthUnit> {
-    let mut units = LENGTH_UNITS.iter();
-    let found = units.find(|(names, _)| names.split(' ').any(|name| name == unit));
-    found.map(|(_, unit)| *unit)
+/// Whether a word is one of these, separated by blanks.
+pub(super) fn is_one_of(words: &str, word: &str) -> bool {
+    words.split(' ').any(|one| one == word)
+}
+
+/// The unit of a role such as `time_ms`.
+pub(super) fn unit_of_role(role: &str) -> Option<TimeUnit> {
+    unit_of(&TIME_UNITS, role.strip_prefix("time_")?)
+}
+
+/// The inverse of [`unit_of_role`]; `None` for dates.
+pub(super) fn role_of_unit(unit: TimeUnit) -> Option<String> {
+    let (names, _) = TIME_UNITS.iter().find(|(_, other)| *other == unit)?;
+    Some(format!("time_{}", names.split(' ').next()?))
 }
 
 /// The column of that name with a role that the user gives. The last word of its name may be a unit.
@@ -129,8 +137,8 @@ pub(super) fn chosen_as(role: Role, index: usize, name: &str) -> Named {
     Named {
         index,
         role,
-        time_unit: of_time(&last).filter(|_| role == Role::Time),
-        length: of_length(&last).filter(|_| matches!(role, Role::X | Role::Y)),
+        time_unit: unit_of(&TIME_UNITS, &last).filter(|_| role == Role::Time),
+        length: unit_of(&LENGTH_UNITS, &last).filter(|_| matches!(role, Role::X | Role::Y)),
     }
 }
 
@@ -145,7 +153,7 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
     let role = |words: &[String]| {
         let plain = words.concat();
         let mut names = NAMES.iter();
-        let (role, _) = names.find(|(_, names)| names.split(' ').any(|name| name == plain))?;
+        let (role, _) = names.find(|(_, names)| is_one_of(names, &plain))?;
         Some(*role)
     };
     let whole = role(&words);
@@ -161,26 +169,17 @@ pub(super) fn named(index: usize, name: &str) -> Option<Named> {
         length: None,
     };
     match (role, unit) {
-        (Role::Time, None) => {
-            let unit = match words.concat().as_str() {
-                "seconds" => Some(TimeUnit::Seconds),
-                "milliseconds" => Some(TimeUnit::Milliseconds),
-                "microseconds" => Some(TimeUnit::Microseconds),
-                "nanoseconds" => Some(TimeUnit::Nanoseconds),
-                _ => None,
-            };
-            Some(Named {
-                time_unit: unit,
-                ..named
-            })
-        }
+        (Role::Time, None) => Some(Named {
+            time_unit: unit_of(&TIME_UNITS, &words.concat()),
+            ..named
+        }),
         (_, None) => Some(named),
         (Role::Time, Some(unit)) => Some(Named {
-            time_unit: Some(of_time(unit)?),
+            time_unit: Some(unit_of(&TIME_UNITS, unit)?),
             ..named
         }),
         (Role::X | Role::Y, Some(unit)) => Some(Named {
-            length: Some(of_length(unit)?),
+            length: Some(unit_of(&LENGTH_UNITS, unit)?),
             ..named
         }),
         (_, Some(_)) => None,

@@ -4,7 +4,7 @@ use crate::clock::TimeUnit;
 use std::collections::BTreeMap;
 
 use crate::format::choice::ColumnChoice;
-use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, named, words};
+use crate::format::column_names::{LengthUnit, Named, Role, chosen_as, is_one_of, named, words};
 use crate::format::field::quoted;
 use crate::format::layouts::Place;
 
@@ -166,7 +166,7 @@ impl Roles<'_> {
                     .to_owned(),
             );
         }
-        let is_height = |name: &&&str| HEIGHTS.split(' ').any(|height| words(name).concat() == height);
+        let is_height = |name: &&&str| is_one_of(HEIGHTS, &words(name).concat());
         if let Some(z) = self.names.iter().find(is_height).filter(|_| is_point) {
             remarks.push(format!(
                 "{} is taken for the height; if y is, give --columns y={0}",
@@ -265,6 +265,7 @@ impl Roles<'_> {
     /// A column that says that the rows are no tracks of one scene.
     fn other_rows(&self) -> Option<Fault> {
         let plain = |name: &str| words(name).concat();
+        let has_place = self.place().is_some();
         self.unknown.iter().find_map(|&index| {
             let name = self.names[index];
             let detail = match plain(name).as_str() {
@@ -272,7 +273,7 @@ impl Roles<'_> {
                 "camera" | "cameraid" | "cam" | "camid" | "sceneid" | "scenename" if self.of(Role::Scene).is_none() => {
                     "for `ddl forecast -` rename it scene, for anything else leave it out"
                 }
-                _ if self.place().is_none() && self.names[0].starts_with(['{', '[']) => {
+                _ if !has_place && self.names[0].starts_with(['{', '[']) => {
                     "this is not a table; tracks as JSON must be TrajNet++ ndjson, one object per line"
                 }
                 _ => return None,

@@ -141,13 +141,22 @@ impl<'a> Lines<'a> {
         counts.len() == 4 && counts.iter().all(|count| ![0, 4].contains(count))
     }
 
-    fn of_four(self, separator: Separator) -> Result<Format, String> {
-        let rows = self.filled().filter_map(|line| {
+    /// The first N columns of the rows in which these are numbers.
+    fn numbers<const N: usize>(self, separator: Separator) -> impl Iterator<Item = [f64; N]> {
+        self.filled().filter_map(move |line| {
             let fields = separator.fields(line, 1, "").ok()?;
-            let number = |index: usize| fields.get(index)?.parse::<f64>().ok();
-            Some(([number(0)?, number(1)?], [number(2)?, number(3)?]))
-        });
-        match order(&rows.take(MOST_ROWS).collect::<Vec<_>>()) {
+            let numbers = fields.iter().take(N).map(|field| field.parse().ok());
+            numbers.collect::<Option<Vec<f64>>>()?.try_into().ok()
+        })
+    }
+
+    fn order(self, separator: Separator) -> Order {
+        let rows = self.numbers(separator).take(MOST_ROWS);
+        order(&rows.map(|[a, b, x, y]| ([a, b], [x, y])).collect::<Vec<_>>())
+    }
+
+    fn of_four(self, separator: Separator) -> Result<Format, String> {
+        match self.order(separator) {
             Order::FrameFirst => Ok(Format::SocialGan),
             Order::PedestrianFirst => Ok(Format::IdFirst),
             Order::Unclear => Err(
@@ -158,21 +167,13 @@ impl<'a> Lines<'a> {
         }
     }
 
-    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column.
+    /// `PeTrack` writes the pedestrian first; rows in which the frame is first are refused for their fifth column. A
+    /// single row shows no order.
     fn of_five(self, separator: Separator) -> Format {
-        let rows = || {
-            self.filled().filter_map(move |line| {
-                let fields = separator.fields(line, 1, "").ok()?;
-                let number = |index: usize| fields.get(index)?.parse::<f64>().ok();
-                Some(([number(0)?, number(1)?], [number(2)?, number(3)?], number(4)?))
-            })
-        };
-        let placed: Vec<_> = rows().take(MOST_ROWS).map(|(of, at, _)| (of, at)).collect();
-        // One pedestrian alone is no frame.
-        let has_frames_first = order(&placed) == Order::FrameFirst && placed.len() > 1;
-        if has_frames_first {
+        let rows = || self.numbers::<5>(separator);
+        if rows().nth(1).is_some() && self.order(separator) == Order::FrameFirst {
             Format::SocialGan
-        } else if rows().all(|(.., height)| height >= LEAST_CENTIMETRES) {
+        } else if rows().all(|[.., height]| height >= LEAST_CENTIMETRES) {
             Format::PeTrackCm
         } else {
             Format::PeTrack

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::format::choice::ColumnChoice;
+use crate::format::column_names::is_one_of;
 use crate::format::field;
 use crate::format::header::{Header, first_of};
 use crate::format::layouts::Layout;
@@ -96,11 +97,11 @@ impl RowFilter {
         }
         if let Some((index, kept)) = self.class {
             let class = &*fields[index];
-            let is_one_of = |names: &str| names.split(' ').any(|name| class.eq_ignore_ascii_case(name));
-            if kept.map_or_else(|| is_one_of(VEHICLES), |kept| !class.eq_ignore_ascii_case(kept)) {
+            let small = class.to_ascii_lowercase();
+            if kept.map_or_else(|| is_one_of(VEHICLES, &small), |kept| !class.eq_ignore_ascii_case(kept)) {
                 return Some(format!("of class {}", field::quoted(class)));
             }
-            if kept.is_none() && !is_one_of(PEOPLE) && self.classes.len() < 2 {
+            if kept.is_none() && !is_one_of(PEOPLE, &small) && self.classes.len() < 2 {
                 self.classes.insert(field::quoted(class));
             }
         }

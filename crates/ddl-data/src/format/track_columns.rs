@@ -58,11 +58,6 @@ pub(super) struct TrackColumns {
     is_told: bool,
 }
 
-/// Whether a line of fields is one of observations and no header: some field is a number.
-pub(super) fn has_number(fields: &[Cow<'_, str>]) -> bool {
-    fields.iter().any(|field| field.parse::<f64>().is_ok())
-}
-
 impl TrackColumns {
     /// The columns of a text that begins with these comments and this line, and whether the line is their header.
     pub(super) fn of(
@@ -72,7 +67,15 @@ impl TrackColumns {
         line: usize,
         origin: &str,
     ) -> Result<(Self, bool), FormatError> {
-        let (columns, is_header) = Self::found((format, choice), comments, first, line, origin)?;
+        let (columns, is_header) = if let Some(layout) = Layout::of(format) {
+            let columns = Self::laid_out(layout, Separator::of_numbers(first), choice);
+            (
+                columns.map_err(|problem| FilePlace::line(line).wrong(origin, problem))?,
+                false,
+            )
+        } else {
+            Self::with_header(choice, comments, (first, line), origin)?
+        };
         if choice.is_mapped && columns.has_unit {
             let problem = "the columns say that positions are in metres or parts of them, and the homography maps \
                            pixels; give --homography none, or --unit px if they are pixels";
@@ -81,23 +84,16 @@ impl TrackColumns {
         Ok((columns, is_header))
     }
 
-    fn found(
-        (format, choice): (Format, &ColumnChoice),
+    /// The columns of a table whose header is its first line or a comment.
+    fn with_header(
+        choice: &ColumnChoice,
         comments: &[&str],
-        first: &str,
-        line: usize,
+        (first, line): (&str, usize),
         origin: &str,
     ) -> Result<(Self, bool), FormatError> {
-        if let Some(layout) = Layout::of(format) {
-            let columns = Self::laid_out(layout, Separator::of_numbers(first), choice);
-            return Ok((
-                columns.map_err(|problem| FilePlace::line(line).wrong(origin, problem))?,
-                false,
-            ));
-        }
         let separator = Separator::of(first);
         let fields = separator.fields(first, line, origin)?;
-        if has_number(&fields)
+        if fields.iter().any(|field| field.parse::<f64>().is_ok())
             && let Some(names) = comments
                 .iter()
                 .rev()

@@ -101,148 +101,73 @@ proptest! {
     }
 }
 
-/// A file, the expected format, the first observation (frame, pedestrian, x, y) and the number of observations.
-type Sample = (&'static str, &'static str, Format, (i64, i64, f64, f64), usize);
-
-const SAMPLES: [Sample; 15] = [
-    (
-        "sdd.txt",
-        "7 100 200 130 230 0 0 0 1 \"Pedestrian\"\n7 102 200 132 230 1 1 0 1 \"Pedestrian\"\n\
-         8 0 0 2 4 0 0 0 0 \"Biker\"\n",
-        Format::Sdd,
-        (0, 7, 115.0, 215.0),
-        1,
-    ),
-    (
-        "mot.txt",
-        "1,3,300,200,40,110,0.9,-1,-1,-1\n2,3,304,201,40,110,0.9,-1,-1,-1\n",
-        Format::Mot,
-        (1, 3, 320.0, 310.0),
-        2,
-    ),
-    (
-        "gt.txt",
-        "1,3,300,200,40,110,1,1,0.8\n1,4,0,0,40,110,1,3,1\n",
-        Format::MotTruth,
-        (1, 3, 320.0, 310.0),
-        1,
-    ),
-    (
-        "atc.csv",
-        "1351039227.1,21,1500,-2500,1700,900,0.1,0.2\n1351039227.2,21,1590,-2500,1700,900,0.1,0.2\n",
-        Format::Atc,
-        (1_351_039_227_100_000, 21, 1.5, -2.5),
-        2,
-    ),
-    (
-        "kitti.txt",
-        "0 2 Pedestrian 0 0 -1.5 1 2 3 4 1.8 0.6 0.5 3.5 1.6 12.25 0.1\n\
-         0 3 Car 0 0 -1.5 1 2 3 4 1.8 0.6 0.5 3.5 1.6 12.2 0.1\n",
-        Format::Kitti,
-        (0, 2, 3.5, 12.25),
-        1,
-    ),
-    (
-        "apollo.txt",
-        "0 5 3 10.5 -2.5 0.1 0.5 0.5 1.7 0.3\n0 6 1 11 -2 0.1 4 2 1.5 0.3\n",
-        Format::ApolloScape,
-        (0, 5, 10.5, -2.5),
-        1,
-    ),
-    (
-        "petrack.txt",
-        "1 0 100.0 300.0 170.0\n1 1 108.0 300.0 170.0\n",
-        Format::PeTrackCm,
-        (0, 1, 1.0, 3.0),
-        2,
-    ),
-    (
-        "petrack.txt",
-        "# framerate: 25 fps\n# id frame x/m y/m z/m\n1 0 1.0 3.0 1.7\n1 1 1.08 3.0 1.7\n",
-        Format::Table,
-        (0, 1, 1.0, 3.0),
-        2,
-    ),
-    (
-        "jupedsim.txt",
-        "# description: jpsvis\n#framerate: 16.00\n#ID\tFR\tX\tY\tZ\n1\t0\t1.0\t3.0\t0\n1\t1\t1.08\t3.0\t0\n",
-        Format::Table,
-        (0, 1, 1.0, 3.0),
-        2,
-    ),
-    (
-        "trajnet.txt",
-        "800 2.0 13.6 5.8\n810 2.0 13.1 5.82\n820 2.0 ? ?\n",
-        Format::SocialGan,
-        (800, 2, 13.6, 5.8),
-        2,
-    ),
-    (
-        "ind.csv",
-        "recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length\n7,0,10,0,5.25,-1.5,0,0,0\n",
-        Format::Table,
-        (10, 0, 5.25, -1.5),
-        1,
-    ),
-    (
-        "sind.csv",
-        "track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy\n4,7,700.0,pedestrian,2.5,3.5,0,0\n",
-        Format::Table,
-        (700_000, 4, 2.5, 3.5),
-        1,
-    ),
-    (
-        "dut.csv",
-        "id,frame,label,x_est,y_est,vx_est,vy_est\n1,4,ped,20.5,3.25,0,0\n2,4,veh,0,0,0,0\n",
-        Format::Table,
-        (4, 1, 20.5, 3.25),
-        1,
-    ),
-    (
-        "tracker.csv",
-        "frame,track_id,x1,y1,x2,y2,score\n3,9,10,20,30,80,0.5\n",
-        Format::Table,
-        (3, 9, 20.0, 80.0),
-        1,
-    ),
-    (
-        "numpy.txt",
-        "# frame pedestrian x y\n0 1 2.5 3.5\n",
-        Format::Table,
-        (0, 1, 2.5, 3.5),
-        1,
-    ),
-];
+/// A file with its text; then its format, the first observation (frame, pedestrian, x, y), the number of observations,
+/// and what is told.
+const SAMPLES: &str = r#"
+sdd.txt: 7 100 200 130 230 0 0 0 1 "Pedestrian"\n7 102 200 132 230 1 1 0 1 "Pedestrian"\n8 0 0 2 4 0 0 0 0 "Biker"
+=> sdd 0 7 115 215 1 Stanford Drone|1 marked lost|1 of class Biker
+mot.txt: 1,3,300,200,40,110,0.9,-1,-1,-1\n2,3,304,201,40,110,0.9,-1,-1,-1
+=> mot 1 3 320 310 2 the positions are in pixels
+gt.txt: 1,3,300,200,40,110,1,1,0.8\n1,4,0,0,40,110,1,3,1
+=> mot-truth 1 3 320 310 1 1 of class 3
+atc.csv: 1351039227.1,21,1500,-2500,1700,900,0.1,0.2\n1351039227.2,21,1590,-2500,1700,900,0.1,0.2
+=> atc 1351039227100000 21 1.5 -2.5 2 millimetres
+kitti.txt: 0 2 Pedestrian 0 0 -1.5 1 2 3 4 2 1 1 3.5 1.6 12.25 0.1\n0 3 Car 0 0 -1 1 2 3 4 2 1 1 3 2 12 0
+=> kitti 0 2 3.5 12.25 1 1 of class Car
+apollo.txt: 0 5 3 10.5 -2.5 0.1 0.5 0.5 1.7 0.3\n0 6 1 11 -2 0.1 4 2 1.5 0.3
+=> apolloscape 0 5 10.5 -2.5 1 1 of class 1
+petrack.txt: 1 0 100.0 300.0 170.0\n1 1 108.0 300.0 170.0
+=> petrack-cm 0 1 1 3 2 in centimetres (PeTrack)
+petrack.txt: # framerate: 25 fps\n# id frame x/m y/m z/m\n1 0 1.0 3.0 1.7\n1 1 1.08 3.0 1.7
+=> table 0 1 1 3 2 z/m is taken for the height
+jupedsim.txt: # description: jpsvis\n#framerate: 16.00\n#ID\tFR\tX\tY\tZ\n1\t0\t1.0\t3.0\t0\n1\t1\t1.08\t3.0\t0
+=> table 0 1 1 3 2 Z is taken for the height
+trajnet.txt: 800 2.0 13.6 5.8\n810 2.0 13.1 5.82\n820 2.0 ? ?
+=> social-gan 800 2 13.6 5.8 2 1 with ? for a position to forecast
+ind.csv: recordingId,trackId,frame,trackLifetime,xCenter,yCenter,heading,width,length\n7,0,10,0,5.25,-1.5,0,0,0
+=> table 10 0 5.25 -1.5 1 vehicles are read too
+sind.csv: track_id,frame_id,timestamp_ms,agent_type,x,y,vx,vy\n4,7,700.0,pedestrian,2.5,3.5,0,0
+=> table 700000 4 2.5 3.5 1 the times are those of the column timestamp_ms
+dut.csv: id,frame,label,x_est,y_est,vx_est,vy_est\n1,4,ped,20.5,3.25,0,0\n2,4,veh,0,0,0,0
+=> table 4 1 20.5 3.25 1 1 of class veh
+tracker.csv: frame,track_id,x1,y1,x2,y2,score\n3,9,10,20,30,80,0.5
+=> table 3 9 20 80 1 the positions are in pixels
+numpy.txt: # frame pedestrian x_cm y_cm\n0 1 250 350
+=> table 0 1 2.5 3.5 1 the positions are in centimetres
+"#;
 
 #[test]
-fn formats_of_others_are_read() {
-    for (name, text, format, (frame, pedestrian, x, y), count) in SAMPLES {
-        assert_eq!(Format::guess(Path::new(name), text.as_bytes()), Ok(format), "{name}");
-        let recording = read(name, text).unwrap();
-        let expected = Observation::new(frame, PedestrianId(pedestrian), [x, y]);
-        assert_eq!(recording.observations()[0], expected, "{name}");
-        assert_eq!(recording.observations().len(), count, "{name}");
+fn formats_of_others_are_read_and_what_was_assumed_is_told() {
+    let lines: Vec<&str> = SAMPLES.trim().lines().collect();
+    for [file, expected] in lines.as_chunks().0 {
+        let (name, text) = file.split_once(": ").unwrap();
+        let text = text.replace("\\n", "\n").replace("\\t", "\t") + "\n";
+        let mut expected = expected.trim_start_matches("=> ").splitn(7, ' ');
+        let format = Format::guess(Path::new(name), text.as_bytes()).unwrap();
+        assert_eq!(Some(format.name()), expected.next(), "{file}");
+        let mut number = || expected.next().unwrap().parse::<f64>().unwrap();
+        let (frame, pedestrian, place) = (number() as i64, PedestrianId(number() as i64), [number(), number()]);
+        let count = number() as usize;
+        let recording = read(name, &text).unwrap();
+        assert_eq!(
+            recording.observations()[0],
+            Observation::new(frame, pedestrian, place),
+            "{file}"
+        );
+        assert_eq!(recording.observations().len(), count, "{file}");
+        let notes = recording.notes().join("; ");
+        assert!(
+            expected.next().unwrap().split('|').all(|note| notes.contains(note)),
+            "{file}: {notes}"
+        );
         // A stream reads the same.
         let mut frames = FrameReader::new(text.as_bytes(), "t");
         let streamed = std::iter::from_fn(|| frames.next_frame().unwrap());
         let streamed: Vec<_> = streamed.flat_map(|frame| frame.pedestrians).collect();
-        assert_eq!(streamed.len(), count, "{name}");
-        assert_eq!(streamed[0], (PedestrianId(pedestrian), [x, y]), "{name}");
+        assert_eq!((streamed.len(), streamed[0]), (count, (pedestrian, place)), "{file}");
     }
-}
-
-#[test]
-fn what_was_assumed_and_left_out_is_told() {
-    let notes = |name: &str, text: &str| read(name, text).unwrap().notes().join("; ");
-    let of = |index: usize| notes(SAMPLES[index].0, SAMPLES[index].1);
-    assert!(of(0).contains("Stanford Drone") && of(0).contains("1 marked lost") && of(0).contains("1 of class Biker"));
-    assert!(of(1).contains("the positions are in pixels"));
-    assert!(of(6).contains("in centimetres (PeTrack)"));
-    assert!(of(9).contains("1 with ? for a position to forecast"));
-    assert!(of(12).contains("1 of class veh"));
-    assert_eq!(read(SAMPLES[7].0, SAMPLES[7].1).unwrap().rate(), Some(25.0));
-    let cm = notes("a.csv", "frame,id,x_cm,y_cm\n0,1,100,200\n");
-    assert_eq!(cm, "the positions are in centimetres");
+    let rate = read("a.txt", "# framerate: 25 fps\n# id frame x y\n1 0 1 3\n1 2 2 3\n").unwrap();
+    assert_eq!(rate.stated_frame_time(), Some(1.0 / 25.0));
 }
 
 /// Detections that look like the table of ETH, and others.
