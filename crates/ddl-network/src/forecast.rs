@@ -13,7 +13,7 @@ mod rollout;
 mod rollout_state;
 mod visibility;
 
-pub use batch::{BatchRollout, ForecastBatch};
+pub use batch::{BatchRollout, CrowdOrder, ForecastBatch};
 pub use forecast_windows::ForecastWindows;
 pub use motion_bounds::motion_bounds;
 pub use network::MotionNetwork;

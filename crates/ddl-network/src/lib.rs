@@ -97,8 +97,8 @@ pub use config::{
 pub use device::DeviceChoice;
 pub use error::NetworkError;
 pub use forecast::{
-    BatchRollout, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout, length_unit,
-    motion_bounds, visibility,
+    BatchRollout, CrowdOrder, ForecastBatch, ForecastWindows, MotionNetwork, Noise, StepRule, WindowRollout,
+    length_unit, motion_bounds, visibility,
 };
 pub use proposal::{PedestrianView, ProposalExample, ProposalNetwork, ProposeEndpoints, ProposedEndpoints};
 pub use training_report::{EpochReport, ProposalStep, StepReport};

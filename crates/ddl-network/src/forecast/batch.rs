@@ -8,11 +8,24 @@ use rand::RngExt as _;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 
-/// The pedestrians of a window with more than this are sorted along a Hilbert curve: the keys and values that a query
-/// reads are then close together in memory, and successive queries read the same.
+/// The pedestrians of a window with more than this are sorted by position: the keys and values that a query reads are
+/// then close together in memory.
 const CROWD: usize = 128;
+/// Width of the strips by which they are sorted, metres.
+const STRIP: f64 = 2.5;
 /// Side of a cell of the curve, metres.
 const CELL: f64 = 0.5;
+
+/// How the pedestrians of a crowd are sorted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrowdOrder {
+    /// In strips of 2.5 m. The kernels compute one pair of queries after the other: 10,000 pedestrians x 20 take a sixth
+    /// less time than along a curve.
+    Strips,
+    /// Along a Hilbert curve. 64 successive pedestrians are then close together and see few others: a block of queries
+    /// reads 432 keys instead of 1,008.
+    Curve,
+}
 
 /// Several windows with their goals. The P pedestrians are in the order of the windows; those of a large window are
 /// sorted by position.
@@ -55,7 +68,8 @@ pub(super) fn batches<'a>(
     goals: &[Vec<Vec<Position>>],
     (noise, noise_width): (Noise, usize),
     rule: StepRule,
-    (shares, at_once): (Option<&[Vec<f64>]>, usize),
+    shares: Option<&[Vec<f64>]>,
+    (at_once, by): (usize, CrowdOrder),
 ) -> Result<Vec<ForecastBatch<'a>>, NetworkError> {
     check_shares(windows, shares)?;
     let goal_count = check_goals(windows, goals, noise)?;
@@ -78,7 +92,7 @@ pub(super) fn batches<'a>(
         }
         let originals = &windows[first..last];
         let origins: Vec<Position> = originals.iter().map(origin).collect();
-        let orders: Vec<Vec<usize>> = originals.iter().map(order).collect();
+        let orders: Vec<Vec<usize>> = originals.iter().map(|window| order(window, by)).collect();
         let of_goal = |k: usize| {
             let rows = goals[first..last].iter().zip(&origins).zip(&orders);
             rows.flat_map(|((goals, &origin), order)| order.iter().map(move |&i| relative(goals[i][k], origin)))
@@ -173,15 +187,27 @@ fn origin(window: &Window) -> Position {
 }
 
 /// The indices of a window's pedestrians in the order of their rows.
-fn order(window: &Window) -> Vec<usize> {
+fn order(window: &Window, by: CrowdOrder) -> Vec<usize> {
     let mut order: Vec<usize> = (0..window.len()).collect();
     if window.len() > CROWD {
-        // Whoever is further than 16 km from the first pedestrian counts as at the edge.
-        let cell = |metres: f64| (metres / CELL + f64::from(1 << 15)) as u16;
-        order.sort_by_cached_key(|&i| {
-            let [x, y] = relative(window.observed(i)[OBSERVED - 1], origin(window)).map(cell);
-            fast_hilbert::xy2h(x, y, 16)
-        });
+        let last = |i: usize| window.observed(i)[OBSERVED - 1];
+        match by {
+            CrowdOrder::Strips => {
+                let strip = |i: usize| (last(i)[0] / STRIP).floor();
+                order.sort_by(|&i, &j| {
+                    let along = || last(i)[1].total_cmp(&last(j)[1]);
+                    strip(i).total_cmp(&strip(j)).then_with(along)
+                });
+            }
+            CrowdOrder::Curve => {
+                // Whoever is further than 16 km from the first pedestrian counts as at the edge.
+                let cell = |metres: f64| (metres / CELL + f64::from(1 << 15)) as u16;
+                order.sort_by_cached_key(|&i| {
+                    let [x, y] = relative(last(i), origin(window)).map(cell);
+                    fast_hilbert::xy2h(x, y, 16)
+                });
+            }
+        }
     }
     order
 }

@@ -1,6 +1,6 @@
 //! The interface of a forecasting network, independent of its implementation.
 
-use crate::forecast::batch::{BatchRollout, ForecastBatch, batches};
+use crate::forecast::batch::{BatchRollout, CrowdOrder, ForecastBatch, batches};
 use crate::forecast::rollout::{Noise, StepRule, WindowRollout};
 use crate::weights::Weights;
 use crate::{NetworkError, StarConfig};
@@ -22,6 +22,11 @@ pub trait ForecastWindows: Debug + Send + Sync {
     /// of the kernels.
     fn pedestrians_at_once(&self) -> usize {
         64
+    }
+
+    /// How the pedestrians of a crowd are sorted for [`roll_out`](Self::roll_out).
+    fn crowd_order(&self) -> CrowdOrder {
+        CrowdOrder::Strips
     }
 
     /// Forecasts one batch of windows.
@@ -50,8 +55,8 @@ pub trait ForecastWindows: Debug + Send + Sync {
     ) -> Result<Vec<WindowRollout>, NetworkError> {
         let noise_width = self.config().noise_width as usize;
         let mut rollouts = Vec::with_capacity(windows.len());
-        let at_once = self.pedestrians_at_once();
-        for batch in batches(windows, goals, (noise, noise_width), rule, (shares, at_once))? {
+        let sizes = (self.pedestrians_at_once(), self.crowd_order());
+        for batch in batches(windows, goals, (noise, noise_width), rule, shares, sizes)? {
             rollouts.extend(batch.windows_of(&self.roll_out(&batch)?));
         }
         Ok(rollouts)

@@ -11,7 +11,7 @@ use crate::model::tensor_backend::Engine;
 use ddl_data::{HORIZON, OBSERVED, Window};
 use ddl_network::backend::Mode;
 use ddl_network::weights::Weights;
-use ddl_network::{BatchRollout, ForecastBatch, ForecastWindows, NetworkError, StarConfig};
+use ddl_network::{BatchRollout, CrowdOrder, ForecastBatch, ForecastWindows, NetworkError, StarConfig};
 use std::sync::{Mutex, PoisonError};
 use tch::{Device, Kind};
 
@@ -82,6 +82,10 @@ impl ForecastWindows for TorchForecaster {
 
     fn pedestrians_at_once(&self) -> usize {
         PEDESTRIANS_AT_ONCE
+    }
+
+    fn crowd_order(&self) -> CrowdOrder {
+        CrowdOrder::Curve
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
