@@ -19,7 +19,7 @@ const CELL: f64 = 0.5;
 /// How the pedestrians of a crowd are sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrowdOrder {
-    /// In strips of 2.5 m. The kernels compute one pair of queries after the other: 10,000 pedestrians x 20 take a sixth
+    /// In strips of 2.5 m. The kernels compute one pair of queries after the other: 10,000 pedestrians take a sixth
     /// less time than along a curve.
     Strips,
     /// Along a Hilbert curve. 64 successive pedestrians are then close together and see few others: a block of queries
