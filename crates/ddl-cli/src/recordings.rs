@@ -114,7 +114,7 @@ pub(crate) fn all_read(mut errors: Vec<anyhow::Error>, files: usize) -> anyhow::
 pub(crate) fn warn_of_implausible(read: &[ReadRecording]) {
     let (mut warnings, mut notes) = (Vec::new(), Vec::new());
     for ReadRecording { recording, clock, .. } in read {
-        let observed = recording.observe(recording.live_tracks());
+        let observed = recording.observe_each(recording.live_tracks(), |_| ());
         let warning = recording.speed_warning();
         let misfits = words_of_misfits(recording, *clock, &observed.misfits, warning.as_ref());
         let warning = warning.map(|warning| words(&in_frames(*clock, warning)));

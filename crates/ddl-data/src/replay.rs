@@ -2,6 +2,7 @@
 
 use ddl_core::{HORIZON, WINDOW, Window};
 
+use crate::future::Futures;
 use crate::live::{Completeness, LiveTracks};
 use crate::observe::{Misfit, RecordingNoise};
 use crate::recording::Recording;
@@ -31,17 +32,27 @@ impl Recording {
 
     /// The windows that these tracks, empty until now, make of the recording.
     #[must_use]
-    pub fn observe(&self, mut tracks: LiveTracks) -> ObservedRecording {
-        let (mut windows, mut misfits) = (Vec::new(), Vec::new());
+    pub fn observe(&self, tracks: LiveTracks) -> ObservedRecording {
+        let mut windows = Vec::new();
+        let observed = self.observe_each(tracks, |window| windows.push(window));
+        ObservedRecording { windows, ..observed }
+    }
+
+    /// As [`observe`](Self::observe), but hands over each window instead of keeping them all: none is returned.
+    #[must_use]
+    pub fn observe_each(&self, mut tracks: LiveTracks, mut each: impl FnMut(Window)) -> ObservedRecording {
+        let mut misfits = Vec::new();
         for &frame in self.frames() {
             let rows = self.at(frame).iter();
             let rows = rows.map(|row| (row.pedestrian, row.position));
             // Cannot fail: the invariants of a recording exclude every error of live tracks.
-            windows.extend(tracks.push(frame, rows).ok().flatten());
+            if let Ok(Some(window)) = tracks.push(frame, rows) {
+                each(window);
+            }
             misfits.extend_from_slice(tracks.misfits());
         }
         ObservedRecording {
-            windows,
+            windows: Vec::new(),
             noise: tracks.noise().clone(),
             has_common_frames: tracks.have_common_frames(),
             misfits,
@@ -58,21 +69,25 @@ impl Recording {
     /// bystanders.
     pub(crate) fn windows_with_futures(&self) -> Vec<Window> {
         let futures = self.futures();
-        let observed = self.observe(self.live_tracks().with_completeness(Completeness::Partial));
-        let with_future = |window: Window| {
-            let future = futures.of(&window);
-            let is_known = |i: usize| window.quality(i).is_whole() && future[i].len() == HORIZON;
-            let scored = window.filter_pedestrians(is_known)?;
-            let (first, step) = (window.start_frame(), window.frame_step());
-            let tracks = (0..window.len()).filter(|&i| is_known(i));
-            let positions = tracks.flat_map(|i| window.observed(i).iter().chain(&future[i]).copied());
-            let frames = (0..WINDOW as i64).map(|t| first + t * step).collect();
-            let pedestrians = scored.pedestrians().to_vec();
-            let whole = Window::cut(self.shared_name(), step, frames, pedestrians, positions.collect());
-            let qualities = (0..scored.len()).map(|i| scored.quality(i)).collect();
-            let whole = whole.with_names(self.names().clone()).with_qualities(qualities);
-            Some(whole.with_bystanders(window.filter_pedestrians(|i| !is_known(i))))
-        };
-        observed.windows.into_iter().filter_map(with_future).collect()
+        let mut windows = Vec::new();
+        let tracks = self.live_tracks().with_completeness(Completeness::Partial);
+        let _ = self.observe_each(tracks, |window| windows.extend(self.with_future(&window, &futures)));
+        windows
+    }
+
+    /// The window with the futures of its pedestrians tracked for all 20 steps; `None` if there are none.
+    pub(crate) fn with_future(&self, window: &Window, futures: &Futures<'_>) -> Option<Window> {
+        let future = futures.of(window);
+        let is_known = |i: usize| window.quality(i).is_whole() && future[i].len() == HORIZON;
+        let scored = window.filter_pedestrians(is_known)?;
+        let (first, step) = (window.start_frame(), window.frame_step());
+        let tracks = (0..window.len()).filter(|&i| is_known(i));
+        let positions = tracks.flat_map(|i| window.observed(i).iter().chain(&future[i]).copied());
+        let frames = (0..WINDOW as i64).map(|t| first + t * step).collect();
+        let pedestrians = scored.pedestrians().to_vec();
+        let whole = Window::cut(self.shared_name(), step, frames, pedestrians, positions.collect());
+        let qualities = (0..scored.len()).map(|i| scored.quality(i)).collect();
+        let whole = whole.with_names(self.names().clone()).with_qualities(qualities);
+        Some(whole.with_bystanders(window.filter_pedestrians(|i| !is_known(i))))
     }
 }

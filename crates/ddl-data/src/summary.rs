@@ -10,7 +10,6 @@ use crate::observation::Observation;
 use crate::observe::Misfit;
 use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
 use crate::recording::Recording;
-use crate::rule::WindowRule;
 
 /// Summary of a recording, in steps of 0.4 s.
 ///
@@ -152,6 +151,14 @@ impl Recording {
         off.get(off.len() / 2).copied().unwrap_or(0)
     }
 
+    fn first_frame(&self) -> i64 {
+        self.frames()[0]
+    }
+
+    fn last_frame(&self) -> i64 {
+        self.frames()[self.frames().len() - 1]
+    }
+
     /// The least and the largest coordinates.
     pub(crate) fn corners(&self) -> (Position, Position) {
         let corner = |pick: fn(f64, f64) -> f64, from: f64| {
@@ -183,23 +190,25 @@ impl Recording {
                 seconds: (pair[1].frame - pair[0].frame) as f64 * TIME_STEP / step as f64,
             })
             .collect();
-        let pedestrians = |windows: &[crate::Window]| windows.iter().map(crate::Window::len).sum();
         let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
-        let (first, last) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
-        let windows = self.windows(WindowRule::Observed);
-        let observed = self.observe(self.live_tracks().with_completeness(Completeness::Partial));
-        let qualities = observed
-            .windows
-            .iter()
-            .flat_map(|window| (0..window.len()).map(|i| window.quality(i)));
-        let whole = qualities.filter(|quality| quality.is_whole());
+        let futures = self.futures();
+        let (mut to_forecast, mut seen_whole, mut windows, mut to_learn_from) = (0, 0, 0, 0);
+        let tracks_so_far = self.live_tracks().with_completeness(Completeness::Partial);
+        let observed = self.observe_each(tracks_so_far, |window| {
+            to_forecast += window.len();
+            seen_whole += (0..window.len()).filter(|&i| window.quality(i).is_whole()).count();
+            if let Some(whole) = self.with_future(&window, &futures) {
+                windows += 1;
+                to_learn_from += whole.len();
+            }
+        });
         Summary {
             recording: self.name().to_owned(),
             frames: self.frames().len(),
-            first_frame: first,
-            last_frame: last,
+            first_frame: self.first_frame(),
+            last_frame: self.last_frame(),
             frame_step: step,
-            seconds: seconds(last - first),
+            seconds: seconds(self.last_frame() - self.first_frame()),
             rows_a_second: self.usual_spacing().map(|spacing| 1.0 / seconds(spacing)),
             jitter: seconds(self.jitter()),
             common_frames: observed.has_common_frames,
@@ -219,10 +228,10 @@ impl Recording {
             unseen: self.unseen(&tracks),
             holes: gaps.len(),
             longest_hole: gaps.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),
-            to_forecast: pedestrians(&observed.windows),
-            seen_whole: whole.count(),
-            windows: windows.len(),
-            to_learn_from: pedestrians(&windows),
+            to_forecast,
+            seen_whole,
+            windows,
+            to_learn_from,
         }
     }
 }
