@@ -1,6 +1,8 @@
 //! Output to standard output, or to a file that is replaced as a whole.
 
 use anyhow::Context as _;
+use ddl::data::write_atomically_with;
+use std::fs::File;
 use std::io::Write as _;
 use std::path::Path;
 
@@ -11,14 +13,30 @@ pub(crate) fn file_of(path: Option<&Path>) -> Option<&Path> {
 
 /// Writes a whole output: to standard output, or to a file under a temporary name that is renamed.
 pub(crate) fn write_output(path: Option<&Path>, text: &str) -> anyhow::Result<()> {
-    match file_of(path) {
-        // A device or a pipe cannot be replaced.
-        Some(path) if path.exists() && !path.is_file() => {
-            std::fs::write(path, text).with_context(|| format!("cannot write to {}", path.display()))
-        }
-        Some(path) => Ok(ddl::write_atomically(path, text.as_bytes())?),
-        None => print(text),
+    write_parts(path, std::iter::once(Ok(text)))
+}
+
+/// As [`write_output`], for an output that is too large to be held as a whole.
+pub(crate) fn write_parts<T: AsRef<str>>(
+    path: Option<&Path>,
+    parts: impl Iterator<Item = anyhow::Result<T>>,
+) -> anyhow::Result<()> {
+    let Some(path) = file_of(path) else {
+        return parts.into_iter().try_for_each(|part| print(part?.as_ref()));
+    };
+    let unwritable = || format!("cannot write to {}", path.display());
+    let write = |file: &mut File| {
+        parts.into_iter().try_for_each(|part| {
+            let written = file.write_all(part?.as_ref().as_bytes());
+            written.with_context(unwritable)
+        })
+    };
+    // A device or a pipe cannot be replaced.
+    if path.exists() && !path.is_file() {
+        let file = File::options().write(true).open(path);
+        return write(&mut file.with_context(unwritable)?);
     }
+    write_atomically_with(path, write).with_context(unwritable)
 }
 
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {

@@ -1,5 +1,6 @@
 //! Atomic writing: a file is written under a temporary name and renamed.
 
+use std::fs::File;
 use std::io::{Error, ErrorKind, Result, Write as _};
 use std::path::Path;
 
@@ -11,13 +12,24 @@ const WRITING: &str = ".writing-";
 /// # Errors
 /// When the file cannot be written; an existing file then stays unchanged.
 pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_atomically_with(path, |file| file.write_all(bytes))
+}
+
+/// As [`write_atomically`], for a content that is written in parts.
+///
+/// # Errors
+/// As [`write_atomically`], and those of `write`.
+pub fn write_atomically_with<E: From<Error>>(
+    path: &Path,
+    write: impl FnOnce(&mut File) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E> {
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
     if !folder.is_dir() {
         let problem = format!("the folder {} does not exist; create it first", folder.display());
-        return Err(Error::new(ErrorKind::NotFound, problem));
+        return Err(Error::new(ErrorKind::NotFound, problem).into());
     }
     let mut builder = tempfile::Builder::new();
     let builder = builder.prefix(WRITING);
@@ -30,7 +42,7 @@ pub fn write_atomically(path: &Path, bytes: &[u8]) -> Result<()> {
     if let Ok(before) = path.metadata() {
         file.as_file().set_permissions(before.permissions())?;
     }
-    file.write_all(bytes)?;
+    write(file.as_file_mut())?;
     file.as_file().sync_all()?;
     file.persist(path).map_err(|error| error.error)?;
     Ok(())

@@ -92,7 +92,7 @@ mod summary;
 mod unknown_name;
 mod windows;
 
-pub use atomic_file::{remove_temporary_files, write_atomically};
+pub use atomic_file::{remove_temporary_files, write_atomically, write_atomically_with};
 pub use augment::Rotation;
 pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
 pub use convention::Convention;

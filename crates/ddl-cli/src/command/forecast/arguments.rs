@@ -1,9 +1,8 @@
 //! The options of `ddl forecast`, and forecasts as text by these options.
 
-use crate::command::forecast::moment::{Moment, SceneWindows, StreamState, WindowForecasts, warn_of_violation};
+use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::forecast::{json_lines, table};
 use crate::command::{KeepClear, Machine, ModelChoice};
-use crate::telling::tell;
 use crate::tracks::TrackOptions;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
@@ -103,7 +102,12 @@ impl ForecastCommand {
         }
         let moments = windows.moments(&forecasts, clock);
         warn_of_violation(&moments);
-        state.warned = state.warned || self.warn_of_unfamiliar(&moments);
+        state.unfamiliar.add(&moments);
+        if self.tracks.are_live() {
+            state
+                .unfamiliar
+                .warn("; this warning appears once, but each forecast has its familiarity");
+        }
         let headed = !std::mem::replace(&mut state.headed, true);
         match self.format() {
             OutputFormat::Csv => table::csv(&moments, headed, &self.region),
@@ -128,36 +132,6 @@ impl ForecastCommand {
             (true, false) => WindowForecasts::Certified(model.forecast_certified(windows)?),
             (true, true) => WindowForecasts::Certified(model.forecast_central_certified(windows)?),
         })
-    }
-
-    /// Warns of motions unlike the training motions, whose forecasts are less certain; returns whether there are any.
-    fn warn_of_unfamiliar(&self, moments: &[Moment<'_>]) -> bool {
-        let motions = moments
-            .iter()
-            .flat_map(|moment| (0..moment.window.len()).map(move |i| (moment, i)));
-        let familiarity = |&(moment, i): &(&Moment<'_>, usize)| moment.forecast.familiarity(i);
-        let mut unfamiliar = motions
-            .clone()
-            .filter(|motion| familiarity(motion).is_some_and(|f| f < ddl::UNFAMILIAR_THRESHOLD));
-        let Some((moment, i)) = unfamiliar.next() else {
-            return false;
-        };
-        let count = 1 + unfamiliar.count();
-        let later = if self.tracks.are_live() {
-            "; this warning appears once, but each forecast has its familiarity"
-        } else {
-            ""
-        };
-        tell(format_args!(
-            "warning: {count} of {} motions are unlike the training motions (familiarity below {}), first that of \
-             pedestrian {} observed until frame {}: their forecasts use little of the network, and their weights are \
-             flatter{later}",
-            motions.count(),
-            ddl::UNFAMILIAR_THRESHOLD,
-            moment.who(i),
-            moment.observed_until(),
-        ));
-        true
     }
 }
 

@@ -51,12 +51,54 @@ impl<'a> SceneWindows<'a> {
     }
 }
 
+/// The motions so far, and those unlike the training motions.
+#[derive(Debug, Default)]
+pub(super) struct UnfamiliarMotions {
+    motions: usize,
+    unfamiliar: usize,
+    /// The pedestrian and the frame of the first.
+    first: Option<(String, FrameNumber)>,
+    /// Whether the warning has been given.
+    is_told: bool,
+}
+
+impl UnfamiliarMotions {
+    pub(super) fn add(&mut self, moments: &[Moment<'_>]) {
+        for moment in moments {
+            for i in 0..moment.window.len() {
+                self.motions += 1;
+                let familiarity = moment.forecast.familiarity(i);
+                if familiarity.is_some_and(|f| f < ddl::UNFAMILIAR_THRESHOLD) {
+                    self.unfamiliar += 1;
+                    self.first
+                        .get_or_insert_with(|| (moment.who(i), moment.observed_until()));
+                }
+            }
+        }
+    }
+
+    /// Warns, once, of motions whose forecasts are less certain.
+    pub(super) fn warn(&mut self, note: &str) {
+        let Some((who, frame)) = self.first.as_ref().filter(|_| !self.is_told) else {
+            return;
+        };
+        tell(format_args!(
+            "warning: {} of {} motions are unlike the training motions (familiarity below {}), first that of \
+             pedestrian {who} observed until frame {frame}: their forecasts use little of the network, and their \
+             weights are flatter{note}",
+            self.unfamiliar,
+            self.motions,
+            ddl::UNFAMILIAR_THRESHOLD,
+        ));
+        self.is_told = true;
+    }
+}
+
 /// State that one chunk of forecasts passes on to the next.
 #[derive(Debug, Default)]
 pub(super) struct StreamState {
     pub(super) headed: bool,
-    /// Whether the warning about unfamiliar motions has been given.
-    pub(super) warned: bool,
+    pub(super) unfamiliar: UnfamiliarMotions,
     /// The adaptive regions of each scene.
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
