@@ -106,6 +106,9 @@ impl Roles<'_> {
     }
 
     fn header(&self, choice: &ColumnChoice) -> Result<Header, Fault> {
+        if let Some(detail) = self.wide() {
+            return Err((None, detail));
+        }
         let mut faults = self.repeated();
         faults.extend(self.not_there(choice));
         faults.extend(self.other_rows());
@@ -279,6 +282,23 @@ impl Roles<'_> {
                 _ => return None,
             };
             Some((Some(index), format!("column {:?}: {detail}", quoted(name))))
+        })
+    }
+
+    /// Columns for each pedestrian, such as `x1,y1,x2,y2`, instead of rows.
+    fn wide(&self) -> Option<String> {
+        let of_axis = |axis: char| {
+            let names = self.names.iter().map(|name| words(name).concat());
+            let numbered = names.filter(|name| name.contains(|c: char| c.is_ascii_digit()));
+            let letters = numbered.map(|name| name.replace(|c: char| c.is_ascii_digit(), ""));
+            letters
+                .filter(|name| name.starts_with(axis) || name.ends_with(axis))
+                .count()
+        };
+        (of_axis('x') > 1 && of_axis('x') == of_axis('y') && self.place().is_none()).then(|| {
+            let detail = "each pedestrian has columns of its own; write a row for each frame and pedestrian \
+                          (pandas.wide_to_long), with the columns frame,pedestrian,x,y";
+            detail.to_owned()
         })
     }
 
