@@ -74,8 +74,8 @@ pub struct FrameReader<R> {
     choice: ColumnChoice,
     /// The comments before the first observation.
     comments: String,
-    /// What has been assumed and not yet told.
-    remarks: Vec<String>,
+    /// Frame numbers per second, if a comment states it.
+    frame_rate: Option<f64>,
     /// The frame rate stated by scenes.
     rate: trajnet::SceneRate,
     words: Numbering,
@@ -145,7 +145,7 @@ impl<R: BufRead> FrameReader<R> {
             kind: None,
             choice: ColumnChoice::default(),
             comments: String::new(),
-            remarks: Vec::new(),
+            frame_rate: None,
             rate: trajnet::SceneRate::default(),
             words: Numbering::remembering(MOST_WORDS),
             numbers: BTreeSet::new(),
@@ -223,14 +223,18 @@ impl<R: BufRead> FrameReader<R> {
 
     /// Takes the notes on what was assumed and left out since the last call, a sentence each.
     pub fn take_notes(&mut self) -> Vec<String> {
-        let mut notes = std::mem::take(&mut self.remarks);
-        if let Some(Kind::Text(columns)) = &mut self.kind {
-            notes.extend(columns.new_notes());
+        match &mut self.kind {
+            Some(Kind::Text(columns)) => columns.new_notes(),
+            _ => Vec::new(),
         }
-        notes
     }
 
-    /// Frames per second, if a line so far states it: the `fps` of TrajNet++ scenes.
+    /// Frame numbers per second, if a comment before the first line states it.
+    pub fn frame_rate(&self) -> Option<f64> {
+        self.frame_rate
+    }
+
+    /// Rows of a pedestrian per second, if a line so far states it: the `fps` of TrajNet++ scenes.
     pub fn rate(&self) -> Option<f64> {
         self.rate.frames_a_second
     }
@@ -285,10 +289,7 @@ impl<R: BufRead> FrameReader<R> {
         let (line, origin) = (self.lines, self.origin.as_str());
         let Some(kind) = &mut self.kind else {
             if is_comment(text) {
-                if let Some(rate) = rate_of(text) {
-                    self.remarks
-                        .push(format!("a comment says {rate} frames a second: --fps {rate} uses it"));
-                }
+                self.frame_rate = self.frame_rate.or(rate_of(text));
                 if self.comments.len() + text.len() <= LONGEST_LINE {
                     self.comments += text;
                 }

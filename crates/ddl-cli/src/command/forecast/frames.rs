@@ -11,7 +11,10 @@ const AHEAD: usize = 64;
 /// What the lines so far state about time, and notes on them.
 #[derive(Debug, Clone)]
 pub(super) struct StatedTime {
-    pub(super) frames_a_second: Option<f64>,
+    /// Of TrajNet++ scenes.
+    pub(super) rows_a_second: Option<f64>,
+    /// Of a comment.
+    pub(super) frame_rate: Option<f64>,
     pub(super) time_unit: Option<TimeUnit>,
     pub(super) notes: Vec<String>,
 }
@@ -19,7 +22,8 @@ pub(super) struct StatedTime {
 impl StatedTime {
     fn by<R: BufRead>(frames: &mut FrameReader<R>) -> Self {
         Self {
-            frames_a_second: frames.rate(),
+            rows_a_second: frames.rate(),
+            frame_rate: frames.frame_rate(),
             time_unit: frames.time_unit(),
             notes: frames.take_notes(),
         }

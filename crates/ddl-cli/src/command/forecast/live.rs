@@ -1,20 +1,18 @@
 //! `ddl forecast -`: reads tracks from standard input and forecasts every frame.
 
 use crate::command::forecast::arguments::ForecastCommand;
+use crate::command::forecast::first_rows::FirstRows;
 use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
 use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
 use crate::interrupt::Interrupt;
 use crate::output::file_of;
-use crate::recordings;
 use crate::telling::{tell, words};
 use crate::tracks::{NOISY, steps_in_words};
 use crate::units::Units;
 use anyhow::{Context as _, bail};
-use ddl::data::{
-    Clock, Frame, Homography, LiveTracks, Misfit, Observation, PlausibilityWarning, Recording, SceneName, Window,
-};
+use ddl::data::{Clock, Frame, Homography, LiveTracks, Misfit, Observation, SceneName, Window};
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
 use std::io::{Write as _, stdout};
@@ -81,7 +79,8 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
         left_out: LeftOut::default(),
         is_empty: true,
         is_noise_told: false,
-        looked_at: false,
+        first_rows: FirstRows::default(),
+        is_anybody_whole: false,
         taken: 0,
         answered: 0,
     };
@@ -89,6 +88,7 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
     if !forecast.latest && !forecast.tracks.are_thinned() {
         stream.left_out.tell_if_few(1);
     }
+    stream.first_rows.warn();
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
         bail!(
@@ -190,8 +190,9 @@ struct Stream<'a> {
     left_out: LeftOut,
     is_empty: bool,
     is_noise_told: bool,
-    /// Whether the speeds of the first pedestrians have been checked.
-    looked_at: bool,
+    first_rows: FirstRows,
+    /// Whether somebody was seen for 8 steps.
+    is_anybody_whole: bool,
     /// Number of frames read since the last batch.
     taken: usize,
     /// Number of frames whose forecasts were written.
@@ -295,13 +296,17 @@ impl Stream<'_> {
             self.state.forget(&scene);
         }
         let (scene, rows) = (frame.scene.clone(), frame.pedestrians.len());
-        let names = frame.names.clone();
+        let (names, pedestrians) = (frame.names.clone(), frame.pedestrians.clone());
         let observed = watching.observe(frame, self.model);
         let tracks = watching
             .scenes
             .as_ref()
             .and_then(|scenes| scenes.tracks(scene.as_ref()));
         if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
+            if let Some(tick) = tracks.last_frame() {
+                let time = (tick, tracks.clock().frame_step());
+                self.first_rows.add(scene.as_ref(), time, &pedestrians);
+            }
             let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
             let doubt = Misfit::words(tracks.misfits(), |misfit| {
                 let name = names.of(misfit.pedestrian);
@@ -336,10 +341,11 @@ impl Stream<'_> {
             self.left_out.dropped(scenes);
             scenes.next_batch(LiveScenes::BATCH)
         };
-        for window in &batch.windows {
-            if !self.looked_at {
-                self.looked_at = warn_of_speeds(window)?;
-            }
+        let mut windows = batch.windows.iter();
+        let is_whole = |window: &Window| (0..window.len()).any(|i| window.quality(i).is_whole());
+        if !self.is_anybody_whole && windows.any(is_whole) {
+            self.is_anybody_whole = true;
+            self.first_rows.warn_if_fast();
         }
         match self.text(&batch.windows, &batch.scenes) {
             Ok(text) => return self.write(&text, &batch.windows),
@@ -426,27 +432,6 @@ impl ForecastOutput {
     }
 }
 
-/// Warns if the speeds in the first complete window look wrong; returns whether it warned.
-fn warn_of_speeds(window: &Window) -> anyhow::Result<bool> {
-    let whole = (0..window.len()).filter(|&i| window.quality(i).is_whole());
-    let seen: Vec<Observation> = whole
-        .flat_map(|i| {
-            let pedestrian = window.pedestrians()[i];
-            let places = window.frames().iter().zip(window.observed(i));
-            places.map(move |(&frame, &place)| Observation::new(frame, pedestrian, place))
-        })
-        .collect();
-    if seen.is_empty() {
-        return Ok(false);
-    }
-    let recording = Recording::new("standard input", window.frame_step(), seen)?;
-    // Other warnings are left out: a jump does not point to wrong units, and a pedestrian may be slow for 3.2 s.
-    if let Some(warning @ PlausibilityWarning::Fast { .. }) = &recording.speed_warning() {
-        recordings::warn_of(warning);
-    }
-    Ok(true)
-}
-
 fn to_ground(mut frame: Frame, homography: Option<&Homography>) -> anyhow::Result<Frame> {
     let Some(homography) = homography else {
         return Ok(frame);
@@ -466,10 +451,14 @@ fn clock_of(units: &Units, apart: Option<i64>, stated: &StatedTime) -> anyhow::R
     if let Some(unit) = stated.time_unit {
         return Ok(Some((Clock::with_stamps(unit), None)));
     }
+    if let Some(rate) = stated.frame_rate {
+        let clock = Clock::with_frame_time(1.0 / rate).context("standard input: the rate of a comment")?;
+        return Ok(Some((clock, Some(format!("from a comment, {rate} frames a second")))));
+    }
     let Some(apart) = apart else {
         return Ok(None);
     };
-    if let Some(rate) = stated.frames_a_second {
+    if let Some(rate) = stated.rows_a_second {
         let clock = Clock::with_frame_time(1.0 / (rate * apart as f64)).with_context(|| {
             format!(
                 "standard input: the scenes give {rate} frames per second, but the first two frames are {apart} apart"
