@@ -18,6 +18,7 @@ mod guarantee_on_real_people;
 mod guide;
 mod keep_clear;
 mod kept_memory;
+mod known_recordings;
 mod leak;
 mod leak_in_reports;
 mod live;

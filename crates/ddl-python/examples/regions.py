@@ -44,9 +44,13 @@ KINDS = ("fixed", "adaptive")
 
 
 def recordings_of(place: str) -> list[ddl.Recording]:
-    """The recordings of ``FOLDER=FPS``, by name."""
+    """The recordings of ``FOLDER=FPS``, by name; none that the default model was trained on."""
     folder, fps = place.split("=")
-    return [ddl.read(path, format="table", fps=float(fps)) for path in sorted(Path(folder).iterdir())]
+    recordings = [ddl.read(path, format="table", fps=float(fps)) for path in sorted(Path(folder).iterdir())]
+    known = [recording.name for recording in recordings if ddl.Forecaster(DEFAULT).was_trained_on(recording)]
+    if known:
+        sys.exit(f"{DEFAULT} was trained on {', '.join(known)}: its regions hold too much there")
+    return recordings
 
 
 @dataclass

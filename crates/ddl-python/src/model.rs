@@ -200,6 +200,12 @@ impl Model {
         Ok((goals, array(py, weights, [asked, k])?))
     }
 
+    /// Whether the model was trained on the tracks of the recording.
+    fn was_trained_on(&self, py: Python<'_>, recording: &Recording) -> PyResult<bool> {
+        let (model, recording) = (Arc::clone(&self.0), Arc::clone(&recording.tracks));
+        run(py, move |_| model.goal_model().trained_on(&recording).is_some())
+    }
+
     /// A page that plays moments of the recording, and text about doubtful positions.
     fn page(&self, py: Python<'_>, recording: &Recording, most: usize) -> PyResult<(String, Option<String>)> {
         let observed = WindowOptions::new(false, None, None)?;

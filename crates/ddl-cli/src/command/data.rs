@@ -8,7 +8,7 @@ use crate::units::{ReadRecording, Units};
 use crate::{output, recordings};
 use clap::Args;
 use ddl::BuiltinModel;
-use ddl::data::{Clock, PlausibilityWarning, Recording, Summary, WindowRule};
+use ddl::data::{Clock, PlausibilityWarning, Recording, Summary, Window};
 use place_memory::{MemoryOfFile, MemoryPicture};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -80,16 +80,26 @@ impl Data {
             writeln!(text, "{memory}")?;
         }
         output::print(&text)?;
-        warn_of_unfamiliar(read.iter().map(|(_, read)| &read.recording))?;
+        warn_of_model(read.iter().map(|(_, read)| &read.recording))?;
         recordings::all_read(errors, files.len())
     }
 }
 
-fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow::Result<()> {
+/// Warns of recordings that the default model was trained on, and of motions unlike those.
+fn warn_of_model<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow::Result<()> {
     let model = BuiltinModel::default();
     let (mut all, mut unfamiliar) = (0, 0);
     for recording in recordings {
-        let familiarity = model.familiarity(&recording.windows(WindowRule::Observed))?;
+        let windows = some_windows(recording);
+        if let Some(share) = model.trained_on(recording)? {
+            tell(format_args!(
+                "warning: the built-in model {model} was trained on {} ({:.0} % of its paths are known): its forecasts \
+                 of it are no test",
+                recording.name(),
+                100.0 * share
+            ));
+        }
+        let familiarity = model.familiarity(&windows)?;
         let familiarity = familiarity.concat();
         all += familiarity.len();
         unfamiliar += familiarity.iter().filter(|&&f| f < ddl::UNFAMILIAR_THRESHOLD).count();
@@ -105,6 +115,21 @@ fn warn_of_unfamiliar<'r>(recordings: impl Iterator<Item = &'r Recording>) -> an
     Ok(())
 }
 
+/// Windows of about [`SOME`] moments over the whole recording.
+fn some_windows(recording: &Recording) -> Vec<Window> {
+    let every = 1 + recording.frames().len() / SOME;
+    let (mut count, mut windows) = (0, Vec::new());
+    let _ = recording.observe_each(recording.live_tracks(), |window| {
+        if count % every == 0 {
+            windows.push(window);
+        }
+        count += 1;
+    });
+    windows
+}
+
+/// Moments whose motions are compared with those of the training.
+const SOME: usize = 5000;
 /// Least noise that is measured apart (m).
 const EXACT: f64 = 0.005;
 /// Jitter above this share of the time between two rows is printed.

@@ -219,6 +219,10 @@ class Forecaster:
         array, asked = scene(past, neighbours)
         return self._core.goals(array, asked)
 
+    def was_trained_on(self, recording: Recording) -> bool:
+        """Whether the model was trained on these tracks, under whatever name: then its errors on them are no test."""
+        return self._core.was_trained_on(recording._core)
+
     def show(self, recording: Recording, path: str | os.PathLike[str] | None = None, *, moments: int = 60) -> Page:
         """Write a page that plays the forecasts of a recording: observations, hypotheses and true paths.
 

@@ -2,7 +2,7 @@
 
 use crate::error::DdlError;
 use crate::model::ddl::Ddl;
-use crate::windows::test_set::TestSet;
+use crate::windows::test_set::{TestSet, was_trained_on_some};
 use ddl_core::WorkDone;
 use ddl_data::{Dataset, Window};
 use ddl_eval::Protocol;
@@ -44,6 +44,8 @@ pub struct Comparison {
     /// The minADE of the run minus that of the other model, with its interval; `None` where the windows start in fewer
     /// than 10 blocks of 20 s.
     pub difference: Option<PairedDifference>,
+    /// Whether the other model was trained on some of these recordings: then its errors are too small.
+    pub other_knows_them: bool,
 }
 
 /// Measures a run and another model on all validation windows of the run, as [`evaluate`](crate::evaluate) does under
@@ -79,6 +81,7 @@ pub fn compare_on_validation(
         pedestrians: windows.iter().map(Window::len).sum(),
         run: BestOf20Errors::of(&of_run),
         other: BestOf20Errors::of(&of_other),
+        other_knows_them: was_trained_on_some(other.goal_model(), dataset),
         difference: paired_difference(&[&of_run], &[&of_other], |block| block.min_ade),
     })
 }

@@ -16,6 +16,7 @@ use crate::run::model_source::ModelSource;
 use crate::run::training_data::fold_by_name;
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
+use crate::trust::fingerprints::TrackFingerprints;
 use ddl_core::ForecastError;
 use ddl_data::{Convention, Dataset, Fold, Position, Recording, WINDOW, Window};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
@@ -34,6 +35,8 @@ pub struct GoalModel {
     clusters: usize,
     /// The training motions that familiarity is measured against; `None` if too few are known.
     motions: Option<TrainingMotions>,
+    /// The motions that it was trained on, as hashes.
+    fingerprints: TrackFingerprints,
 }
 
 #[derive(Debug)]
@@ -99,7 +102,9 @@ impl GoalModel {
         let clusters = params.clusters;
         let estimator =
             GoalEstimator::new(params, library).map_err(|error| experts::unusable(&error, &run.experts()))?;
-        let motions = TrainingMotions::learn(estimator.library().tracks(), config.star.time_step);
+        let tracks = estimator.library().tracks();
+        let motions = TrainingMotions::learn(tracks, config.star.time_step);
+        let fingerprints = fingerprints_of(&run, tracks)?;
         let origin = match (&config.goals.proposal, network) {
             (Some(recipe), Some(network)) => GoalOrigin::Pooled {
                 network,
@@ -114,6 +119,7 @@ impl GoalModel {
             origin,
             clusters,
             motions,
+            fingerprints,
         })
     }
 
@@ -127,6 +133,7 @@ impl GoalModel {
             network,
             proposal,
             motions,
+            fingerprints,
         } = unpacked;
         config.goals.retrieval.check()?;
         let clusters = config.goals.retrieval.clusters;
@@ -136,6 +143,7 @@ impl GoalModel {
             origin: GoalOrigin::Proposed(proposal),
             clusters,
             motions,
+            fingerprints,
         };
         Ok((goals, network))
     }
@@ -298,6 +306,16 @@ impl GoalModel {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
     }
 
+    /// Whether the model was trained on this recording, as a whole or in part, under whatever name: the share of it that
+    /// is known, between 0 and 1.
+    pub fn trained_on(&self, recording: &Recording) -> Option<f64> {
+        self.fingerprints.known(recording)
+    }
+
+    pub(crate) fn fingerprints(&self) -> &TrackFingerprints {
+        &self.fingerprints
+    }
+
     pub(crate) fn motions(&self) -> Option<&TrainingMotions> {
         self.motions.as_ref()
     }
@@ -413,4 +431,15 @@ impl GoalModel {
 
 fn failed(error: impl std::error::Error + Send + Sync + 'static) -> ForecastError {
     ForecastError::model("goals", error)
+}
+
+/// Of the file, or of the library in runs of earlier versions, which have no such file.
+fn fingerprints_of(run: &RunDirectory, tracks: &[Vec<Position>]) -> Result<TrackFingerprints, DdlError> {
+    let path = run.fingerprints();
+    if !path.is_file() {
+        return Ok(TrackFingerprints::of(tracks.iter().map(|track| track.iter().copied())));
+    }
+    let bytes = std::fs::read(&path).map_err(|error| DdlError::io(&path, error))?;
+    TrackFingerprints::from_bytes(&bytes)
+        .ok_or_else(|| DdlError::run(&path, "is damaged; copy it again, or remove it and train again"))
 }

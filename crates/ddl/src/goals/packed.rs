@@ -1,6 +1,6 @@
 //! A model in one small safetensors file. It holds the learned tensors of both networks in half precision, each
-//! prefixed by the name of its network. One entry of the header holds the `config.json` of the run and a SHA-256 of the
-//! contents. The expert library is trajectory data and is not packed.
+//! prefixed by the name of its network, and hashes of the motions that it was trained on. One entry of the header holds
+//! the `config.json` of the run and a SHA-256 of the contents. The expert library is trajectory data and is not packed.
 
 use crate::device::Device;
 use crate::error::DdlError;
@@ -8,6 +8,7 @@ use crate::run::config::{ConfigFormat, FORMAT, RunConfig};
 use crate::run::model_source::ModelSource;
 use crate::run::sha256;
 use crate::trust::familiarity::TrainingMotions;
+use crate::trust::fingerprints::TrackFingerprints;
 use ddl_network::weights::{HalfTensor, Weights};
 use ddl_network::{ForecastWindows, NetworkError, ProposeEndpoints};
 use safetensors::SafeTensors;
@@ -19,12 +20,14 @@ use std::io::Read as _;
 use std::path::Path;
 
 /// Version of the file's layout.
-pub(crate) const LAYOUT: u32 = 3;
+pub(crate) const LAYOUT: u32 = 4;
 pub(crate) const ENTRY: &str = "ddl";
 /// Prefix of the names of the forecasting network's tensors.
 pub(crate) const NETWORK: &str = "network.";
 /// Prefix of the names of the proposal network's tensors.
 pub(crate) const PROPOSAL: &str = "proposal.";
+/// Name of the bytes of the fingerprints.
+pub(crate) const FINGERPRINTS: &str = "fingerprints";
 /// More than any realistic network takes.
 const MOST_BYTES: u64 = 1 << 28;
 
@@ -45,6 +48,7 @@ pub(crate) struct Unpacked {
     pub(crate) network: Box<dyn ForecastWindows>,
     pub(crate) proposal: Box<dyn ProposeEndpoints>,
     pub(crate) motions: Option<TrainingMotions>,
+    pub(crate) fingerprints: TrackFingerprints,
 }
 
 pub(crate) fn bytes(source: &ModelSource) -> Result<Cow<'static, [u8]>, DdlError> {
@@ -67,10 +71,16 @@ fn read(path: &Path) -> Result<Vec<u8>, DdlError> {
     Ok(bytes)
 }
 
-type Contents = (RunConfig, Option<TrainingMotions>, Vec<HalfTensor>);
+/// A packed model whose networks are not made yet.
+pub(crate) struct Contents {
+    pub(crate) config: RunConfig,
+    pub(crate) motions: Option<TrainingMotions>,
+    pub(crate) fingerprints: TrackFingerprints,
+    tensors: Vec<HalfTensor>,
+}
 
-/// The configuration, training motions and tensors of a packed model, after its digest is checked.
-fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
+/// What a packed model holds, after its digest is checked.
+pub(crate) fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     let damaged = |error: &dyn std::fmt::Display| {
         source.wrong(format!(
             "is not a complete packed model ({error}); copy it again, or pack its run again with `ddl pack`"
@@ -96,7 +106,7 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
             "has layout {layout}, this program reads {LAYOUT}; pack its run again"
         )));
     }
-    let tensors = half_tensors(&file).map_err(|problem| damaged(&problem))?;
+    let mut tensors = tensors_of(&file).map_err(|problem| damaged(&problem))?;
     // Check the digest before using the configuration.
     let parts = [config.as_str(), motions.as_deref().unwrap_or_default()];
     if digest(parts, &tensors) != sha256 {
@@ -119,13 +129,29 @@ fn contents(bytes: &[u8], source: &ModelSource) -> Result<Contents, DdlError> {
     if motions.as_ref().is_some_and(|motions| !motions.is_valid()) {
         return Err(source.wrong("has training motions with impossible numbers; pack its run again"));
     }
-    Ok((config, motions, tensors))
+    let fingerprints = tensors.iter().position(|tensor| tensor.name == FINGERPRINTS);
+    let fingerprints = fingerprints.and_then(|at| TrackFingerprints::from_bytes(&tensors.remove(at).bytes));
+    let Some(fingerprints) = fingerprints else {
+        return Err(source.wrong("has no fingerprints of its training tracks; pack its run again"));
+    };
+    Ok(Contents {
+        config,
+        motions,
+        fingerprints,
+        tensors,
+    })
 }
 
-fn half_tensors(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, String> {
+/// The type of the numbers of a tensor of this name.
+pub(crate) fn dtype_of(name: &str) -> Dtype {
+    if name == FINGERPRINTS { Dtype::U8 } else { Dtype::F16 }
+}
+
+fn tensors_of(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, String> {
     let half = |(name, view): (&str, TensorView<'_>)| {
-        if view.dtype() != Dtype::F16 {
-            return Err(format!("{name} holds {:?}, expected 16-bit floats", view.dtype()));
+        let expected = dtype_of(name);
+        if view.dtype() != expected {
+            return Err(format!("{name} holds {:?}, expected {expected:?}", view.dtype()));
         }
         Ok(HalfTensor {
             name: name.to_owned(),
@@ -137,16 +163,16 @@ fn half_tensors(file: &SafeTensors<'_>) -> Result<Vec<HalfTensor>, String> {
 }
 
 pub(crate) fn config(bytes: &[u8], source: &ModelSource) -> Result<RunConfig, DdlError> {
-    contents(bytes, source).map(|(config, ..)| config)
-}
-
-/// The configuration and the training motions, without making the networks.
-pub(crate) fn motions(bytes: &[u8], source: &ModelSource) -> Result<(RunConfig, Option<TrainingMotions>), DdlError> {
-    contents(bytes, source).map(|(config, motions, _)| (config, motions))
+    contents(bytes, source).map(|contents| contents.config)
 }
 
 pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Result<Unpacked, DdlError> {
-    let (config, motions, tensors) = contents(bytes, source)?;
+    let Contents {
+        config,
+        motions,
+        fingerprints,
+        tensors,
+    } = contents(bytes, source)?;
     source.check(&config)?;
     let Some(recipe) = &config.goals.proposal else {
         return Err(source.wrong("has no proposal network for its goals; pack another run"));
@@ -197,6 +223,7 @@ pub(crate) fn unpack(bytes: &[u8], source: &ModelSource, device: Device) -> Resu
         network,
         proposal,
         motions,
+        fingerprints,
     })
 }
 

@@ -12,7 +12,7 @@ use crate::run::directory::{RunDirectory, write_atomically};
 use crate::run::enough_weights;
 use crate::run::model_source::ModelSource;
 use crate::trust::familiarity::TrainingMotions;
-use ddl_data::Window;
+use ddl_data::{Recording, Window};
 use ddl_network::weights::load_weights;
 use ddl_network::{DeviceChoice, ForecastWindows};
 use std::path::Path;
@@ -143,10 +143,19 @@ impl BuiltinModel {
     /// None if the program was built from matching files, which a test ensures.
     pub fn familiarity(self, windows: &[Window]) -> Result<Vec<Vec<f64>>, DdlError> {
         let source = ModelSource::Builtin(self);
-        let (config, motions) = packed::motions(self.bytes(), &source)?;
-        let time_step = config.star.time_step;
-        let familiarity = |window: &Window| TrainingMotions::of_window(motions.as_ref(), window, time_step);
+        let contents = packed::contents(self.bytes(), &source)?;
+        let time_step = contents.config.star.time_step;
+        let familiarity = |window: &Window| TrainingMotions::of_window(contents.motions.as_ref(), window, time_step);
         Ok(windows.iter().map(familiarity).collect())
+    }
+
+    /// As [`GoalModel::trained_on`](crate::GoalModel::trained_on), without loading the networks.
+    ///
+    /// # Errors
+    /// As [`BuiltinModel::familiarity`].
+    pub fn trained_on(self, recording: &Recording) -> Result<Option<f64>, DdlError> {
+        let contents = packed::contents(self.bytes(), &ModelSource::Builtin(self))?;
+        Ok(contents.fingerprints.known(recording))
     }
 }
 
@@ -170,9 +179,10 @@ mod tests {
             let loaded = Ddl::builtin(model, DeviceChoice::Cpu).unwrap();
             assert_eq!(loaded.config(), &config);
             assert!(loaded.goal_model().estimator().is_none());
-            // Two bytes for each weight, and the names and configuration: a file of this size holds no tracks.
+            // Two bytes for each weight, the hashes, names and configuration: a file of this size holds no tracks.
             let numbers = loaded.parameter_count() + loaded.goal_model().parameter_count();
-            assert!(model.bytes().len() < 2 * numbers + 20_000, "{model}");
+            let hashes = loaded.goal_model().fingerprints().to_bytes().len();
+            assert!(model.bytes().len() < 2 * numbers + hashes + 20_000, "{model}");
             assert_eq!(model.name().parse::<BuiltinModel>().unwrap(), model);
         }
         let error = "corridor".parse::<BuiltinModel>().unwrap_err().to_string();

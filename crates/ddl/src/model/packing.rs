@@ -2,10 +2,10 @@
 
 use crate::error::DdlError;
 use crate::goals::model::GoalModel;
-use crate::goals::packed::{ENTRY, Header, LAYOUT, NETWORK, PROPOSAL, digest};
+use crate::goals::packed::{ENTRY, FINGERPRINTS, Header, LAYOUT, NETWORK, PROPOSAL, digest, dtype_of};
 use ddl_network::ForecastWindows;
 use ddl_network::weights::HalfTensor;
-use safetensors::tensor::{Dtype, TensorView};
+use safetensors::tensor::TensorView;
 use std::collections::HashMap;
 
 pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<Vec<u8>, DdlError> {
@@ -23,6 +23,12 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
             tensors.push(HalfTensor { name, ..tensor });
         }
     }
+    let bytes = goals.fingerprints().to_bytes();
+    tensors.push(HalfTensor {
+        name: FINGERPRINTS.to_owned(),
+        shape: vec![bytes.len()],
+        bytes,
+    });
     let failed = |error: &dyn std::fmt::Display| source.wrong(format!("cannot be packed: {error}"));
     let config = serde_json::to_string(goals.config()).map_err(|error| failed(&error))?;
     let motions = goals.motions().map(serde_json::to_string).transpose();
@@ -37,7 +43,7 @@ pub(crate) fn pack(network: &dyn ForecastWindows, goals: &GoalModel) -> Result<V
     let views = tensors
         .iter()
         .map(|tensor| {
-            let view = TensorView::new(Dtype::F16, tensor.shape.clone(), &tensor.bytes)?;
+            let view = TensorView::new(dtype_of(&tensor.name), tensor.shape.clone(), &tensor.bytes)?;
             Ok((&tensor.name, view))
         })
         .collect::<Result<Vec<_>, safetensors::SafeTensorError>>()

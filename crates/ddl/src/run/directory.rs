@@ -7,6 +7,7 @@
 //! | `optimizer.safetensors` | weights, Adam's state and progress of an unfinished run |
 //! | `epochs/NNN.safetensors` | weights after some of the epochs |
 //! | `experts.safetensors` | tracks of the expert library |
+//! | `fingerprints.bin` | hashes of the motions that it was trained on |
 //! | `proposal.safetensors` | weights of the proposal network; present once it is trained |
 //! | `proposal-state.safetensors` | weights, Adam's state and progress of its unfinished training |
 //! | `model.safetensors` | the final weights; present once training is finished |
@@ -63,6 +64,11 @@ impl RunDirectory {
     /// Tracks of the expert library.
     pub(crate) fn experts(&self) -> PathBuf {
         self.0.join("experts.safetensors")
+    }
+
+    /// Hashes of the motions that it was trained on.
+    pub(crate) fn fingerprints(&self) -> PathBuf {
+        self.0.join("fingerprints.bin")
     }
 
     /// Weights of the proposal network.

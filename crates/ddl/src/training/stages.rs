@@ -5,7 +5,7 @@ use crate::error::DdlError;
 use crate::goals::model::GoalModel;
 use crate::model::ddl::Ddl;
 use crate::run::config::{FORMAT, RunConfig, TrainingData};
-use crate::run::directory::{RunDirectory, SAVE_EVERY};
+use crate::run::directory::{RunDirectory, SAVE_EVERY, write_atomically};
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::starting_model::InitialModel;
 use crate::run::training_data::{digest, digest_of_recording, fold_by_name, learned_from, training_rule};
@@ -14,6 +14,7 @@ use crate::training::early_stopping::{EarlyStopping, better_goals};
 use crate::training::goals::{self, GoalStage};
 use crate::training::request::{KeptEpochs, TrainingProgress, TrainingRequest, TrainingStage, TrainingStep};
 use crate::training::starting_weights::StartingWeights;
+use crate::trust::fingerprints::{TrackFingerprints, tracks_of};
 use ddl_data::{Convention, Dataset, Fold, Window, WindowRule};
 use ddl_goal::{GoalEstimatorParams, RetrievalFrame};
 use ddl_network::weights::{Weights, load_weights, save_weights};
@@ -55,6 +56,13 @@ pub(super) fn train(
         device,
     );
     let _claimed = run.claim(&config)?;
+    if !run.fingerprints().is_file() {
+        let mut fingerprints = TrackFingerprints::of(learned_from(&fold).flat_map(tracks_of));
+        if let Some(start) = &start {
+            fingerprints = fingerprints.with(&start.fingerprints);
+        }
+        write_atomically(&run.fingerprints(), &fingerprints.to_bytes())?;
+    }
     let (network, proposal) = start.map_or((None, None), |start| (Some(start.network), start.proposal));
     let better = |trained| match starting_weights()? {
         None => Ok(trained),

@@ -7,6 +7,7 @@ use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
 use crate::run::sha256;
 use crate::run::starting_model::InitialModel;
+use crate::trust::fingerprints::TrackFingerprints;
 use ddl_network::weights::Weights;
 use ddl_network::{DeviceChoice, StarConfig};
 use sha2::{Digest as _, Sha256};
@@ -17,6 +18,7 @@ pub(crate) struct StartingWeights {
     /// `None` if all goals are retrieved.
     pub(crate) proposal: Option<Weights>,
     pub(crate) record: InitialModel,
+    pub(crate) fingerprints: TrackFingerprints,
 }
 
 impl StartingWeights {
@@ -56,6 +58,7 @@ impl StartingWeights {
             network,
             proposal,
             record,
+            fingerprints: model.goal_model().fingerprints().clone(),
         })
     }
 }

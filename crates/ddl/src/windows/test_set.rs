@@ -4,13 +4,14 @@
 use crate::error::DdlError;
 use crate::error::more_for_validation;
 use crate::goals::model::GoalModel;
-use crate::run::training_data::{digest, digest_of_recording, fold_by_name};
+use crate::run::builtin_model::BuiltinModel;
+use crate::run::training_data::{digest, fold_by_name};
 use crate::run::validation_part::ValidationPart;
 use crate::windows::split::Split;
 use ddl_data::{Convention, Dataset, Fold, PedestrianId, Recording, Window, WindowRule};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Seed of the test subset, fixed so that all runs are tested on the same windows.
 const SUBSET_SEED: u64 = 0;
@@ -40,9 +41,10 @@ impl TestSet {
         let data = &goals.config().data;
         let wrong = |problem: String| Err(goals.source().wrong(problem));
         let is_own = dataset.convention() == Convention::Own;
+        let is_of_own = data.convention == Convention::Own;
         match on {
             Split::Test if is_own => return Self::of_own(goals, dataset, pedestrians),
-            Split::Validation if is_own && !was_trained_on_some(goals, dataset) => {
+            Split::Validation if is_own && !(is_of_own && was_trained_on_some(goals, dataset)) => {
                 return Self::own_validation(goals, dataset, whole, pedestrians);
             }
             _ => {}
@@ -101,6 +103,8 @@ impl TestSet {
         whole: &[String],
         pedestrians: Option<usize>,
     ) -> Result<Self, DdlError> {
+        let recordings: Vec<&Recording> = dataset.recordings().iter().collect();
+        ensure_unknown(goals, &recordings)?;
         let part = if whole.is_empty() {
             ValidationPart::of_own(&dataset.whole())
         } else {
@@ -133,31 +137,9 @@ impl TestSet {
         if tested.is_empty() {
             tested = recordings.iter().collect();
         }
-        let learned: BTreeSet<&String> = data.recordings.values().collect();
-        let learned_recordings = tested
-            .iter()
-            .filter(|recording| learned.contains(&digest_of_recording(recording)));
-        let learned_recordings: Vec<&str> = learned_recordings.map(|recording| recording.name()).collect();
-        let namesake = tested
-            .iter()
-            .find(|recording| data.recordings.contains_key(recording.name()));
-        if let (true, Some(namesake)) = (learned_recordings.is_empty(), namesake) {
-            return Err(goals.source().wrong(format!(
-                "was trained on a recording with the same name {0:?}, but with other frames or positions, so {0:?} is \
-                 no independent test if it was cut, resampled or rounded; rename the file if it shows another time or \
-                 place",
-                namesake.name()
-            )));
-        }
-        if !learned_recordings.is_empty() {
-            return Err(goals.source().wrong(format!(
-                "was trained on {}; evaluate it on its validation part, on other recordings, or on a recording that it \
-                 is trained without (`ddl train --convention own --fold NAME`)",
-                learned_recordings.join(", ")
-            )));
-        }
         let rule = dataset.convention().headline_rule();
         let windows: Vec<Window> = tested.iter().flat_map(|r| r.windows(rule)).collect();
+        ensure_unknown(goals, &tested)?;
         if windows.is_empty() {
             return Err(goals.source().wrong(
                 "cannot be evaluated on these recordings: no pedestrian in them was observed at 20 consecutive time \
@@ -309,14 +291,40 @@ impl TestSet {
     }
 }
 
-/// Whether the model was trained or validated on one of these recordings, or on one of the same name.
-fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
-    let learned = &goals.config().data.recordings;
-    let digests: BTreeSet<&String> = learned.values().collect();
-    dataset
-        .recordings()
-        .iter()
-        .any(|recording| learned.contains_key(recording.name()) || digests.contains(&digest_of_recording(recording)))
+/// Whether the model was trained or validated on one of these recordings.
+pub(crate) fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
+    let mut recordings = dataset.recordings().iter();
+    recordings.any(|recording| goals.trained_on(recording).is_some())
+}
+
+/// No recording is a test that the model was trained on.
+fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), DdlError> {
+    let known = recordings.iter().filter_map(|recording| {
+        let share = goals.trained_on(recording)?;
+        let name = recording.name();
+        Some(format!("{name} ({:.0} % of its paths are known)", 100.0 * share))
+    });
+    let known: Vec<String> = known.collect();
+    if known.is_empty() {
+        return Ok(());
+    }
+    let mut others = BuiltinModel::ALL.into_iter().filter(|model| {
+        let knows = |recording: &&Recording| model.trained_on(recording).is_ok_and(|known| known.is_some());
+        !recordings.iter().any(knows)
+    });
+    let other = match others.next() {
+        _ if goals.config().data.convention == Convention::Own => {
+            "on its validation part (--validation), or on a recording that it is trained without (`ddl train \
+             --convention own --fold NAME`)"
+                .to_owned()
+        }
+        Some(model) => format!("or take a model that was trained without it (--model {model})"),
+        None => "or train a model without it".to_owned(),
+    };
+    Err(goals.source().wrong(format!(
+        "was trained on {}; evaluate it on other recordings, {other}",
+        known.join(", ")
+    )))
 }
 
 /// A short name in the results for recordings that are tested together.

@@ -87,6 +87,7 @@ fn facts(compared: &Comparison) -> serde_json::Value {
         "pedestrians": compared.pedestrians,
         "run": compared.run,
         "builtin": compared.other,
+        "builtin_was_trained_on_them": compared.other_knows_them,
         "min_ade_difference": paired.map(|paired| {
             let interval = paired.difference;
             json!({"mean": interval.mean, "low": interval.low, "high": interval.high, "p_value": paired.p_value})
@@ -94,8 +95,7 @@ fn facts(compared: &Comparison) -> serde_json::Value {
     })
 }
 
-/// Evaluates both models; `None` without a validation part or a trained network. On ETH/UCY the built-in model may have
-/// been trained on these recordings.
+/// Evaluates both models; `None` without a validation part or a trained network.
 pub(super) fn compare_with_builtin(
     request: &TrainingRequest,
     dataset: &Dataset,
@@ -125,9 +125,17 @@ fn compared_words(compared: &Comparison) -> String {
         ..
     } = compared;
     let builtin = BuiltinModel::default();
+    let known = if compared.other_knows_them {
+        format!(
+            "\nwarning: {builtin} was trained on recordings of the validation part: its errors, and those of a model \
+             that starts from it, are too small"
+        )
+    } else {
+        String::new()
+    };
     format!(
         "on the validation part ({pedestrians} pedestrian-windows), minADE/minFDE of 20 in metres: this model \
-         {:.3}/{:.3}, the built-in model {builtin} {:.3}/{:.3}\n{}",
+         {:.3}/{:.3}, the built-in model {builtin} {:.3}/{:.3}{known}\n{}",
         run.min_ade,
         run.min_fde,
         other.min_ade,

@@ -1,0 +1,241 @@
+//! Which tracks a model was trained on, as hashes: they tell a recording again, and hold no track.
+//!
+//! A track crosses the lines of a grid. Five crossings in a row, each with its place on the line to 10 cm, make a
+//! hash. It is the same in another file of the recording: at other times or another rate, rounded to centimetres, with
+//! other names, cut, with exchanged axes, or backwards. Of a recording in the files of two conventions 34 % (`eth`,
+//! whose rows lie at other times there) to 99 % of the hashes agree, of two recordings of one place at most 1.1 %.
+
+use ddl_data::{Position, Recording};
+use sha2::{Digest as _, Sha256};
+use std::collections::BTreeSet;
+
+/// Crossings of a hash.
+const CROSSINGS: usize = 5;
+/// Distance of the lines, and length of a cell on them (m).
+const LINES: f64 = 1.0;
+const CELL: f64 = 0.1;
+/// Lines and borders of cells lie here beside round numbers (m), where rounding to centimetres moves nothing across.
+const OFF_LINE: f64 = 0.0049;
+const OFF_CELL: f64 = 0.005;
+/// A longer step (m) is no walk: another track begins.
+const LONGEST_STEP: f64 = 5.0;
+/// At most this many hashes are kept, 64 KiB.
+const MOST: usize = 1 << 14;
+/// A recording is known from this share of its hashes on.
+const KNOWN: f64 = 0.1;
+/// Fewer hashes than this agree by chance.
+const FEWEST: usize = 3;
+
+/// Hashes of the tracks that a model was trained on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct TrackFingerprints {
+    /// Only hashes that are a multiple of this power of two are kept.
+    one_in: u32,
+    /// In ascending order.
+    hashes: Vec<u32>,
+}
+
+impl TrackFingerprints {
+    /// The hashes of these tracks (m).
+    pub(crate) fn of(tracks: impl IntoIterator<Item = impl IntoIterator<Item = Position>>) -> Self {
+        Self::limited(1, tracks.into_iter().flat_map(hashes).collect())
+    }
+
+    /// The hashes of both.
+    #[cfg(any(test, feature = "training"))]
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        let hashes = self.hashes.iter().chain(&other.hashes).copied().collect();
+        Self::limited(self.one_in.max(other.one_in), hashes)
+    }
+
+    fn limited(mut one_in: u32, mut hashes: BTreeSet<u32>) -> Self {
+        hashes.retain(|hash| hash % one_in == 0);
+        while hashes.len() > MOST {
+            one_in *= 2;
+            hashes.retain(|hash| hash % one_in == 0);
+        }
+        Self {
+            one_in,
+            hashes: hashes.into_iter().collect(),
+        }
+    }
+
+    /// The share of the hashes of a recording that are known, if it is one of those that the model was trained on.
+    pub(crate) fn known(&self, recording: &Recording) -> Option<f64> {
+        let all = tracks_of(recording).into_iter().flat_map(hashes);
+        let all: BTreeSet<u32> = all.filter(|hash| hash % self.one_in == 0).collect();
+        let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok());
+        let known = known.count();
+        let share = known as f64 / all.len().max(1) as f64;
+        (known >= FEWEST && share >= KNOWN).then_some(share)
+    }
+
+    /// Little-endian numbers of 32 bits: the divisor, then the hashes.
+    pub(crate) fn to_bytes(&self) -> Vec<u8> {
+        let numbers = std::iter::once(&self.one_in).chain(&self.hashes);
+        numbers.flat_map(|number| number.to_le_bytes()).collect()
+    }
+
+    /// Reads what [`to_bytes`](Self::to_bytes) has written; `None` for anything else.
+    pub(crate) fn from_bytes(bytes: &[u8]) -> Option<Self> {
+        let (numbers, []) = bytes.as_chunks::<4>() else {
+            return None;
+        };
+        let mut numbers = numbers.iter().copied().map(u32::from_le_bytes);
+        let one_in = numbers.next()?;
+        let hashes: Vec<u32> = numbers.collect();
+        let fits = one_in.is_power_of_two() && hashes.len() <= MOST && hashes.is_sorted();
+        fits.then_some(Self { one_in, hashes })
+    }
+}
+
+/// The tracks of a recording.
+pub(crate) fn tracks_of(recording: &Recording) -> Vec<Vec<Position>> {
+    let mut rows: Vec<_> = recording.observations().iter().collect();
+    rows.sort_by_key(|row| row.pedestrian);
+    let tracks = rows.chunk_by(|a, b| a.pedestrian == b.pedestrian);
+    tracks
+        .map(|track| track.iter().map(|row| row.position).collect())
+        .collect()
+}
+
+/// Where a track crosses a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Crossing {
+    /// Of the line x = constant (0) or y = constant.
+    axis: usize,
+    line: i64,
+    cell: i64,
+}
+
+fn hashes(track: impl IntoIterator<Item = Position>) -> Vec<u32> {
+    let mut hashes = Vec::new();
+    let mut crossings: Vec<Crossing> = Vec::new();
+    let mut before: Option<Position> = None;
+    for position in track {
+        if let Some(before) = before.replace(position) {
+            if (position[0] - before[0]).hypot(position[1] - before[1]) > LONGEST_STEP {
+                crossings.clear();
+            }
+            for crossing in crossings_of(before, position) {
+                // Whoever stands on a line crosses it again and again.
+                if crossings.last() != Some(&crossing) {
+                    crossings.push(crossing);
+                    hashes.extend(crossings.last_chunk().map(hash));
+                }
+            }
+        }
+    }
+    hashes
+}
+
+/// The lines that a step crosses, in order.
+fn crossings_of(from: Position, to: Position) -> Vec<Crossing> {
+    let mut crossings: Vec<(f64, Crossing)> = Vec::new();
+    if (to[0] - from[0]).hypot(to[1] - from[1]) > LONGEST_STEP {
+        return Vec::new();
+    }
+    for axis in [0, 1] {
+        let number = |position: Position| ((position[axis] - OFF_LINE) / LINES).floor() as i64;
+        let (start, end) = (number(from), number(to));
+        for line in start.min(end) + 1..=start.max(end) {
+            let share = (line as f64 * LINES + OFF_LINE - from[axis]) / (to[axis] - from[axis]);
+            let along = from[1 - axis] + share * (to[1 - axis] - from[1 - axis]);
+            let cell = ((along - OFF_CELL) / CELL).floor() as i64;
+            crossings.push((share, Crossing { axis, line, cell }));
+        }
+    }
+    crossings.sort_by(|a, b| a.0.total_cmp(&b.0));
+    crossings.into_iter().map(|(_, crossing)| crossing).collect()
+}
+
+/// The hash of these crossings, of both directions and with either name of the axes.
+fn hash(crossings: &[Crossing; CROSSINGS]) -> u32 {
+    let exchanged = crossings.map(|crossing| Crossing {
+        axis: 1 - crossing.axis,
+        ..crossing
+    });
+    let backwards = |mut crossings: [Crossing; CROSSINGS]| {
+        crossings.reverse();
+        crossings
+    };
+    let first = (*crossings).min(exchanged);
+    let first = first.min(backwards(*crossings)).min(backwards(exchanged));
+    let mut hasher = Sha256::new();
+    for Crossing { axis, line, cell } in first {
+        for number in [axis as i64, line, cell] {
+            hasher.update(number.to_le_bytes());
+        }
+    }
+    let [a, b, c, d, ..]: [u8; 32] = hasher.finalize().into();
+    u32::from_le_bytes([a, b, c, d])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ddl_data::{Dataset, Observation};
+
+    fn fingerprints_of(recordings: &[Recording]) -> TrackFingerprints {
+        TrackFingerprints::of(recordings.iter().flat_map(tracks_of))
+    }
+
+    fn changed(recording: &Recording, change: impl Fn(Observation) -> Option<Observation>) -> Recording {
+        let rows = recording.observations().iter().copied();
+        Recording::new("other", recording.frame_step(), rows.filter_map(change).collect()).unwrap()
+    }
+
+    fn moved(row: Observation, change: impl Fn(f64) -> f64) -> Observation {
+        Observation {
+            position: row.position.map(change),
+            ..row
+        }
+    }
+
+    /// What another file of the same recording may change, and how much of it must be known then.
+    #[test]
+    fn a_recording_is_known_again() {
+        let recordings = Dataset::simulated(3).recordings().to_vec();
+        let learned = fingerprints_of(&recordings[..2]);
+        let first = &recordings[0];
+        let half = first.frames()[first.frames().len() / 2];
+        let known = |least: f64, change: &dyn Fn(Observation) -> Option<Observation>| {
+            let share = learned.known(&changed(first, change)).unwrap();
+            assert!(share >= least, "{share} {least}");
+        };
+        known(1.0, &Some);
+        known(0.8, &|row| Some(moved(row, |x| (100.0 * x).round() / 100.0)));
+        known(0.5, &|row| Some(moved(row, |x| (100.0 * x).floor() / 100.0)));
+        known(1.0, &|row| {
+            let [x, y] = row.position;
+            let position = [y, x];
+            Some(Observation { position, ..row })
+        });
+        known(1.0, &|row| {
+            let frame = 70_000 - 3 * row.frame;
+            Some(Observation { frame, ..row })
+        });
+        known(1.0, &|row| (row.frame >= half).then_some(row));
+        // Every other row is lost.
+        known(0.3, &|row| (row.frame / first.frame_step() % 2 == 0).then_some(row));
+        for other in &recordings[2..] {
+            assert_eq!(learned.known(other), None, "{}", other.name());
+        }
+    }
+
+    #[test]
+    fn as_many_hashes_as_fit_are_kept_as_bytes() {
+        let recordings = Dataset::simulated(3).recordings().to_vec();
+        let all = fingerprints_of(&recordings);
+        let both = fingerprints_of(&recordings[..2]).with(&fingerprints_of(&recordings[2..]));
+        assert_eq!(all, both);
+        assert!(all.hashes.len() > 1000 && all.hashes.len() <= MOST);
+        let many = TrackFingerprints::limited(1, (0..100_000).collect());
+        assert_eq!((many.one_in, many.hashes.len()), (8, 12_500));
+        let bytes = all.to_bytes();
+        assert_eq!(TrackFingerprints::from_bytes(&bytes), Some(all));
+        for wrong in [&bytes[1..], &[3, 0, 0, 0], &[]] {
+            assert_eq!(TrackFingerprints::from_bytes(wrong), None);
+        }
+    }
+}

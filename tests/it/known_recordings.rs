@@ -1,0 +1,64 @@
+//! Recordings that a model was trained on are told again, in whatever file they are.
+
+use ddl::BuiltinModel;
+use ddl::data::{Convention, Dataset, Format, Observation, Recording, locate, write_recording};
+use ddl_tests::place::Place;
+use ddl_tests::skip::skip;
+
+fn dataset(convention: Convention) -> Option<Dataset> {
+    let folder = locate(convention, None).map_or_else(skip, Some)?;
+    Some(Dataset::load(convention, &folder).unwrap())
+}
+
+/// The built-in models were trained on files of the convention `star`. Those of `social-gan` have other roundings,
+/// axes, and for `eth` other times.
+#[test]
+fn recordings_are_known_in_the_files_of_each_convention() {
+    for convention in [Convention::Star, Convention::SocialGan] {
+        let Some(dataset) = dataset(convention) else {
+            continue;
+        };
+        for model in BuiltinModel::ALL {
+            let fold = dataset.fold(model.name()).unwrap();
+            for recording in fold.test_recordings() {
+                let known = model.trained_on(recording).unwrap();
+                assert_eq!(known, None, "{convention}: {model}, {}", recording.name());
+            }
+            for recording in fold.training_recordings() {
+                let known = model.trained_on(recording).unwrap();
+                assert!(
+                    known > Some(0.2),
+                    "{convention}: {model}, {}: {known:?}",
+                    recording.name()
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_renamed_training_recording_is_no_test() {
+    let Some(dataset) = dataset(Convention::Star) else {
+        return;
+    };
+    let place = Place::empty();
+    let rounded = |row: &Observation| Observation {
+        position: row.position.map(|x| (100.0 * x).round() / 100.0),
+        ..*row
+    };
+    let of_eth = dataset.recording("eth").unwrap();
+    let rows: Vec<Observation> = of_eth.observations().iter().map(rounded).collect();
+    let of_eth = Recording::new("yard", of_eth.frame_step(), rows).unwrap();
+    place.write("obsmat.txt", write_recording(&of_eth, Format::Obsmat).unwrap());
+    let told = ["hotel", "was trained on obsmat (", "% of its paths"];
+    for line in [
+        "evaluate --data obsmat.txt",
+        "evaluate --data obsmat.txt --validation",
+        "data obsmat.txt",
+    ] {
+        let said = place.run(line);
+        assert_eq!(said.code == Some(0), line.starts_with("data"), "{said:?}");
+        assert!(told.iter().all(|told| said.stderr.contains(told)), "{}", said.stderr);
+    }
+    let _ = place.ok("evaluate --data obsmat.txt --model eth --protocol fair --test-pedestrians 20 --threads 1");
+}
