@@ -306,8 +306,8 @@ impl GoalModel {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
     }
 
-    /// Whether the model was trained on this recording, as a whole or in part, under whatever name: the share of it that
-    /// is known, between 0 and 1.
+    /// Whether the model was trained on this recording, as a whole or in part, under whatever name: the share of it
+    /// that is known, between 0 and 1.
     pub fn trained_on(&self, recording: &Recording) -> Option<f64> {
         self.fingerprints.known(recording)
     }
