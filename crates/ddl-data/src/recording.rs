@@ -1,6 +1,6 @@
 //! A recording: the positions of all pedestrians of one scene over time.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -123,10 +123,9 @@ impl Recording {
 
     /// The differences of frame numbers between successive rows of each pedestrian.
     pub(crate) fn differences(&self) -> Vec<i64> {
-        let tracks = self.tracks();
-        let differences = tracks
-            .values()
-            .flat_map(|track| track.array_windows().map(|[before, row]| row.frame - before.frame));
+        let mut last_frames = HashMap::new();
+        let rows = self.observations.iter();
+        let differences = rows.filter_map(|row| Some(row.frame - last_frames.insert(row.pedestrian, row.frame)?));
         differences.collect()
     }
 

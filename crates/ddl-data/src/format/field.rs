@@ -16,9 +16,20 @@ const QUOTED: usize = 40;
 /// Longest word that names a pedestrian, in bytes.
 const LONGEST_WORD: usize = 256;
 
+/// A field without blanks around it. Most fields have none.
+pub(super) fn trimmed(field: &str) -> &str {
+    let is_letter = |byte: Option<&u8>| byte.is_none_or(u8::is_ascii_graphic);
+    let bytes = field.as_bytes();
+    if is_letter(bytes.first()) && is_letter(bytes.last()) {
+        field
+    } else {
+        field.trim()
+    }
+}
+
 /// A frame or pedestrian number. Files write them as `12`, `12.0` or `1.2e1`.
 pub(super) fn integer(text: &str, name: &str) -> Result<i64, String> {
-    let text = text.trim();
+    let text = trimmed(text);
     let number = text.parse::<i64>().ok().or_else(|| {
         let number = text.parse::<f64>().ok()?;
         // Within the limit every whole `f64` is exactly an `i64`.
@@ -108,7 +119,7 @@ impl PedestrianField {
 /// A pedestrian: a number as [`integer`] parses it, or a word. Fractions, NaN, infinite numbers and empty fields are
 /// refused. Whole numbers that are too large are words.
 pub(super) fn pedestrian(text: &str, name: &str) -> Result<PedestrianField, String> {
-    let text = text.trim();
+    let text = trimmed(text);
     match integer(text, name) {
         Ok(number) => {
             let is_plain = matches!(PedestrianName::of_text(text), PedestrianName::Number(_));
@@ -148,7 +159,7 @@ fn is_fraction_or_infinite(text: &str) -> bool {
 
 /// A coordinate in metres, written in units of which `per_metre` make a metre.
 pub(super) fn coordinate(text: &str, name: &str, per_metre: f64) -> Result<f64, String> {
-    let text = text.trim();
+    let text = trimmed(text);
     match text.parse::<f64>().map(|number| number / per_metre) {
         Ok(number) if number.abs() <= COORDINATE_LIMIT => Ok(number),
         Ok(number) if number.is_finite() => Err(format!(

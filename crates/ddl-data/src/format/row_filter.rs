@@ -19,7 +19,7 @@ const MOST_REASONS: usize = 20;
 const UNKNOWN: &str = "?";
 
 /// The rows that count, and those left out so far.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct RowFilter {
     /// The column of classes, and the class that is read; `None` for all but vehicles.
     class: Option<(usize, Option<&'static str>)>,

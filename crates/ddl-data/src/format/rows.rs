@@ -93,7 +93,11 @@ fn restarts(rows: &[TrackRow]) -> usize {
         let pedestrians: BTreeSet<&PedestrianField> = part.iter().map(|row| &row.pedestrian).collect();
         changes.count() >= pedestrians.len()
     };
-    if parts.iter().all(is_crowd) { parts.len() - 1 } else { 0 }
+    if parts.len() > 1 && parts.iter().all(is_crowd) {
+        parts.len() - 1
+    } else {
+        0
+    }
 }
 
 /// Sorts the rows by frame and pedestrian, and reports the first duplicate of the file.
@@ -110,7 +114,7 @@ fn refuse_duplicates(
         None => Ok(()),
         Some(pair) => {
             let (frame, pedestrian) = key(&pair[1]);
-            let problem = duplicate(names.of(pedestrian), &when(frame, unit), pair[0].1.line);
+            let problem = duplicate(names.of(pedestrian), &when(frame, unit), pair[0].1.line_number());
             Err(pair[1].1.wrong(origin, problem))
         }
     }

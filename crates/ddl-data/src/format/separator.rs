@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::error::FormatError;
+use crate::format::field::trimmed;
 use crate::format::place::FilePlace;
 
 /// What stands between the fields of a line.
@@ -63,20 +64,47 @@ impl Separator {
 
     /// The fields of a line, without blanks around them and quotes.
     pub(super) fn fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {
+        let mut fields = Vec::new();
+        self.split(text, line, origin, &mut fields)?;
+        Ok(fields)
+    }
+
+    /// As [`fields`](Self::fields), into a list that is used again for the next line.
+    pub(super) fn split<'a>(
+        self,
+        text: &'a str,
+        line: usize,
+        origin: &str,
+        fields: &mut Vec<Cow<'a, str>>,
+    ) -> Result<(), FormatError> {
+        fields.clear();
         if self == Self::Blanks {
-            let fields = text.split_ascii_whitespace();
-            return Ok(fields.map(|field| field.trim_matches('"').into()).collect());
+            let words = text.split_ascii_whitespace();
+            fields.extend(words.map(|field| Cow::from(field.trim_matches('"'))));
+            return Ok(());
         }
-        // A CSV reader is costly to create for every line, and is only needed for quoted fields.
         let plain = text.trim_end_matches(['\r', '\n']);
-        if plain.contains('\r') {
-            let problem = "a carriage return stands within the line; end each line with a line feed";
-            return Err(FilePlace::line(line).wrong(origin, problem));
+        let (letter, mut start) = (self.letter() as u8, 0);
+        for (at, &byte) in plain.as_bytes().iter().enumerate() {
+            match byte {
+                b'\r' | b'"' if plain.contains('\r') => {
+                    let problem = "a carriage return stands within the line; end each line with a line feed";
+                    return Err(FilePlace::line(line).wrong(origin, problem));
+                }
+                // A CSV reader is costly to create for every line, and is only needed for quoted fields.
+                b'"' => {
+                    *fields = self.quoted_fields(text, line, origin)?;
+                    return Ok(());
+                }
+                _ if byte == letter => {
+                    fields.push(trimmed(&plain[start..at]).into());
+                    start = at + 1;
+                }
+                _ => {}
+            }
         }
-        if !plain.contains('"') {
-            return Ok(plain.split(self.letter()).map(|field| field.trim().into()).collect());
-        }
-        self.quoted_fields(text, line, origin)
+        fields.push(trimmed(&plain[start..]).into());
+        Ok(())
     }
 
     fn quoted_fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {

@@ -9,6 +9,9 @@ use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
 use crate::format::track_columns::TrackColumns;
 
+/// Bytes of the shortest row.
+const SHORTEST_ROW: usize = 7;
+
 /// The observations of a file of text.
 #[derive(Debug)]
 pub(super) struct TextFile {
@@ -34,11 +37,8 @@ pub(super) fn parse(text: &str, origin: &str, format: Format, choice: &ColumnCho
     let (mut columns, is_header) = TrackColumns::of((format, choice), &comments, first, first_line, origin)?;
     let first = (!is_header).then_some((first_line, first));
     let rows = first.into_iter().chain(lines);
-    columns.look_at_all(rows.clone().map(|(_, text)| text));
-    let mut read = Vec::new();
-    for (line, text) in rows {
-        read.extend(columns.row(text, line, origin)?);
-    }
+    let ends = text.bytes().filter(|&byte| byte == end as u8).count();
+    let read = columns.all_rows(rows, (ends + 1).min(text.len() / SHORTEST_ROW), origin)?;
     if read.is_empty()
         && let Some(rows) = columns.left_out()
     {

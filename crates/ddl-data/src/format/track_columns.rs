@@ -110,8 +110,8 @@ impl TrackColumns {
                 Ok((Self::named(header, names, separator, choice), true))
             }
             Err((field, problem)) => {
-                let field = field.map(|index| index + 1);
-                Err(FilePlace { line, field }.wrong(origin, problem))
+                let place = field.map_or(FilePlace::line(line), |index| FilePlace::field(line, index + 1));
+                Err(place.wrong(origin, problem))
             }
         }
     }
@@ -221,17 +221,45 @@ impl TrackColumns {
         is_comment(text) && !(fields.len() == self.names.len() && has_time())
     }
 
-    /// Finds out what the column of the time counts: a fraction in any row shows seconds.
-    pub(super) fn look_at_all<'a>(&mut self, rows: impl Iterator<Item = &'a str>) {
-        let rows = rows.filter(|text| !is_comment(text));
-        let mut times = rows.filter_map(|text| self.separator.field(text, self.frame));
-        let shown = match self.time {
-            TimeColumn::Known(_) => None,
-            TimeColumn::Time => times.next(),
-            TimeColumn::Frame => times.find(|time| field::has_fraction(time)),
-        };
-        let shown = shown.map(Cow::into_owned);
-        self.look_at(shown.as_deref());
+    /// The observations of all rows of a file, each with its line. A fraction in the column of the frame shows seconds;
+    /// then the rows before it are read again.
+    pub(super) fn all_rows<'a>(
+        &mut self,
+        rows: impl Iterator<Item = (usize, &'a str)> + Clone,
+        most: usize,
+        origin: &str,
+    ) -> Result<Vec<TrackRow>, FormatError> {
+        if self.time == TimeColumn::Time {
+            let mut times = rows.clone().filter(|(_, text)| !is_comment(text));
+            let time = times.find_map(|(_, text)| self.separator.field(text, self.frame));
+            self.look_at(time.map(Cow::into_owned).as_deref());
+        }
+        let before = (self.filter.clone(), self.constant);
+        if let Some(read) = self.rows_in_known_unit(rows.clone(), most, origin)? {
+            return Ok(read);
+        }
+        (self.filter, self.constant) = before;
+        Ok(self.rows_in_known_unit(rows, most, origin)?.unwrap_or_default())
+    }
+
+    /// `None` as soon as a row shows that the frames are seconds.
+    fn rows_in_known_unit<'a>(
+        &mut self,
+        rows: impl Iterator<Item = (usize, &'a str)>,
+        most: usize,
+        origin: &str,
+    ) -> Result<Option<Vec<TrackRow>>, FormatError> {
+        let (mut read, mut fields) = (Vec::with_capacity(most), Vec::new());
+        for (line, text) in rows {
+            self.separator.split(text, line, origin, &mut fields)?;
+            let time = fields.get(self.frame).filter(|_| self.time == TimeColumn::Frame);
+            if let Some(time) = time.filter(|time| field::has_fraction(time) && !is_comment(text)) {
+                self.look_at(Some(time));
+                return Ok(None);
+            }
+            read.extend(self.row_of(text, &fields, line, origin)?);
+        }
+        Ok(Some(read))
     }
 
     /// Tells that rows without a header are read as those of `social-gan`: a stream has no other evidence.
@@ -299,11 +327,6 @@ impl TrackColumns {
     }
 
     /// The observation of a line; `None` where it is left out.
-    pub(super) fn row(&mut self, text: &str, line: usize, origin: &str) -> Result<Option<TrackRow>, FormatError> {
-        let fields = self.separator.fields(text, line, origin)?;
-        self.row_of(text, &fields, line, origin)
-    }
-
     fn row_of(
         &mut self,
         text: &str,

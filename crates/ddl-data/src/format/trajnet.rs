@@ -33,7 +33,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<(Vec<TrackRow>, SceneRat
         let (frame, place, position) = (row.frame, row.place, row.position);
         match seen.get(&(frame, key.clone())) {
             None => {
-                seen.insert((frame, key), (position, place.line));
+                seen.insert((frame, key), (position, place.line_number()));
                 rows.push(row);
             }
             Some((known, _)) if *known == position => {}
@@ -156,7 +156,7 @@ fn row(text: &str, place: FilePlace, rate: &mut SceneRate) -> Result<Option<Trac
     let line: TrajnetLine<'_> = serde_json::from_str(text).map_err(wrong)?;
     // A scene that is not an object shows that the file is of another kind.
     if let Some(scene) = fields::<SceneFields>(line.scene, "scene")? {
-        rate.take(&scene, place.line)?;
+        rate.take(&scene, place.line_number())?;
     }
     let Some(track) = fields::<TrackFields>(line.track, "track")? else {
         return Ok(None);
