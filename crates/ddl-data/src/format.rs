@@ -5,6 +5,7 @@
 mod choice;
 mod column_names;
 mod comments;
+mod edinburgh;
 mod field;
 mod header;
 mod kind;
@@ -22,6 +23,7 @@ mod stream;
 mod text;
 mod track_columns;
 mod trajnet;
+mod vsp;
 mod write;
 
 use std::path::Path;
@@ -88,13 +90,21 @@ pub fn parse_columns(
         let problem = "the file is compressed; unpack it, or export the spreadsheet as csv";
         return Err(FilePlace::line(1).wrong(origin, problem).into());
     }
+    if bytes.starts_with(b"PAR1") {
+        let problem = "the file is Parquet; write it as csv first (python -c \"import pandas; \
+                       pandas.read_parquet('FILE').to_csv('FILE.csv')\"), or give its columns to the Python package";
+        return Err(FilePlace::line(1).wrong(origin, problem).into());
+    }
     let text = std::str::from_utf8(bytes).map_err(|error| {
         let line = bytes[..error.valid_up_to()].split(|&byte| byte == b'\n').count();
         FilePlace::line(line).wrong(origin, NOT_UTF8)
     })?;
     // Spreadsheets start UTF-8 text with a byte-order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    if matches!(format, Format::StarCsv | Format::TrajNet) {
+    if matches!(
+        format,
+        Format::StarCsv | Format::TrajNet | Format::Vsp | Format::Edinburgh
+    ) {
         let allowed = choice.refuse_for(format);
         allowed.map_err(|problem| FilePlace::line(1).wrong(origin, problem))?;
     }
@@ -105,10 +115,15 @@ pub fn parse_columns(
             rate = stated.frames_a_second;
             rows
         }),
-        _ => text::parse(text, origin, format, choice).map(|file| {
+        _ => {
+            let file = match format {
+                Format::Vsp => vsp::parse(text, origin, choice),
+                Format::Edinburgh => edinburgh::parse(text, origin, choice),
+                _ => text::parse(text, origin, format, choice),
+            }?;
             (frame_rate, notes) = (file.rate, file.notes);
-            file.rows
-        }),
+            Ok(file.rows)
+        }
     }?;
     let recording = rows::into_recording(rows, origin)?;
     // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.

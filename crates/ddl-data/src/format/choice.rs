@@ -84,7 +84,7 @@ impl ColumnChoice {
             Ok(())
         } else {
             Err(format!(
-                "the format {format} is in metres and has no columns to choose; leave out --columns, --keep and --unit"
+                "the format {format} has no columns and units to choose; leave out --columns, --keep and --unit"
             ))
         }
     }

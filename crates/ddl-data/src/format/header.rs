@@ -295,7 +295,7 @@ impl Roles<'_> {
                 .filter(|name| name.starts_with(axis) || name.ends_with(axis))
                 .count()
         };
-        (of_axis('x') > 1 && of_axis('x') == of_axis('y') && self.place().is_none()).then(|| {
+        (of_axis('x') > 1 && of_axis('x') == of_axis('y') && self.of(Role::Pedestrian).is_none()).then(|| {
             let detail = "each pedestrian has columns of its own; write a row for each frame and pedestrian \
                           (pandas.wide_to_long), with the columns frame,pedestrian,x,y";
             detail.to_owned()

@@ -41,11 +41,15 @@ pub enum Format {
     Kitti,
     /// Trajectories of `ApolloScape`: frame, object, class, x, y, z (m), sizes, heading.
     ApolloScape,
+    /// The `.vsp` annotations of UCY: splines with control points of x, y (pixels from the middle), frame and gaze.
+    Vsp,
+    /// Tracks of the Edinburgh forum: `TRACK.R1=[[x y frame];...];`, in pixels of 24.7 mm.
+    Edinburgh,
 }
 
 impl Format {
     /// Every format that is read.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 16] = [
         Self::StarCsv,
         Self::SocialGan,
         Self::Table,
@@ -60,6 +64,8 @@ impl Format {
         Self::Atc,
         Self::Kitti,
         Self::ApolloScape,
+        Self::Vsp,
+        Self::Edinburgh,
     ];
     /// Every format that is also written.
     pub const WRITTEN: [Self; 5] = [Self::StarCsv, Self::SocialGan, Self::Table, Self::TrajNet, Self::Obsmat];
@@ -81,6 +87,8 @@ impl Format {
             Self::Atc => "atc",
             Self::Kitti => "kitti",
             Self::ApolloScape => "apolloscape",
+            Self::Vsp => "vsp",
+            Self::Edinburgh => "edinburgh",
         }
     }
 }

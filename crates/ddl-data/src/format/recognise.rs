@@ -5,10 +5,12 @@ use std::path::Path;
 use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
 use crate::format::comments::{is_comment, names_in_comment};
+use crate::format::edinburgh;
 use crate::format::kind::Format;
 use crate::format::order::{MOST_ROWS, Order, order};
 use crate::format::place::FilePlace;
 use crate::format::separator::Separator;
+use crate::format::vsp;
 
 /// Least height in the fifth column of a file in centimetres: people in metres are lower.
 const LEAST_CENTIMETRES: f64 = 20.0;
@@ -46,6 +48,12 @@ impl Format {
         };
         if named("ndjson") || named("jsonl") || first.trim_start().starts_with('{') {
             return Ok(Self::TrajNet);
+        }
+        if vsp::is_first(first) {
+            return Ok(Self::Vsp);
+        }
+        if edinburgh::is_first(first) {
+            return Ok(Self::Edinburgh);
         }
         let separator = Separator::of_numbers(first);
         let first = fields(separator, first);

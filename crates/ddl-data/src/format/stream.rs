@@ -298,6 +298,10 @@ impl<R: BufRead> FrameReader<R> {
             let comments = std::mem::take(&mut self.comments);
             let begin = comments.clone() + text;
             let format = Format::guess_with("".as_ref(), begin.as_bytes(), &self.choice)?;
+            if matches!(format, Format::Vsp | Format::Edinburgh) {
+                let problem = format!("lines of the format {format} are not in order of time; give the file");
+                return Err(FilePlace::line(line).wrong(origin, problem));
+            }
             let (kind, is_header) = if format == Format::TrajNet {
                 self.choice
                     .refuse_for(format)

@@ -24,7 +24,9 @@ const FRACTIONS: &str = "the column frame has fractions: it is read as seconds";
 const WHOLE_TIMES: &str = "the times are whole numbers: they are read as seconds; call the column frame if they count \
     frames, or time_ms, time_us or time_ns";
 const UNNAMED: &str = "the rows have no header: they are read as frame, pedestrian, x, y";
-const PIXELS: &str = "the positions are in pixels, and forecasts need metres: give --homography";
+const OF_ONE: &str = "; files of one pedestrian each, with y, x and frame (Grand Central), become one by: for f in \
+    *.txt; do xargs -n3 < $f | awk -v p=${f%.txt} '{print $3, p, $2, $1}'; done > all.tracks";
+pub(super) const PIXELS: &str = "the positions are in pixels, and forecasts need metres: give --homography";
 
 /// The columns of a text, and what was found in its rows.
 #[derive(Debug)]
@@ -442,6 +444,7 @@ impl TrackColumns {
         let names: Vec<String> = self.names.iter().map(|name| field::quoted(name)).collect();
         let names = first_of(&names);
         let advice = match self.separator {
+            Separator::Blanks if self.format == Format::SocialGan && found == 3 => OF_ONE,
             _ if found == 1 => "; the fields are not separated like those of the first line",
             _ if found == expected + 1 => "; does each row begin with a name that the header lacks?",
             Separator::Comma if found > expected => "; a comma stands between two fields and is not a decimal point",

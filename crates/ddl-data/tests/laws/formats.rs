@@ -136,6 +136,67 @@ numpy.txt: # frame pedestrian x_cm y_cm\n0 1 250 350
 => table 0 1 2.5 3.5 1 the positions are in centimetres
 "#;
 
+/// Files that are not in order of time, and are refused as streams.
+#[test]
+fn splines_and_lists_of_tracks_are_read() {
+    let edinburgh =
+        "Properties.R1=[ 3 1 ];\nTRACK.R1=[[100 200 5];[110 200 6];[110 200 6]];\nTRACK.R2=[[ 10 20 7 ]];\n";
+    let recording = read("tracks.01Jul.txt", edinburgh).unwrap();
+    let rows: Vec<_> = recording
+        .observations()
+        .iter()
+        .map(|seen| (seen.frame, seen.pedestrian.0))
+        .collect();
+    assert_eq!(rows, [(5, 1), (6, 1), (7, 2)]);
+    assert!((recording.observations()[1].position[0] - 2.717).abs() < 1e-9);
+    assert_eq!(recording.stated_frame_time(), Some(1.0 / 9.0));
+    let notes = recording.notes().join("; ");
+    assert!(
+        notes.contains("24.7 mm") && notes.contains("1 at the same frame"),
+        "{notes}"
+    );
+
+    let vsp = "1 - the number of splines\n3 - Num of control points\n-10.0 40.0 5 0.5 - (2D point, m_id)\n\
+               10 40 25 0\n10 60 45 0\n";
+    let recording = read("annotation.vsp", vsp).unwrap();
+    let rows: Vec<_> = recording
+        .observations()
+        .iter()
+        .map(|seen| (seen.frame, seen.position))
+        .collect();
+    assert_eq!(
+        rows,
+        [
+            (10, [-5.0, 40.0]),
+            (20, [5.0, 40.0]),
+            (30, [10.0, 45.0]),
+            (40, [10.0, 55.0])
+        ]
+    );
+    assert_eq!(recording.stated_frame_time(), Some(1.0 / 25.0));
+    assert!(recording.notes()[0].contains("a forecast knows where the next one lies"));
+    for (name, text, problem) in [
+        (
+            "a.vsp",
+            &vsp.replace("3 - Num", "4 - Num")[..],
+            "3 of its 4 control points",
+        ),
+        ("a.vsp", &vsp.replace("45 0", "15 0"), "must increase"),
+        ("a.vsp", &vsp.replace("45 0", "45"), "expected a control point"),
+        ("a.txt", &edinburgh.replace("20 7", "20"), "expected x, y and frame"),
+        ("a.txt", &edinburgh.replace("TRACK.R2", "TRACE"), "expected a track"),
+        ("000001.txt", "120 300 5\n121 301 6\n", "Grand Central"),
+        ("a.parquet", "PAR1\u{15}", "read_parquet"),
+    ] {
+        let found = read(name, text).unwrap_err();
+        assert!(found.contains(problem), "{found}");
+    }
+    for text in [edinburgh, vsp] {
+        let error = FrameReader::new(text.as_bytes(), "t").next_frame().unwrap_err();
+        assert!(error.to_string().contains("give the file"), "{error}");
+    }
+}
+
 #[test]
 fn formats_of_others_are_read_and_what_was_assumed_is_told() {
     let lines: Vec<&str> = SAMPLES.trim().lines().collect();
@@ -188,6 +249,11 @@ fn what_is_read_wrongly_elsewhere_is_refused() {
             "pandas.csv",
             ",a,b,c,d\n0,0,1,2,3\n",
             "still missing: frame, pedestrian, x, y",
+        ),
+        (
+            "wide.csv",
+            "frame,x1,y1,x2,y2\n0,1,2,3,4\n",
+            "each pedestrian has columns of its own",
         ),
     ] {
         let found = read(name, text).unwrap_err();

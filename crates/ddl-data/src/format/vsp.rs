@@ -1,0 +1,108 @@
+//! The `.vsp` annotations of UCY: a spline for each pedestrian, with control points in pixels.
+
+use ddl_core::{PedestrianId, Position, between};
+
+use crate::error::FormatError;
+use crate::format::choice::ColumnChoice;
+use crate::format::field::{self, PedestrianField};
+use crate::format::place::FilePlace;
+use crate::format::problem::EMPTY;
+use crate::format::rows::TrackRow;
+use crate::format::text::TextFile;
+use crate::format::track_columns::PIXELS;
+
+/// Frames a second of the films.
+const RATE: f64 = 25.0;
+/// Frames between two positions: 0.4 s.
+const STEP: i64 = 10;
+/// Between control points that are more frames apart, a minute, nothing is known.
+const LONGEST: i64 = 1500;
+const NOTE: &str = "read as splines of UCY, 25 frames a second: positions every 10 frames, on straight lines between \
+    control points, so that a forecast knows where the next one lies";
+
+/// Whether a first line is that of such a file.
+pub(super) fn is_first(line: &str) -> bool {
+    line.contains("the number of splines") || line.contains("Num of control points")
+}
+
+struct ControlPoint {
+    frame: i64,
+    position: Position,
+    line: usize,
+}
+
+pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
+    let mut splines: Vec<(usize, usize, Vec<ControlPoint>)> = Vec::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        let (values, said) = text.split_once(" - ").unwrap_or((text, ""));
+        let place = FilePlace::line(line);
+        let values: Vec<&str> = values.split_ascii_whitespace().collect();
+        if values.is_empty() || said.contains("number of splines") {
+            continue;
+        }
+        if said.contains("control points") {
+            let count = field::integer(values[0], "the number of control points");
+            splines.push((line, place.read(origin, count)?.max(0) as usize, Vec::new()));
+            continue;
+        }
+        let (Some((.., points)), [x, y, frame, _]) = (splines.last_mut(), &values[..]) else {
+            return Err(place.wrong(
+                origin,
+                "expected a control point: x, y, frame and the direction of gaze",
+            ));
+        };
+        let number = |text: &str, name: &str| field::coordinate(text, name, 1.0);
+        let position = [place.read(origin, number(x, "x"))?, place.read(origin, number(y, "y"))?];
+        let frame = place.read(origin, field::integer(frame, "frame"))?;
+        points.push(ControlPoint { frame, position, line });
+    }
+    let mut rows = Vec::new();
+    for (id, (line, count, points)) in (1..).zip(&splines) {
+        if points.len() != *count {
+            let found = points.len();
+            let problem = format!("the spline has {found} of its {count} control points; is the file cut off?");
+            return Err(FilePlace::line(*line).wrong(origin, problem));
+        }
+        rows.extend(along(id, points, origin)?);
+    }
+    if rows.is_empty() {
+        return Err(FilePlace::line(1).wrong(origin, EMPTY));
+    }
+    let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
+    Ok(TextFile {
+        rows,
+        notes: std::iter::once(NOTE.to_owned()).chain(pixels).collect(),
+        rate: Some(RATE),
+    })
+}
+
+/// The positions of a spline at the frames that are multiples of [`STEP`].
+fn along(id: i64, points: &[ControlPoint], origin: &str) -> Result<Vec<TrackRow>, FormatError> {
+    let mut rows: Vec<TrackRow> = Vec::new();
+    for [before, after] in points.array_windows() {
+        let apart = after.frame - before.frame;
+        let place = FilePlace::line(after.line);
+        if apart < 0 {
+            return Err(place.wrong(origin, "the frames of a spline must increase"));
+        }
+        if apart > LONGEST {
+            continue;
+        }
+        let first = before.frame + (-before.frame).rem_euclid(STEP);
+        for frame in (first..=after.frame).step_by(STEP as usize) {
+            if rows.last().is_some_and(|row| row.frame >= frame) {
+                continue;
+            }
+            let share = (frame - before.frame) as f64 / apart.max(1) as f64;
+            rows.push(TrackRow {
+                scene: None,
+                frame,
+                unit: None,
+                pedestrian: PedestrianField::Number(PedestrianId(id).0, None),
+                position: between(before.position, after.position, share),
+                place,
+            });
+        }
+    }
+    Ok(rows)
+}
