@@ -316,3 +316,55 @@ fn a_page_shows_the_moments_of_own_tracks() {
     assert_eq!(moments[0]["pedestrians"][0]["quality"]["unseen"], 5);
     assert_eq!(count(0, "truth"), 24);
 }
+
+/// Four people who walk 4 m at 1 m/s, with ten rows a second.
+fn walk_at_10_hz() -> String {
+    let mut text = "frame,pedestrian,x,y\n".to_owned();
+    for frame in 0..40 {
+        for id in 0..4 {
+            writeln!(text, "{frame},{id},{:.2},{id}", 0.1 * f64::from(frame)).unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn streams_doubt_what_files_doubt() {
+    let place = Place::empty();
+    let walk = walk_at_10_hz();
+    let narrow = walk.replace(",0.", ",0.00").replace(",1.", ",0.01");
+    let too_fast = walk.replace(".", "");
+    let cases = [
+        (&walk, "nine in ten steps of walking pedestrians are slower than"),
+        (
+            &narrow,
+            "no pedestrian moves farther|all 4 pedestrians are within|nine in ten",
+        ),
+        (&too_fast, "half of the steps are faster"),
+    ];
+    for (tracks, doubts) in cases {
+        place.write("tracks.csv", tracks);
+        let of_file = place.run("forecast tracks.csv --frame-step 1 --one --threads 1").stderr;
+        let of_stream = place
+            .run_on(tracks, "forecast - --frame-step 1 --one --threads 1")
+            .stderr;
+        let doubt = doubts.split('|').find(|doubt| of_file.contains(doubt)).unwrap();
+        assert_eq!(of_stream.matches(doubt).count(), 1, "{of_file}\n{of_stream}");
+    }
+}
+
+#[test]
+fn a_stream_takes_the_rate_of_a_comment() {
+    let place = Place::empty();
+    let stated = format!("# framerate: 10 fps\n{}", walk_at_10_hz());
+    let line = "forecast - --one --threads 1 --format jsonl";
+    let of_comment = place.run_on(&stated, line);
+    let of_option = place.run_on(&stated, &format!("{line} --fps 10"));
+    assert_eq!(of_comment.stdout, of_option.stdout);
+    assert!(
+        of_comment.stderr.contains("from a comment, 10 frames a second"),
+        "{}",
+        of_comment.stderr
+    );
+    assert!(!of_comment.stderr.contains("slower"), "{}", of_comment.stderr);
+}

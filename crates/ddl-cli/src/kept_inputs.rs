@@ -12,6 +12,9 @@ const OUTPUTS: [&str; 4] = ["output", "out", "svg", "folder"];
 /// Those of them that name a file, in a folder that must exist.
 const OUTPUT_FILES: [&str; 2] = ["--output", "--svg"];
 
+/// Those that are text, which `-` writes to standard output.
+const TEXTS: [&str; 2] = ["output", "svg"];
+
 /// Options that name a run, of which every command writes and reads the same files.
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 
@@ -32,6 +35,9 @@ const WRITTEN: [&str; 14] = [
     "report.md",
     "report.tex",
 ];
+
+/// Where recordings are looked for without `DDL_DATASETS`.
+const DEFAULT_DATASETS: &str = "datasets/eth_ucy";
 
 /// A path among the arguments, with the name of its option as users type it.
 struct Named<'a> {
@@ -56,10 +62,17 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         let paths = arguments.into_iter().flat_map(|argument| paths(argument, matches));
         paths.collect()
     };
+    for argument in &outputs {
+        let (id, given) = (argument.get_id().as_str(), is_standard(argument, matches));
+        if given && !TEXTS.contains(&id) {
+            bail!("--{id} - is no file: give the path of one");
+        }
+    }
     let (outputs, mut inputs) = (named(outputs), named(inputs));
     let reads_recordings = matches.try_contains_id("data").is_ok();
-    let default = std::env::var_os("DDL_DATASETS").filter(|root| reads_recordings && !root.is_empty());
-    let default = default.map(PathBuf::from);
+    let default = std::env::var_os("DDL_DATASETS").filter(|root| !root.is_empty());
+    let default = default.map_or_else(|| PathBuf::from(DEFAULT_DATASETS), PathBuf::from);
+    let default = Some(default).filter(|_| reads_recordings);
     inputs.extend(default.as_deref().map(|path| Named {
         option: "DDL_DATASETS".into(),
         path,
@@ -103,6 +116,13 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         bail!("{one} and {two} name the same file; give another {two}");
     }
     Ok(())
+}
+
+/// Whether the argument is `-`.
+fn is_standard(argument: &Arg, matches: &ArgMatches) -> bool {
+    let given = matches.try_get_many::<PathBuf>(argument.get_id().as_str());
+    let mut given = given.ok().flatten().into_iter().flatten();
+    given.any(|path| path == Path::new("-"))
 }
 
 fn is_output(argument: &Arg) -> bool {
