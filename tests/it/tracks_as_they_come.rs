@@ -333,7 +333,7 @@ fn streams_doubt_what_files_doubt() {
     let place = Place::empty();
     let walk = walk_at_10_hz();
     let narrow = walk.replace(",0.", ",0.00").replace(",1.", ",0.01");
-    let too_fast = walk.replace(".", "");
+    let too_fast = walk.replace('.', "");
     let cases = [
         (&walk, "nine in ten steps of walking pedestrians are slower than"),
         (

@@ -69,22 +69,11 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         }
     }
     let (outputs, mut inputs) = (named(outputs), named(inputs));
-    let reads_recordings = matches.try_contains_id("data").is_ok();
-    let default = std::env::var_os("DDL_DATASETS").filter(|root| !root.is_empty());
-    let default = default.map_or_else(|| PathBuf::from(DEFAULT_DATASETS), PathBuf::from);
-    let default = Some(default).filter(|_| reads_recordings);
-    inputs.extend(default.as_deref().map(|path| Named {
-        option: "DDL_DATASETS".into(),
+    let standing = standing_inputs(matches);
+    inputs.extend(standing.iter().map(|(option, path)| Named {
+        option: (*option).into(),
         path,
     }));
-    // The file that standard input reads.
-    let standard = Path::new("/dev/stdin");
-    if standard.is_file() {
-        inputs.push(Named {
-            option: "standard input".into(),
-            path: standard,
-        });
-    }
     for output in &outputs {
         // Said before the work.
         if OUTPUT_FILES.contains(&output.option.as_str())
@@ -116,6 +105,23 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         bail!("{one} and {two} name the same file; give another {two}");
     }
     Ok(())
+}
+
+/// Inputs that no argument names: the recordings that are read by default, and the file that standard input reads.
+fn standing_inputs(matches: &ArgMatches) -> Vec<(&'static str, PathBuf)> {
+    let mut inputs = Vec::new();
+    if matches.try_contains_id("data").is_ok() {
+        let root = std::env::var_os("DDL_DATASETS").filter(|root| !root.is_empty());
+        inputs.push(match root {
+            Some(root) => ("DDL_DATASETS", root.into()),
+            None => ("default recordings", DEFAULT_DATASETS.into()),
+        });
+    }
+    let standard = PathBuf::from("/dev/stdin");
+    if standard.is_file() {
+        inputs.push(("standard input", standard));
+    }
+    inputs
 }
 
 /// Whether the argument is `-`.

@@ -14,6 +14,8 @@ use crate::observe::{self, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
+/// Largest number of pedestrians of a stream seen within 2 s, above that of any crowd.
+const MOST_PEDESTRIANS: usize = 200_000;
 /// Pedestrians have common frames if at most so many frames with one of them come on each with several: trackers lose
 /// rows.
 const COMMON: u64 = 4;
@@ -81,6 +83,8 @@ pub struct LiveTracks {
     /// Shared between copies of the tracks, because a frame may change only some.
     pedestrians: BTreeMap<PedestrianId, Arc<LivePedestrian>>,
     misfits: Vec<Misfit>,
+    /// Largest number of pedestrians seen within 2 s.
+    most_pedestrians: usize,
 }
 
 /// A pedestrian seen within the last 2 s.
@@ -128,6 +132,7 @@ impl LiveTracks {
             noise: RecordingNoise::default(),
             pedestrians: BTreeMap::new(),
             misfits: Vec::new(),
+            most_pedestrians: MOST_PEDESTRIANS,
         }
     }
 
@@ -145,6 +150,8 @@ impl LiveTracks {
             name: recording.shared_name(),
             names: recording.names().clone(),
             interval: None,
+            // A file is in memory already.
+            most_pedestrians: usize::MAX,
             ..Self::with_clock(recording.tick_clock())
         }
     }
@@ -246,6 +253,7 @@ impl LiveTracks {
     ) -> Result<Option<Window>, LiveError> {
         let positions = checked_frame(frame, self.last_number, positions)?;
         let tick = self.clock.tick(frame)?;
+        self.ensure_room(tick, &positions)?;
         (self.last_number, self.last_frame) = (Some(frame), Some(tick));
         self.misfits.clear();
         let (tick_time, rows) = (self.tick_time(), positions.len());
@@ -267,10 +275,35 @@ impl LiveTracks {
                 }
             }
         }
-        let gone = |pedestrian: &LivePedestrian| (tick - pedestrian.last_row) as f64 * tick_time > Self::LONGEST_GAP;
-        self.pedestrians.retain(|_, pedestrian| !gone(pedestrian));
+        let mut pedestrians = std::mem::take(&mut self.pedestrians);
+        pedestrians.retain(|_, pedestrian| !self.is_gone(pedestrian, tick));
+        self.pedestrians = pedestrians;
         self.decide_moment(tick, rows);
         Ok(self.window())
+    }
+
+    /// Memory is bounded, also if every row has another pedestrian.
+    fn ensure_room(&self, tick: i64, positions: &[(PedestrianId, Position)]) -> Result<(), LiveError> {
+        if self.pedestrians.len().saturating_add(positions.len()) <= self.most_pedestrians {
+            return Ok(());
+        }
+        let is_new = |id: &PedestrianId| !self.pedestrians.contains_key(id);
+        let new = positions.iter().filter(|(id, _)| is_new(id)).count();
+        let kept = self
+            .pedestrians
+            .values()
+            .filter(|pedestrian| !self.is_gone(pedestrian, tick));
+        if kept.count() + new <= self.most_pedestrians {
+            return Ok(());
+        }
+        Err(LiveError::TooManyPedestrians {
+            limit: self.most_pedestrians,
+        })
+    }
+
+    /// Whether a pedestrian is forgotten at this tick.
+    fn is_gone(&self, pedestrian: &LivePedestrian, tick: i64) -> bool {
+        (tick - pedestrian.last_row) as f64 * self.tick_time() > Self::LONGEST_GAP
     }
 
     /// A copy of the tracks with one more frame; `self` stays unchanged.
@@ -409,6 +442,11 @@ pub enum LiveError {
         frame: i64,
         position: Position,
     },
+    #[error(
+        "more than {limit} pedestrians were seen within 2 s; does each keep its name from frame to frame, and is the \
+         rate right?"
+    )]
+    TooManyPedestrians { limit: usize },
     #[error("pedestrian {pedestrian} is in frame {frame} twice; keep one position")]
     Duplicate { pedestrian: PedestrianId, frame: i64 },
 }

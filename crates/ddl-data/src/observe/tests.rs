@@ -168,3 +168,21 @@ proptest! {
         prop_assert!(later.velocity_deviation > less.velocity_deviation || later.velocity_deviation == 0.0);
     }
 }
+
+/// Of a thousand rows a second those are kept that show something.
+#[test]
+fn the_rows_that_are_kept_are_bounded() {
+    let rows = walk((0..20_000).map(|row| 1e-3 * f64::from(row)));
+    let mut noise = RecordingNoise::default();
+    let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
+    for &(time, position) in &rows[1..] {
+        track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
+        track.forget_before(time, 0.4);
+        assert!(track.rows.len() <= 512, "{}", track.rows.len());
+    }
+    let last = rows[rows.len() - 1].0;
+    let expected = walk((0..8).map(|place| last - 0.4 * f64::from(7 - place)));
+    let expected: Vec<Position> = expected.into_iter().map(|(_, position)| position).collect();
+    let found = track.observed(last, 0.4, 1.0, &noise).unwrap().positions;
+    assert!(farthest(&found, &expected) < 0.01, "{found:?}");
+}

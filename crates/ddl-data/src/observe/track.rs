@@ -57,6 +57,10 @@ pub(crate) enum Arrival {
 /// Time without a row after which a track begins anew (s).
 pub(crate) const LONGEST_GAP: f64 = 2.0;
 
+/// At most this many rows are kept; of more only those that are so far (s) apart, which makes 4 s.
+const MOST_ROWS: usize = 512;
+const CLOSEST: f64 = 4.0 / MOST_ROWS as f64;
+
 /// The rows of one pedestrian up to now.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ObservedTrack {
@@ -207,6 +211,9 @@ impl ObservedTrack {
         if !self.suspects.last().is_some_and(follows) {
             self.suspects.clear();
         }
+        if self.suspects.len() >= MOST_ROWS {
+            self.suspects.pop();
+        }
         self.suspects.push(Suspect { row, distance });
         let first = self.suspects[0];
         let is_confirmed = (row.time - first.row.time) * tick_time >= CONFIRMED;
@@ -258,9 +265,25 @@ impl ObservedTrack {
         }
     }
 
+    /// Leaves out the last row, if it follows the one before so closely that it shows nothing, or else the first.
+    fn make_room(&mut self, tick_time: f64) {
+        let mut times = self.rows.iter().rev().map(|row| row.time);
+        let (Some(last), Some(before)) = (times.next(), times.next()) else {
+            return;
+        };
+        if (last - before) * tick_time < CLOSEST {
+            self.rows.pop_back();
+        } else {
+            self.rows.pop_front();
+        }
+    }
+
     fn accept(&mut self, row: Row, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
         let seconds = (row.time - self.last_time()) * tick_time;
         self.noise.add(row.position, seconds, recording);
+        if self.rows.len() >= MOST_ROWS {
+            self.make_room(tick_time);
+        }
         self.rows.push_back(row);
         let speed = self.noise.motion(self.level(known)).speed();
         let is_old = (row.time - self.pace.time) * tick_time > RECENT;

@@ -91,3 +91,21 @@ fn extreme_frame_numbers_are_handled() {
         assert_eq!(tracks.push(frame, [(PedestrianId(1), [x, 0.0])]), Ok(None));
     }
 }
+
+/// Whatever a stream claims, what is kept of it is bounded.
+#[test]
+fn no_more_pedestrians_are_kept_than_a_crowd_has() {
+    let mut tracks = LiveTracks::with_frame_step(4).unwrap();
+    let crowd = |first: i64, count: i64| (first..first + count).map(|id| (PedestrianId(id), [0.0, 0.0]));
+    tracks.push(0, crowd(0, 100_000)).unwrap();
+    tracks.push(1, crowd(100_000, 100_000)).unwrap();
+    let error = tracks.push(2, crowd(200_000, 1)).unwrap_err();
+    assert!(
+        matches!(error, LiveError::TooManyPedestrians { limit: 200_000 }),
+        "{error}"
+    );
+    // Those who were there stay, and others may come when they have left.
+    tracks.push(2, crowd(0, 100_000)).unwrap();
+    tracks.push(22, crowd(200_000, 100_000)).unwrap();
+    assert_eq!(tracks.len(), 200_000);
+}
