@@ -29,7 +29,7 @@ const NAMES: [(Role, &str); 13] = [
     ),
     (
         Role::Time,
-        "time zeit t timestamp seconds milliseconds microseconds nanoseconds datetime",
+        "time zeit t timestamp stamp headerstamp seconds milliseconds microseconds nanoseconds datetime",
     ),
     (
         Role::Pedestrian,
@@ -149,7 +149,11 @@ pub(super) fn is_known(name: &str) -> bool {
 
 /// The column of that name; `None` for an unknown one.
 pub(super) fn named(index: usize, name: &str) -> Option<Named> {
-    let words = words(name);
+    let mut words = words(name);
+    // `rostopic echo -p` writes the fields of a message as `field.pose.position.x`.
+    if words.first().is_some_and(|word| word == "field") {
+        words.remove(0);
+    }
     let role = |words: &[String]| {
         let plain = words.concat();
         let mut names = NAMES.iter();

@@ -81,11 +81,16 @@ fn date(text: &str) -> Option<i64> {
 }
 
 /// The unit of a column of times without a unit in its name, by its first value.
+///
+/// Seconds since 1970 have ten digits, finer units three more each.
 pub(super) fn unit_of(text: &str) -> TimeUnit {
-    if text.trim().parse::<f64>().is_err() && date(text.trim()).is_some() {
-        TimeUnit::Dates
-    } else {
-        TimeUnit::Seconds
+    let text = trimmed(text);
+    match text.parse::<f64>() {
+        Err(_) if date(text).is_some() => TimeUnit::Dates,
+        Ok(number) if number >= 1e17 => TimeUnit::Nanoseconds,
+        Ok(number) if number >= 1e14 => TimeUnit::Microseconds,
+        Ok(number) if number >= 1e11 => TimeUnit::Milliseconds,
+        _ => TimeUnit::Seconds,
     }
 }
 

@@ -50,8 +50,8 @@ pub(super) struct TrackColumns {
     /// Further columns that must hold numbers.
     numbers: Vec<usize>,
     time: TimeColumn,
-    /// Why the first column is read as seconds, if neither its name nor its values say so.
-    assumed_seconds: Option<&'static str>,
+    /// Why the first column is read in its unit, if its name does not say so.
+    assumed_unit: Option<&'static str>,
     /// Names of further columns.
     unread: Vec<String>,
     note: Option<&'static str>,
@@ -137,7 +137,7 @@ impl TrackColumns {
             constant: None,
             numbers: Vec::new(),
             time: header.time,
-            assumed_seconds: None,
+            assumed_unit: None,
             unread: header.unread,
             note: None,
             remarks: header.remarks,
@@ -190,7 +190,7 @@ impl TrackColumns {
                 "time" => TimeColumn::Known(Some(TimeUnit::Seconds)),
                 _ => TimeColumn::Frame,
             },
-            assumed_seconds: None,
+            assumed_unit: None,
             unread: Vec::new(),
             note: layout.note.filter(|_| is_as_usual),
             remarks,
@@ -205,14 +205,14 @@ impl TrackColumns {
         line: usize,
         origin: &str,
     ) -> Result<Option<TrackRow>, FormatError> {
-        let before = (self.time, self.assumed_seconds);
+        let before = (self.time, self.assumed_unit);
         let fields = self.separator.fields(text, line, origin)?;
         if !self.is_comment(text, &fields) {
             self.look_at(fields.get(self.frame).map(|field| &**field));
         }
         let row = self.row_of(text, &fields, line, origin);
         if row.is_err() {
-            (self.time, self.assumed_seconds) = before;
+            (self.time, self.assumed_unit) = before;
         }
         row
     }
@@ -296,7 +296,7 @@ impl TrackColumns {
     fn notes(&self) -> Vec<String> {
         let mut notes: Vec<String> = self.note.into_iter().map(str::to_owned).collect();
         notes.extend(self.remarks.iter().cloned());
-        notes.extend(self.assumed_seconds.map(str::to_owned));
+        notes.extend(self.assumed_unit.map(str::to_owned));
         match &self.unread[..] {
             [] => {}
             [name] => notes.push(format!("the column {name} is not read")),
@@ -320,10 +320,16 @@ impl TrackColumns {
             TimeColumn::Frame => time.is_some_and(field::has_fraction).then_some(TimeUnit::Seconds),
         };
         let is_whole = |time: &str| !time.contains('.');
-        self.assumed_seconds = match self.time {
+        self.assumed_unit = match self.time {
             TimeColumn::Frame if unit.is_some() => Some(FRACTIONS),
-            TimeColumn::Time if unit == Some(TimeUnit::Seconds) && time.is_some_and(is_whole) => Some(WHOLE_TIMES),
-            _ => self.assumed_seconds,
+            TimeColumn::Time => match unit {
+                Some(TimeUnit::Seconds) if time.is_some_and(is_whole) => Some(WHOLE_TIMES),
+                Some(TimeUnit::Milliseconds) => Some("the times have 13 digits: they are read as milliseconds"),
+                Some(TimeUnit::Microseconds) => Some("the times have 16 digits: they are read as microseconds"),
+                Some(TimeUnit::Nanoseconds) => Some("the times have 19 digits: they are read as nanoseconds"),
+                _ => self.assumed_unit,
+            },
+            _ => self.assumed_unit,
         };
         self.time = TimeColumn::Known(unit);
     }
