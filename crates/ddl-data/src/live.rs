@@ -10,7 +10,7 @@ use ddl_core::{
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observe::{self, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
+use crate::observe::{self, Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -245,7 +245,8 @@ impl LiveTracks {
     /// `None` without a pedestrian that is observed well enough, or too soon after the last window.
     ///
     /// # Errors
-    /// As [`checked_frame`], and for a frame number that the clock cannot divide; the tracks are then unchanged.
+    /// As [`checked_frame`], for a frame number that the clock cannot divide, and for more than 200,000 pedestrians
+    /// within 2 s; the tracks are then unchanged.
     pub fn push(
         &mut self,
         frame: i64,
@@ -258,6 +259,7 @@ impl LiveTracks {
         self.misfits.clear();
         let (tick_time, rows) = (self.tick_time(), positions.len());
         let known = self.noise.clone();
+        let exchanged = self.exchanged(tick as f64, &positions);
         for (id, position) in positions {
             let time = tick as f64;
             match self.pedestrians.entry(id) {
@@ -269,7 +271,13 @@ impl LiveTracks {
                     let pedestrian = Arc::make_mut(place.get_mut());
                     pedestrian.last_row = tick;
                     let row = Row { time, position };
-                    let arrival = pedestrian.track.push(row, tick_time, &known, &mut self.noise);
+                    let swap = exchanged.iter().find(|(other, _)| *other == id);
+                    let arrival = if let Some((_, distance)) = swap {
+                        pedestrian.track = ObservedTrack::beginning(time, position);
+                        Arrival::Jumped(*distance)
+                    } else {
+                        pedestrian.track.push(row, tick_time, &known, &mut self.noise)
+                    };
                     pedestrian.track.forget_before(time, self.clock.frame_step() as f64);
                     self.misfits.extend(Misfit::of(tick, id, arrival));
                 }
@@ -282,13 +290,23 @@ impl LiveTracks {
         Ok(self.window())
     }
 
+    /// Those of these pedestrians who have exchanged their ids, with the distances from where they were expected (m).
+    fn exchanged(&self, time: f64, positions: &[(PedestrianId, Position)]) -> Vec<(PedestrianId, f64)> {
+        let rows = positions.iter().filter_map(|&(id, position)| {
+            let track = &self.pedestrians.get(&id)?.track;
+            let expected = track.expectation(time, self.tick_time(), &self.noise)?;
+            Some((id, position, expected))
+        });
+        observe::exchanged(rows)
+    }
+
     /// Memory is bounded, also if every row has another pedestrian.
     fn ensure_room(&self, tick: i64, positions: &[(PedestrianId, Position)]) -> Result<(), LiveError> {
         if self.pedestrians.len().saturating_add(positions.len()) <= self.most_pedestrians {
             return Ok(());
         }
-        let is_new = |id: &PedestrianId| !self.pedestrians.contains_key(id);
-        let new = positions.iter().filter(|(id, _)| is_new(id)).count();
+        let is_known = |id: &PedestrianId| self.pedestrians.get(id).is_some_and(|known| !self.is_gone(known, tick));
+        let new = positions.iter().filter(|(id, _)| !is_known(id)).count();
         let kept = self
             .pedestrians
             .values()

@@ -1,15 +1,17 @@
 //! What was observed of a pedestrian at a moment: an estimate from the rows of its track up to then.
 
 mod estimate;
+mod exchange;
 mod misfit;
 mod motion;
 mod noise;
 mod track;
 
 pub(crate) use estimate::ON_STEP;
+pub(crate) use exchange::exchanged;
 pub use misfit::{Misfit, MisfitTreatment};
 pub use noise::RecordingNoise;
-pub(crate) use track::{LONGEST_GAP, ObservedTrack, Row};
+pub(crate) use track::{Arrival, LONGEST_GAP, ObservedTrack, Row};
 
 #[cfg(test)]
 mod tests;

@@ -169,16 +169,21 @@ proptest! {
     }
 }
 
-/// Of a thousand rows a second those are kept that show something.
+/// Of a thousand rows a second those are kept that show something, the first ones too.
 #[test]
 fn the_rows_that_are_kept_are_bounded() {
-    let rows = walk((0..20_000).map(|row| 1e-3 * f64::from(row)));
+    let rows = walk((0..10_000).map(|row| 1e-3 * f64::from(row)));
     let mut noise = RecordingNoise::default();
     let mut track = ObservedTrack::beginning(rows[0].0, rows[0].1);
     for &(time, position) in &rows[1..] {
         track.push(Row { time, position }, 1.0, &noise.clone(), &mut noise);
         track.forget_before(time, 0.4);
-        assert!(track.rows.len() <= 512, "{}", track.rows.len());
+        assert!(track.rows.len() <= 2300, "{}", track.rows.len());
+        let observed = track.observed(time, 0.4, 1.0, &noise);
+        assert!(
+            time < 2.81 || observed.is_some_and(|observed| observed.quality.is_whole()),
+            "{time}"
+        );
     }
     let last = rows[rows.len() - 1].0;
     let expected = walk((0..8).map(|place| last - 0.4 * f64::from(7 - place)));

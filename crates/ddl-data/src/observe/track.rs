@@ -57,9 +57,10 @@ pub(crate) enum Arrival {
 /// Time without a row after which a track begins anew (s).
 pub(crate) const LONGEST_GAP: f64 = 2.0;
 
-/// At most this many rows are kept; of more only those that are so far (s) apart, which makes 4 s.
-const MOST_ROWS: usize = 512;
-const CLOSEST: f64 = 4.0 / MOST_ROWS as f64;
+/// Rows closer together (s) show nothing: the last one alone is kept. So at most 512 a second are kept, some 2,250.
+const CLOSEST: f64 = 1.0 / 512.0;
+/// Rows that are in doubt and kept.
+const MOST_SUSPECTS: usize = 512;
 
 /// The rows of one pedestrian up to now.
 #[derive(Debug, Clone, PartialEq)]
@@ -95,6 +96,14 @@ struct Suspect {
     row: Row,
     /// Distance from where the pedestrian was expected (m).
     distance: f64,
+}
+
+/// Where a pedestrian is expected.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Expectation {
+    pub(crate) position: Position,
+    /// How far from there it may be (m).
+    pub(crate) reach: f64,
 }
 
 /// How far a row is from where a pedestrian may be.
@@ -163,6 +172,22 @@ impl ObservedTrack {
         self.doubt(row, fit.distance, tick_time, known, recording)
     }
 
+    /// Where the pedestrian is expected at a time; `None` if too few rows show its speed, or the last is too old.
+    pub(crate) fn expectation(&self, time: f64, tick_time: f64, known: &RecordingNoise) -> Option<Expectation> {
+        let seconds = (time - self.last_time()) * tick_time;
+        if self.rows.len() < SHOW_SPEED || seconds > LONGEST_DOUBT {
+            return None;
+        }
+        let level = self.level(known);
+        let expected = self.noise.motion(level).expected_after(seconds);
+        let noise = level.walk().noise;
+        let margin = DEVIATIONS * (expected.variance + noise * noise).sqrt();
+        Some(Expectation {
+            position: expected.position,
+            reach: ACCELERATION * seconds * seconds + margin,
+        })
+    }
+
     fn fit(&self, row: Row, tick_time: f64, known: &RecordingNoise) -> Fit {
         let seconds = (row.time - self.last_time()) * tick_time;
         let level = self.level(known);
@@ -211,7 +236,7 @@ impl ObservedTrack {
         if !self.suspects.last().is_some_and(follows) {
             self.suspects.clear();
         }
-        if self.suspects.len() >= MOST_ROWS {
+        if self.suspects.len() >= MOST_SUSPECTS {
             self.suspects.pop();
         }
         self.suspects.push(Suspect { row, distance });
@@ -265,25 +290,20 @@ impl ObservedTrack {
         }
     }
 
-    /// Leaves out the last row, if it follows the one before so closely that it shows nothing, or else the first.
-    fn make_room(&mut self, tick_time: f64) {
+    /// Leaves out the last row, if it follows the one before too closely.
+    fn leave_out_close(&mut self, tick_time: f64) {
         let mut times = self.rows.iter().rev().map(|row| row.time);
-        let (Some(last), Some(before)) = (times.next(), times.next()) else {
-            return;
-        };
-        if (last - before) * tick_time < CLOSEST {
+        if let (Some(last), Some(before)) = (times.next(), times.next())
+            && (last - before) * tick_time < CLOSEST
+        {
             self.rows.pop_back();
-        } else {
-            self.rows.pop_front();
         }
     }
 
     fn accept(&mut self, row: Row, tick_time: f64, known: &RecordingNoise, recording: &mut RecordingNoise) {
         let seconds = (row.time - self.last_time()) * tick_time;
         self.noise.add(row.position, seconds, recording);
-        if self.rows.len() >= MOST_ROWS {
-            self.make_room(tick_time);
-        }
+        self.leave_out_close(tick_time);
         self.rows.push_back(row);
         let speed = self.noise.motion(self.level(known)).speed();
         let is_old = (row.time - self.pace.time) * tick_time > RECENT;
