@@ -96,7 +96,7 @@ pub(super) fn unit_of(text: &str) -> TimeUnit {
 
 /// Whether a text is a number with a fraction, which is a time and no frame number.
 pub(super) fn has_fraction(text: &str) -> bool {
-    text.contains('.')
+    text.contains(['.', 'e', 'E'])
         && text
             .trim()
             .parse::<f64>()

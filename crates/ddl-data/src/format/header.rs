@@ -295,9 +295,12 @@ impl Roles<'_> {
                 .filter(|name| name.starts_with(axis) || name.ends_with(axis))
                 .count()
         };
-        (of_axis('x') > 1 && of_axis('x') == of_axis('y') && self.of(Role::Pedestrian).is_none()).then(|| {
-            let detail = "each pedestrian has columns of its own; write a row for each frame and pedestrian \
-                          (pandas.wide_to_long), with the columns frame,pedestrian,x,y";
+        // Of two pedestrians the names may be those of a box.
+        let is_wide = of_axis('x') > if self.place().is_some() { 2 } else { 1 };
+        (is_wide && of_axis('x') == of_axis('y') && self.of(Role::Pedestrian).is_none()).then(|| {
+            let detail = "each pedestrian has columns of its own; write a row for each frame and pedestrian: python -c \
+                          \"import pandas; pandas.wide_to_long(pandas.read_csv('FILE'), ['x', 'y'], 'frame', \
+                          'pedestrian').dropna().to_csv('rows.csv')\"";
             detail.to_owned()
         })
     }

@@ -19,6 +19,8 @@ pub(super) struct Layout {
     pub(super) class: Option<(usize, &'static str)>,
     /// The column with 1 in rows whose position is not seen.
     pub(super) lost: Option<usize>,
+    /// Frames a second of all files of the format.
+    pub(super) rate: Option<f64>,
     /// What the reader should know.
     pub(super) note: Option<&'static str>,
 }
@@ -47,6 +49,7 @@ const PLAIN: Layout = Layout {
     constant: None,
     class: None,
     lost: None,
+    rate: None,
     note: None,
 };
 
@@ -105,9 +108,10 @@ pub(super) static LAYOUTS: [Layout; 11] = [
         per_metre: None,
         class: Some((9, "Pedestrian")),
         lost: Some(6),
+        rate: Some(30.0),
         note: Some(
-            "read as annotations of the Stanford Drone Dataset: the centres of the boxes of pedestrians, without rows \
-             marked lost",
+            "read as annotations of the Stanford Drone Dataset, 30 frames a second: the centres of the boxes of \
+             pedestrians, without rows marked lost",
         ),
         ..PLAIN
     },

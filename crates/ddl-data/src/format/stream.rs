@@ -311,6 +311,7 @@ impl<R: BufRead> FrameReader<R> {
                 let comments: Vec<&str> = comments.lines().collect();
                 let (mut columns, is_header) = TrackColumns::of((format, &self.choice), &comments, text, line, origin)?;
                 columns.tell_layout();
+                self.frame_rate = self.frame_rate.or(columns.rate());
                 (Kind::Text(Box::new(columns)), is_header)
             };
             self.kind = Some(kind);

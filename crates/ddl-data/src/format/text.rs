@@ -9,6 +9,8 @@ use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
 use crate::format::track_columns::TrackColumns;
 
+/// Rows for which memory is reserved before they are read.
+const MOST_RESERVED: usize = 1 << 20;
 /// Bytes of the shortest row.
 const SHORTEST_ROW: usize = 7;
 
@@ -38,7 +40,11 @@ pub(super) fn parse(text: &str, origin: &str, format: Format, choice: &ColumnCho
     let first = (!is_header).then_some((first_line, first));
     let rows = first.into_iter().chain(lines);
     let ends = text.bytes().filter(|&byte| byte == end as u8).count();
-    let read = columns.all_rows(rows, (ends + 1).min(text.len() / SHORTEST_ROW), origin)?;
+    let read = columns.all_rows(
+        rows,
+        (ends + 1).min(text.len() / SHORTEST_ROW).min(MOST_RESERVED),
+        origin,
+    )?;
     if read.is_empty()
         && let Some(rows) = columns.left_out()
     {
@@ -47,6 +53,6 @@ pub(super) fn parse(text: &str, origin: &str, format: Format, choice: &ColumnCho
     Ok(TextFile {
         rows: read,
         notes: columns.notes_of_file(),
-        rate: comments.iter().find_map(|comment| rate_of(comment)),
+        rate: comments.iter().find_map(|comment| rate_of(comment)).or(columns.rate()),
     })
 }

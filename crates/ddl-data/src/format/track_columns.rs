@@ -287,6 +287,11 @@ impl TrackColumns {
         notes
     }
 
+    /// Frames a second of all files of the format, if it is known.
+    pub(super) fn rate(&self) -> Option<f64> {
+        Layout::of(self.format)?.rate
+    }
+
     /// The rows that were left out.
     pub(super) fn left_out(&self) -> Option<String> {
         self.filter.left_out()

@@ -15,8 +15,8 @@ use crate::format::track_columns::PIXELS;
 const RATE: f64 = 25.0;
 /// Frames between two positions: 0.4 s.
 const STEP: i64 = 10;
-/// Between control points that are more frames apart, a minute, nothing is known.
-const LONGEST: i64 = 1500;
+/// Between control points that are more frames apart, 20 s, nothing is known.
+const LONGEST: i64 = 500;
 const NOTE: &str = "read as splines of UCY, 25 frames a second: positions every 10 frames, on straight lines between \
     control points, so that a forecast knows where the next one lies";
 
@@ -33,11 +33,16 @@ struct ControlPoint {
 
 pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<TextFile, FormatError> {
     let mut splines: Vec<(usize, usize, Vec<ControlPoint>)> = Vec::new();
+    let mut promised = None;
     for (line, text) in (1..).zip(text.lines()) {
         let (values, said) = text.split_once(" - ").unwrap_or((text, ""));
         let place = FilePlace::line(line);
         let values: Vec<&str> = values.split_ascii_whitespace().collect();
-        if values.is_empty() || said.contains("number of splines") {
+        if values.is_empty() {
+            continue;
+        }
+        if said.contains("number of splines") {
+            promised = Some(place.read(origin, field::integer(values[0], "the number of splines"))?);
             continue;
         }
         if said.contains("control points") {
@@ -56,22 +61,33 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
         let frame = place.read(origin, field::integer(frame, "frame"))?;
         points.push(ControlPoint { frame, position, line });
     }
-    let mut rows = Vec::new();
+    if let Some(promised) = promised.filter(|promised| *promised != splines.len() as i64) {
+        let problem = format!(
+            "the file has {} of its {promised} splines; is it cut off?",
+            splines.len()
+        );
+        return Err(FilePlace::line(1).wrong(origin, problem));
+    }
+    let (mut rows, mut lost) = (Vec::new(), 0);
     for (id, (line, count, points)) in (1..).zip(&splines) {
         if points.len() != *count {
             let found = points.len();
             let problem = format!("the spline has {found} of its {count} control points; is the file cut off?");
             return Err(FilePlace::line(*line).wrong(origin, problem));
         }
+        let apart = |pair: &&[ControlPoint; 2]| pair[1].frame - pair[0].frame > LONGEST;
+        lost += points.array_windows().filter(apart).count() + usize::from(points.len() < 2);
         rows.extend(along(id, points, origin)?);
     }
     if rows.is_empty() {
         return Err(FilePlace::line(1).wrong(origin, EMPTY));
     }
+    let left_out = (lost > 0)
+        .then(|| format!("left out: {lost} splines of one control point, or parts between two more than 20 s apart"));
     let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
     Ok(TextFile {
         rows,
-        notes: std::iter::once(NOTE.to_owned()).chain(pixels).collect(),
+        notes: std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out).collect(),
         rate: Some(RATE),
     })
 }

@@ -185,6 +185,7 @@ fn splines_and_lists_of_tracks_are_read() {
             &vsp.replace("3 - Num", "4 - Num")[..],
             "3 of its 4 control points",
         ),
+        ("a.vsp", &vsp.replace("1 - the", "2 - the"), "1 of its 2 splines"),
         ("a.vsp", &vsp.replace("45 0", "15 0"), "must increase"),
         ("a.vsp", &vsp.replace("45 0", "45"), "expected a control point"),
         ("a.txt", &edinburgh.replace("20 7", "20"), "expected x, y and frame"),
@@ -256,7 +257,7 @@ fn what_is_read_wrongly_elsewhere_is_refused() {
         ),
         (
             "wide.csv",
-            "frame,x1,y1,x2,y2\n0,1,2,3,4\n",
+            "frame,x1,y1,x2,y2,x3,y3\n0,1,2,3,4,5,6\n",
             "each pedestrian has columns of its own",
         ),
     ] {
