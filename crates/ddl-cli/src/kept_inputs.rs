@@ -3,6 +3,7 @@
 use crate::recordings::EXTENSIONS;
 use anyhow::bail;
 use clap::{Arg, ArgMatches, Command};
+use ddl::data::{Convention, locate};
 use std::any::TypeId;
 use std::path::{Path, PathBuf};
 
@@ -19,10 +20,11 @@ const TEXTS: [&str; 2] = ["output", "svg"];
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
 
 /// Names of files that commands write into the folder of `--out`, and those of a run.
-const WRITTEN: [&str; 14] = [
+const WRITTEN: [&str; 15] = [
     "config.json",
     "evaluation.json",
     "experts.safetensors",
+    "fingerprints.bin",
     "metrics.jsonl",
     "model.safetensors",
     "moments.json",
@@ -35,9 +37,6 @@ const WRITTEN: [&str; 14] = [
     "report.md",
     "report.tex",
 ];
-
-/// Where recordings are looked for without `DDL_DATASETS`.
-const DEFAULT_DATASETS: &str = "datasets/eth_ucy";
 
 /// A path among the arguments, with the name of its option as users type it.
 struct Named<'a> {
@@ -110,12 +109,14 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
 /// Inputs that no argument names: the recordings that are read by default, and the file that standard input reads.
 fn standing_inputs(matches: &ArgMatches) -> Vec<(&'static str, PathBuf)> {
     let mut inputs = Vec::new();
-    if matches.try_contains_id("data").is_ok() {
-        let root = std::env::var_os("DDL_DATASETS").filter(|root| !root.is_empty());
-        inputs.push(match root {
-            Some(root) => ("DDL_DATASETS", root.into()),
-            None => ("default recordings", DEFAULT_DATASETS.into()),
-        });
+    if matches.try_contains_id("data").is_ok_and(|is_given| !is_given) {
+        let folders = Convention::ALL.map(|convention| locate(convention, None));
+        inputs.extend(
+            folders
+                .into_iter()
+                .flatten()
+                .map(|folder| ("the recordings of ETH/UCY", folder)),
+        );
     }
     let standard = PathBuf::from("/dev/stdin");
     if standard.is_file() {

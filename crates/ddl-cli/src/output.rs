@@ -36,7 +36,15 @@ pub(crate) fn write_parts<T: AsRef<str>>(
         let file = File::options().write(true).open(path);
         return write(&mut file.with_context(unwritable)?);
     }
-    write_atomically_with(path, write).with_context(unwritable)
+    let mut failed = None;
+    let written: std::io::Result<()> = write_atomically_with(path, |file| {
+        write(file).map_err(|error| {
+            failed = Some(error);
+            std::io::ErrorKind::Other.into()
+        })
+    });
+    // What made no part is no fault of the file.
+    failed.map_or_else(|| written.with_context(unwritable), Err)
 }
 
 pub(crate) fn print(text: &str) -> anyhow::Result<()> {

@@ -108,11 +108,22 @@ impl TrackOptions {
         for note in notes.into_iter().chain(guessed) {
             tell(format_args!("note: {note}"));
         }
-        let observed = recording.observe(self.windows_of(recording.live_tracks()));
-        if !observed.has_common_frames && self.every.is_none() {
+        let mut tracks = self.windows_of(recording.live_tracks());
+        if self.last && self.every.is_none() {
+            // With clocks of their own, too, the last row is the last moment.
+            tracks = tracks.with_interval(0.0);
+        }
+        let (mut windows, mut is_forecast) = (Vec::new(), BTreeSet::new());
+        let observed = recording.observe_each(tracks, |window| {
+            is_forecast.extend(window.pedestrians().iter().copied());
+            if self.last {
+                windows.clear();
+            }
+            windows.push(window);
+        });
+        if !observed.has_common_frames && self.every.is_none() && !self.last {
             tell(format_args!("note: {} (--every)", recordings::OWN_CLOCKS));
         }
-        let mut windows = observed.windows;
         let warning = recording
             .speed_warning()
             .filter(|warning| !matches!(warning, PlausibilityWarning::NoSteps { .. }))
@@ -134,11 +145,7 @@ impl TrackOptions {
             );
         }
         let mut never_forecast = recording.pedestrians();
-        let forecast: BTreeSet<_> = windows.iter().flat_map(Window::pedestrians).copied().collect();
-        never_forecast.retain(|pedestrian| !forecast.contains(pedestrian));
-        if self.last {
-            windows.drain(..windows.len() - 1);
-        }
+        never_forecast.retain(|pedestrian| !is_forecast.contains(pedestrian));
         Ok(ObservedTracks {
             recording,
             windows,

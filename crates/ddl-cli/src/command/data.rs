@@ -91,7 +91,7 @@ fn warn_of_model<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow:
     let (mut all, mut unfamiliar) = (0, 0);
     for recording in recordings {
         let windows = some_windows(recording);
-        if let Some(share) = model.trained_on(recording)? {
+        if let Some(share) = model.known_share(recording)? {
             tell(format_args!(
                 "warning: the built-in model {model} was trained on {} ({:.0} % of its paths are known): its forecasts \
                  of it are no test",
@@ -115,9 +115,9 @@ fn warn_of_model<'r>(recordings: impl Iterator<Item = &'r Recording>) -> anyhow:
     Ok(())
 }
 
-/// Windows of about [`SOME`] moments over the whole recording.
+/// Windows of about [`SOME`] pedestrians over the whole recording.
 fn some_windows(recording: &Recording) -> Vec<Window> {
-    let every = 1 + recording.frames().len() / SOME;
+    let every = 1 + recording.observations().len() / SOME;
     let (mut count, mut windows) = (0, Vec::new());
     let _ = recording.observe_each(recording.live_tracks(), |window| {
         if count % every == 0 {
@@ -128,8 +128,8 @@ fn some_windows(recording: &Recording) -> Vec<Window> {
     windows
 }
 
-/// Moments whose motions are compared with those of the training.
-const SOME: usize = 5000;
+/// Pedestrian-windows that are compared with those of the training.
+const SOME: usize = 50_000;
 /// Least noise that is measured apart (m).
 const EXACT: f64 = 0.005;
 /// Jitter above this share of the time between two rows is printed.

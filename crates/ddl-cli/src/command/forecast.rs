@@ -9,12 +9,15 @@ mod left_out;
 mod live;
 mod moment;
 mod table;
+mod told_once;
 
 pub(crate) use arguments::ForecastCommand;
 
+use crate::interrupt::Interrupt;
 use crate::output::{file_of, write_parts};
 use crate::telling::tell;
 use anyhow::bail;
+use ddl::DdlError;
 use ddl::data::Window;
 use moment::{SceneWindows, StreamState};
 use std::io::IsTerminal as _;
@@ -49,7 +52,12 @@ impl ForecastCommand {
         let observed = self.tracks.observed(model.config())?;
         let mut state = StreamState::default();
         let (mut lines, mut bytes) = (0, 0);
+        let interrupt = Interrupt::catch()?;
         let parts = parts_of(&observed.windows).map(|windows| {
+            // No unfinished file is left.
+            if interrupt.flow().is_break() {
+                bail!(DdlError::Interrupted);
+            }
             let windows = SceneWindows { windows, scenes: &[] };
             let text = self.text(&model, windows, observed.clock, &mut state)?;
             bytes += text.len();

@@ -101,7 +101,7 @@ impl ForecastCommand {
             }
         }
         let moments = windows.moments(&forecasts, clock);
-        warn_of_violation(&moments);
+        warn_of_violation(&moments, state);
         state.unfamiliar.add(&moments);
         if self.tracks.are_live() {
             state

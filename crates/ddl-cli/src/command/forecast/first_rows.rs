@@ -1,67 +1,116 @@
-//! The first rows of a stream, which show whether its units and its rate can be right.
+//! The first rows of each scene of a stream, which show whether its units and its rate can be right.
+
+#![expect(clippy::ref_option, reason = "the keys of the map of scenes")]
 
 use crate::recordings;
-use ddl::data::{Observation, PedestrianId, PlausibilityWarning, Position, Recording, SceneName};
+use ddl::data::{LiveTracks, Observation, PedestrianId, PlausibilityWarning, Position, Recording, SceneName};
+use std::collections::{BTreeMap, BTreeSet};
 
-/// Rows that show as much as a whole recording does.
-const ENOUGH: usize = 2000;
+/// Steps of 0.4 s, rows, and pedestrians that show as much as a whole recording does.
+const ENOUGH_STEPS: i64 = 50;
+const ENOUGH_ROWS: usize = 2000;
+const PEDESTRIANS: usize = 100;
+/// Limits of what is kept, for any rate and any number of scenes.
+const MOST_ROWS: usize = 200_000;
+const MOST_SCENES: usize = 20;
 
-/// Collects rows of the first scene, until a warning is given or there are enough.
+/// Collects rows until a warning is given, or there are enough.
 #[derive(Debug, Default)]
 pub(super) struct FirstRows {
-    /// The scene, and its ticks in 0.4 s.
-    of: Option<(Option<SceneName>, i64)>,
+    scenes: BTreeMap<Option<SceneName>, SceneRows>,
+    is_told: bool,
+}
+
+#[derive(Debug, Default)]
+struct SceneRows {
+    frame_step: i64,
     rows: Vec<Observation>,
+    pedestrians: BTreeSet<PedestrianId>,
+    /// Whether it was looked at when somebody was seen for 8 steps.
     is_looked_at: bool,
+    is_done: bool,
 }
 
 impl FirstRows {
+    /// Whether the rows of this scene are still wanted.
+    pub(super) fn watches(&self, scene: &Option<SceneName>) -> bool {
+        let room = || self.scenes.len() < MOST_SCENES;
+        !self.is_told && self.scenes.get(scene).map_or_else(room, |rows| !rows.is_done)
+    }
+
+    /// Adds the rows of the last frame of these tracks.
     pub(super) fn add(
         &mut self,
-        scene: Option<&SceneName>,
-        (tick, frame_step): (i64, i64),
+        scene: &Option<SceneName>,
+        tracks: &LiveTracks,
         pedestrians: &[(PedestrianId, Position)],
     ) {
-        let of = self.of.get_or_insert_with(|| (scene.cloned(), frame_step));
-        if self.is_looked_at || of.0.as_ref() != scene {
+        let Some(tick) = tracks.last_frame().filter(|_| self.watches(scene)) else {
             return;
+        };
+        let of_scene = self.scenes.entry(scene.clone()).or_default();
+        of_scene.frame_step = tracks.clock().frame_step();
+        for &(id, position) in pedestrians {
+            if of_scene.pedestrians.len() < PEDESTRIANS {
+                of_scene.pedestrians.insert(id);
+            }
+            if of_scene.pedestrians.contains(&id) {
+                of_scene.rows.push(Observation::new(tick, id, position));
+            }
         }
-        let rows = pedestrians.iter().map(|&(id, at)| Observation::new(tick, id, at));
-        self.rows.extend(rows);
-        if self.rows.len() >= ENOUGH {
-            self.warn();
+        let steps = of_scene
+            .rows
+            .first()
+            .map_or(0, |first| (tick - first.frame) / of_scene.frame_step);
+        let rows = of_scene.rows.len();
+        if (rows >= ENOUGH_ROWS && steps >= ENOUGH_STEPS) || rows >= MOST_ROWS {
+            self.is_told |= of_scene.warn();
         }
     }
 
-    /// Warns of positions or a rate that cannot be right, as soon as somebody was seen for 8 steps.
-    pub(super) fn warn_if_fast(&mut self) {
-        let warning = self
-            .warning()
-            .filter(|it| matches!(it, PlausibilityWarning::Fast { .. }));
-        if let Some(warning) = warning {
-            recordings::warn_of(&warning);
-            self.end();
+    /// Warns of positions or a rate that cannot be right, as soon as somebody of a scene was seen for 8 steps.
+    pub(super) fn warn_if_fast(&mut self, scene: &Option<SceneName>) {
+        let is_wanted = |rows: &&mut SceneRows| !rows.is_looked_at && !rows.is_done;
+        if let Some(rows) = self.scenes.get_mut(scene).filter(is_wanted) {
+            rows.is_looked_at = true;
+            if let Some(warning @ PlausibilityWarning::Fast { .. }) = rows.warning().filter(|_| !self.is_told) {
+                recordings::warn_of(&warning);
+                self.is_told = true;
+            }
         }
     }
 
-    /// Warns as of a file. A jump is told as a row that does not fit, and that nobody is forecast at the end.
+    /// Warns at the end of the stream.
     pub(super) fn warn(&mut self) {
-        match self.warning() {
-            None | Some(PlausibilityWarning::Jump(_) | PlausibilityWarning::NoSteps { .. }) => {}
-            Some(warning) => recordings::warn_of(&warning),
+        for rows in self.scenes.values_mut() {
+            if !self.is_told && !rows.is_done {
+                self.is_told = rows.warn();
+            }
         }
-        self.end();
+    }
+}
+
+impl SceneRows {
+    /// Warns as of a file, and returns whether it did. A jump is told as a row that does not fit, and at the end that
+    /// nobody is forecast.
+    fn warn(&mut self) -> bool {
+        let warning = self.warning();
+        *self = Self {
+            is_done: true,
+            ..Self::default()
+        };
+        match warning {
+            None | Some(PlausibilityWarning::Jump(_) | PlausibilityWarning::NoSteps { .. }) => false,
+            Some(warning) => {
+                recordings::warn_of(&warning);
+                true
+            }
+        }
     }
 
     fn warning(&self) -> Option<PlausibilityWarning> {
-        let (_, frame_step) = self.of.as_ref().filter(|_| !self.is_looked_at)?;
-        let recording = Recording::new("standard input", *frame_step, self.rows.clone());
-        // Cannot fail: the tracks took these rows.
+        let recording = Recording::new("standard input", self.frame_step, self.rows.clone());
+        // Fails only without rows: the tracks took these.
         recording.ok()?.speed_warning()
-    }
-
-    fn end(&mut self) {
-        self.rows = Vec::new();
-        self.is_looked_at = true;
     }
 }

@@ -3,6 +3,7 @@
 use crate::telling::{tell, words};
 use anyhow::anyhow;
 use ddl::LiveScenes;
+use ddl::data::{Misfit, MisfitTreatment};
 use std::time::{Duration, Instant};
 
 /// Time between two messages of a kind, so that many invalid lines do not cause as many messages.
@@ -16,6 +17,7 @@ pub(super) struct LeftOut {
     wrong: Seldom,
     dropped: Seldom,
     doubtful: Seldom,
+    begun_anew: Seldom,
     /// Whether the warning about units has been given.
     is_unit_doubted: bool,
     is_few_told: bool,
@@ -43,6 +45,21 @@ impl Seldom {
         self.reported = self.count;
         Some(new)
     }
+
+    /// Counts doubtful rows, and tells of them when the next message is due.
+    fn tell(&mut self, rows: usize, doubt: Option<String>) {
+        self.count += rows as u64;
+        if let Some(doubt) = doubt
+            && let Some(new) = self.take_due()
+        {
+            let since = if new as usize > rows {
+                format!(" ({new} since the last warning)")
+            } else {
+                String::new()
+            };
+            tell(format_args!("warning: {doubt}{since}"));
+        }
+    }
 }
 
 impl LeftOut {
@@ -61,26 +78,28 @@ impl LeftOut {
         }
     }
 
-    /// Reports rows of a frame that were left out, or began a track anew.
-    pub(super) fn doubtful(&mut self, rows: usize, misfits: usize, doubt: Option<String>) {
+    /// Reports rows of a frame that were left out, and tracks that begin anew.
+    pub(super) fn doubtful(&mut self, rows: usize, misfits: &[Misfit], place: impl Fn(&Misfit) -> String) {
         self.rows += rows;
-        self.doubtful.count += misfits as u64;
-        let are_most = self.rows >= MANY_ROWS && 2 * self.doubtful.count > self.rows as u64;
+        for treatment in [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew] {
+            let some: Vec<Misfit> = misfits.iter().filter(|it| it.treatment == treatment).copied().collect();
+            let doubt = Misfit::words(&some, &place);
+            self.of_treatment(treatment).tell(some.len(), doubt);
+        }
+        let doubtful = self.doubtful.count + self.begun_anew.count;
+        let are_most = self.rows >= MANY_ROWS && 2 * doubtful > self.rows as u64;
         if are_most && !std::mem::replace(&mut self.is_unit_doubted, true) {
             tell(format_args!(
                 "warning: most positions are too far from the ones before: are they in metres (--homography), and is \
                  the rate right (--fps)?"
             ));
         }
-        if let Some(doubt) = doubt
-            && let Some(new) = self.doubtful.take_due()
-        {
-            let since = if new as usize > misfits {
-                format!(" ({new} since the last warning)")
-            } else {
-                String::new()
-            };
-            tell(format_args!("warning: {doubt}{since}"));
+    }
+
+    fn of_treatment(&mut self, treatment: MisfitTreatment) -> &mut Seldom {
+        match treatment {
+            MisfitTreatment::LeftOut => &mut self.doubtful,
+            MisfitTreatment::BegunAnew => &mut self.begun_anew,
         }
     }
 
@@ -124,10 +143,11 @@ impl LeftOut {
                 most.unwrap_or_default()
             ));
         }
-        if self.doubtful.count > self.doubtful.reported {
+        let kinds = [&self.doubtful, &self.begun_anew];
+        if kinds.iter().any(|kind| kind.count > kind.reported) {
             tell(format_args!(
                 "warning: {} positions were left out or began a track anew in all",
-                self.doubtful.count
+                kinds.iter().map(|kind| kind.count).sum::<u64>()
             ));
         }
         match self.wrong.count {

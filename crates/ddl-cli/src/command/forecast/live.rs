@@ -6,13 +6,14 @@ use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
 use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
+use crate::command::forecast::told_once::ToldOnce;
 use crate::interrupt::Interrupt;
 use crate::output::file_of;
 use crate::telling::{tell, words};
-use crate::tracks::{NOISY, steps_in_words};
+use crate::tracks::steps_in_words;
 use crate::units::Units;
 use anyhow::{Context as _, bail};
-use ddl::data::{Clock, Frame, Homography, LiveTracks, Misfit, Observation, SceneName, Window};
+use ddl::data::{Clock, Frame, Homography, LiveTracks, Observation, SceneName, Window};
 use ddl::{Ddl, LiveScenes};
 use std::fs::File;
 use std::io::{Write as _, stdout};
@@ -78,17 +79,17 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
         state: StreamState::default(),
         left_out: LeftOut::default(),
         is_empty: true,
-        is_noise_told: false,
         first_rows: FirstRows::default(),
-        is_anybody_whole: false,
+        told: ToldOnce::default(),
         taken: 0,
         answered: 0,
     };
-    stream.follow(&IncomingFrames::of_standard_input(units.choice()?)?, &units)?;
+    let followed = stream.follow(&IncomingFrames::of_standard_input(units.choice()?)?, &units);
+    stream.first_rows.warn();
+    followed?;
     if !forecast.latest && !forecast.tracks.are_thinned() {
         stream.left_out.tell_if_few(1);
     }
-    stream.first_rows.warn();
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
         bail!(
@@ -189,10 +190,8 @@ struct Stream<'a> {
     state: StreamState,
     left_out: LeftOut,
     is_empty: bool,
-    is_noise_told: bool,
     first_rows: FirstRows,
-    /// Whether somebody was seen for 8 steps.
-    is_anybody_whole: bool,
+    told: ToldOnce,
     /// Number of frames read since the last batch.
     taken: usize,
     /// Number of frames whose forecasts were written.
@@ -251,6 +250,7 @@ impl Stream<'_> {
         {
             memory.ensure_fits(frame.scene.as_ref())?;
         }
+        self.told.of_rate(units, stated);
         self.taken += 1;
         if self.clock.is_none() {
             let mut early = self.early.iter();
@@ -296,32 +296,27 @@ impl Stream<'_> {
             self.state.forget(&scene);
         }
         let (scene, rows) = (frame.scene.clone(), frame.pedestrians.len());
-        let (names, pedestrians) = (frame.names.clone(), frame.pedestrians.clone());
+        let names = frame.names.clone();
+        let is_watched = self.first_rows.watches(&scene);
+        let pedestrians = is_watched.then(|| frame.pedestrians.clone());
         let observed = watching.observe(frame, self.model);
         let tracks = watching
             .scenes
             .as_ref()
             .and_then(|scenes| scenes.tracks(scene.as_ref()));
         if let (true, Some(tracks)) = (observed.is_ok(), tracks) {
-            if let Some(tick) = tracks.last_frame() {
-                let time = (tick, tracks.clock().frame_step());
-                self.first_rows.add(scene.as_ref(), time, &pedestrians);
+            if let Some(pedestrians) = pedestrians {
+                self.first_rows.add(&scene, tracks, &pedestrians);
             }
             let place = scene.map_or_else(String::new, |scene| format!(" of scene {scene}"));
-            let doubt = Misfit::words(tracks.misfits(), |misfit| {
+            self.left_out.doubtful(rows, tracks.misfits(), |misfit| {
                 let name = names.of(misfit.pedestrian);
                 format!(
                     "pedestrian {name}{place} at frame {}",
                     tracks.clock().number(misfit.tick)
                 )
             });
-            self.left_out.doubtful(rows, tracks.misfits().len(), doubt);
-            if tracks.noise().metres() >= NOISY && !std::mem::replace(&mut self.is_noise_told, true) {
-                let noise = 100.0 * tracks.noise().metres();
-                tell(format_args!(
-                    "note: the positions are noisy, {noise:.0} cm on each axis: observed paths are smoothed"
-                ));
-            }
+            self.told.of_tracks(tracks, self.forecast.tracks.are_thinned());
             let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);
             if is_idle && !self.forecast.latest && !self.forecast.tracks.are_thinned() {
                 self.left_out.tell_if_few(MANY_ROWS);
@@ -341,11 +336,10 @@ impl Stream<'_> {
             self.left_out.dropped(scenes);
             scenes.next_batch(LiveScenes::BATCH)
         };
-        let mut windows = batch.windows.iter();
-        let is_whole = |window: &Window| (0..window.len()).any(|i| window.quality(i).is_whole());
-        if !self.is_anybody_whole && windows.any(is_whole) {
-            self.is_anybody_whole = true;
-            self.first_rows.warn_if_fast();
+        for (window, scene) in batch.windows.iter().zip(&batch.scenes) {
+            if self.first_rows.watches(scene) && (0..window.len()).any(|i| window.quality(i).is_whole()) {
+                self.first_rows.warn_if_fast(scene);
+            }
         }
         match self.text(&batch.windows, &batch.scenes) {
             Ok(text) => return self.write(&text, &batch.windows),
@@ -453,7 +447,7 @@ fn clock_of(units: &Units, apart: Option<i64>, stated: &StatedTime) -> anyhow::R
     }
     if let Some(rate) = stated.frame_rate {
         let clock = Clock::with_frame_time(1.0 / rate).context("standard input: the rate of a comment")?;
-        return Ok(Some((clock, Some(format!("from a comment, {rate} frames a second")))));
+        return Ok(Some((clock, Some(format!("at {rate} frames a second")))));
     }
     let Some(apart) = apart else {
         return Ok(None);

@@ -99,6 +99,7 @@ impl UnfamiliarMotions {
 pub(super) struct StreamState {
     pub(super) headed: bool,
     pub(super) unfamiliar: UnfamiliarMotions,
+    is_violation_told: bool,
     /// The adaptive regions of each scene.
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
@@ -154,12 +155,16 @@ impl<'a> Moment<'a> {
 
 /// Stable steps keep the guarantee for any output of the network. If one violates it, a user who relies on the
 /// forecasts must know.
-pub(super) fn warn_of_violation(moments: &[Moment<'_>]) {
+pub(super) fn warn_of_violation(moments: &[Moment<'_>], state: &mut StreamState) {
+    if state.is_violation_told {
+        return;
+    }
     let first = moments.iter().find_map(|moment| {
         let (i, hypothesis, violation) = moment.certified?.first_violation()?;
         Some((moment, i, hypothesis, violation))
     });
     if let Some((moment, i, hypothesis, violation)) = first {
+        state.is_violation_told = true;
         tell(format_args!(
             "warning: not every certificate holds; the first that does not is that of pedestrian {}, \
              observed until frame {}, hypothesis {hypothesis}: {violation}",
