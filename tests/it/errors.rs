@@ -34,6 +34,7 @@ fn no_input_is_overwritten() {
     std::os::unix::fs::symlink("tracks.csv", place.at("link.csv")).unwrap();
     let lines = [
         "forecast tracks.csv --output ./tracks.csv",
+        "forecast tracks.csv --model run --output run/fingerprints.bin",
         "forecast tracks.csv --output hard.csv",
         #[cfg(unix)]
         "forecast tracks.csv --output link.csv",

@@ -21,11 +21,11 @@ fn recordings_are_known_in_the_files_of_each_convention() {
         for model in BuiltinModel::ALL {
             let fold = dataset.fold(model.name()).unwrap();
             for recording in fold.test_recordings() {
-                let known = model.trained_on(recording).unwrap();
+                let known = model.known_share(recording).unwrap();
                 assert_eq!(known, None, "{convention}: {model}, {}", recording.name());
             }
             for recording in fold.training_recordings() {
-                let known = model.trained_on(recording).unwrap();
+                let known = model.known_share(recording).unwrap();
                 assert!(
                     known > Some(0.2),
                     "{convention}: {model}, {}: {known:?}",

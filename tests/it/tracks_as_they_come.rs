@@ -362,7 +362,7 @@ fn a_stream_takes_the_rate_of_a_comment() {
     let of_option = place.run_on(&stated, &format!("{line} --fps 10"));
     assert_eq!(of_comment.stdout, of_option.stdout);
     assert!(
-        of_comment.stderr.contains("from a comment, 10 frames a second"),
+        of_comment.stderr.contains("at 10 frames a second"),
         "{}",
         of_comment.stderr
     );

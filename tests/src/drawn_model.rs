@@ -121,6 +121,8 @@ pub fn write(mut config: RunConfig, windows: &[Window], folder: &Path) {
     };
     for (file, bytes) in [
         (folder.join("experts.safetensors"), experts(&config, &positions)),
+        // It was trained on no recording.
+        (folder.join("fingerprints.bin"), vec![1, 0, 0, 0]),
         (folder.join("config.json"), json(&config)),
         (folder.join("metrics.jsonl"), json(&epoch)),
     ] {

@@ -203,7 +203,7 @@ impl Model {
     /// Whether the model was trained on the tracks of the recording.
     fn was_trained_on(&self, py: Python<'_>, recording: &Recording) -> PyResult<bool> {
         let (model, recording) = (Arc::clone(&self.0), Arc::clone(&recording.tracks));
-        run(py, move |_| model.goal_model().trained_on(&recording).is_some())
+        run(py, move |_| model.goal_model().known_share(&recording).is_some())
     }
 
     /// A page that plays moments of the recording, and text about doubtful positions.

@@ -13,7 +13,7 @@ use crate::run::directory::RunDirectory;
 use crate::run::enough_weights;
 use crate::run::goal_recipe::GoalRecipe;
 use crate::run::model_source::ModelSource;
-use crate::run::training_data::fold_by_name;
+use crate::run::training_data::{digest_of_recording, fold_by_name};
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
 use crate::trust::fingerprints::TrackFingerprints;
@@ -306,10 +306,16 @@ impl GoalModel {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
     }
 
-    /// Whether the model was trained on this recording, as a whole or in part, under whatever name: the share of it
-    /// that is known, between 0 and 1.
-    pub fn trained_on(&self, recording: &Recording) -> Option<f64> {
-        self.fingerprints.known(recording)
+    /// The share (0 to 1) of the paths of a recording that the model was trained on, under whatever name; `None` if it is
+    /// no more than chance.
+    pub fn known_share(&self, recording: &Recording) -> Option<f64> {
+        let mut learned = self.config.data.recordings.values();
+        let is_same = learned.any(|digest| *digest == digest_of_recording(recording));
+        if is_same {
+            Some(1.0)
+        } else {
+            self.fingerprints.known(recording)
+        }
     }
 
     pub(crate) fn fingerprints(&self) -> &TrackFingerprints {

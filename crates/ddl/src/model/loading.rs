@@ -149,11 +149,11 @@ impl BuiltinModel {
         Ok(windows.iter().map(familiarity).collect())
     }
 
-    /// As [`GoalModel::trained_on`](crate::GoalModel::trained_on), without loading the networks.
+    /// As [`GoalModel::known_share`](crate::GoalModel::known_share), without loading the networks.
     ///
     /// # Errors
     /// As [`BuiltinModel::familiarity`].
-    pub fn trained_on(self, recording: &Recording) -> Result<Option<f64>, DdlError> {
+    pub fn known_share(self, recording: &Recording) -> Result<Option<f64>, DdlError> {
         let contents = packed::contents(self.bytes(), &ModelSource::Builtin(self))?;
         Ok(contents.fingerprints.known(recording))
     }

@@ -144,8 +144,8 @@ pub struct TrainingData {
     /// SHA-256 of their positions.
     pub sha256: String,
     /// The own recordings that were trained or validated on: their names, each with the SHA-256 of its frames,
-    /// pedestrians and positions. A recording with one of these names or contents is not a test. Empty for recordings
-    /// with fixed folds.
+    /// pedestrians and positions. A recording with these contents is not a test. Empty for recordings with fixed
+    /// folds.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub recordings: BTreeMap<String, String>,
 }

@@ -64,6 +64,8 @@ impl TestSet {
         }
         if on == Split::Test {
             let fold = fold_by_name(dataset, &data.fold)?;
+            // Those of the model that it started from.
+            ensure_unknown(goals, fold.test_recordings())?;
             return Ok(Self::new(&fold, data.convention, pedestrians));
         }
         let set = Self::kept_by(goals, dataset, pedestrians)?;
@@ -137,9 +139,9 @@ impl TestSet {
         if tested.is_empty() {
             tested = recordings.iter().collect();
         }
+        ensure_unknown(goals, &tested)?;
         let rule = dataset.convention().headline_rule();
         let windows: Vec<Window> = tested.iter().flat_map(|r| r.windows(rule)).collect();
-        ensure_unknown(goals, &tested)?;
         if windows.is_empty() {
             return Err(goals.source().wrong(
                 "cannot be evaluated on these recordings: no pedestrian in them was observed at 20 consecutive time \
@@ -292,15 +294,15 @@ impl TestSet {
 }
 
 /// Whether the model was trained or validated on one of these recordings.
-pub(crate) fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
+fn was_trained_on_some(goals: &GoalModel, dataset: &Dataset) -> bool {
     let mut recordings = dataset.recordings().iter();
-    recordings.any(|recording| goals.trained_on(recording).is_some())
+    recordings.any(|recording| goals.known_share(recording).is_some())
 }
 
 /// No recording is a test that the model was trained on.
 fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), DdlError> {
     let known = recordings.iter().filter_map(|recording| {
-        let share = goals.trained_on(recording)?;
+        let share = goals.known_share(recording)?;
         let name = recording.name();
         Some(format!("{name} ({:.0} % of its paths are known)", 100.0 * share))
     });
@@ -309,7 +311,7 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
         return Ok(());
     }
     let mut others = BuiltinModel::ALL.into_iter().filter(|model| {
-        let knows = |recording: &&Recording| model.trained_on(recording).is_ok_and(|known| known.is_some());
+        let knows = |recording: &&Recording| model.known_share(recording).is_ok_and(|known| known.is_some());
         !recordings.iter().any(knows)
     });
     let other = match others.next() {
