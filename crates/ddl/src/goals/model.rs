@@ -306,8 +306,8 @@ impl GoalModel {
         TrainingMotions::of_window(self.motions(), window, self.config.star.time_step)
     }
 
-    /// The share (0 to 1) of the paths of a recording that the model was trained on, under whatever name; `None` if it is
-    /// no more than chance.
+    /// The share (0 to 1) of the paths of a recording that the model was trained on, under whatever name; `None` if it
+    /// is no more than chance.
     pub fn known_share(&self, recording: &Recording) -> Option<f64> {
         let mut learned = self.config.data.recordings.values();
         let is_same = learned.any(|digest| *digest == digest_of_recording(recording));

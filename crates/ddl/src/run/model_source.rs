@@ -30,8 +30,8 @@ impl ModelSource {
         }
     }
 
-    /// The source of this name: a file or the directory of a run of this path or, if there is none, the built-in model of
-    /// this name.
+    /// The source of this name: a file or the directory of a run of this path or, if there is none, the built-in model
+    /// of this name.
     #[must_use]
     pub fn named(name: &Path) -> Self {
         let builtin = name.to_str().and_then(|name| name.parse().ok());
