@@ -13,8 +13,8 @@ const OUTPUTS: [&str; 4] = ["output", "out", "svg", "folder"];
 /// Those of them that name a file, in a folder that must exist.
 const OUTPUT_FILES: [&str; 2] = ["--output", "--svg"];
 
-/// Those that are text, which `-` writes to standard output.
-const TEXTS: [&str; 2] = ["output", "svg"];
+/// Options of files, also of the memory, that are no text to write to standard output.
+const NO_TEXTS: [&str; 3] = ["out", "folder", "memory"];
 
 /// Options that name a run, of which every command writes and reads the same files.
 const RUNS: [&str; 3] = ["--model", "--from", "--benchmark"];
@@ -61,10 +61,13 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         let paths = arguments.into_iter().flat_map(|argument| paths(argument, matches));
         paths.collect()
     };
-    for argument in &outputs {
-        let (id, given) = (argument.get_id().as_str(), is_standard(argument, matches));
-        if given && !TEXTS.contains(&id) {
-            bail!("--{id} - is no file: give the path of one");
+    for argument in outputs.iter().chain(&inputs) {
+        let id = argument.get_id().as_str();
+        if NO_TEXTS.contains(&id) && is_standard(argument, matches) {
+            bail!(
+                "{} is no path: give that of a file or folder",
+                argument.get_long().map_or("-".to_owned(), |long| format!("--{long} -"))
+            );
         }
     }
     let (outputs, mut inputs) = (named(outputs), named(inputs));

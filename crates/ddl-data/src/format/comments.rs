@@ -25,10 +25,13 @@ pub(super) fn rate_of(comment: &str) -> Option<f64> {
             Some(after)
         })?;
     let number = after.trim_start_matches([':', '=', ' ', '\t']);
-    let end = number
-        .find(|c: char| !(c.is_ascii_digit() || c == '.'))
-        .unwrap_or(number.len());
-    number[..end].parse().ok().filter(|rate| *rate > 0.0)
+    let number = number
+        .split_ascii_whitespace()
+        .next()?
+        .trim_end_matches(|c: char| c.is_alphabetic());
+    let (above, below) = number.split_once('/').unwrap_or((number, "1"));
+    let rate = above.parse::<f64>().ok()? / below.parse::<f64>().ok()?;
+    (rate.is_finite() && rate > 0.0).then_some(rate)
 }
 
 /// The names of `count` columns in a comment, as numpy writes them: at least three of them are known.
@@ -40,4 +43,27 @@ pub(super) fn names_in_comment(comment: &str, count: usize, choice: &ColumnChoic
     let is_known =
         |name: &&String| is_known(name) || choice.roles.iter().any(|(_, chosen)| chosen.eq_ignore_ascii_case(name));
     (names.len() == count && names.iter().filter(is_known).count() >= KNOWN_NAMES).then_some(names)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rates_are_read_whole_or_not_at_all() {
+        for (comment, rate) in [
+            ("# framerate: 16 fps", Some(16.0)),
+            ("#framerate: 16.00", Some(16.0)),
+            ("# fps=25fps", Some(25.0)),
+            ("# r_frame_rate=30000/1001", Some(30_000.0 / 1001.0)),
+            ("# fps: 1e1", Some(10.0)),
+            ("# fps: 29,97", None),
+            ("# fps 0", None),
+            ("# fps: -1", None),
+            ("# fps: 5/0", None),
+            ("# no rate", None),
+        ] {
+            assert_eq!(rate_of(comment), rate, "{comment}");
+        }
+    }
 }

@@ -36,6 +36,9 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
         let Some((pedestrian, points)) = track else {
             return Err(place.wrong(origin, "expected a track such as TRACK.R1=[[269 466 12];[270 465 13]];"));
         };
+        if !points.trim_end_matches(';').ends_with("]]") {
+            return Err(place.wrong(origin, "the track does not end with ]]; is the file cut off?"));
+        }
         let pedestrian = place.read(origin, field::integer(pedestrian, "the number of the track"))?;
         let mut last_frame = None;
         for point in points.split(';').map(|point| point.replace(['[', ']'], " ")) {

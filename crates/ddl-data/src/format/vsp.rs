@@ -17,6 +17,8 @@ const RATE: f64 = 25.0;
 const STEP: i64 = 10;
 /// Between control points that are more frames apart, 20 s, nothing is known.
 const LONGEST: i64 = 500;
+/// Far more than the films have.
+const MOST_ROWS: usize = 5_000_000;
 const NOTE: &str = "read as splines of UCY, 25 frames a second: positions every 10 frames, on straight lines between \
     control points, so that a forecast knows where the next one lies";
 
@@ -68,17 +70,7 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
         );
         return Err(FilePlace::line(1).wrong(origin, problem));
     }
-    let (mut rows, mut lost) = (Vec::new(), 0);
-    for (id, (line, count, points)) in (1..).zip(&splines) {
-        if points.len() != *count {
-            let found = points.len();
-            let problem = format!("the spline has {found} of its {count} control points; is the file cut off?");
-            return Err(FilePlace::line(*line).wrong(origin, problem));
-        }
-        let apart = |pair: &&[ControlPoint; 2]| pair[1].frame - pair[0].frame > LONGEST;
-        lost += points.array_windows().filter(apart).count() + usize::from(points.len() < 2);
-        rows.extend(along(id, points, origin)?);
-    }
+    let (rows, lost) = rows_of(&splines, origin)?;
     if rows.is_empty() {
         return Err(FilePlace::line(1).wrong(origin, EMPTY));
     }
@@ -90,6 +82,26 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
         notes: std::iter::once(NOTE.to_owned()).chain(pixels).chain(left_out).collect(),
         rate: Some(RATE),
     })
+}
+
+/// The positions of all splines, and the number of parts that are left out.
+fn rows_of(splines: &[(usize, usize, Vec<ControlPoint>)], origin: &str) -> Result<(Vec<TrackRow>, usize), FormatError> {
+    let (mut rows, mut lost) = (Vec::new(), 0);
+    for (id, (line, count, points)) in (1..).zip(splines) {
+        if points.len() != *count {
+            let found = points.len();
+            let problem = format!("the spline has {found} of its {count} control points; is the file cut off?");
+            return Err(FilePlace::line(*line).wrong(origin, problem));
+        }
+        let apart = |pair: &&[ControlPoint; 2]| pair[1].frame - pair[0].frame > LONGEST;
+        lost += points.array_windows().filter(apart).count() + usize::from(points.len() < 2);
+        rows.extend(along(id, points, origin)?);
+        if rows.len() > MOST_ROWS {
+            let problem = format!("the splines have more than {MOST_ROWS} positions; are the frames right?");
+            return Err(FilePlace::line(*line).wrong(origin, problem));
+        }
+    }
+    Ok((rows, lost))
 }
 
 /// The positions of a spline at the frames that are multiples of [`STEP`].

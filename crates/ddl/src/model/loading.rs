@@ -149,6 +149,12 @@ impl BuiltinModel {
         Ok(windows.iter().map(familiarity).collect())
     }
 
+    /// Whether nothing of the recording is among its training recordings.
+    pub(crate) fn is_untrained_on(self, recording: &Recording) -> Result<bool, DdlError> {
+        let contents = packed::contents(self.bytes(), &ModelSource::Builtin(self))?;
+        Ok(contents.fingerprints.is_unknown(recording))
+    }
+
     /// As [`GoalModel::known_share`](crate::GoalModel::known_share), without loading the networks.
     ///
     /// # Errors

@@ -63,12 +63,21 @@ impl TrackFingerprints {
 
     /// The share of the hashes of a recording that are known, if it is one of those that the model was trained on.
     pub(crate) fn known(&self, recording: &Recording) -> Option<f64> {
+        self.known_from(KNOWN, recording)
+    }
+
+    /// Whether so few hashes are known that the model has not even been trained on a part of the recording.
+    pub(crate) fn is_unknown(&self, recording: &Recording) -> bool {
+        self.known_from(KNOWN / 5.0, recording).is_none()
+    }
+
+    fn known_from(&self, least: f64, recording: &Recording) -> Option<f64> {
         let all = tracks_of(recording).into_iter().flat_map(hashes);
         let all: BTreeSet<u32> = all.filter(|hash| hash % self.one_in == 0).collect();
         let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok());
         let known = known.count();
         let share = known as f64 / all.len().max(1) as f64;
-        (known >= FEWEST && share >= KNOWN).then_some(share)
+        (known >= FEWEST && share >= least).then_some(share)
     }
 
     /// Little-endian numbers of 32 bits: the divisor, then the hashes.

@@ -311,8 +311,8 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
         return Ok(());
     }
     let mut others = BuiltinModel::ALL.into_iter().filter(|model| {
-        let knows = |recording: &&Recording| model.known_share(recording).is_ok_and(|known| known.is_some());
-        !recordings.iter().any(knows)
+        let mut recordings = recordings.iter();
+        recordings.all(|recording| model.is_untrained_on(recording).unwrap_or(false))
     });
     let other = match others.next() {
         _ if goals.config().data.convention == Convention::Own => {

@@ -24,6 +24,7 @@ pub(super) struct LeftOut {
     /// Rows, and forecasts of pedestrians.
     rows: usize,
     forecast: usize,
+    frames: usize,
 }
 
 /// Counts events, and limits the rate of messages about them.
@@ -81,6 +82,7 @@ impl LeftOut {
     /// Reports rows of a frame that were left out, and tracks that begin anew.
     pub(super) fn doubtful(&mut self, rows: usize, misfits: &[Misfit], place: impl Fn(&Misfit) -> String) {
         self.rows += rows;
+        self.frames += 1;
         for treatment in [MisfitTreatment::LeftOut, MisfitTreatment::BegunAnew] {
             let some: Vec<Misfit> = misfits.iter().filter(|it| it.treatment == treatment).copied().collect();
             let doubt = Misfit::words(&some, &place);
@@ -108,9 +110,9 @@ impl LeftOut {
         self.forecast += pedestrians;
     }
 
-    /// Says once why most pedestrians are not forecast, if so after this number of rows.
-    pub(super) fn tell_if_few(&mut self, rows: usize) {
-        let are_few = self.rows >= rows && 2 * self.forecast < self.rows;
+    /// Says once why most pedestrians are not forecast, if so after these numbers of rows and frames.
+    pub(super) fn tell_if_few(&mut self, rows: usize, frames: usize) {
+        let are_few = self.rows >= rows && self.frames >= frames && 2 * self.forecast < self.rows;
         if are_few && !std::mem::replace(&mut self.is_few_told, true) {
             tell(format_args!(
                 "warning: only {} of {} positions were forecast from: a pedestrian needs two rows, at most 2 s apart, \

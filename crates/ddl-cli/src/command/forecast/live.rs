@@ -27,6 +27,8 @@ const LONGEST_STEP: i64 = 1000;
 const MOST_WAITING: usize = 64;
 /// Number of rows after which a stream is told that few are forecast.
 const MANY_ROWS: usize = 500;
+/// In the first frames nobody has two rows.
+const SEVERAL_FRAMES: usize = 10;
 /// Largest number of frames read between two batches, if only the latest frame of each scene is forecast.
 const MOST_TAKEN: usize = 4096;
 
@@ -88,7 +90,7 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
     stream.first_rows.warn();
     followed?;
     if !forecast.latest && !forecast.tracks.are_thinned() {
-        stream.left_out.tell_if_few(1);
+        stream.left_out.tell_if_few(1, 1);
     }
     stream.left_out.end(stream.answered, lock(watching).scenes.as_ref())?;
     if stream.is_empty {
@@ -319,7 +321,7 @@ impl Stream<'_> {
             self.told.of_tracks(tracks, self.forecast.tracks.are_thinned());
             let is_idle = watching.scenes.as_ref().is_some_and(|scenes| scenes.waiting() == 0);
             if is_idle && !self.forecast.latest && !self.forecast.tracks.are_thinned() {
-                self.left_out.tell_if_few(MANY_ROWS);
+                self.left_out.tell_if_few(MANY_ROWS, SEVERAL_FRAMES);
             }
         }
         observed.and(ended)
