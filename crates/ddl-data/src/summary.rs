@@ -81,7 +81,7 @@ pub struct Summary {
     pub to_forecast: usize,
     /// Of these, the number tracked for all 8 steps.
     pub seen_whole: usize,
-    /// Windows of 8 observed and 12 further steps ([`WindowRule::Observed`]).
+    /// Windows of 8 observed and 12 further steps ([`WindowRule::Observed`](crate::WindowRule::Observed)).
     pub windows: usize,
     /// Pedestrians in these windows, each counted once per window: the samples for training and evaluation.
     pub to_learn_from: usize,
