@@ -31,8 +31,9 @@ pub(crate) fn write_parts<T: AsRef<str>>(
             written.with_context(unwritable)
         })
     };
-    // A device or a pipe cannot be replaced.
-    if path.exists() && !path.is_file() {
+    // A device or a pipe cannot be replaced, and `/dev/stdout` not either when it leads to a file.
+    let is_of_system = ["/dev", "/proc"].iter().any(|folder| path.starts_with(folder));
+    if path.exists() && (is_of_system || !path.is_file()) {
         let file = File::options().write(true).open(path);
         return write(&mut file.with_context(unwritable)?);
     }

@@ -7,8 +7,7 @@ use std::path::Path;
 /// Prefix of the names of unfinished files.
 const WRITING: &str = ".writing-";
 
-/// Writes a file under a temporary name in its folder and renames it when it is complete. A link stays: the file that
-/// it leads to is replaced.
+/// Writes a file under a temporary name in its folder and renames it when it is complete.
 ///
 /// # Errors
 /// When the file cannot be written; an existing file then stays unchanged.
@@ -24,13 +23,6 @@ pub fn write_atomically_with<E: From<Error>>(
     path: &Path,
     write: impl FnOnce(&mut File) -> std::result::Result<(), E>,
 ) -> std::result::Result<(), E> {
-    let target = if path.is_symlink() {
-        let lost = |error: Error| Error::new(error.kind(), format!("the link {} leads nowhere", path.display()));
-        path.canonicalize().map_err(lost)?
-    } else {
-        path.to_owned()
-    };
-    let path = target.as_path();
     let folder = match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -81,25 +73,6 @@ mod tests {
         write_atomically(&path, b"new").unwrap();
         assert_eq!(path.metadata().unwrap().permissions().mode() & 0o777, 0o600);
         assert_eq!(std::fs::read(&path).unwrap(), b"new");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_link_stays_a_link() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = |name: &str| folder.path().join(name);
-        std::fs::write(path("target"), "old").unwrap();
-        std::os::unix::fs::symlink("target", path("link")).unwrap();
-        write_atomically(&path("link"), b"new").unwrap();
-        assert!(path("link").is_symlink());
-        assert_eq!(std::fs::read(path("target")).unwrap(), b"new");
-        std::fs::remove_file(path("target")).unwrap();
-        assert!(
-            write_atomically(&path("link"), b"new")
-                .unwrap_err()
-                .to_string()
-                .contains("leads nowhere")
-        );
     }
 
     #[test]
