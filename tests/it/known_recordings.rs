@@ -62,3 +62,23 @@ fn a_renamed_training_recording_is_no_test() {
     }
     let _ = place.ok("evaluate --data obsmat.txt --model eth --protocol fair --test-pedestrians 20 --threads 1");
 }
+
+/// A file for each pedestrian has too few paths to be known.
+#[test]
+fn a_training_recording_in_many_files_is_no_test() {
+    let Some(dataset) = dataset(Convention::Star) else {
+        return;
+    };
+    let place = Place::empty();
+    let of_zara = dataset.recording("zara03").unwrap();
+    for id in of_zara.pedestrians().into_iter().take(60) {
+        let one = Recording::new("one", of_zara.frame_step(), of_zara.track(id)).unwrap();
+        let file = format!("each/{}.csv", id.0);
+        place.write(&file, write_recording(&one, Format::Table).unwrap());
+    }
+    let said = place.run("evaluate --data each --protocol fair --threads 1");
+    assert!(
+        said.code == Some(1) && said.stderr.contains("was trained on"),
+        "{said:?}"
+    );
+}

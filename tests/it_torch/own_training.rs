@@ -1,9 +1,10 @@
 //! Training on own recordings, alone and with the built-in models: evaluation on the validation part, and starting
 //! weights.
 
+use ddl::data::{Convention, Dataset, Format, write_recording};
 use ddl::{RunConfig, RunDirectory};
-use ddl_tests::own_tracks;
 use ddl_tests::place::Place;
+use ddl_tests::{own_tracks, recordings};
 use serde_json::Value;
 
 /// Options for a training of a few seconds.
@@ -254,4 +255,19 @@ fn a_run_remembers_rate_and_homography() {
     let refused = place.run(&format!("{measure} --protocol fair --fps 25"));
     assert_eq!(refused.code, Some(1), "{refused:?}");
     assert!(refused.stderr.contains("trained on other recordings"), "{refused:?}");
+}
+
+/// Errors on recordings that the starting model was trained on are too small, which is told.
+#[test]
+fn a_starting_model_that_knows_the_recordings_is_told() {
+    let Some(folder) = recordings::star_folder() else {
+        return;
+    };
+    let dataset = Dataset::load(Convention::Star, &folder).unwrap();
+    let known = dataset.recording("zara03").unwrap();
+    let place = Place::empty();
+    place.write("mine/walk.csv", write_recording(known, Format::Table).unwrap());
+    let said = place.run(&format!("train --data mine --out run --only-goals {SMALL}"));
+    let told = "warning: the starting model was trained on walk: errors on their validation part are too small";
+    assert!(said.code == Some(0) && said.stderr.contains(told), "{said:?}");
 }

@@ -15,8 +15,8 @@ use clap::{Args, ValueEnum};
 use ddl::data::{Convention, Dataset, Fold, Window};
 use ddl::network::{BackboneKind, LearningRateSchedule, ProposalTraining, StarConfig, TrainingConfig};
 use ddl::{
-    BuiltinModel, DdlError, GoalRecipe, KeptEpochs, ModelSource, RunDirectory, TrainingRequest, TrainingStage,
-    ValidationPart, Variant,
+    BuiltinModel, DdlError, DeviceChoice, GoalModel, GoalRecipe, KeptEpochs, ModelSource, RunDirectory,
+    TrainingRequest, TrainingStage, ValidationPart, Variant,
 };
 use std::path::PathBuf;
 
@@ -181,6 +181,9 @@ impl Train {
             }
             error => error.into(),
         })?;
+        if let (Some(from), true) = (&request.from, is_validated) {
+            warn_of_known(from, &ddl::fold_by_name(&dataset, &request.fold)?)?;
+        }
         let compared = finished::compare_with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
         finished::print(&request, compared.as_ref(), &self.recordings, &self.reporting)
     }
@@ -330,6 +333,21 @@ impl Train {
             }
         }
     }
+}
+
+/// A validation part that the starting model has seen is no measure.
+fn warn_of_known(from: &ModelSource, fold: &Fold<'_>) -> anyhow::Result<()> {
+    let goals = GoalModel::open(from, DeviceChoice::Cpu)?;
+    let recordings = fold.training_recordings().iter();
+    let known = recordings.filter(|recording| goals.known_share(recording).is_some());
+    let known: Vec<&str> = known.map(|recording| recording.name()).collect();
+    if !known.is_empty() {
+        tell(format_args!(
+            "warning: the starting model was trained on {}: errors on their validation part are too small",
+            known.join(", ")
+        ));
+    }
+    Ok(())
 }
 
 fn set<T>(place: &mut T, option: Option<T>) {

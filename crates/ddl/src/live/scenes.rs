@@ -5,7 +5,7 @@ use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
 use ddl_core::{Forecast, ForecastError, Forecaster};
-use ddl_data::{Frame, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
+use ddl_data::{Frame, LiveError, LiveTracks, PedestrianId, PedestrianNames, Position, SceneName, Window};
 use ddl_memory::SceneMemory;
 use std::collections::{BTreeMap, VecDeque};
 use std::time::{Duration, Instant};
@@ -93,6 +93,8 @@ impl LiveScenes {
     pub(crate) const MOST_SCENES: usize = 2_000;
     /// Largest number of waiting windows.
     pub(crate) const MOST_WAITING: usize = 10_000;
+    /// Largest number of pedestrians of all scenes, those of the next frame counted twice.
+    pub(crate) const MOST_PEDESTRIANS: usize = 400_000;
     /// Number of pedestrians in a batch with a short latency: several cameras with a dozen pedestrians each, or one
     /// crowd.
     pub const BATCH: usize = 50;
@@ -124,7 +126,7 @@ impl LiveScenes {
     ///
     /// # Errors
     /// [`DdlError::Live`] for a frame that is out of order within its scene, a position that is not finite or a
-    /// repeated pedestrian; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond the limits. After an
+    /// repeated pedestrian, or too many of them; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond the limits. After an
     /// error nothing has changed.
     pub fn observe(
         &mut self,
@@ -162,6 +164,13 @@ impl LiveScenes {
             return Err(DdlError::TooManyWaiting {
                 limit: Self::MOST_WAITING,
             });
+        }
+        let kept: usize = self.scenes.values().map(|scene| scene.watch.tracks.len()).sum();
+        if kept + pedestrians.len() > Self::MOST_PEDESTRIANS {
+            return Err(LiveError::TooManyPedestrians {
+                limit: Self::MOST_PEDESTRIANS,
+            }
+            .into());
         }
         let scene = self.scene(&name)?;
         let made = scene.watch.push(frame, pedestrians, |_| Ok::<_, DdlError>(()))?;
@@ -340,5 +349,14 @@ mod tests {
         assert!(error.contains("10000 frames wait"), "{error}");
         scenes.next_batch(1);
         scenes.observe(None, waiting + 7, seen).unwrap();
+        let mut scenes = LiveScenes::new(LiveTracks::new());
+        let crowd = |scene: i64| (0..100_000).map(move |id| (PedestrianId(id), [scene as f64, 0.0]));
+        for scene in 0..4 {
+            scenes
+                .observe(Some(&name(&scene.to_string())), 0, crowd(scene))
+                .unwrap();
+        }
+        let error = scenes.observe(Some(&name("4")), 0, crowd(4)).unwrap_err().to_string();
+        assert!(error.contains("more than 400000 pedestrians"), "{error}");
     }
 }

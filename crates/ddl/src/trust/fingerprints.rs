@@ -71,8 +71,17 @@ impl TrackFingerprints {
         self.known_from(KNOWN / 5.0, recording).is_none()
     }
 
+    /// As [`known`](Self::known), for recordings that may be parts of one.
+    pub(crate) fn known_together(&self, recordings: &[&Recording]) -> Option<f64> {
+        self.known_of(KNOWN, recordings.iter().flat_map(|recording| tracks_of(recording)))
+    }
+
     fn known_from(&self, least: f64, recording: &Recording) -> Option<f64> {
-        let all = tracks_of(recording).into_iter().flat_map(hashes);
+        self.known_of(least, tracks_of(recording))
+    }
+
+    fn known_of(&self, least: f64, tracks: impl IntoIterator<Item = Vec<Position>>) -> Option<f64> {
+        let all = tracks.into_iter().flat_map(hashes);
         let all: BTreeSet<u32> = all.filter(|hash| hash % self.one_in == 0).collect();
         let known = all.iter().filter(|hash| self.hashes.binary_search(hash).is_ok());
         let known = known.count();

@@ -306,7 +306,12 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
         let name = recording.name();
         Some(format!("{name} ({:.0} % of its paths are known)", 100.0 * share))
     });
-    let known: Vec<String> = known.collect();
+    let mut known: Vec<String> = known.collect();
+    if known.is_empty() {
+        // Each may be too short to be known.
+        let together = goals.fingerprints().known_together(recordings);
+        known.extend(together.map(|share| format!("these together ({:.0} % of their paths are known)", 100.0 * share)));
+    }
     if known.is_empty() {
         return Ok(());
     }
