@@ -126,8 +126,8 @@ impl LiveScenes {
     ///
     /// # Errors
     /// [`DdlError::Live`] for a frame that is out of order within its scene, a position that is not finite or a
-    /// repeated pedestrian, or too many of them; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond the limits. After an
-    /// error nothing has changed.
+    /// repeated pedestrian, or too many of them; [`DdlError::TooManyScenes`] and [`DdlError::TooManyWaiting`] beyond
+    /// the limits. After an error nothing has changed.
     pub fn observe(
         &mut self,
         scene: Option<&SceneName>,
