@@ -28,7 +28,7 @@ pub(super) fn rate_of(comment: &str) -> Option<f64> {
     let number = number
         .split_ascii_whitespace()
         .next()?
-        .trim_end_matches(|c: char| c.is_alphabetic());
+        .trim_end_matches(|c: char| c.is_alphabetic() || ",;.)".contains(c));
     let (above, below) = number.split_once('/').unwrap_or((number, "1"));
     let rate = above.parse::<f64>().ok()? / below.parse::<f64>().ok()?;
     (rate.is_finite() && rate > 0.0).then_some(rate)
@@ -57,6 +57,8 @@ mod tests {
             ("# fps=25fps", Some(25.0)),
             ("# r_frame_rate=30000/1001", Some(30_000.0 / 1001.0)),
             ("# fps: 1e1", Some(10.0)),
+            ("# fps: 25, exact", Some(25.0)),
+            ("# recorded (at fps: 25).", Some(25.0)),
             ("# fps: 29,97", None),
             ("# fps 0", None),
             ("# fps: -1", None),

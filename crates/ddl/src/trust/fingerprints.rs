@@ -3,8 +3,9 @@
 //! A track crosses the lines of a grid. Six crossings in a row, each with its place on the line to 10 cm, make a
 //! hash. It is the same in another file of the recording: at other times or another rate, rounded to centimetres, with
 //! other names, cut, with exchanged axes, or backwards. Of a recording in the files of two conventions 27 % (`eth`,
-//! whose rows lie at other times there) to 99 % of the hashes agree, of other pedestrians at the same place at most
-//! 0.8 % (240 people in a laboratory's corridor; it grows with their number). Who walks less than 5 m has no hash.
+//! whose rows lie at other times there) to 99 % of the hashes agree (`tests/it/known_recordings.rs` demands 20 %). Of
+//! other pedestrians at the same place 0.8 % agree: the second half of `bi_corr_400_b_03` of Jülich, 240 people in a
+//! corridor, after the first; the share grows with their number. Who walks less than 5 m has no hash.
 
 use ddl_data::{Position, Recording};
 use sha2::{Digest as _, Sha256};

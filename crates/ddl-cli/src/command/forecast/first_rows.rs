@@ -91,8 +91,9 @@ impl FirstRows {
 }
 
 impl SceneRows {
-    /// Warns as of a file, and returns whether it did. A jump is told as a row that does not fit, and at the end that
-    /// nobody is forecast.
+    /// Gives the warning that a file with these rows gets, and returns whether there was one. Two kinds are left out: a
+    /// single jump, because the position is reported as left out, and rows that are never 0.4 s apart, because the end
+    /// of the stream reports that no pedestrian was observed long enough.
     fn warn(&mut self) -> bool {
         let warning = self.warning();
         *self = Self {

@@ -27,7 +27,7 @@ const LONGEST_STEP: i64 = 1000;
 const MOST_WAITING: usize = 64;
 /// Number of rows after which a stream is told that few are forecast.
 const MANY_ROWS: usize = 500;
-/// In the first frames nobody has two rows.
+/// Number of frames before that message: a forecast needs two rows of a pedestrian, and the first frame has one.
 const SEVERAL_FRAMES: usize = 10;
 /// Largest number of frames read between two batches, if only the latest frame of each scene is forecast.
 const MOST_TAKEN: usize = 4096;
