@@ -32,6 +32,7 @@ pub use category::{Category, MotionKind};
 pub use category_scores::CategoryScores;
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
 pub use error::{EvaluationError, WindowProblem};
+pub use metric::deployable::DeployableErrors;
 pub use metric::stability::StabilityScores;
 pub use protocol::Protocol;
 pub use scored_window::ScoredWindow;

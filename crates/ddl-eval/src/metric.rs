@@ -4,6 +4,7 @@
 
 pub mod amd;
 pub mod collision;
+pub mod deployable;
 pub mod displacement;
 pub mod diversity;
 pub(crate) mod gaussian;

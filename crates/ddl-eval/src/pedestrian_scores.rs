@@ -22,6 +22,8 @@ pub(crate) struct PedestrianScores {
     pub(crate) expected_fde: f64,
     pub(crate) most_likely_ade: f64,
     pub(crate) most_likely_fde: f64,
+    /// ADE and FDE of the representative hypothesis.
+    pub(crate) medoid: [f64; 2],
     /// Whether every hypothesis misses the endpoint by more than 0.5 m, 1 m and 2 m.
     pub(crate) missed: [bool; 3],
     pub(crate) collides: bool,
@@ -46,6 +48,7 @@ impl PedestrianScores {
         let collides_with_true_futures = collides_with_true_futures(scene, PEDESTRIAN_RADIUS);
         (0..scene.pedestrians())
             .map(|i| Self {
+                medoid: [errors.ade(i), errors.fde(i)].map(|errors| errors[forecast.representative(i)]),
                 min_ade: errors.min_ade(i),
                 min_fde: errors.min_fde(i),
                 fde_at_min_ade: errors.fde_at_min_ade(i),

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::category_scores::CategoryScores;
 use crate::error::{EvaluationError, WindowProblem};
 use crate::metric::amd::amv;
+use crate::metric::deployable::DeployableErrors;
 use crate::metric::displacement::{DisplacementErrors, joint_ade, joint_fde};
 use crate::metric::gaussian::Covariance;
 use crate::metric::stability::{self, RolloutStability, StabilityScores};
@@ -55,6 +56,10 @@ pub struct Scores {
     pub most_likely_ade: Option<f64>,
     /// FDE of the most likely hypothesis, metres.
     pub most_likely_fde: Option<f64>,
+    /// Errors of the most likely hypothesis.
+    pub likeliest: Option<DeployableErrors>,
+    /// Errors of the representative hypothesis, the medoid.
+    pub medoid: Option<DeployableErrors>,
     /// As [`miss_rate`](Self::miss_rate), by more than 1 m.
     pub miss_rate_1m: Option<f64>,
     /// As [`miss_rate`](Self::miss_rate), by more than 2 m.
@@ -140,6 +145,7 @@ impl Scores {
             let scored = scenes.iter().flat_map(|s| &s.pedestrians);
             scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
+        let each = || scenes.iter().flat_map(|s| &s.pedestrians);
         // All pedestrians have the same number of hypotheses, so either all or none have a distribution.
         let several = first.hypotheses() > 1;
         let of_several = |metric: fn(&PedestrianScores) -> Option<f64>| {
@@ -166,6 +172,10 @@ impl Scores {
             expected_fde: Some(mean(|w| w.expected_fde)),
             most_likely_ade: Some(mean(|w| w.most_likely_ade)),
             most_likely_fde: Some(mean(|w| w.most_likely_fde)),
+            likeliest: Some(DeployableErrors::of(
+                each().map(|w| [w.most_likely_ade, w.most_likely_fde]),
+            )),
+            medoid: Some(DeployableErrors::of(each().map(|w| w.medoid))),
             miss_rate_1m: Some(share(|w| w.missed[1])),
             miss_rate_2m: Some(share(|w| w.missed[2])),
             true_neighbour_collision_rate: Some(share(|w| w.collides_with_true_futures)),

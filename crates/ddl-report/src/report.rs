@@ -14,6 +14,7 @@ mod across_protocols;
 mod categories;
 mod cells;
 mod content;
+mod deployable;
 mod group;
 mod metrics;
 mod published;

@@ -5,7 +5,9 @@ use ddl_eval::ResultRow;
 
 use crate::document::{Document, Part};
 use crate::report::group::{ResultGroup, groups};
-use crate::report::{ablation, across_protocols, categories, metrics, published, section, significance, watching};
+use crate::report::{
+    ablation, across_protocols, categories, deployable, metrics, published, section, significance, watching,
+};
 
 pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let groups = groups(rows);
@@ -27,6 +29,7 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
             .to_vec(),
         ));
     }
+    parts.extend(deployable::parts(&groups));
     parts.extend(across_protocols::parts(&groups));
     parts.extend(ablation::parts(&groups));
     parts.extend(published::parts(rows));
