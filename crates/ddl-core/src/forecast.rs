@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::ForecastShapeError;
+use crate::pace::Pace;
 use crate::position::{HORIZON, Position};
 use crate::region_table::RegionTable;
 use crate::window::Window;
@@ -17,7 +18,7 @@ use crate::window::Window;
 /// - weights `[N][K]`; they sum to 1 for each pedestrian
 /// - goals `[N][K]`, in metres
 /// - certified `[N][K]`: whether the model's certificate that hypothesis `k` goes to its goal holds
-/// - standard deviation `[N][12]`, in metres, of a pedestrian around the hypothesis that it follows
+/// - spread `[N][12]`, in metres, of a pedestrian around the hypothesis that it follows, and pace `[N]`
 /// - familiarity `[N]`, 0 to 1: similarity of the observed motion to the training data
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
@@ -27,8 +28,28 @@ pub struct Forecast {
     weights: Vec<f64>,
     goals: Option<Vec<Position>>,
     certified: Option<Vec<bool>>,
-    spread: Option<(Vec<f64>, Arc<RegionTable>)>,
+    spread: Option<Spread>,
     familiarity: Option<Vec<f64>>,
+}
+
+/// How far pedestrians are from the hypotheses that they follow.
+///
+/// Around hypothesis `k`, `t` + 1 steps ahead, a pedestrian is distributed by Student's t in two dimensions with
+/// [`DEGREES`](Self::DEGREES) degrees of freedom; at the distance r (m) its density per square metre is
+/// `(1 + r² / (3 s²))^(-5/2) / (2 pi s²)` with the scale s.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spread {
+    /// `[N][12]`: the scales s, metres.
+    pub scales: Vec<f64>,
+    /// `[N]`: the paces of the observed motions.
+    pub paces: Vec<Pace>,
+    /// The table from which regions are made.
+    pub regions: Arc<RegionTable>,
+}
+
+impl Spread {
+    /// Degrees of freedom. The variance on each axis is 3 s².
+    pub const DEGREES: f64 = 3.0;
 }
 
 impl Forecast {
@@ -112,15 +133,17 @@ impl Forecast {
         })
     }
 
-    /// Adds the standard deviation around the hypotheses, `[N][12]` (metres), and the table of regions.
+    /// Adds the spread around the hypotheses, with the table of regions.
     ///
     /// # Errors
-    /// The array has the wrong length, or a deviation is not finite and positive.
-    pub fn with_std_dev(self, spread: Vec<f64>, regions: Arc<RegionTable>) -> Result<Self, ForecastShapeError> {
-        check_length("spread", "pedestrian, frame", self.pedestrians * HORIZON, spread.len())?;
-        check_range("spread", &spread, HORIZON, f64::MAX)?;
+    /// An array has the wrong length, or a scale is not finite and positive.
+    pub fn with_spread(self, spread: Spread) -> Result<Self, ForecastShapeError> {
+        let Spread { scales, paces, .. } = &spread;
+        check_length("spread", "pedestrian, frame", self.pedestrians * HORIZON, scales.len())?;
+        check_length("pace", "pedestrian", self.pedestrians, paces.len())?;
+        check_range("spread", scales, HORIZON, f64::MAX)?;
         Ok(Self {
-            spread: Some((spread, regions)),
+            spread: Some(spread),
             ..self
         })
     }
@@ -138,29 +161,49 @@ impl Forecast {
         })
     }
 
-    /// Standard deviation of pedestrian `i`, `t` + 1 steps ahead, around the hypothesis that it follows (metres), if
-    /// known.
-    pub fn std_dev(&self, i: usize, t: usize) -> Option<f64> {
-        let (spread, _) = self.spread.as_ref()?;
-        Some(spread[i * HORIZON..][..HORIZON][t])
+    /// Scale of Student's t (metres) of pedestrian `i`, `t` + 1 steps ahead, around the hypothesis that it follows, if
+    /// known; see [`Spread`].
+    pub fn scale(&self, i: usize, t: usize) -> Option<f64> {
+        let spread = self.spread.as_ref()?;
+        Some(spread.scales[i * HORIZON..][..HORIZON][t])
     }
 
-    /// The table of its regions; `None` for forecasts without a standard deviation.
+    /// The pace of pedestrian `i`, for which its regions hold; `None` for forecasts without a [spread](Spread).
+    pub fn pace(&self, i: usize) -> Option<Pace> {
+        self.spread.as_ref().map(|spread| spread.paces[i])
+    }
+
+    /// The table of its regions; `None` for forecasts without a [spread](Spread).
     pub fn regions(&self) -> Option<&RegionTable> {
-        self.spread.as_ref().map(|(_, regions)| regions.as_ref())
+        self.spread.as_ref().map(|spread| spread.regions.as_ref())
     }
 
     pub(crate) fn shared_regions(&self) -> Option<Arc<RegionTable>> {
-        let (_, regions) = self.spread.as_ref()?;
-        Some(Arc::clone(regions))
+        let spread = self.spread.as_ref()?;
+        Some(Arc::clone(&spread.regions))
     }
 
-    /// The same forecast with another table of regions; unchanged without a standard deviation.
-    pub(crate) fn with_regions(self, regions: &Arc<RegionTable>) -> Self {
-        Self {
-            spread: self.spread.map(|(spread, _)| (spread, Arc::clone(regions))),
-            ..self
+    /// The same forecast with another table of regions; unchanged without a spread.
+    pub(crate) fn with_regions(mut self, regions: &Arc<RegionTable>) -> Self {
+        if let Some(spread) = &mut self.spread {
+            spread.regions = Arc::clone(regions);
         }
+        self
+    }
+
+    /// The same forecast with the weights of each pedestrian raised to the power of its pace, then divided by their sum;
+    /// unchanged without a spread.
+    pub(crate) fn with_powers(mut self, power: impl Fn(Pace) -> f64) -> Self {
+        let paces = self.spread.iter().flat_map(|spread| &spread.paces);
+        for (weights, &pace) in self.weights.chunks_exact_mut(self.hypotheses).zip(paces) {
+            let power = power(pace);
+            let raised: Vec<f64> = weights.iter().map(|weight| weight.powf(power)).collect();
+            let sum: f64 = raised.iter().sum();
+            for (weight, raised) in weights.iter_mut().zip(raised) {
+                *weight = raised / sum;
+            }
+        }
+        self
     }
 
     /// Similarity of the observed motion of pedestrian `i` to the training data, 0 to 1; `None` if unknown.
@@ -250,10 +293,11 @@ impl Forecast {
             weights: rows(&self.weights, k, pedestrians),
             goals: self.goals.as_ref().map(|goals| rows(goals, k, pedestrians)),
             certified: self.certified.as_ref().map(|certified| rows(certified, k, pedestrians)),
-            spread: self
-                .spread
-                .as_ref()
-                .map(|(spread, regions)| (rows(spread, HORIZON, pedestrians), Arc::clone(regions))),
+            spread: self.spread.as_ref().map(|spread| Spread {
+                scales: rows(&spread.scales, HORIZON, pedestrians),
+                paces: rows(&spread.paces, 1, pedestrians),
+                regions: Arc::clone(&spread.regions),
+            }),
             familiarity: self
                 .familiarity
                 .as_ref()

@@ -4,6 +4,7 @@ mod error;
 mod forecast;
 mod forecaster;
 pub mod motion;
+mod pace;
 mod pedestrian;
 mod position;
 mod quality;
@@ -15,8 +16,9 @@ mod window;
 mod work_done;
 
 pub use error::{ForecastError, ForecastShapeError, WindowError};
-pub use forecast::Forecast;
+pub use forecast::{Forecast, Spread};
 pub use forecaster::Forecaster;
+pub use pace::{Pace, mean_speed};
 pub use pedestrian::{PedestrianId, PedestrianName, PedestrianNames};
 pub use position::{
     FRAME_LIMIT, HORIZON, OBSERVED, Position, TIME_STEP, WINDOW, between, distance, is_finite, is_frame, is_frame_step,

@@ -16,6 +16,7 @@
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
 
 mod adaptive;
+mod powers;
 mod tracked;
 
 use crate::forecast::Forecast;
@@ -26,16 +27,20 @@ pub use adaptive::AdaptiveRegions;
 
 impl Forecast {
     /// The score of the position `at` (m) of pedestrian `i`, `t` + 1 steps ahead; `None` for forecasts without a
-    /// [standard deviation](Self::std_dev).
+    /// [spread](crate::Spread).
     pub(crate) fn region_score(&self, i: usize, t: usize, position: Position) -> Option<f64> {
-        let std_dev = self.std_dev(i, t)?;
+        let scale = self.scale(i, t)?;
         let heaviest = self.weight(i, self.most_likely(i));
         let of_hypothesis = |k: usize| {
             let p = self.hypothesis(i, k)[t];
-            let off = [0, 1].map(|axis| (position[axis] - p[axis]) / std_dev);
+            let off = [0, 1].map(|axis| (position[axis] - p[axis]) / scale);
             0.5 * (off[0] * off[0] + off[1] * off[1]) - (self.weight(i, k) / heaviest).ln()
         };
         (0..self.hypotheses()).map(of_hypothesis).reduce(f64::min)
+    }
+
+    fn region_quantile(&self, i: usize, t: usize, level: f64) -> Option<f64> {
+        self.regions()?.quantile(self.pace(i)?, level, t)
     }
 
     /// ln of the weight of a hypothesis, relative to the most likely one of the pedestrian.
@@ -46,16 +51,16 @@ impl Forecast {
     /// The radius (m) of the disc around hypothesis `k` of pedestrian `i`, `t` + 1 steps ahead, in the region of a
     /// level; `None` without a disc.
     pub fn region_radius(&self, i: usize, k: usize, t: usize, level: f64) -> Option<f64> {
-        let quantile = self.regions()?.quantile(level, t)?;
+        let quantile = self.region_quantile(i, t, level)?;
         let left = quantile + self.log_weight(i, k);
-        (left >= 0.0).then(|| self.std_dev(i, t).map(|std_dev| std_dev * (2.0 * left).sqrt()))?
+        (left >= 0.0).then(|| self.scale(i, t).map(|scale| scale * (2.0 * left).sqrt()))?
     }
 
     /// The region that contains pedestrian `i`, `t` + 1 steps ahead, with the probability `level`. It has at most one
     /// disc for each hypothesis, and always one for the most likely. `None` beyond the range of the table, and without
     /// regions.
     pub fn region(&self, i: usize, t: usize, level: f64) -> Option<Vec<Disc>> {
-        self.regions()?.quantile(level, t)?;
+        self.region_quantile(i, t, level)?;
         let disc = |k: usize| {
             let radius = self.region_radius(i, k, t, level)?;
             let centre = self.hypothesis(i, k)[t];
@@ -70,6 +75,8 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
+    use crate::forecast::Spread;
+    use crate::pace::Pace;
     use crate::position::HORIZON;
     use crate::region_table::RegionTable;
 
@@ -86,17 +93,20 @@ mod tests {
             let weights = raw.iter().map(|w| w / total).collect();
             let positions = ends.iter().flat_map(|&end| [end; HORIZON]).collect();
             let bare = Forecast::new(1, 5, positions, weights, None).unwrap();
-            let spread = vec![spread; HORIZON];
-            let table = |scores: &[[f64; HORIZON]]| RegionTable::of(scores, &[level]).unwrap().into();
-            let any = bare.clone().with_std_dev(spread.clone(), table(&[[1.0; HORIZON]; 40])).unwrap();
+            let with = |scores: &[[f64; HORIZON]]| {
+                let regions = RegionTable::of(&[scores; 3], &[level]).unwrap().into();
+                let (scales, paces) = (vec![spread; HORIZON], vec![Pace::Slow]);
+                bare.clone().with_spread(Spread { scales, paces, regions }).unwrap()
+            };
+            let any = with(&[[1.0; HORIZON]; 40]);
             let scores: Vec<[f64; HORIZON]> = truths
                 .iter()
                 .map(|&truth| std::array::from_fn(|t| any.region_score(0, t, truth).unwrap()))
                 .collect();
-            let forecast = bare.with_std_dev(spread, table(&scores)).unwrap();
+            let forecast = with(&scores);
             let region = forecast.region(0, 5, level).unwrap();
             prop_assert!(!region.is_empty());
-            let quantile = forecast.regions().unwrap().quantile(level, 5).unwrap();
+            let quantile = forecast.region_quantile(0, 5, level).unwrap();
             let mut inside = 0;
             for (&at, score) in truths.iter().zip(&scores) {
                 // The score on the edge may be on either side.

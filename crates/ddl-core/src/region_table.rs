@@ -2,9 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::pace::Pace;
 use crate::position::{HORIZON, Position};
 
-/// Quantiles of scores, for levels and steps.
+/// Quantiles of scores, for paces, levels and steps.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "LevelQuantiles", into = "LevelQuantiles")]
 pub struct RegionTable(pub(crate) LevelQuantiles);
@@ -14,8 +15,8 @@ pub struct RegionTable(pub(crate) LevelQuantiles);
 pub(crate) struct LevelQuantiles {
     /// Ascending, in (0, 1).
     pub(crate) levels: Vec<f64>,
-    /// `[levels][12]`.
-    pub(crate) quantiles: Vec<[f64; HORIZON]>,
+    /// For each [pace](Pace), slowest first: `[levels][12]`.
+    pub(crate) quantiles: [Vec<[f64; HORIZON]>; Pace::ALL.len()],
 }
 
 impl TryFrom<LevelQuantiles> for RegionTable {
@@ -23,15 +24,19 @@ impl TryFrom<LevelQuantiles> for RegionTable {
 
     fn try_from(columns: LevelQuantiles) -> Result<Self, Self::Error> {
         let inside = |level: &f64| *level > 0.0 && *level < 1.0;
+        let of_levels = |rows: &Vec<[f64; HORIZON]>| {
+            rows.len() == columns.levels.len() && rows.as_flattened().iter().all(|q| q.is_finite())
+        };
         let is_valid = !columns.levels.is_empty()
-            && columns.levels.len() == columns.quantiles.len()
             && columns.levels.iter().all(inside)
             && columns.levels.is_sorted_by(|a, b| a < b)
-            && columns.quantiles.as_flattened().iter().all(|q| q.is_finite());
+            && columns.quantiles.iter().all(of_levels);
         if is_valid {
             Ok(Self(columns))
         } else {
-            Err("a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles")
+            Err(
+                "a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles for three paces",
+            )
         }
     }
 }
@@ -60,26 +65,16 @@ impl Disc {
 }
 
 impl RegionTable {
-    /// The table from scores of true positions: for each level and step the split-conformal quantile of the scores.
-    /// With n scores, the levels can be up to n / (n + 1).
+    /// The table from scores of true positions of each pace, slowest first: for each level and step the split-conformal
+    /// quantile of the scores. With n scores, the levels can be up to n / (n + 1).
     ///
     /// # Shapes
-    /// `scores` `[pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
-    pub fn of(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Self> {
-        let of_step = |t: usize| {
-            let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
-            step.sort_by(f64::total_cmp);
-            step
-        };
-        let steps: Vec<Vec<f64>> = (0..HORIZON).map(of_step).collect();
-        let of_level = |&level: &f64| {
-            let rank = (level * (scores.len() + 1) as f64).ceil() as usize;
-            let place = rank.checked_sub(1).filter(|&place| place < scores.len())?;
-            Some(std::array::from_fn(|t| steps[t][place]))
-        };
+    /// `scores` `[3][pedestrians][12]`; `levels` ascending, in (0, 1), at least one. `None` otherwise.
+    pub fn of(scores: &[&[[f64; HORIZON]]; Pace::ALL.len()], levels: &[f64]) -> Option<Self> {
+        let [standing, slow, walking] = scores.map(|scores| split_conformal(scores, levels));
         let columns = LevelQuantiles {
             levels: levels.to_vec(),
-            quantiles: levels.iter().map(of_level).collect::<Option<_>>()?,
+            quantiles: [standing?, slow?, walking?],
         };
         columns.try_into().ok()
     }
@@ -91,7 +86,7 @@ impl RegionTable {
     }
 
     /// The quantile of a level, `t` + 1 steps ahead, linear between the levels; `None` beyond the [range](Self::range).
-    pub fn quantile(&self, level: f64, t: usize) -> Option<f64> {
+    pub fn quantile(&self, pace: Pace, level: f64, t: usize) -> Option<f64> {
         let LevelQuantiles { levels, quantiles } = &self.0;
         let [lowest, highest] = self.range();
         if !(lowest..=highest).contains(&level) {
@@ -99,7 +94,7 @@ impl RegionTable {
         }
         let after = levels.partition_point(|&l| l < level);
         let before = after.saturating_sub(1);
-        let [low, high] = [before, after].map(|row| quantiles[row][t]);
+        let [low, high] = [before, after].map(|row| quantiles[pace as usize][row][t]);
         let width = levels[after] - levels[before];
         let share = if width > 0.0 {
             (level - levels[before]) / width
@@ -110,6 +105,22 @@ impl RegionTable {
     }
 }
 
+/// `[levels][12]` quantiles of the scores of one pace.
+fn split_conformal(scores: &[[f64; HORIZON]], levels: &[f64]) -> Option<Vec<[f64; HORIZON]>> {
+    let of_step = |t: usize| {
+        let mut step: Vec<f64> = scores.iter().map(|scores| scores[t]).collect();
+        step.sort_by(f64::total_cmp);
+        step
+    };
+    let steps: Vec<Vec<f64>> = (0..HORIZON).map(of_step).collect();
+    let of_level = |&level: &f64| {
+        let rank = (level * (scores.len() + 1) as f64).ceil() as usize;
+        let place = rank.checked_sub(1).filter(|&place| place < scores.len())?;
+        Some(std::array::from_fn(|t| steps[t][place]))
+    };
+    levels.iter().map(of_level).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,20 +128,25 @@ mod tests {
     #[test]
     fn quantiles_by_hand() {
         let scores: Vec<[f64; HORIZON]> = (1..=99).map(|s| [f64::from(s); HORIZON]).collect();
-        let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
+        let tens = scores
+            .iter()
+            .map(|row| row.map(|score| 10.0 * score))
+            .collect::<Vec<_>>();
+        let table = RegionTable::of(&[&tens, &scores, &scores], &[0.5, 0.9]).unwrap();
         for (level, expected) in [(0.5, 50.0), (0.9, 90.0), (0.7, 70.0)] {
-            let quantile = table.quantile(level, 3).unwrap();
-            assert!((quantile - expected).abs() < 1e-12);
+            for (pace, factor) in Pace::ALL.into_iter().zip([10.0, 1.0, 1.0]) {
+                let quantile = table.quantile(pace, level, 3).unwrap();
+                assert!((quantile - factor * expected).abs() < 1e-9);
+            }
         }
         for beyond in [0.2, 0.99, f64::NAN] {
-            assert_eq!(table.quantile(beyond, 3), None);
+            assert_eq!(table.quantile(Pace::Slow, beyond, 3), None);
         }
         // 99 scores are enough for the level 0.99.
-        assert!(RegionTable::of(&scores, &[0.99]).is_some());
-        assert_eq!(RegionTable::of(&scores[..98], &[0.99]), None);
-        let empty: Result<RegionTable, _> = serde_json::from_str(r#"{"levels": [], "quantiles": []}"#);
+        assert!(RegionTable::of(&[&scores; 3], &[0.99]).is_some());
+        assert_eq!(RegionTable::of(&[&scores, &scores[..98], &scores], &[0.99]), None);
+        let empty: Result<RegionTable, _> = serde_json::from_str(r#"{"levels": [], "quantiles": [[], [], []]}"#);
         assert!(empty.is_err());
-        assert_eq!(RegionTable::of(&[], &[0.5]), None);
-        assert_eq!(RegionTable::of(&scores, &[0.9, 0.5]), None);
+        assert_eq!(RegionTable::of(&[&scores; 3], &[0.9, 0.5]), None);
     }
 }

@@ -9,7 +9,7 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
-use ddl_core::{AdaptiveRegions, Forecast, Forecaster, RegionTable};
+use ddl_core::{AdaptiveRegions, Forecast, Forecaster, Pace, RegionTable, Spread};
 use ddl_data::{HORIZON, PedestrianId, Position, WINDOW, Window};
 use ddl_eval::Scores;
 use ddl_eval::baseline::{ConstantVelocity, SocialForce};
@@ -84,13 +84,17 @@ fn adapt(criterion: &mut Criterion) {
     let windows: Vec<Window> = windows().into_iter().take(FRAMES).collect();
     let scores: Vec<[f64; HORIZON]> = (1..1000).map(|n| [f64::from(n) / 200.0; HORIZON]).collect();
     let levels: Vec<f64> = (1..13).map(|n| f64::from(n) / 13.0).collect();
-    let table = Arc::new(RegionTable::of(&scores, &levels).expect("999 scores"));
+    let table = Arc::new(RegionTable::of(&[&scores; 3], &levels).expect("999 scores"));
     let noisy = ConstantVelocity::AngularNoise { seed: 1 }.forecast_all(&windows);
-    let spread = || vec![0.5; CROWD * HORIZON];
+    let spread = || Spread {
+        scales: vec![0.5; CROWD * HORIZON],
+        paces: vec![Pace::Walking; CROWD],
+        regions: Arc::clone(&table),
+    };
     let forecasts: Vec<Forecast> = noisy
         .expect("a forecast")
         .into_iter()
-        .map(|f| f.with_std_dev(spread(), Arc::clone(&table)).expect("a spread"))
+        .map(|f| f.with_spread(spread()).expect("a spread"))
         .collect();
     let (mut regions, mut index) = (AdaptiveRegions::default(), 0);
     criterion.bench_function("regions of 25 pedestrians follow a frame", |b| {

@@ -4,8 +4,8 @@ use crate::arrays::{Paths, array, forecast, numbers};
 use crate::errors::of_any;
 use crate::moments::Moments;
 use crate::observed::Observed;
-use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, Window};
-use ddl::{CertifiedForecast, Forecast, RegionTable};
+use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
+use ddl::{CertifiedForecast, Forecast, Pace, RegionTable, Spread};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -108,7 +108,7 @@ fn spread_and_regions(
     let of_row = |row: &Option<usize>| Some((forecast?, (*row)?));
     let spread = rows.iter().flat_map(|row| {
         (0..HORIZON).map(move |t| {
-            let spread = of_row(row).and_then(|(forecast, i)| forecast.std_dev(i, t));
+            let spread = of_row(row).and_then(|(forecast, i)| forecast.scale(i, t));
             spread.unwrap_or(f64::NAN)
         })
     });
@@ -217,6 +217,7 @@ fn json(table: &RegionTable) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn region_radii<'py>(
     py: Python<'py>,
+    past: PyReadonlyArray3<'py, f64>,
     weights: PyReadonlyArray2<'py, f64>,
     spread: PyReadonlyArray2<'py, f64>,
     region_table: &str,
@@ -235,10 +236,21 @@ pub(crate) fn region_radii<'py>(
     let mut radii = vec![f64::NAN; n * k * HORIZON];
     if !forecast_rows.is_empty() {
         let of_known = forecast_rows.iter().flat_map(|&i| rows.row(i).to_vec()).collect();
-        let spreads = forecast_rows.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
+        let scales = forecast_rows.iter().flat_map(|&i| spread.as_array().row(i).to_vec());
+        let paces = forecast_rows.iter().map(|&i| {
+            let observed: Vec<_> = (0..OBSERVED)
+                .map(|t| [0, 1].map(|axis| past.as_array()[[i, t, axis]]))
+                .collect();
+            Pace::of(&observed, TIME_STEP)
+        });
+        let spread = Spread {
+            scales: scales.collect(),
+            paces: paces.collect(),
+            regions: table.into(),
+        };
         let positions = vec![[0.0; 2]; forecast_rows.len() * k * HORIZON];
         let forecast = Forecast::new(forecast_rows.len(), k, positions, of_known, None)
-            .and_then(|forecast| forecast.with_std_dev(spreads.collect(), table.into()))
+            .and_then(|forecast| forecast.with_spread(spread))
             .map_err(of_any)?;
         for (place, i) in forecast_rows.into_iter().enumerate() {
             for k_of in 0..k {

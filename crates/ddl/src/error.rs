@@ -65,8 +65,8 @@ pub enum DdlError {
          and keep a share above 0 or whole recordings for validation"
     )]
     Patience { patience: usize, validation: f64 },
-    #[error("retrieved_share = {0} is out of range: 0 to 1")]
-    RetrievedShare(f64),
+    #[error("{field} = {share} is out of range: 0 to 1")]
+    GoalShare { field: &'static str, share: f64 },
     #[error("a clearance of {0} m is out of range: it must be above 0 and at most 10 m, for example 0.4")]
     Clearance(f64),
     #[error(

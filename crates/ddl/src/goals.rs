@@ -6,4 +6,5 @@ pub(crate) mod packed;
 pub(crate) mod reach;
 pub(crate) mod remembering;
 pub(crate) mod sets;
+pub(crate) mod unforeseen;
 pub(crate) mod views;

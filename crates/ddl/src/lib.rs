@@ -46,7 +46,10 @@ pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
 
-pub use ddl_core::{AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, RegionTable, WeightedGoals, WorkDone};
+pub use ddl_core::WorkDone;
+pub use ddl_core::{
+    AdaptiveRegions, Disc, Forecast, ForecastError, Forecaster, Pace, RegionTable, Spread, WeightedGoals,
+};
 pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare};
 pub use error::DdlError;

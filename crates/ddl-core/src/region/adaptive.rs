@@ -1,16 +1,18 @@
-//! Regions that keep their coverage in a new place, by online calibration.
+//! Regions that keep their coverage in a new place, and weights that follow it, by online calibration.
 
 use std::collections::VecDeque;
 
 use crate::forecast::Forecast;
+use crate::pace::Pace;
 use crate::pedestrian::PedestrianId;
 use crate::position::{HORIZON, OBSERVED, Position, between};
+use crate::region::powers::{self, TrackedPowers};
 use crate::region::tracked::{Outcomes, TrackedQuantiles};
 use crate::region_table::RegionTable;
 use crate::window::Window;
 
-/// Adapts the regions of the forecasts of one place so that they keep their coverage. It takes every forecast, in order
-/// of time.
+/// Adapts the regions of the forecasts of one place so that they keep their coverage, and the weights to what their
+/// outcomes were. It takes every forecast, in order of time.
 ///
 /// The regions of a forecast `t` steps ahead are compared with the positions observed `t` steps later. The result
 /// changes all later regions. Pedestrians outside the window of that frame are skipped. The result does not depend on
@@ -20,18 +22,18 @@ use crate::window::Window;
 ///
 /// # Examples
 /// ```
-/// use ddl_core::{AdaptiveRegions, Forecast, HORIZON, PedestrianId, RegionTable, Window};
+/// use ddl_core::{AdaptiveRegions, Forecast, HORIZON, Pace, PedestrianId, RegionTable, Spread, Window};
 ///
 /// let scores: Vec<_> = (1..100).map(|n| [f64::from(n) / 20.0; HORIZON]).collect();
-/// let table = std::sync::Arc::new(RegionTable::of(&scores, &[0.5, 0.9]).expect("99 scores"));
-/// let mut regions = AdaptiveRegions::default();
+/// let regions = std::sync::Arc::new(RegionTable::of(&[&scores; 3], &[0.5, 0.9]).expect("99 scores"));
+/// let mut adaptive = AdaptiveRegions::default();
 /// for frame in 0..100 {
 ///     // A standing pedestrian with a forecast that says so.
 ///     let window = Window::new("yard", frame, 1, vec![PedestrianId(1)], vec![vec![[1.0, 2.0]; 8]])?;
 ///     let forecast = Forecast::with_equal_weights(1, 1, vec![[1.0, 2.0]; HORIZON])?
-///         .with_std_dev(vec![0.5; HORIZON], table.clone())?;
+///         .with_spread(Spread { scales: vec![0.5; HORIZON], paces: vec![Pace::Standing], regions: regions.clone() })?;
 ///     let fixed = forecast.region_radius(0, 0, 5, 0.9);
-///     let adapted = regions.adapt(&window, forecast).region_radius(0, 0, 5, 0.9);
+///     let adapted = adaptive.adapt(&window, forecast).region_radius(0, 0, 5, 0.9);
 ///     assert_eq!(adapted < fixed, frame >= 6, "smaller as soon as its first outcome is known");
 /// }
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -39,6 +41,7 @@ use crate::window::Window;
 #[derive(Debug, Clone, Default)]
 pub struct AdaptiveRegions {
     learned: Option<TrackedQuantiles>,
+    powers: TrackedPowers,
     /// The last frame and earlier frames with pending forecasts, oldest first.
     pending: VecDeque<Pending>,
 }
@@ -88,9 +91,11 @@ impl AdaptiveRegions {
             .filter_map(|pending| pending.outcomes(window, previous))
             .collect();
         learned.learn(&outcomes, share);
-        let forecast = forecast.with_regions(learned.table());
-        let over = |pending: &Pending| now - pending.frame >= HORIZON as i64 * step;
-        while self.pending.front().is_some_and(over) {
+        let ended = self.pending.front().filter(|first| first.is_over(now, step));
+        let gradients = ended.map(|ended| ended.gradients(window, previous));
+        self.powers.learn(&gradients.unwrap_or_default(), share);
+        let forecast = self.powers.raised(forecast).with_regions(learned.table());
+        while self.pending.front().is_some_and(|first| first.is_over(now, step)) {
             self.pending.pop_front();
         }
         self.pending.push_back(Pending::new(window, &forecast));
@@ -107,9 +112,13 @@ impl Pending {
         }
     }
 
-    /// The scores of the pedestrians of the window at the last step of the forecast up to its last observed frame;
-    /// `None` if an earlier window has shown that step, or no pedestrian is in both.
-    fn outcomes(&self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
+    fn is_over(&self, now: i64, frame_step: i64) -> bool {
+        now - self.frame >= HORIZON as i64 * frame_step
+    }
+
+    /// The last step of the forecast up to the last observed frame of the window, and the positions of its pedestrians
+    /// there; `None` if an earlier window has shown that step.
+    fn seen<'a>(&'a self, window: &'a Window, previous: Option<i64>) -> Option<(usize, Vec<(usize, Position)>)> {
         let (now, frame_step) = (window.frames()[OBSERVED - 1], window.frame_step());
         let after = now - self.frame;
         let (steps, back) = (after / frame_step, after % frame_step);
@@ -117,7 +126,7 @@ impl Pending {
         if !(is_new && (1..=HORIZON as i64).contains(&steps)) {
             return None;
         }
-        let step = steps as usize - 1;
+        let share = back as f64 / frame_step as f64;
         let position = |id: &PedestrianId| -> Option<Position> {
             let i = window.pedestrians().iter().position(|other| other == id)?;
             // A position that is carried on was not observed.
@@ -127,17 +136,28 @@ impl Pending {
             let [.., before, last] = *window.observed(i) else {
                 return None;
             };
-            let share = back as f64 / frame_step as f64;
             Some(between(last, before, share))
         };
-        let scores: Vec<f64> = self
-            .pedestrians
-            .iter()
-            .enumerate()
-            .filter_map(|(i, id)| self.forecast.region_score(i, step, position(id)?))
-            .collect();
+        let people = self.pedestrians.iter().enumerate();
+        let seen = people.filter_map(|(i, id)| Some((i, position(id)?)));
+        Some((steps as usize - 1, seen.collect()))
+    }
+
+    /// The scores of the pedestrians that were seen at a step of the forecast; `None` without any.
+    fn outcomes(&self, window: &Window, previous: Option<i64>) -> Option<Outcomes> {
+        let (step, seen) = self.seen(window, previous)?;
+        let score = |(i, position)| Some((self.forecast.pace(i)?, self.forecast.region_score(i, step, position)?));
+        let scores: Vec<_> = seen.into_iter().filter_map(score).collect();
         let table = self.forecast.shared_regions()?;
         (!scores.is_empty()).then_some(Outcomes { step, table, scores })
+    }
+
+    /// The paces and gradients of the pedestrians that were seen at the end of the forecast.
+    fn gradients(&self, window: &Window, previous: Option<i64>) -> Vec<(Pace, f64)> {
+        let ended = self.seen(window, previous).filter(|(step, _)| *step == HORIZON - 1);
+        let (_, seen) = ended.unwrap_or_default();
+        let gradient = |(i, end)| Some((self.forecast.pace(i)?, powers::gradient(&self.forecast, i, end)));
+        seen.into_iter().filter_map(gradient).collect()
     }
 }
 
@@ -150,6 +170,7 @@ mod tests {
     use proptest::{collection::vec, prelude::*};
 
     use super::*;
+    use crate::forecast::Spread;
 
     /// The positions of all pedestrians, frame by frame.
     type Tracks = Vec<Vec<Position>>;
@@ -173,7 +194,7 @@ mod tests {
     /// Forecasts of two hypotheses, standing still and walking on, of pedestrians in this order, up to each frame.
     fn forecasts(tracks: &Tracks, order: [usize; PEOPLE]) -> Vec<(Window, Forecast)> {
         let scores: Vec<[f64; HORIZON]> = (1..100).map(|n| [f64::from(n) / 30.0; HORIZON]).collect();
-        let table = Arc::new(RegionTable::of(&scores, &[0.3, 0.5, 0.9]).unwrap());
+        let table = Arc::new(RegionTable::of(&[&scores; 3], &[0.3, 0.5, 0.9]).unwrap());
         let until = |last: usize| {
             // The second pedestrian is away for a while.
             let here = |i: &&usize| **i != 1 || !(20..30).contains(&last);
@@ -198,8 +219,13 @@ mod tests {
             }
             let weights = [0.6, 0.4].repeat(window.len());
             let forecast = Forecast::new(window.len(), 2, walks, weights, None).unwrap();
-            let spread = vec![0.7; HORIZON * window.len()];
-            let forecast = forecast.with_std_dev(spread, Arc::clone(&table)).unwrap();
+            let paces = (0..window.len()).map(|i| Pace::of(window.observed(i), 0.4));
+            let spread = Spread {
+                scales: vec![0.7; HORIZON * window.len()],
+                paces: paces.collect(),
+                regions: Arc::clone(&table),
+            };
+            let forecast = forecast.with_spread(spread).unwrap();
             (window, forecast)
         };
         (7..tracks.len()).map(until).collect()

@@ -1,17 +1,22 @@
 //! Quantiles that follow the scores of one place.
 //!
 //! A region of the level `a` with the right quantile `q` misses the share `1 - a` of the true positions. Each quantile
-//! of the table is multiplied by `exp(shift)`, and each frame moves the shift by the share that the regions missed:
+//! of the table is multiplied by `exp(shift)`, and each frame moves the shift of each pace by the share that its
+//! regions missed:
 //!
 //! ```text
 //! shift += STEP * w * (missed - (1 - a))        w = share * min(sqrt(n), LARGEST_WEIGHT)
 //! ```
 //!
-//! `missed` is the share of the `n` observed pedestrians outside their regions for this frame, `share` the time since
-//! the frame before in steps of 0.4 s, at most 1. As long as no shift reaches its bound, the shift after some frames is
-//! the sum of these moves. So the mean of `missed`, weighted by `w`, differs from `1 - a` by at most
-//! `LARGEST_SHIFT / (STEP sum w)`, for any motion of the pedestrians. If the quantiles of two levels cross, they are
-//! sorted; the bound then holds for the levels together.
+//! `missed` is the share of the `n` observed pedestrians of this pace outside their regions for this frame, `share` the
+//! time since the frame before in steps of 0.4 s, at most 1. A pace of which little was seen also learns from the
+//! others: as long as the sum W of its own `w` is below [`YOUTH`], their moves are added to its own, multiplied by
+//! `1 - W / YOUTH`.
+//!
+//! As long as no shift reaches its bound, the shift after some frames is the sum of these moves. So from then on, the
+//! mean of `missed` of each pace, weighted by `w`, differs from `1 - a` by at most `2 LARGEST_SHIFT / (STEP sum w)`, for
+//! any motion of the pedestrians. If the quantiles of two levels cross, they are sorted; the bound then holds for the
+//! levels together.
 //!
 //! # References
 //! - Gibbs and Candes, *Adaptive Conformal Inference Under Distribution Shift*, 2021.
@@ -20,6 +25,7 @@
 
 use std::sync::Arc;
 
+use crate::pace::Pace;
 use crate::position::HORIZON;
 use crate::region_table::{LevelQuantiles, RegionTable};
 
@@ -30,6 +36,8 @@ const STEP: f64 = 0.06;
 const LARGEST_WEIGHT: f64 = 3.0;
 /// ln 64: a quantile stays between 1/64 and 64 times that of the table, a radius between about 1/8 and 8 times.
 const LARGEST_SHIFT: f64 = 4.158_883_083_359_672;
+/// Sum of the weights of a pace from which it learns from itself alone.
+const YOUTH: f64 = 30.0;
 /// Smallest quantile that is multiplied, so that a quantile of 0 can grow.
 const LEAST: f64 = 1e-3;
 
@@ -37,8 +45,10 @@ const LEAST: f64 = 1e-3;
 #[derive(Debug, Clone)]
 pub(super) struct TrackedQuantiles {
     start: Arc<RegionTable>,
-    /// `[levels][12]`, no unit.
-    shifts: Vec<[f64; HORIZON]>,
+    /// For each pace `[levels][12]`, no unit.
+    shifts: [Vec<[f64; HORIZON]>; Pace::ALL.len()],
+    /// For each pace the sum of its weights.
+    learned: [[f64; HORIZON]; Pace::ALL.len()],
     now: Arc<RegionTable>,
 }
 
@@ -49,7 +59,7 @@ pub(super) struct Outcomes {
     /// The table of their regions.
     pub(super) table: Arc<RegionTable>,
     /// One for each pedestrian.
-    pub(super) scores: Vec<f64>,
+    pub(super) scores: Vec<(Pace, f64)>,
 }
 
 impl TrackedQuantiles {
@@ -57,7 +67,8 @@ impl TrackedQuantiles {
     #[must_use]
     pub(super) fn new(start: Arc<RegionTable>) -> Self {
         Self {
-            shifts: vec![[0.0; HORIZON]; start.0.levels.len()],
+            shifts: Pace::ALL.map(|_| vec![[0.0; HORIZON]; start.0.levels.len()]),
+            learned: [[0.0; HORIZON]; Pace::ALL.len()],
             now: Arc::clone(&start),
             start,
         }
@@ -70,16 +81,21 @@ impl TrackedQuantiles {
 
     /// Learns from all outcomes of one frame, `share` of a step (0 to 1) after the frame before.
     pub(super) fn learn(&mut self, outcomes: &[Outcomes], share: f64) {
-        for Outcomes { step, table, scores } in outcomes {
-            let count = scores.len() as f64;
-            let weight = share * count.sqrt().min(LARGEST_WEIGHT);
-            let LevelQuantiles { levels, quantiles } = &table.0;
-            let rows = levels.iter().zip(quantiles).zip(&mut self.shifts);
-            for ((level, quantiles), shifts) in rows {
-                let missed = scores.iter().filter(|&&score| score > quantiles[*step]);
-                let missed = missed.count() as f64 / count;
-                let moved = shifts[*step] + STEP * weight * (missed - (1.0 - level));
-                shifts[*step] = moved.clamp(-LARGEST_SHIFT, LARGEST_SHIFT);
+        for outcomes in outcomes {
+            let step = outcomes.step;
+            let of_paces = Pace::ALL.map(|pace| outcomes.moves(pace, share));
+            for pace in Pace::ALL {
+                let index = pace as usize;
+                let young = (1.0 - self.learned[index][step] / YOUTH).max(0.0);
+                for (level, shifts) in self.shifts[index].iter_mut().enumerate() {
+                    let of_pace = |other: usize| {
+                        let (_, moves) = &of_paces[other];
+                        moves[level] * if other == index { 1.0 } else { young }
+                    };
+                    let moved = shifts[step] + (0..Pace::ALL.len()).map(of_pace).sum::<f64>();
+                    shifts[step] = moved.clamp(-LARGEST_SHIFT, LARGEST_SHIFT);
+                }
+                self.learned[index][step] += of_paces[index].0;
             }
         }
         if !outcomes.is_empty() {
@@ -88,9 +104,42 @@ impl TrackedQuantiles {
     }
 }
 
+impl Outcomes {
+    /// The weight of the outcomes of one pace, and for each level the move of its shift.
+    fn moves(&self, pace: Pace, share: f64) -> (f64, Vec<f64>) {
+        let own = || {
+            self.scores
+                .iter()
+                .filter(|(of, _)| *of == pace)
+                .map(|(_, score)| *score)
+        };
+        let count = own().count() as f64;
+        let weight = weight_of(own().count(), share);
+        let LevelQuantiles { levels, quantiles } = &self.table.0;
+        let rows = levels.iter().zip(&quantiles[pace as usize]);
+        let moves = rows.map(|(level, quantiles)| {
+            let missed = own().filter(|score| *score > quantiles[self.step]).count() as f64;
+            STEP * weight * (missed / count.max(1.0) - (1.0 - level))
+        });
+        (weight, moves.collect())
+    }
+}
+
+/// The weight of the outcomes of `count` pedestrians, `share` of a step after the frame before.
+pub(super) fn weight_of(count: usize, share: f64) -> f64 {
+    share * (count as f64).sqrt().min(LARGEST_WEIGHT)
+}
+
 /// The quantiles times the exponentials of their shifts, in ascending order over the levels.
-fn shifted(start: &RegionTable, shifts: &[[f64; HORIZON]]) -> RegionTable {
+fn shifted(start: &RegionTable, shifts: &[Vec<[f64; HORIZON]>; Pace::ALL.len()]) -> RegionTable {
     let LevelQuantiles { levels, quantiles } = &start.0;
+    RegionTable(LevelQuantiles {
+        levels: levels.clone(),
+        quantiles: Pace::ALL.map(|pace| moved(&quantiles[pace as usize], &shifts[pace as usize])),
+    })
+}
+
+fn moved(quantiles: &[[f64; HORIZON]], shifts: &[[f64; HORIZON]]) -> Vec<[f64; HORIZON]> {
     let mut moved: Vec<[f64; HORIZON]> = quantiles
         .iter()
         .zip(shifts)
@@ -103,10 +152,7 @@ fn shifted(start: &RegionTable, shifts: &[[f64; HORIZON]]) -> RegionTable {
             row[t] = quantile;
         }
     }
-    RegionTable(LevelQuantiles {
-        levels: levels.clone(),
-        quantiles: moved,
-    })
+    moved
 }
 
 #[cfg(test)]
@@ -122,7 +168,7 @@ mod tests {
     fn table(rows: &[(f64, f64)]) -> Arc<RegionTable> {
         let columns = LevelQuantiles {
             levels: rows.iter().map(|row| row.0).collect(),
-            quantiles: rows.iter().map(|row| [row.1; HORIZON]).collect(),
+            quantiles: Pace::ALL.map(|_| rows.iter().map(|row| [row.1; HORIZON]).collect()),
         };
         Arc::new(columns.try_into().unwrap())
     }
@@ -142,16 +188,43 @@ mod tests {
             let outcomes = Outcomes {
                 step: 0,
                 table: Arc::clone(tracked.table()),
-                scores: scores.to_vec(),
+                scores: walking(scores),
             };
             tracked.learn(&[outcomes], share);
             for (level, expected) in [0.5, 0.9].into_iter().zip(expected) {
-                let quantile = tracked.table().quantile(level, 0).unwrap();
-                assert!((quantile - expected).abs() < 1e-12, "{quantile} {expected}");
-                let untouched = tracked.table().quantile(level, 1);
-                assert_eq!(untouched, tracked.start.quantile(level, 1));
+                // Paces that were not seen follow those that were.
+                for pace in Pace::ALL {
+                    let quantile = tracked.table().quantile(pace, level, 0).unwrap();
+                    assert!((quantile - expected).abs() < 1e-12, "{quantile} {expected}");
+                    let untouched = tracked.table().quantile(pace, level, 1);
+                    assert_eq!(untouched, tracked.start.quantile(pace, level, 1));
+                }
             }
         }
+    }
+
+    #[test]
+    fn a_pace_that_was_seen_enough_learns_from_itself_alone() {
+        let mut tracked = TrackedQuantiles::new(table(&[(0.9, 4.0)]));
+        let mut quantiles_after = |pace: Pace, frames: usize| {
+            for _ in 0..frames {
+                let (table, scores) = (Arc::clone(tracked.table()), vec![(pace, 9.0); 9]);
+                tracked.learn(&[Outcomes { step: 0, table, scores }], 1.0);
+            }
+            Pace::ALL.map(|pace| tracked.table().quantile(pace, 0.9, 0).unwrap())
+        };
+        // Each frame weighs 3.
+        let [standing, slow, walking] = quantiles_after(Pace::Slow, 5);
+        assert!(slow > 4.0 && standing == slow && walking == slow);
+        let [standing, slow, walking] = quantiles_after(Pace::Walking, 5);
+        assert!(standing == walking && walking > slow);
+        let [_, settled, _] = quantiles_after(Pace::Slow, 5);
+        let [standing, slow, walking] = quantiles_after(Pace::Walking, 5);
+        assert!(slow == settled && standing >= walking);
+    }
+
+    fn walking(scores: &[f64]) -> Vec<(Pace, f64)> {
+        scores.iter().map(|&score| (Pace::Walking, score)).collect()
     }
 
     /// One frame: for each observed pedestrian, whether it is missed, and its distance from the edge.
@@ -174,7 +247,7 @@ mod tests {
             for (at, (judged, share)) in frames.iter().enumerate() {
                 let judged: &Judged = judged;
                 let table = issued.pop_front().unwrap();
-                let edge = table.quantile(level, t).unwrap();
+                let edge = table.quantile(Pace::Walking, level, t).unwrap();
                 // Runs in which all regions miss, or no region misses, move the quantile furthest.
                 let mood = (at / run) % 3;
                 let score = |&(coin, by): &(bool, f64)| {
@@ -187,7 +260,7 @@ mod tests {
                 let weight = share * (scores.len() as f64).sqrt().min(3.0);
                 error += weight * (missed as f64 / scores.len() as f64 - (1.0 - level));
                 weights += weight;
-                tracked.learn(&[Outcomes { step: t, table, scores }], *share);
+                tracked.learn(&[Outcomes { step: t, table, scores: walking(&scores) }], *share);
                 issued.push_back(Arc::clone(tracked.table()));
             }
             prop_assert!((error / weights).abs() <= LARGEST_SHIFT / (STEP * weights) + 1e-9);
@@ -202,8 +275,8 @@ mod tests {
             for (at, score) in scores.iter().enumerate() {
                 let step = at % HORIZON;
                 let table = Arc::clone(tracked.table());
-                tracked.learn(&[Outcomes { step, table, scores: vec![*score; 9] }], 1.0);
-                let quantile = |level| tracked.table().quantile(level, step).unwrap();
+                tracked.learn(&[Outcomes { step, table, scores: walking(&[*score; 9]) }], 1.0);
+                let quantile = |level| tracked.table().quantile(Pace::Walking, level, step).unwrap();
                 let [low, middle, high] = [0.2, 0.5, 0.9].map(quantile);
                 prop_assert!(low > 0.0 && low <= middle && middle <= high && high <= 256.1);
             }

@@ -21,7 +21,7 @@
 //! Mohamed et al., "Social-Implicit: Rethinking Trajectory Prediction Evaluation and The Effectiveness of Implicit
 //! Maximum Likelihood Estimation", ECCV 2022.
 
-use ddl_core::HORIZON;
+use ddl_core::{HORIZON, Spread};
 
 use crate::metric::gaussian::{Covariance, Moments};
 use crate::metric::kde::MIN_DEVIATION;
@@ -46,7 +46,9 @@ impl DistributionErrors {
         let (mut distance, mut covariance) = (0.0, Covariance::default());
         for (t, p) in scene.truth(i).iter().enumerate() {
             let moments = Moments::of(&scene.hypotheses_at(i, t), &weights);
-            let about = scene.forecast().std_dev(i, t).unwrap_or(0.0).powi(2);
+            // The variance of Student's t.
+            let inflation = Spread::DEGREES / (Spread::DEGREES - 2.0);
+            let about = inflation * scene.forecast().scale(i, t).unwrap_or(0.0).powi(2);
             let axes = moments
                 .covariance
                 .plus(Covariance {

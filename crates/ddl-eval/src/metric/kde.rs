@@ -12,8 +12,8 @@
 //! KDE NLL = - mean over frames and pedestrians of max(ln f(p), -20)        nats
 //! ```
 //!
-//! For a forecast with a [standard deviation](ddl_core::Forecast::std_dev) s around its hypotheses, which is already a
-//! Gaussian mixture, H is s^2 times the identity.
+//! A forecast with a [spread](ddl_core::Spread) is already a mixture, of Student's t around its hypotheses; its density
+//! takes the place of f.
 //!
 //! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, except
 //! for the smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it. Other implementations fail or skip the
@@ -26,9 +26,9 @@
 //! Ivanovic and Pavone, "The Trajectron", ICCV 2019 (KDE NLL); Salzmann et al., "Trajectron++", ECCV 2020; Mohamed et
 //! al., "Social-Implicit", ECCV 2022; Scott, "Multivariate Density Estimation", 1992.
 
-use ddl_core::Position;
+use ddl_core::{Position, Spread, distance};
 
-use crate::metric::gaussian::{Moments, PrincipalAxes};
+use crate::metric::gaussian::Moments;
 use crate::scored_window::ScoredWindow;
 
 /// Lower bound of log densities, nats, so that one large error does not dominate the mean.
@@ -56,18 +56,31 @@ pub(crate) fn log_density(points: &[Position], weights: &[f64], position: Positi
         .scaled(factor)
         .principal_axes()
         .with_least_eigenvalues(MIN_DEVIATION * MIN_DEVIATION);
-    mixture_log_density((points, weights), bandwidth, position)
+    let normalisation = std::f64::consts::TAU.ln() + 0.5 * bandwidth.ln_determinant();
+    log_sum(points, weights, |p| {
+        -0.5 * bandwidth.mahalanobis_squared([position[0] - p[0], position[1] - p[1]])
+    }) - normalisation
 }
 
-fn mixture_log_density((points, weights): (&[Position], &[f64]), bandwidth: PrincipalAxes, position: Position) -> f64 {
-    let exponent = |p: &Position| -0.5 * bandwidth.mahalanobis_squared([position[0] - p[0], position[1] - p[1]]);
+/// `ln f(at)` of the mixture of Student's t of this scale (m) around weighted points.
+fn log_density_of_spread(points: &[Position], weights: &[f64], scale: f64, position: Position) -> f64 {
+    let power = -0.5 * (Spread::DEGREES + 2.0);
+    let exponent = |p: &Position| {
+        let off = distance(*p, position) / scale;
+        power * (off * off / Spread::DEGREES).ln_1p()
+    };
+    log_sum(points, weights, exponent) - (std::f64::consts::TAU * scale * scale).ln()
+}
+
+/// `ln sum_k w_k exp(exponent(x_k))`.
+fn log_sum(points: &[Position], weights: &[f64], exponent: impl Fn(&Position) -> f64) -> f64 {
     let terms = || points.iter().zip(weights).filter(|(_, w)| **w > 0.0);
     let largest = terms().map(|(p, _)| exponent(p)).fold(f64::NEG_INFINITY, f64::max);
     if largest == f64::NEG_INFINITY {
         return largest;
     }
     let sum: f64 = terms().map(|(p, w)| w * (exponent(p) - largest).exp()).sum();
-    largest + sum.ln() - std::f64::consts::TAU.ln() - 0.5 * bandwidth.ln_determinant()
+    largest + sum.ln()
 }
 
 /// Mean over the frames of -ln of the clipped density at the truth of pedestrian `i`, nats; `None` for one hypothesis.
@@ -82,16 +95,9 @@ pub fn kde_nll(scene: &ScoredWindow<'_>, i: usize) -> Option<f64> {
         .enumerate()
         .map(|(t, &truth_position)| {
             let positions = scene.hypotheses_at(i, t);
-            let density = match scene.forecast().std_dev(i, t) {
+            let density = match scene.forecast().scale(i, t) {
                 None => log_density(&positions, &weights, truth_position),
-                Some(spread) => {
-                    let variances = [spread * spread; 2];
-                    let round = PrincipalAxes {
-                        variances,
-                        axis: [1.0, 0.0],
-                    };
-                    mixture_log_density((&positions, &weights), round, truth_position)
-                }
+                Some(scale) => log_density_of_spread(&positions, &weights, scale, truth_position),
             };
             density.max(MIN_LOG_DENSITY)
         })

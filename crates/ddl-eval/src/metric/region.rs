@@ -80,7 +80,7 @@ mod tests {
     use crate::fixture::{walk, window};
     use crate::metric::amd::DistributionErrors;
     use crate::metric::kde::kde_nll;
-    use ddl_core::{Forecast, RegionTable};
+    use ddl_core::{Forecast, Pace, RegionTable, Spread};
 
     #[test]
     fn two_discs_side_by_side_are_as_large_as_one() {
@@ -100,24 +100,26 @@ mod tests {
         let walks = [walk(still, still), walk([10.0, 0.0], still)].concat();
         let bare = Forecast::new(1, 2, walks, vec![0.8, 0.2], None).unwrap();
         let scores = [vec![[1.5; HORIZON]; 10], vec![[3.0; HORIZON]; 9]].concat();
-        let table = RegionTable::of(&scores, &[0.5, 0.9]).unwrap();
+        let regions = RegionTable::of(&[&scores; 3], &[0.5, 0.9]).unwrap().into();
         let scene = ScoredWindow::new(&window, &bare).unwrap();
         assert_relative_eq!(weight_log_loss(&scene, 0).unwrap(), -(0.2_f64.ln()), epsilon = 1e-12);
         assert_eq!(RegionScores::of(&scene, 0), None);
-        let forecast = bare.with_std_dev(vec![0.5; HORIZON], table.into()).unwrap();
+        let (scales, paces) = (vec![0.5; HORIZON], vec![Pace::Standing]);
+        let forecast = bare.with_spread(Spread { scales, paces, regions }).unwrap();
         let scene = ScoredWindow::new(&window, &forecast).unwrap();
         let scores = RegionScores::of(&scene, 0).unwrap();
         assert_relative_eq!(scores.coverage[0], 0.0);
         assert_relative_eq!(scores.coverage[1], 1.0);
         let area = 2.0 * 0.25 * (3.0 + (3.0 + 0.25_f64.ln()));
         assert_relative_eq!(scores.end_radius[1], area.sqrt(), epsilon = 0.1);
-        // The likelihood is that of Gaussians of this spread. Their variance of 0.25 adds to that around the mean (2,
-        // 0), 0.8 * 4 + 0.2 * 64 = 16 along x.
-        let nll = 0.5 - (0.2 / (std::f64::consts::TAU * 0.25)).ln();
+        // The likelihood is that of Student's t of this scale, one scale from the second and 21 from the first. Its
+        // variance of 0.75 adds to that around the mean (2, 0), 0.8 * 4 + 0.2 * 64 = 16 along x.
+        let density = |off: f64| (1.0 + off * off / 3.0).powf(-2.5) / (std::f64::consts::TAU * 0.25);
+        let nll = -(0.8 * density(21.0) + 0.2 * density(1.0)).ln();
         assert_relative_eq!(kde_nll(&scene, 0).unwrap(), nll, epsilon = 1e-12);
         let errors = DistributionErrors::of(&scene, 0).unwrap();
-        let deviations = 8.5 / 16.25_f64.sqrt();
+        let deviations = 8.5 / 16.75_f64.sqrt();
         assert_relative_eq!(errors.mahalanobis, deviations, epsilon = 1e-12);
-        assert_relative_eq!(errors.covariance.yy, 0.25, epsilon = 1e-12);
+        assert_relative_eq!(errors.covariance.yy, 0.75, epsilon = 1e-12);
     }
 }

@@ -59,7 +59,7 @@ class Forecast:
     certified : (n, k) or None
         Whether each hypothesis provably approaches its goal at each step.
     spread : (n, 12) or None
-        Standard deviation around the right hypothesis, metres.
+        Scale of Student's t with 3 degrees of freedom around the right hypothesis, metres.
     past : (n, 8, 2)
         The observed positions 0.4 s apart, metres: rows at these times, otherwise estimated from all rows so far.
     unseen : (n,)
@@ -158,7 +158,7 @@ class Forecast:
         """
         if self.spread is None or self._region_table is None:
             raise ValueError("this forecast has no regions: only the 20 hypotheses of a model have them")
-        return _core.region_radii(self.weights, self.spread, self._region_table, level)
+        return _core.region_radii(self.past, self.weights, self.spread, self._region_table, level)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Columns of a table, one row per position, for ``pandas.DataFrame`` or ``polars.DataFrame``.

@@ -4,7 +4,7 @@ use crate::forecast::clearance::{Clearance, Others};
 use crate::forecast::name::NAME;
 use crate::forecast::walk::{Approach, PathIntegrator, Walk};
 use crate::trust::calibration::Calibration;
-use ddl_core::{Forecast, ForecastError};
+use ddl_core::{Forecast, ForecastError, Pace, Spread};
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
 use ddl_dynamics::{DynamicsError, LyapunovCertificate, MotionBounds, Violation};
 use ddl_network::{NetworkFrame, StarConfig, Variant, motion_bounds};
@@ -119,11 +119,11 @@ impl Walked<'_> {
             return Ok(forecast);
         }
         let calibration = Calibration::fitted();
+        let time_step = self.config.time_step;
         let goals = self.goals.par_chunks_exact(hypotheses);
         let pairs = goals.zip(self.weights.par_chunks_exact(hypotheses)).enumerate();
-        let spread = pairs
+        let scales = pairs
             .flat_map_iter(|(i, (goals, weights))| {
-                let time_step = self.config.time_step;
                 let spread = calibration.spread(self.window.observed(i), goals, weights, time_step);
                 let quality = self.window.quality(i);
                 (1..)
@@ -131,7 +131,12 @@ impl Walked<'_> {
                     .map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
             })
             .collect();
-        Ok(forecast.with_std_dev(spread, Calibration::shared_regions())?)
+        let paces = (0..pedestrians).map(|i| Pace::of(self.window.observed(i), time_step));
+        Ok(forecast.with_spread(Spread {
+            scales,
+            paces: paces.collect(),
+            regions: Calibration::shared_regions(),
+        })?)
     }
 
     pub(crate) fn certified(mut self) -> Result<CertifiedForecast, ForecastError> {

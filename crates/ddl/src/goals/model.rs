@@ -7,6 +7,7 @@ use crate::goals::packed::{self, Unpacked};
 use crate::goals::reach;
 use crate::goals::remembering::{Remembering, remembering};
 use crate::goals::sets;
+use crate::goals::unforeseen;
 use crate::goals::views;
 use crate::run::config::RunConfig;
 use crate::run::directory::RunDirectory;
@@ -17,7 +18,7 @@ use crate::run::training_data::{digest_of_recording, fold_by_name};
 use crate::trust::calibration::Calibration;
 use crate::trust::familiarity::TrainingMotions;
 use crate::trust::fingerprints::TrackFingerprints;
-use ddl_core::ForecastError;
+use ddl_core::{ForecastError, Pace};
 use ddl_data::{Convention, Dataset, Fold, Position, Recording, WINDOW, Window};
 use ddl_goal::{ExpertLibrary, GoalEstimator, GoalEstimatorParams, GoalSet, QuerySpan};
 use ddl_memory::Playback;
@@ -286,15 +287,17 @@ impl GoalModel {
         Ok(self.within_reach(windows, sets))
     }
 
-    /// Moves goals beyond the pedestrian's reach to its limit, and flattens the weights if the observed motion is
-    /// unfamiliar.
+    /// Moves goals beyond the pedestrian's reach to its limit, and gives them the weights of its pace and familiarity.
     fn within_reach(&self, windows: &[Window], sets: Vec<Vec<GoalSet>>) -> Vec<Vec<GoalSet>> {
         let time_step = self.config.star.time_step;
         let of_window = |(window, sets): (&Window, Vec<GoalSet>)| {
             let sets = reach::within(window, sets, time_step).into_par_iter();
             let familiarity = self.familiarity(window);
-            let tempered = |(set, familiarity)| Calibration::fitted().tempered(set, familiarity);
-            sets.zip(familiarity).map(tempered).collect()
+            let tempered = |((i, set), familiarity)| {
+                let pace = Pace::of(window.observed(i), time_step);
+                Calibration::fitted().tempered(set, pace, familiarity)
+            };
+            sets.enumerate().zip(familiarity).map(tempered).collect()
         };
         windows.iter().zip(sets).map(of_window).collect()
     }
@@ -358,9 +361,19 @@ impl GoalModel {
             views.push(seen.view);
         }
         let mut proposed = network.propose(&views).map_err(failed)?;
-        for (proposed, (_, unit)) in proposed.iter_mut().zip(&frames) {
+        let unforeseen = self
+            .recipe()
+            .proposal
+            .as_ref()
+            .map_or(0.0, |recipe| recipe.unforeseen_share);
+        for ((proposed, (_, unit)), view) in proposed.iter_mut().zip(&frames).zip(&views) {
+            let in_metres = |position: Position| position.map(|coordinate| coordinate * unit);
             for end in &mut proposed.endpoints {
-                *end = end.map(|coordinate| coordinate * unit);
+                *end = in_metres(*end);
+            }
+            if unforeseen > 0.0 {
+                let time_step = network.config().time_step;
+                unforeseen::add(proposed, unforeseen, &view.own.map(in_metres), time_step);
             }
         }
         if let Some((estimator, share)) = retrieval {

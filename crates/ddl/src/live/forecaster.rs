@@ -80,8 +80,8 @@ impl<M> LiveForecaster<M> {
         }
     }
 
-    /// Adapts the regions to the observations of this place, so that they keep their coverage; see [`AdaptiveRegions`].
-    /// All other parts of the forecasts have the same bits.
+    /// Adapts regions and weights to the observations of this place; see [`AdaptiveRegions`]. All other parts of the
+    /// forecasts have the same bits.
     #[must_use]
     pub fn with_adaptive_regions(self, regions: AdaptiveRegions) -> Self {
         Self {

@@ -26,6 +26,15 @@ pub struct ProposalRecipe {
     /// Probability of the retrieved goals. They are pooled with the endpoints of the network before K goals are chosen
     /// to represent both.
     pub retrieved_share: f64,
+    /// Probability of each of four endpoints that join those of the network: stopping at once, turning to either side
+    /// and turning back. They cover what the training places lack.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub unforeseen_share: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+fn is_none(share: &f64) -> bool {
+    *share <= 0.0
 }
 
 impl Default for ProposalRecipe {
@@ -35,6 +44,7 @@ impl Default for ProposalRecipe {
             network: ProposalConfig::default(),
             training: ProposalTraining::default(),
             retrieved_share: 0.15,
+            unforeseen_share: 0.0,
         }
     }
 }
@@ -84,8 +94,13 @@ impl GoalRecipe {
         if let Some(proposal) = &self.proposal {
             proposal.network.check()?;
             proposal.training.check()?;
-            if !(0.0..=1.0).contains(&proposal.retrieved_share) {
-                return Err(DdlError::RetrievedShare(proposal.retrieved_share));
+            for (field, share) in [
+                ("retrieved_share", proposal.retrieved_share),
+                ("unforeseen_share", proposal.unforeseen_share),
+            ] {
+                if !(0.0..=1.0).contains(&share) {
+                    return Err(DdlError::GoalShare { field, share });
+                }
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 //! model was trained on.
 
 use crate::run::sha256;
-use ddl_core::RegionTable;
+use ddl_core::{Pace, RegionTable, mean_speed};
 use ddl_data::{HORIZON, Position};
 use ddl_goal::GoalSet;
 use serde::{Deserialize, Serialize};
@@ -24,20 +24,35 @@ pub(crate) struct Calibration {
     half_trust: f64,
     /// Share of the network's metric in the metric of a step, for a fully trusted motion.
     share: f64,
+    /// Least scale of the spread around a hypothesis, metres.
+    least_spread: f64,
+    /// Exponent of the fraction of the horizon by which the spread grows.
+    spread_growth: f64,
+    /// What differs between paces.
+    paces: OfPaces,
+    /// Quantiles of the regions' scores.
+    regions: RegionTable,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OfPaces {
+    standing: OfPace,
+    slow: OfPace,
+    walking: OfPace,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct OfPace {
     /// Power of the goals' weights without and with full trust.
     weight_power: [f64; 2],
     /// Share of the probability that is divided equally among the goals.
     uniform_share: f64,
-    /// Least spread around a hypothesis, metres.
-    least_spread: f64,
-    /// Spread at the horizon for each m/s of the mean observed speed, seconds.
+    /// Scale of the spread at the horizon for each m/s of the mean observed speed, seconds.
     spread_of_speed: f64,
-    /// Spread at the horizon for each metre of the goals' standard deviation (dimensionless).
+    /// Scale of the spread at the horizon for each metre of the goals' standard deviation (dimensionless).
     spread_of_goals: f64,
-    /// Exponent of the fraction of the horizon by which the spread grows.
-    spread_growth: f64,
-    /// Quantiles of the regions' scores.
-    regions: RegionTable,
 }
 
 const FILE: &str = include_str!("calibration.json");
@@ -74,15 +89,24 @@ impl Calibration {
         self.share * self.trust(familiarity)
     }
 
-    /// The goals with weights flattened for a motion of this familiarity.
-    pub(crate) fn tempered(&self, goals: GoalSet, familiarity: f64) -> GoalSet {
-        let [without, with] = self.weight_power;
-        let power = without + (with - without) * self.trust(familiarity);
-        goals.tempered(power, self.uniform_share)
+    fn of_pace(&self, pace: Pace) -> &OfPace {
+        match pace {
+            Pace::Standing => &self.paces.standing,
+            Pace::Slow => &self.paces.slow,
+            Pace::Walking => &self.paces.walking,
+        }
     }
 
-    /// Standard deviations around the positions of the hypotheses, one for each step (m). The pedestrian was observed
-    /// at these positions (m), `time_step` seconds apart, and has these goals.
+    /// The goals with the weights of a motion of this pace and familiarity.
+    pub(crate) fn tempered(&self, goals: GoalSet, pace: Pace, familiarity: f64) -> GoalSet {
+        let of_pace = self.of_pace(pace);
+        let [without, with] = of_pace.weight_power;
+        let power = without + (with - without) * self.trust(familiarity);
+        goals.tempered(power, of_pace.uniform_share)
+    }
+
+    /// Scales of the [spread](ddl_core::Spread) around the positions of the hypotheses, one for each step (m). The pedestrian was
+    /// observed at these positions (m), `time_step` seconds apart, and has these goals.
     pub(crate) fn spread(
         &self,
         observed: &[Position],
@@ -90,9 +114,9 @@ impl Calibration {
         weights: &[f64],
         time_step: f64,
     ) -> [f64; HORIZON] {
-        let steps = observed.array_windows().map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]));
-        let speed = steps.clone().sum::<f64>() / (steps.len().max(1) as f64 * time_step);
-        let at_end = self.spread_of_speed * speed + self.spread_of_goals * deviation(goals, weights);
+        let of_pace = self.of_pace(Pace::of(observed, time_step));
+        let of_speed = of_pace.spread_of_speed * mean_speed(observed, time_step);
+        let at_end = of_speed + of_pace.spread_of_goals * deviation(goals, weights);
         std::array::from_fn(|t| {
             let share = (t + 1) as f64 / HORIZON as f64;
             self.least_spread.hypot(at_end * share.powf(self.spread_growth))
@@ -119,20 +143,22 @@ mod tests {
         let [low, high] = fitted.regions.range();
         assert!(low <= 0.05 && high >= 0.99);
         assert!(fitted.half_trust > 0.0 && (0.0..=1.0).contains(&fitted.share));
-        assert!((0.0..1.0).contains(&fitted.uniform_share));
-        assert!(fitted.weight_power.iter().all(|power| *power > 0.0));
+        for of_pace in Pace::ALL.map(|pace| fitted.of_pace(pace)) {
+            assert!((0.0..1.0).contains(&of_pace.uniform_share));
+            assert!(of_pace.weight_power.iter().all(|power| *power > 0.0));
+        }
     }
 
     /// Endpoints 3 m to either side: a deviation of 3 m along one axis and 0 along the other, so sqrt(9 / 2).
     #[test]
     fn spread_of_two_opposite_endpoints() {
-        let calibration = Calibration {
+        let mut calibration = Calibration {
             least_spread: 0.0,
-            spread_of_speed: 0.1,
-            spread_of_goals: 0.2,
             spread_growth: 1.0,
             ..Calibration::fitted().clone()
         };
+        calibration.paces.walking.spread_of_speed = 0.1;
+        calibration.paces.walking.spread_of_goals = 0.2;
         let observed: Vec<Position> = (0..8).map(|t| [0.8 * f64::from(t), 0.0]).collect();
         let goals = [[5.0, 3.0], [5.0, -3.0]];
         let spread = calibration.spread(&observed, &goals, &[0.5, 0.5], 0.4);

@@ -21,7 +21,7 @@ struct PedestrianLine<'a> {
     /// Familiarity of the observed motion, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     familiarity: Option<f64>,
-    /// Standard deviation around the right hypothesis at each step, metres.
+    /// Scale of Student's t with 3 degrees of freedom around the right hypothesis at each step, metres.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     spread: Vec<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -105,7 +105,7 @@ pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Res
                 uncertainty: quality.uncertainty(),
                 frames: moment.frames(),
                 familiarity: forecast.familiarity(i),
-                spread: (0..HORIZON).filter_map(|t| forecast.std_dev(i, t)).collect(),
+                spread: (0..HORIZON).filter_map(|t| forecast.scale(i, t)).collect(),
                 regions: regions
                     .iter()
                     .filter_map(|&probability| Region::of(forecast, i, probability))
