@@ -86,7 +86,7 @@ fn info_describes_the_program() {
     let info = Place::empty().json("info --json");
     assert_eq!(info["version"], env!("CARGO_PKG_VERSION"));
     assert!(info["cuda"].is_string());
-    assert_eq!(info["models"].as_array().unwrap().len(), 5);
+    assert_eq!(info["models"].as_array().unwrap().len(), 6);
     // Results name the commit that the program was built from, even if the checkout has changed since.
     let commit = info["commit"].as_str().unwrap();
     if Path::new(env!("CARGO_MANIFEST_DIR")).join("../.git").exists() {

@@ -38,7 +38,7 @@ fn models_are_measured_on_own_recordings() {
     let [of_fold, of_file, of_model] = [
         "--data mine --fold yard",
         "--data mine/yard.csv",
-        "--model hotel --convention own --data mine/yard.csv",
+        "--model world --convention own --data mine/yard.csv",
     ]
     .map(|subject| place.ok(&format!("evaluate {subject} {measure}")));
     assert!(of_fold.contains("convention own, protocol single"), "{of_fold}");

@@ -126,7 +126,7 @@ fn training_and_evaluation_report_the_same_errors() {
     let train = format!("train {split} --out run --epochs 1 {SMALL} --progress none");
     let trained = place.json(&format!("{train} --json"));
     let validation = &trained["validation"];
-    for (model, part) in [("run", "run"), ("hotel", "builtin")] {
+    for (model, part) in [("run", "run"), ("world", "builtin")] {
         let evaluate = "--validation --protocol fair --threads 1 --json --progress none";
         let report = place.json(&format!("evaluate --model {model} {split} {evaluate}"));
         let (min_ade, pedestrians) = first_row(&report);
@@ -199,7 +199,7 @@ fn short_clips_are_validated_whole_and_start_with_the_built_in_model() {
     let finished = place.run(&format!("train --data clips --out run --epochs 1 {SMALL}"));
     for words in [
         "(--validation-recordings clip1,clip4)",
-        "weights of the built-in model hotel (--from none",
+        "weights of the built-in model world (--from none",
     ] {
         assert!(finished.stderr.contains(words), "{finished:?}");
     }

@@ -32,8 +32,8 @@ const SIMULATION_SEED: u64 = 1;
 /// A model by name, or the default built-in model.
 #[derive(Debug, Args)]
 pub(crate) struct ModelChoice {
-    /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model, named after the scene it was
-    /// trained without: eth, hotel, univ, zara1 or zara2 [default: hotel, the one trained on the most pedestrians]
+    /// Model: the directory of a run, a packed file (`ddl pack`), or a built-in model: world, or one named after
+    /// the scene it was trained without (eth, hotel, univ, zara1 or zara2) [default: world]
     #[arg(long)]
     model: Option<PathBuf>,
 }

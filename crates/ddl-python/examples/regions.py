@@ -7,14 +7,14 @@ prints the tables of docs/regions.md, and draws the curves of its figure as regi
 (frame, pedestrian, x, y in metres), forecast by the default model. On these, and on the two recordings that no fold
 tests, the constants were chosen.
 
-    python regions.py calibrate FOLDER=FPS ...
+    python regions.py calibrate MODEL:FOLDER=FPS ...
 
-prints for each folder the coverage of regions that were calibrated on the other folders, and writes the table of all
-folders to crates/ddl/src/trust/calibration.json. It uses every other file of a folder, or the first half of the windows
-of a single file; the rest is for the final evaluation.
+prints for each folder, forecast by a model that was not trained on it, the coverage of regions that were calibrated on
+the other folders, and writes the table of all folders to crates/ddl/src/trust/calibration.json.
 """
 
 import json
+import re
 import sys
 import warnings
 from collections.abc import Iterator, Sequence
@@ -32,24 +32,28 @@ Floats = NDArray[np.float64]
 #: Recordings of the convention ``star`` that a fold tests on, and its model.
 TESTED = {"eth": "eth", "hotel": "hotel", "zara01": "zara1", "zara02": "zara2"}
 TESTED |= {"students001": "univ", "students003": "univ"}
-DEFAULT = "hotel"
+DEFAULT = "world"
 LEVELS = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
 HALF, MOST = 4, 8  # the levels that have columns in the table
 CALIBRATED = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99]
 STEP = 0.4 / 60  # minutes
 SLIDING, APART = 1.0, 1.0 / 12.0  # interval over which a share is computed, and its step (minutes)
 SHORTEST, FEWEST = 0.8, 1000  # minutes and forecasts of a pedestrian, below which a recording is left out
-PEDESTRIANS = 1500  # about this many pedestrian-windows of a folder calibrate
+PEDESTRIANS = 2500  # about this many pedestrian-windows of a folder calibrate
+LEAST = 100  # pedestrian-windows of a pace, below which a folder does not count for it
+PACES = ("standing", "slow", "walking")
 KINDS = ("fixed", "adaptive")
 
 
-def recordings_of(place: str) -> list[ddl.Recording]:
-    """The recordings of ``FOLDER=FPS``, by name; none that the default model was trained on."""
+def recordings_of(place: str, model: str) -> list[ddl.Recording]:
+    """The recordings of ``FOLDER=FPS`` (times: ``FOLDER=``), by name; none that the model was trained on."""
     folder, fps = place.split("=")
-    recordings = [ddl.read(path, format="table", fps=float(fps)) for path in sorted(Path(folder).iterdir())]
-    known = [recording.name for recording in recordings if ddl.Forecaster(DEFAULT).was_trained_on(recording)]
+    rate = float(fps) if fps else None
+    recordings = [ddl.read(path, format="table", fps=rate) for path in sorted(Path(folder).iterdir())]
+    forecaster = ddl.Forecaster(model)
+    known = [recording.name for recording in recordings if forecaster.was_trained_on(recording)]
     if known:
-        sys.exit(f"{DEFAULT} was trained on {', '.join(known)}: its regions hold too much there")
+        sys.exit(f"{model} was trained on {', '.join(known)}: its regions hold too much there")
     return recordings
 
 
@@ -192,7 +196,7 @@ def measure(star: str, places: Sequence[str]) -> None:
         recording = ddl.read(path, format="star-csv")
         model = TESTED.get(path.stem)
         (tested if model else others).append(coverage(recording, model or DEFAULT))
-    for recording in (recording for place in places for recording in recordings_of(place)):
+    for recording in (recording for place in places for recording in recordings_of(place, DEFAULT)):
         one = coverage(recording, DEFAULT)
         minutes = (recording.frame[-1] - recording.frame[0]) / recording.frame_step * STEP
         if minutes >= SHORTEST and one.people.sum() >= FEWEST:
@@ -218,34 +222,43 @@ def quantiles(scores: Floats, levels: Sequence[float]) -> Floats:
     return ordered
 
 
-def balanced(places: Sequence[Floats]) -> Floats:
-    """As many scores of each place."""
-    least = min(map(len, places))
-    return np.concatenate([of_place[np.arange(least) * len(of_place) // least] for of_place in places])
+def paces(past: Floats) -> NDArray[np.int64]:
+    """(n,) 0 standing, 1 slow, 2 walking: crates/ddl-core/src/pace.rs has the limits."""
+    return np.digitize(np.linalg.norm(np.diff(past, axis=1), axis=-1).mean(axis=1) / 0.4, [0.15, 0.7])
+
+
+def table_of(places: Sequence[tuple[NDArray[np.int64], Floats]], levels: Sequence[float]) -> Floats:
+    """(paces, levels, 12) quantiles; each place with enough pedestrians of a pace counts the same."""
+    tables = []
+    for pace in range(3):
+        of_places = [scores[of == pace] for of, scores in places if np.count_nonzero(of == pace) >= LEAST]
+        least = min(map(len, of_places))
+        same = [scores[np.arange(least) * len(scores) // least] for scores in of_places]
+        tables.append(quantiles(np.concatenate(same), levels))
+    return np.array(tables)
 
 
 def calibrate(places: Sequence[str]) -> None:
-    of_places = []
+    of_place = []
     for place in places:
-        recordings = recordings_of(place)
-        windows = [window for recording in recordings[::2] for window in ddl.windows(recording)]
-        windows = windows[: len(windows) // 2] if len(recordings) == 1 else windows
-        every = max(1, -(-sum(len(window.past) for window in windows) // PEDESTRIANS))
-        of_places.append(windows[::every])
-    models = [ddl.Forecaster(name) for name in ("eth", "hotel", "univ", "zara1", "zara2")]
-    of_place = [
-        np.concatenate([scores(model.forecast(window.past), window.future) for model in models for window in windows])
-        for windows in of_places
-    ]
+        model, folder = place.split(":")
+        windows = [window for recording in recordings_of(folder, model) for window in ddl.windows(recording)]
+        windows = windows[:: max(1, -(-sum(len(window.past) for window in windows) // PEDESTRIANS))]
+        forecaster = ddl.Forecaster(model)
+        scored = [scores(forecaster.forecast(window.past), window.future) for window in windows]
+        of_place.append((paces(np.concatenate([window.past for window in windows])), np.concatenate(scored)))
     for left_out, place in enumerate(places):
-        others = [scores for index, scores in enumerate(of_place) if index != left_out]
-        if others:
-            held = [(of_place[left_out] <= row).mean() for row in quantiles(balanced(others), [0.5, 0.9])]
-            print(f"{place}: regions of the other places hold {held[0]:.1%} (50 %) and {held[1]:.1%} (90 %)")
+        pace, own = of_place[left_out]
+        others = table_of([of for index, of in enumerate(of_place) if index != left_out], [0.5, 0.9])
+        for name, some in [("all", pace >= 0), *((name, pace == which) for which, name in enumerate(PACES))]:
+            held = [(own[some] <= others[pace[some], row]).mean() for row in (0, 1)] if some.any() else []
+            print(place, name, int(some.sum()), *(f"{share:.1%}" for share in held))
     file = Path(__file__).parents[2] / "ddl/src/trust/calibration.json"
     constants: dict[str, Any] = json.loads(file.read_text())
-    constants["regions"] = {"levels": CALIBRATED, "quantiles": quantiles(balanced(of_place), CALIBRATED).tolist()}
-    file.write_text(json.dumps(constants, indent=2) + "\n")
+    rows = table_of(of_place, CALIBRATED).round(4).tolist()
+    constants["regions"] = {"levels": CALIBRATED, "quantiles": rows}
+    text = json.dumps(constants, indent=2)
+    file.write_text(re.sub(r"\[[^][{}]*\]", lambda row: " ".join(row[0].split()).replace("[ ", "[").replace(" ]", "]"), text))
     print(file)
 
 

@@ -5,7 +5,7 @@
 //!     datasets/sample.csv 15 docs/forecast.svg
 //! ```
 //! The arguments are a table of tracks, the last observed frame and the picture; then, if not the built-in model
-//! `hotel`, a run or a packed file.
+//! `world`, a run or a packed file.
 
 use ddl::data::{Format, OBSERVED, WindowRule, read_recording};
 use ddl::report::figure;

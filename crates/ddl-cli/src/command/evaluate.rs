@@ -29,7 +29,7 @@ use std::path::PathBuf;
 pub(crate) struct Evaluate {
     /// Model: the directory of a run, a packed file, or a built-in model. It is evaluated on the scene it was trained
     /// without, or on your own recordings (--data FOLDER) [default: the built-in model trained without --fold; on own
-    /// recordings hotel]
+    /// recordings world]
     #[arg(long, conflicts_with_all = ["forecasts", "fold", "window_rule"])]
     model: Option<PathBuf>,
     #[command(flatten)]

@@ -31,7 +31,7 @@ const PATIENCE: usize = 10;
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  \
         ddl train --data recordings --out runs/own\n  \
-        ddl train --data recordings --from hotel --out runs/further\n  \
+        ddl train --data recordings --from world --out runs/further\n  \
         ddl train --data recordings --convention own --fold lobby --out runs/without-lobby\n  \
         ddl train --fold eth --epochs 10 --out runs/eth")]
 pub(crate) struct Train {
@@ -62,9 +62,9 @@ pub(crate) struct Train {
     /// Encoder layers of each of the two spatial encoders [default: 1, published 2]
     #[arg(long, value_name = "LAYERS")]
     spatial_layers: Option<usize>,
-    /// Model to start from instead of random weights: a built-in model such as hotel, a packed file or the directory of
-    /// a run, with networks of the same sizes; `none` for random weights. Training takes fewer and smaller steps, and
-    /// the starting model is kept if training does not improve it on the validation part [default: none; hotel for own
+    /// Model to start from instead of random weights: a built-in model such as world, a packed file or the directory of
+    /// a run, whose sizes are taken; `none` for random weights. Training takes fewer and smaller steps, and the
+    /// starting model is kept if training does not improve it on the validation part [default: none; world for own
     /// recordings with fewer than 10000 pedestrian-windows]
     #[arg(long, value_name = "MODEL")]
     from: Option<PathBuf>,
@@ -150,8 +150,18 @@ impl Train {
             bail!("--last-epoch-only discards the best epoch: add --patience 0 to use the last epoch as the model");
         }
         let from = self.starting_model(&dataset, &fold, &part)?;
-        let goals = self.goal_recipe(from.is_some())?;
-        let (star, training) = self.recipe(from.is_some());
+        let mut goals = self.goal_recipe(from.is_some())?;
+        let (mut star, training) = self.recipe(from.is_some());
+        if let Some(from) = from.as_ref().filter(|_| self.names_no_sizes()) {
+            let config = from.config()?;
+            if config.star.variant == star.variant {
+                star = config.star;
+                if let (Some(proposal), Some(theirs)) = (&mut goals.proposal, config.goals.proposal) {
+                    proposal.network = theirs.network;
+                    proposal.unforeseen_share = theirs.unforeseen_share;
+                }
+            }
+        }
         let mut request = TrainingRequest::recommended(fold, RunDirectory::new(self.out));
         request.star = star;
         request.training = training;
@@ -227,13 +237,7 @@ impl Train {
             let none = named.as_os_str() == "none";
             return Ok((!none).then(|| ModelSource::named(named)));
         }
-        let usual = self.variant == Variant::Full
-            && self.recipe == Recipe::Recommended
-            && self.feed_forward_width.is_none()
-            && self.spatial_layers.is_none()
-            && self.backbone.is_none()
-            && self.goals == GoalsFrom::Proposed
-            && self.goal_recipe.is_none();
+        let usual = self.variant == Variant::Full && self.goals == GoalsFrom::Proposed && self.names_no_sizes();
         if dataset.convention() != Convention::Own || !usual {
             return Ok(None);
         }
@@ -250,6 +254,15 @@ impl Train {
              model {model} (--from none for random weights)"
         ));
         Ok(Some(ModelSource::Builtin(model)))
+    }
+
+    /// Whether a starting model determines the sizes of the networks.
+    fn names_no_sizes(&self) -> bool {
+        self.recipe == Recipe::Recommended
+            && self.feed_forward_width.is_none()
+            && self.spatial_layers.is_none()
+            && self.backbone.is_none()
+            && self.goal_recipe.is_none()
     }
 
     fn scene(&self) -> anyhow::Result<(Convention, String)> {

@@ -16,7 +16,7 @@ use crate::position::{HORIZON, Position, distance};
 use crate::region::tracked::weight_of;
 
 /// Step size. Chosen on whole places left out (`docs/tried.md`).
-const STEP: f64 = 0.05;
+const STEP: f64 = 0.01;
 /// Bounds of ln p.
 const BOUNDS: [f64; 2] = [-1.5, 1.0];
 
@@ -84,7 +84,7 @@ mod tests {
         assert!((gradient - 0.2 * 4.0_f64.ln()).abs() < 1e-12);
         let mut powers = TrackedPowers::default();
         powers.learn(&[(Pace::Standing, gradient); 4], 0.5);
-        let power = (0.05 * 1.0 * gradient).exp();
+        let power = (0.01 * gradient).exp();
         let raised = powers.raised(forecast.clone());
         let expected = 0.8_f64.powf(power) / (0.8_f64.powf(power) + 0.2_f64.powf(power));
         assert!((raised.weight(0, 0) - expected).abs() < 1e-12 && expected > 0.8);

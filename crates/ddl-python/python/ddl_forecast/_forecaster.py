@@ -25,9 +25,9 @@ class Forecaster:
     Parameters
     ----------
     model
-        A built-in model: ``"hotel"`` (for new places), ``"eth"``, ``"univ"``, ``"zara1"`` or ``"zara2"``, each named
+        A built-in model: ``"world"``, or ``"eth"``, ``"hotel"``, ``"univ"``, ``"zara1"`` or ``"zara2"``, each named
         after the ETH/UCY scene that it was trained without. Or a path: the folder of a training run, or a packed model
-        (``./hotel`` for a folder with the name of a built-in model).
+        (``./world`` for a folder with the name of a built-in model).
     keep_clear
         Distance in metres, such as 0.4, that pedestrians keep from each other's most likely paths, or None.
 
@@ -47,7 +47,7 @@ class Forecaster:
     20
     """
 
-    def __init__(self, model: str | os.PathLike[str] = "hotel", *, keep_clear: float | None = None) -> None:
+    def __init__(self, model: str | os.PathLike[str] = "world", *, keep_clear: float | None = None) -> None:
         name = os.fspath(model)
         names = _core.Model.builtin_names()
         if name not in names and not os.path.exists(name):

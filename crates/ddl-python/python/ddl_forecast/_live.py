@@ -68,7 +68,7 @@ class Live:
     ) -> None:
         if not isinstance(forecaster, Forecaster):
             raise TypeError(
-                f"forecaster must be a Forecaster, such as Forecaster('hotel'); found {type(forecaster).__name__}"
+                f"forecaster must be a Forecaster, such as Forecaster('world'); found {type(forecaster).__name__}"
             )
         self._core = _core.Live(forecaster._core, fps, memory, whole, max_age, every, certificates)
         self._has_times = fps is None

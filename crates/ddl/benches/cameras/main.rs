@@ -33,7 +33,7 @@ fn main() -> Result<()> {
 
 fn measure(is_measured: bool) -> Result<()> {
     let mut out = std::io::stdout().lock();
-    let model = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
+    let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
     let service = |batch| queue::service(&model, batch, if is_measured { 160 } else { batch });
     let (alone, in_batch) = (service(1)?, service(BATCH)?);
     writeln!(

@@ -27,7 +27,7 @@ pub(crate) struct Crowds {
 impl Crowds {
     /// Prints one row for each number of pedestrians: seconds, and the peak memory of the process.
     pub(crate) fn measure(self, sizes: &[usize]) -> Result<()> {
-        let model = Ddl::builtin(BuiltinModel::Hotel, self.device)?;
+        let model = Ddl::builtin(BuiltinModel::default(), self.device)?;
         let clock = match self.device {
             DeviceChoice::Cuda => MeasuredTime::Wall,
             _ => MeasuredTime::Processor,

@@ -18,10 +18,9 @@ mod step;
 
 use clock::{MeasuredTime, side_by_side};
 use crowd::Crowds;
-use ddl::data::{Dataset, Position, Window};
+use ddl::data::{Dataset, Window};
 use ddl::memory::SceneMemory;
-use ddl::network::{BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule};
-use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _, ModelSource};
+use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecaster as _};
 use std::error::Error;
 use std::io::Write as _;
 
@@ -103,46 +102,28 @@ fn memory_of(dataset: &Dataset, segments: usize) -> Result<SceneMemory> {
 
 /// The time of a whole forecast and of its parts.
 fn forecast(window: &Window, memory: &SceneMemory, turns: usize) -> Result<String> {
-    let model = Ddl::open(&ModelSource::Builtin(BuiltinModel::Hotel), DeviceChoice::Cpu)?;
+    let model = Ddl::builtin(BuiltinModel::default(), DeviceChoice::Cpu)?;
+    let with_transformer = Ddl::builtin(BuiltinModel::Hotel, DeviceChoice::Cpu)?;
     let windows = std::slice::from_ref(window);
-    let sets = model.goal_model().goals(windows)?.remove(0);
-    let goals: Vec<Vec<Position>> = sets.iter().map(|set| set.goals().to_vec()).collect();
-    let goals_of_all = vec![goals];
-    let star = &model.config().star;
-    // The time does not depend on the weights.
-    let network = |backbone| {
-        let config = StarConfig {
-            backbone,
-            ..star.clone()
-        };
-        MotionNetwork::new(config, 1)
-    };
-    let [transformer, perceptron] = [BackboneKind::Star, BackboneKind::Perceptron].map(network);
-    let (transformer, perceptron) = (transformer?, perceptron?);
-    let roll_out = |network: &MotionNetwork| {
-        network.forecast_windows(windows, &goals_of_all, Noise::Expected, StepRule::Bounded, None)
-    };
     let count = model.goal_model().recalled_per_pedestrian()?;
     let remembering = || memory.recalling(window.clone(), count);
     let parts: [&mut dyn FnMut() -> Result<()>; 5] = [
         &mut || Ok(model.forecast(&remembering()).map(drop)?),
         &mut || Ok(model.forecast(window).map(drop)?),
         &mut || Ok(model.goal_model().goals(windows).map(drop)?),
-        &mut || Ok(roll_out(&transformer).map(drop)?),
-        &mut || Ok(roll_out(&perceptron).map(drop)?),
+        &mut || Ok(model.forecast_central(windows).map(drop)?),
+        &mut || Ok(with_transformer.forecast(window).map(drop)?),
     ];
     let times = side_by_side(MeasuredTime::Processor, turns, parts)?;
-    let [with_memory, whole, goals, transformer, perceptron] = times.map(|seconds| 1e3 * seconds);
+    let [with_memory, whole, goals, one, transformer] = times.map(|seconds| 1e3 * seconds);
     Ok(format!(
         "{} pedestrians, 20 hypotheses, one thread, processor time\n\
          whole forecast                                 {whole:>6.2} ms\n\
-         goals                                          {goals:>6.2} ms\n\
-         network, Transformer                           {transformer:>6.2} ms\n\
-         network, perceptron                            {perceptron:>6.2} ms\n\
-         the rest: rollout in f64, certificates, spread {rest:>6.2} ms\n\
+         its goals                                      {goals:>6.2} ms\n\
+         one hypothesis                                 {one:>6.2} ms\n\
+         model hotel, whose network is the Transformer  {transformer:>6.2} ms\n\
          whole forecast with a memory of {segments} segments {with_memory:>6.2} ms",
         window.len(),
         segments = memory.segments(),
-        rest = whole - goals - transformer,
     ))
 }
