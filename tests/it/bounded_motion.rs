@@ -5,6 +5,7 @@
 use ddl::data::{Completeness, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
 use ddl::{BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Variant};
+use ddl_core::distance;
 use ddl_tests::{bits, crowd, drawn_model};
 use proptest::prelude::*;
 use std::sync::LazyLock;
@@ -33,10 +34,6 @@ fn limit(observed: &[Position]) -> f64 {
 
 fn steps(path: &[Position]) -> impl Iterator<Item = f64> + '_ {
     path.windows(2).map(|pair| distance(pair[0], pair[1]) / TIME_STEP)
-}
-
-fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// An observation: speed, change of speed, turn per step, noise, and steps at which the position was held.

@@ -3,6 +3,7 @@
 use ddl::data::Position;
 use ddl::dynamics::LyapunovCertificate;
 use ddl::{BuiltinModel, Variant};
+use ddl_core::distance;
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use serde::Deserialize;
@@ -63,10 +64,6 @@ struct Hypothesis {
 fn table<T: serde::de::DeserializeOwned>(text: &str) -> Vec<T> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     reader.deserialize().collect::<Result<_, _>>().unwrap()
-}
-
-fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// Compares the certificate of a hypothesis with the positions printed beside it, and returns the distances to the goal

@@ -1,6 +1,7 @@
 //! Cost of the guarantee: how far real pedestrians would have to be moved, so that their distance to their endpoint
 //! falls at every step (`docs/stability.md`).
 
+use ddl_core::distance;
 use ddl_data::{Convention, Dataset, HORIZON, OBSERVED, Position, TIME_STEP, WindowRule};
 use ddl_dynamics::{Attractor, CholeskyMetric, LyapunovCertificate, PUBLISHED_SIGMA};
 use ddl_eval::metric::stability::RolloutStability;
@@ -9,10 +10,6 @@ use nalgebra::Vector2;
 
 /// A pedestrian that moves less than this in 4.8 s stands (m).
 const STANDING: f64 = 1.0;
-
-fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
 
 /// The path with every point moved straight towards the last one, to the smallest distance so far.
 fn never_further_from_its_end(path: &[Position]) -> Vec<Position> {

@@ -2,6 +2,7 @@
 
 use ddl::data::{Convention, Dataset, Position, Window, WindowRule};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, ModelSource, Remembering};
+use ddl_core::distance;
 use ddl_tests::recordings;
 use std::io::Write as _;
 
@@ -23,10 +24,6 @@ struct Difference {
     others: usize,
 }
 
-fn apart(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
-}
-
 impl Difference {
     fn add(&mut self, kernels: &Forecast, libtorch: &Forecast) {
         for i in 0..kernels.pedestrians() {
@@ -34,9 +31,9 @@ impl Difference {
                 .map(|h| {
                     let [a, b] = [kernels, libtorch].map(|forecast| forecast.goal(i, h).unwrap());
                     let paths = kernels.hypothesis(i, h).iter().zip(libtorch.hypothesis(i, h));
-                    let off = paths.fold(0.0_f64, |most, (&a, &b)| most.max(apart(a, b)));
+                    let off = paths.fold(0.0_f64, |most, (&a, &b)| most.max(distance(a, b)));
                     let weight = kernels.weight(i, h) - libtorch.weight(i, h);
-                    (apart(a, b), off, weight.abs())
+                    (distance(a, b), off, weight.abs())
                 })
                 .collect();
             if pairs.iter().any(|&(goal, ..)| goal > OTHER) {

@@ -2,6 +2,7 @@
 
 use ddl::data::{PedestrianId, Position, Window};
 use ddl::{Ddl, Forecaster as _};
+use ddl_core::distance;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -76,7 +77,7 @@ impl Golden {
         let name = format!("{model}, pedestrian {}", stored.pedestrian);
         assert_eq!(self.pedestrian, stored.pedestrian, "{name}");
         assert!((self.familiarity - stored.familiarity).abs() < 1e-9, "{name}");
-        assert!(apart(self.one, stored.one) <= OFF, "{name}: one");
+        assert!(distance(self.one, stored.one) <= OFF, "{name}: one");
         assert_eq!(self.weights.len(), stored.weights.len(), "{name}");
         for k in 0..stored.weights.len() {
             let (computed, expected) = (self.weights[k], stored.weights[k]);
@@ -90,7 +91,7 @@ impl Golden {
                 ("step 6", &self.step_6, &stored.step_6, OFF),
             ] {
                 let (computed, expected) = (computed[k], expected[k]);
-                let near = apart(computed, expected) <= off;
+                let near = distance(computed, expected) <= off;
                 assert!(near, "{name}, {what} {k}: {computed:?} {expected:?}");
             }
         }
@@ -100,8 +101,4 @@ impl Golden {
 fn rounded(number: f64, decimals: i32) -> f64 {
     let unit = 10.0_f64.powi(decimals);
     (number * unit).round() / unit
-}
-
-fn apart(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }

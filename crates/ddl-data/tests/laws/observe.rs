@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+use ddl_core::distance;
 use ddl_data::{
     Clock, Completeness, Convention, Dataset, Format, FrameReader, LiveTracks, Misfit, MisfitTreatment, OBSERVED,
     Observation, ObservationQuality, ObservedRecording, PedestrianId, Position, Recording, TIME_STEP, Window,
@@ -125,10 +126,6 @@ fn bits(windows: &[Window]) -> Bits {
         (0..window.len()).map(of_pedestrian).collect()
     };
     windows.iter().flat_map(of_window).collect()
-}
-
-fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 /// The largest distance between the observations of two lists of windows of the same pedestrians.

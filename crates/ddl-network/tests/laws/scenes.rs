@@ -1,5 +1,6 @@
 //! Simulated windows, their goals, and untrained networks.
 
+pub(crate) use ddl_core::distance;
 use ddl_data::{Dataset, PedestrianId, Position, Window, WindowRule};
 use ddl_network::{
     BackboneKind, ForecastWindows as _, MotionNetwork, Noise, StarConfig, StepRule, Variant, WindowRollout,
@@ -90,10 +91,6 @@ pub(crate) fn recommended(backbone: BackboneKind, variant: Variant) -> StarConfi
         backbone,
         ..StarConfig::recommended(variant)
     }
-}
-
-pub(crate) fn distance(a: Position, b: Position) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
 pub(crate) fn with_threads<T: Send>(threads: usize, run: impl FnOnce() -> T + Send) -> T {
