@@ -58,18 +58,6 @@ impl SoftDtw {
         }
         finite_gradient((value, gradient))
     }
-
-    /// [`SoftDtw::value_and_gradient`] by the textbook recursion in the log domain: slow, the reference for tests.
-    #[cfg(test)]
-    pub(crate) fn log_domain_gradient<const D: usize>(
-        &self,
-        x: &[[f64; D]],
-        y: &[[f64; D]],
-    ) -> Result<(f64, Vec<[f64; D]>), SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
-        finite_gradient(self.grid(x, y).log_domain_gradient())
-    }
 }
 
 fn finite_gradient<const D: usize>(

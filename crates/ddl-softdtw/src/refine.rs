@@ -103,20 +103,11 @@ impl PairValues {
 }
 
 /// Up to eight pairs of equal lengths, one per lane, and a row of the recursion.
+#[derive(Default)]
 struct PairBlock<const D: usize> {
     x: Vec<[Lanes; D]>,
     y: Vec<[Lanes; D]>,
     row: Vec<Lanes>,
-}
-
-impl<const D: usize> Default for PairBlock<D> {
-    fn default() -> Self {
-        Self {
-            x: Vec::new(),
-            y: Vec::new(),
-            row: Vec::new(),
-        }
-    }
 }
 
 impl<const D: usize> PairBlock<D> {

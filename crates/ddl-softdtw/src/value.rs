@@ -114,14 +114,6 @@ impl SoftDtw {
             cost: self.cost,
         }
     }
-
-    /// [`SoftDtw::value`] by the textbook recursion in the log domain: slow, the reference for tests.
-    #[cfg(test)]
-    pub(crate) fn log_domain_value<const D: usize>(&self, x: &[[f64; D]], y: &[[f64; D]]) -> Result<f64, SoftDtwError> {
-        check(x, SequenceRole::X)?;
-        check(y, SequenceRole::Y)?;
-        finite(self.grid(x, y).log_domain_value())
-    }
 }
 
 pub(crate) fn normalise(value: f64, self_x: f64, self_y: f64) -> f64 {
