@@ -26,6 +26,7 @@ mod summary;
 mod watching;
 
 pub(crate) use group::{ResultGroup, TableLine, groups, order};
+pub(crate) use watching::figures as watching_figures;
 
 const FORMAT: u32 = 1;
 
@@ -106,11 +107,6 @@ impl Report {
     /// the measured folds, the mean errors with their 95 % intervals, and further metrics.
     pub fn summary(&self, convention: Convention) -> Option<String> {
         summary::of(&self.rows, convention)
-    }
-
-    /// Figures of the tables "Error over watching time": names and SVG files.
-    pub(crate) fn watching_figures(&self) -> Vec<(String, String)> {
-        watching::figures(&self.rows)
     }
 
     /// The report as JSON, one line for each row. [`Report::from_json`] makes the same report from it, bit by bit.

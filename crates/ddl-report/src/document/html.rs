@@ -77,16 +77,16 @@ fn of_table(table: &Table) -> Markup {
     html! {
         div.table tabindex="0" {
             table {
-                @if let Some(caption) = table.caption() { caption { (inline(caption)) } }
+                @if let Some(caption) = &table.caption { caption { (inline(caption)) } }
                 thead {
                     tr {
-                        @for (column, cell) in table.header().iter().enumerate() {
+                        @for (column, cell) in table.header.iter().enumerate() {
                             th scope="col" class=[class(column)] { (inline(cell)) }
                         }
                     }
                 }
                 tbody {
-                    @for row in table.rows() {
+                    @for row in &table.rows {
                         tr {
                             @for (column, cell) in row.iter().enumerate() {
                                 @if column == 0 {

@@ -26,8 +26,8 @@ impl Document {
                 }
                 Part::Warning(words) => warning = Some(words.as_str()),
                 Part::Table(table) => {
-                    let caption = match table.caption() {
-                        Some(caption) => caption.to_owned(),
+                    let caption = match &table.caption {
+                        Some(caption) => caption.clone(),
                         None => format!("{}.", headings.join(": ")),
                     };
                     let comment = one_line(&headings.join(": "));
@@ -48,7 +48,7 @@ impl Document {
 }
 
 fn float(table: &Table, caption: &str, warning: Option<&str>, notes: &str, number: usize) -> String {
-    let columns: String = (0..table.header().len())
+    let columns: String = (0..table.header.len())
         .map(|column| if table.is_text(column) { 'l' } else { 'r' })
         .collect();
     let line = |cells: &[String]| {
@@ -69,8 +69,8 @@ fn float(table: &Table, caption: &str, warning: Option<&str>, notes: &str, numbe
          \\toprule\n{}    \\midrule\n{}    \\bottomrule\n  \\end{{tabular}}\n  \
          \\end{{adjustbox}}\n{notes}\\end{{table*}}\n",
         inline(caption),
-        line(table.header()),
-        table.rows().iter().map(|row| line(row)).collect::<String>(),
+        line(&table.header),
+        table.rows.iter().map(|row| line(row)).collect::<String>(),
     )
 }
 

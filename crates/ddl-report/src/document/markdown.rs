@@ -19,7 +19,7 @@ fn render(part: &Part) -> String {
         Part::List(items) => items.iter().flat_map(|item| ["- ", item, "\n"]).collect(),
         // `unfolded` has replaced details by their parts.
         Part::Details { .. } => String::new(),
-        Part::Table(table) => match table.caption() {
+        Part::Table(table) => match &table.caption {
             Some(caption) => format!("{caption}\n\n{table}"),
             None => table.to_string(),
         },

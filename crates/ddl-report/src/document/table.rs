@@ -3,10 +3,11 @@
 /// A table. The first column is text; the others hold numbers, unless they are marked as text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Table {
-    caption: Option<String>,
-    header: Vec<String>,
+    pub(super) caption: Option<String>,
+    pub(super) header: Vec<String>,
     text: Vec<bool>,
-    rows: Vec<Vec<String>>,
+    /// Each as long as the header.
+    pub(crate) rows: Vec<Vec<String>>,
 }
 
 impl Table {
@@ -44,21 +45,6 @@ impl Table {
             caption: Some(caption.into()),
             ..self
         }
-    }
-
-    /// The caption, if it has one.
-    pub(crate) fn caption(&self) -> Option<&str> {
-        self.caption.as_deref()
-    }
-
-    /// The column names.
-    pub(crate) fn header(&self) -> &[String] {
-        &self.header
-    }
-
-    /// The rows, each as long as the header.
-    pub(crate) fn rows(&self) -> &[Vec<String>] {
-        &self.rows
     }
 
     /// Whether a column is text, and not numbers.

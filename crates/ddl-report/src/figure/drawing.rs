@@ -56,14 +56,10 @@ impl Drawing {
     }
 
     pub(crate) fn circle(&mut self, class: &str, centre: [f64; 2], radius: f64) {
-        self.disc(class, centre, radius, None);
+        self.styled_circle(class, centre, radius, None);
     }
 
-    pub(crate) fn styled_circle(&mut self, class: &str, centre: [f64; 2], radius: f64, style: &str) {
-        self.disc(class, centre, radius, Some(style));
-    }
-
-    fn disc(&mut self, class: &str, centre: [f64; 2], radius: f64, style: Option<&str>) {
+    pub(crate) fn styled_circle(&mut self, class: &str, centre: [f64; 2], radius: f64, style: Option<&str>) {
         let ([cx, cy], r) = (centre.map(px), px(radius));
         self.add(&html! { circle class=(class) cx=(cx) cy=(cy) r=(r) style=[style] {} });
     }

@@ -11,11 +11,12 @@ const FARTHEST: f64 = 1e6;
 /// The observed and the true future track of a pedestrian, and its estimated goals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GoalCase {
-    title: String,
+    pub(super) title: String,
     track: Vec<Position>,
-    goals: WeightedGoals,
+    pub(super) goals: WeightedGoals,
     experts: Vec<Vec<Position>>,
-    nearest: usize,
+    /// Index of the goal nearest the true endpoint; among equally near goals the most probable one, then the first.
+    pub(super) nearest: usize,
 }
 
 impl GoalCase {
@@ -45,19 +46,6 @@ impl GoalCase {
             }),
             Err(problem) => Err(ReportError::GoalCase { case: title, problem }),
         }
-    }
-
-    pub(super) fn title(&self) -> &str {
-        &self.title
-    }
-
-    pub(super) fn goals(&self) -> &WeightedGoals {
-        &self.goals
-    }
-
-    /// Index of the goal nearest the true endpoint; among equally near goals the most probable one, then the first.
-    pub(super) fn nearest_goal(&self) -> usize {
-        self.nearest
     }
 
     /// Distance of the nearest goal from the true endpoint, metres.
@@ -158,7 +146,7 @@ mod tests {
             ([[9.5, 2.0], [9.5, 0.0], [9.5, 2.0]], [0.0, 0.4, 0.6], (2, 1.0)),
         ] {
             let case = GoalCase::new("a", &track(), goals(&places, &weights), Vec::new()).unwrap();
-            assert_eq!(case.nearest_goal(), expected.0);
+            assert_eq!(case.nearest, expected.0);
             assert!((case.error() - expected.1).abs() < 1e-12);
         }
     }

@@ -91,8 +91,7 @@ struct GoalPanel<'a> {
 impl<'a> GoalPanel<'a> {
     fn new(case: &'a GoalCase) -> Self {
         let here = case.here();
-        let [observed, truth, goals] =
-            [case.observed(), case.truth(), case.goals().goals()].map(|path| from(here, path));
+        let [observed, truth, goals] = [case.observed(), case.truth(), case.goals.goals()].map(|path| from(here, path));
         let points = [&observed[..], &truth, &goals].concat();
         Self {
             case,
@@ -113,8 +112,8 @@ impl<'a> GoalPanel<'a> {
                 drawing.path("expert", &plan.path(&from(case.here(), path)));
             }
         });
-        let nearest = case.nearest_goal();
-        let weights = case.goals().weights();
+        let nearest = case.nearest;
+        let weights = case.goals.weights();
         for (k, (goal, weight)) in self.goals.iter().zip(weights).enumerate() {
             if k != nearest {
                 goal_ring(drawing, plan.px(*goal), *weight);
@@ -138,7 +137,7 @@ fn draw_heading(drawing: &mut Drawing, axes: &Axes, case: &GoalCase) {
     let [[left, top], [right, _]] = axes.frame();
     // There is space between the frames of two panels.
     let width = right - left + PANEL.after[0] + EDGE;
-    let mut lines = wrapped(case.title(), LETTERS, width, TITLE_LINES);
+    let mut lines = wrapped(&case.title, LETTERS, width, TITLE_LINES);
     lines.push(format!("nearest goal {:.2} m off", case.error()));
     for (above, line) in (0..).zip(lines.into_iter().rev()) {
         drawing.text("key", [left, top - 10.0 - f64::from(above) * LINE], line);

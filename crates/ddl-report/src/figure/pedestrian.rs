@@ -36,7 +36,7 @@ pub(crate) fn other_hypotheses(drawing: &mut Drawing, plan: &PlanView, pedestria
         drawing.styled_path("hypothesis", &path, &hypothesis_style(share));
         let opacity = format!("opacity:{:.2}", 0.3 + 0.5 * share);
         if let Some(goal) = hypothesis.goal {
-            drawing.styled_circle("goal", plan.px(goal), 2.5 + 3.5 * share.sqrt(), &opacity);
+            drawing.styled_circle("goal", plan.px(goal), 2.5 + 3.5 * share.sqrt(), Some(&opacity));
         }
     }
 }

@@ -5,7 +5,7 @@
 pub(crate) struct Scale {
     low: f64,
     high: f64,
-    logarithmic: bool,
+    pub(crate) logarithmic: bool,
     pixels: [f64; 2],
 }
 
@@ -35,10 +35,6 @@ impl Scale {
             };
         }
         Self::from_zero(largest, pixels)
-    }
-
-    pub(crate) fn is_logarithmic(&self) -> bool {
-        self.logarithmic
     }
 
     pub(crate) fn at(&self, value: f64) -> f64 {

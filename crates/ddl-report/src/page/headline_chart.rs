@@ -57,7 +57,7 @@ impl Chart<'_> {
     }
 
     fn key(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
-        let axis = if Scale::of(&self.values, [0.0, 1.0]).is_logarithmic() {
+        let axis = if Scale::of(&self.values, [0.0, 1.0]).logarithmic {
             "minFDE, metres, logarithmic; less is better"
         } else {
             "minFDE, metres; less is better"

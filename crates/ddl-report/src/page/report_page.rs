@@ -9,7 +9,7 @@ use crate::page::headline_chart::{ChartShape, headline_chart};
 use crate::page::moment_check::{self, Truth};
 use crate::page::player::{PLAYER_SCRIPTS, bar, document, player, scripts};
 use crate::page::{gallery_section, headline, moment_data, standing, training_section};
-use crate::report::Report;
+use crate::report::{Report, watching_figures};
 use crate::snapshot::ForecastSnapshot;
 use crate::training_curve::TrainingCurve;
 
@@ -126,7 +126,7 @@ impl<'a> Page<'a> {
         let figures = figures
             .into_iter()
             .map(|(name, drawing)| (name, drawing.to_file("")))
-            .chain(self.report.watching_figures());
+            .chain(watching_figures(self.report.rows()));
         let named = |(name, text): (String, String)| (format!("{}.svg", unused(identifier(&name), &mut used)), text);
         Ok(figures.map(named).collect())
     }

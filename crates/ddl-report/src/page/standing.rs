@@ -77,22 +77,17 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
     Some(Standing {
         shared: group.lines.first()?.conditions().clone(),
         in_words: group.conditions_in_words(),
-        all_folds: all_folds(group, &folds),
+        all_folds: group.convention.fold_names().all(|name| folds.contains(&name)),
         folds: folds.into_iter().map(str::to_owned).collect(),
         lines,
     })
-}
-
-fn all_folds(group: &ResultGroup<'_>, measured: &[&str]) -> bool {
-    let mut named = group.convention.fold_names();
-    named.all(|name| measured.contains(&name))
 }
 
 impl StandingLine {
     fn of(line: &TableLine<'_>, label: String, folds: &[&str]) -> Self {
         let pair =
             |mean: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| Some([mean(|s| s.min_ade)?, mean(|s| s.min_fde)?]);
-        let on_fold = |fold: &&str| pair(&|metric| Some(line.on_fold(fold, metric)?.mean()));
+        let on_fold = |fold: &&str| pair(&|metric| Some(line.on_fold(fold, metric)?.mean));
         let count = |number: fn(&Scores) -> usize| -> usize {
             let first = folds.iter().filter_map(|fold| line.on(fold).next());
             first.map(|row| number(&row.scores)).sum()
@@ -103,7 +98,7 @@ impl StandingLine {
             settings: line.settings(),
             hypotheses: line.rows[0].scores.hypotheses,
             folds: folds.iter().map(on_fold).collect(),
-            mean: pair(&|metric| Some(line.over_folds(folds, metric)?.mean())),
+            mean: pair(&|metric| Some(line.over_folds(folds, metric)?.mean)),
             scored: [count(|s| s.pedestrians), count(|s| s.windows)],
         }
     }

@@ -67,7 +67,7 @@ fn table(groups: &[&ResultGroup<'_>]) -> Table {
             table.row(start.into_iter().chain(errors(line, &folds)));
         }
     }
-    if table.rows().is_empty() {
+    if table.rows.is_empty() {
         table.row([NOTHING]);
     }
     table

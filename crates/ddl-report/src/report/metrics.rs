@@ -96,7 +96,7 @@ pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
     let mut columns = FURTHER.iter().chain(&WHOLE);
     let column = columns.find(|(column, ..)| *column == name);
     let mean = column.and_then(|&(_, decimals, metric)| {
-        let mean = over_folds(line, folds, metric)?.mean();
+        let mean = over_folds(line, folds, metric)?.mean;
         Some(format!("{mean:.decimals$}"))
     });
     mean.unwrap_or_else(|| NOTHING.to_owned())
@@ -105,5 +105,5 @@ pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
 /// `None` if a fold lacks the metric.
 fn over_folds(line: &TableLine<'_>, folds: &[&str], metric: fn(&Scores) -> Option<f64>) -> Option<SeedSpread> {
     let spread = line.over_folds(folds, |s| metric(s).unwrap_or(f64::NAN));
-    spread.filter(|spread| !spread.mean().is_nan())
+    spread.filter(|spread| !spread.mean.is_nan())
 }

@@ -5,7 +5,7 @@ use std::fmt;
 /// Mean and spread of one number over the seeds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SeedSpread {
-    mean: f64,
+    pub(crate) mean: f64,
     /// Sample standard deviation (n - 1); `None` for one seed.
     deviation: Option<f64>,
 }
@@ -21,10 +21,6 @@ impl SeedSpread {
         let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
         let deviation = (values.len() > 1).then(|| (squares / (n - 1.0)).sqrt());
         Some(Self { mean, deviation })
-    }
-
-    pub(crate) fn mean(self) -> f64 {
-        self.mean
     }
 }
 

@@ -88,7 +88,7 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
 /// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with
 /// it.
 fn error_cells(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
-    let rounded = |spread: SeedSpread| format!("{:.3}", spread.mean());
+    let rounded = |spread: SeedSpread| format!("{:.3}", spread.mean);
     let mut cells = Vec::new();
     for fold in folds {
         let ade = line.on_fold(fold, |s| s.min_ade).map(rounded);
