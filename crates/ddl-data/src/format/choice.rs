@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::clock::TimeUnit;
-use crate::format::column_names::{LengthUnit, Role, role_of_unit, unit_of_role};
+use crate::format::column_names::{LengthUnit, Role, role_names, role_of_unit, unit_of_role};
 use crate::format::kind::Format;
 
 /// What the columns of text are and which rows count, where their names do not say it.
@@ -20,23 +20,6 @@ pub struct ColumnChoice {
     pub(super) is_mapped: bool,
 }
 
-/// The roles that can be given, by name.
-const ROLES: [(&str, Role); 13] = [
-    ("frame", Role::Frame),
-    ("time", Role::Time),
-    ("pedestrian", Role::Pedestrian),
-    ("x", Role::X),
-    ("y", Role::Y),
-    ("class", Role::Class),
-    ("scene", Role::Scene),
-    ("left", Role::Left),
-    ("top", Role::Top),
-    ("right", Role::Right),
-    ("bottom", Role::Bottom),
-    ("width", Role::Width),
-    ("height", Role::Height),
-];
-
 impl ColumnChoice {
     /// Names the columns that hold the frame (or time), pedestrian, x, y, the sides of a box, class or scene, such as
     /// `frame=frame_id,x=xCenter`. Columns that are not named keep the meaning of their names.
@@ -49,11 +32,11 @@ impl ColumnChoice {
             let time_unit = pair.and_then(|(word, _)| unit_of_role(word));
             let role = |word: &str| {
                 let word = if time_unit.is_some() { "time" } else { word };
-                ROLES.iter().find(|(name, _)| *name == word).map(|(_, role)| *role)
+                role_names().find(|(_, name)| *name == word).map(|(role, _)| role)
             };
             let given = pair.and_then(|(word, name)| Some((role(word)?, name.to_owned())));
             let Some((role, name)) = given.filter(|(_, name)| !name.is_empty()) else {
-                let roles: Vec<&str> = ROLES.iter().map(|(name, _)| *name).collect();
+                let roles: Vec<&str> = role_names().map(|(_, name)| name).collect();
                 return Err(format!(
                     "must be like frame=frame_id,x=xCenter, with any of {}, found {part:?}",
                     roles.join(", ")
@@ -123,10 +106,9 @@ impl fmt::Display for ColumnChoice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let of_time = self.time_unit.and_then(role_of_unit);
         let word = |role: Role| {
-            let word = ROLES
-                .iter()
-                .find(|(_, other)| *other == role)
-                .map_or("", |(word, _)| word);
+            let word = role_names()
+                .find(|(other, _)| *other == role)
+                .map_or("", |(_, word)| word);
             of_time.as_deref().filter(|_| role == Role::Time).unwrap_or(word)
         };
         let columns: Vec<String> = self

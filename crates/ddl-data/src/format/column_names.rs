@@ -21,7 +21,7 @@ pub(super) enum Role {
     Height,
 }
 
-/// The roles with their names, in small letters without blanks and signs.
+/// The roles with their names, in small letters without blanks and signs. Users choose a role by the first one.
 const NAMES: [(Role, &str); 13] = [
     (
         Role::Frame,
@@ -46,8 +46,8 @@ const NAMES: [(Role, &str); 13] = [
         "y posy posey posepositiony ypos positiony yposition centery ycenter centrey ycentre worldy yworld py yest \
          coordy ycoord locy yloc",
     ),
-    (Role::Scene, "scene"),
     (Role::Class, "class classname label type agenttype objecttype category"),
+    (Role::Scene, "scene"),
     (Role::Left, "left xmin x1 bbleft bboxleft"),
     (Role::Top, "top ymin y1 bbtop bboxtop"),
     (Role::Right, "right xmax x2 bbright bboxright"),
@@ -107,6 +107,12 @@ impl Role {
         let both = |is: &dyn Fn(Self) -> bool, of: &dyn Fn(Self) -> bool| is(self) && of(other);
         self == other || both(&is_time, &is_time) || both(&is_point, &is_corner) || both(&is_corner, &is_point)
     }
+}
+
+/// The roles that can be given, each with its name.
+pub(super) fn role_names() -> impl Iterator<Item = (Role, &'static str)> {
+    let first = |names: &'static str| names.split_once(' ').map_or(names, |(first, _)| first);
+    NAMES.iter().map(move |(role, names)| (*role, first(names)))
 }
 
 /// The unit of that name.

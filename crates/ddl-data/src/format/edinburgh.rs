@@ -2,9 +2,8 @@
 
 use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
-use crate::format::field::{self, PedestrianField};
+use crate::format::field;
 use crate::format::place::FilePlace;
-use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 
@@ -59,18 +58,8 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
                 repeated += 1;
                 continue;
             }
-            rows.push(TrackRow {
-                scene: None,
-                frame,
-                unit: None,
-                pedestrian: PedestrianField::Number(pedestrian, None),
-                position,
-                place,
-            });
+            rows.push(TrackRow::numbered(frame, pedestrian, position, place));
         }
-    }
-    if rows.is_empty() {
-        return Err(FilePlace::line(1).wrong(origin, EMPTY));
     }
     let scale = (!choice.is_mapped).then(|| SCALE.to_owned());
     let left_out = (repeated > 0).then(|| format!("rows left out: {repeated} at the same frame as the one before"));

@@ -27,7 +27,7 @@ pub(super) enum TimeColumn {
     Known(Option<TimeUnit>),
 }
 
-/// The columns that a header names.
+/// The columns that a header names, or a layout.
 #[derive(Debug)]
 pub(super) struct Header {
     pub(super) time: TimeColumn,
@@ -36,11 +36,11 @@ pub(super) struct Header {
     pub(super) place: Place,
     /// Units of length per metre; `None` for pixels.
     pub(super) per_metre: Option<f64>,
-    /// Whether the names or the user say that positions are in metres or parts of them.
+    /// Whether the names, the layout or the user say that positions are in metres or parts of them.
     pub(super) has_unit: bool,
     pub(super) scene: Option<usize>,
+    /// The column of classes, and the one by which the user keeps rows; `None` in a layout, whose filter knows them.
     pub(super) class: Option<usize>,
-    /// The column by which the user keeps rows.
     pub(super) keep: Option<usize>,
     /// Names of further columns.
     pub(super) unread: Vec<String>,

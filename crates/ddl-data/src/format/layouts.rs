@@ -6,8 +6,8 @@ use crate::format::kind::Format;
 #[derive(Debug)]
 pub(super) struct Layout {
     pub(super) format: Format,
-    /// The names of all columns, in order. A row may end with separators.
-    pub(super) names: &'static [&'static str],
+    /// The names of all columns, in order, with blanks between them. A row may end with separators.
+    pub(super) names: &'static str,
     pub(super) frame: usize,
     pub(super) pedestrian: usize,
     pub(super) place: Place,
@@ -41,7 +41,7 @@ const METRES: Option<f64> = Some(1.0);
 
 const PLAIN: Layout = Layout {
     format: Format::SocialGan,
-    names: &["frame", "pedestrian", "x", "y"],
+    names: "frame pedestrian x y",
     frame: 0,
     pedestrian: 1,
     place: Place::Point([2, 3]),
@@ -58,7 +58,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     PLAIN,
     Layout {
         format: Format::IdFirst,
-        names: &["pedestrian", "frame", "x", "y"],
+        names: "pedestrian frame x y",
         frame: 1,
         pedestrian: 0,
         note: Some("read as pedestrian, frame, x, y: the second column counts the frames"),
@@ -66,14 +66,14 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::Obsmat,
-        names: &["frame", "pedestrian", "x", "z", "y", "v_x", "v_z", "v_y"],
+        names: "frame pedestrian x z y v_x v_z v_y",
         place: Place::Point([2, 4]),
         constant: Some(3),
         ..PLAIN
     },
     Layout {
         format: Format::PeTrack,
-        names: &["pedestrian", "frame", "x", "y", "z"],
+        names: "pedestrian frame x y z",
         frame: 1,
         pedestrian: 0,
         note: Some("read as pedestrian, frame, x, y, z in metres (PeTrack, JuPedSim)"),
@@ -81,7 +81,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::PeTrackCm,
-        names: &["pedestrian", "frame", "x", "y", "z"],
+        names: "pedestrian frame x y z",
         frame: 1,
         pedestrian: 0,
         per_metre: Some(100.0),
@@ -90,18 +90,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::Sdd,
-        names: &[
-            "pedestrian",
-            "left",
-            "top",
-            "right",
-            "bottom",
-            "frame",
-            "lost",
-            "occluded",
-            "generated",
-            "class",
-        ],
+        names: "pedestrian left top right bottom frame lost occluded generated class",
         frame: 5,
         pedestrian: 0,
         place: Place::Centre([1, 2, 3, 4]),
@@ -117,18 +106,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::Mot,
-        names: &[
-            "frame",
-            "pedestrian",
-            "left",
-            "top",
-            "width",
-            "height",
-            "confidence",
-            "x",
-            "y",
-            "z",
-        ],
+        names: "frame pedestrian left top width height confidence x y z",
         place: Place::Foot([2, 3, 4, 5]),
         per_metre: None,
         note: Some("read as tracks of the MOT challenge: the middle of the lower edge of each box"),
@@ -136,17 +114,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::MotTruth,
-        names: &[
-            "frame",
-            "pedestrian",
-            "left",
-            "top",
-            "width",
-            "height",
-            "considered",
-            "class",
-            "visibility",
-        ],
+        names: "frame pedestrian left top width height considered class visibility",
         place: Place::Foot([2, 3, 4, 5]),
         per_metre: None,
         class: Some((7, "1")),
@@ -155,32 +123,14 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::Atc,
-        names: &["time", "pedestrian", "x", "y", "z", "speed", "direction", "facing"],
+        names: "time pedestrian x y z speed direction facing",
         per_metre: Some(1000.0),
         note: Some("read as tracks of the ATC centre: seconds and millimetres"),
         ..PLAIN
     },
     Layout {
         format: Format::Kitti,
-        names: &[
-            "frame",
-            "pedestrian",
-            "class",
-            "truncated",
-            "occluded",
-            "alpha",
-            "left",
-            "top",
-            "right",
-            "bottom",
-            "height",
-            "width",
-            "length",
-            "x",
-            "down",
-            "y",
-            "rotation",
-        ],
+        names: "frame pedestrian class truncated occluded alpha left top right bottom height width length x down y rotation",
         place: Place::Point([13, 15]),
         class: Some((2, "Pedestrian")),
         note: Some("read as tracking labels of KITTI: pedestrians on the ground, relative to the camera"),
@@ -188,18 +138,7 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::ApolloScape,
-        names: &[
-            "frame",
-            "pedestrian",
-            "class",
-            "x",
-            "y",
-            "z",
-            "length",
-            "width",
-            "height",
-            "heading",
-        ],
+        names: "frame pedestrian class x y z length width height heading",
         place: Place::Point([3, 4]),
         class: Some((2, "3")),
         note: Some("read as trajectories of ApolloScape: rows of class 3, pedestrians"),

@@ -51,9 +51,12 @@ impl RowFilter {
         let keep = match &choice.keep {
             None => None,
             Some((name, value)) => {
-                let index = layout.names.iter().position(|column| column.eq_ignore_ascii_case(name));
+                let index = layout
+                    .names
+                    .split(' ')
+                    .position(|column| column.eq_ignore_ascii_case(name));
                 let index = index.ok_or_else(|| {
-                    let names = layout.names.join(", ");
+                    let names = layout.names.replace(' ', ", ");
                     format!("there is no column {:?} among {names}", field::quoted(name))
                 })?;
                 Some((index, name.clone(), value.clone()))

@@ -27,6 +27,20 @@ pub(super) struct TrackRow {
     pub(super) place: FilePlace,
 }
 
+impl TrackRow {
+    /// A row with numbers alone.
+    pub(super) fn numbered(frame: i64, pedestrian: i64, position: Position, place: FilePlace) -> Self {
+        Self {
+            scene: None,
+            frame,
+            unit: None,
+            pedestrian: PedestrianField::Number(pedestrian, None),
+            position,
+            place,
+        }
+    }
+}
+
 type Placed = (Observation, FilePlace);
 
 /// The recording of all rows, with an inferred frame step.

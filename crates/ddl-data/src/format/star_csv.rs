@@ -1,7 +1,7 @@
 //! The `star` CSV format: four long parallel lines.
 
 use crate::error::FormatError;
-use crate::format::field::{self, PedestrianField};
+use crate::format::field;
 use crate::format::place::FilePlace;
 use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
@@ -40,14 +40,7 @@ pub(super) fn parse(text: &str, origin: &str) -> Result<Vec<TrackRow>, FormatErr
         // The third line is y and the fourth x, as in the published code of STAR and DDL.
         let y = place(3).read(origin, field::coordinate(ys[index], "y", 1.0))?;
         let x = place(4).read(origin, field::coordinate(xs[index], "x", 1.0))?;
-        Ok(TrackRow {
-            scene: None,
-            frame,
-            unit: None,
-            pedestrian: PedestrianField::Number(pedestrian, None),
-            position: [x, y],
-            place: place(2),
-        })
+        Ok(TrackRow::numbered(frame, pedestrian, [x, y], place(2)))
     };
     (0..expected).map(row).collect()
 }

@@ -36,26 +36,16 @@ pub(super) struct TrackColumns {
     names: Vec<String>,
     /// The least number of fields: rows and the header may end with separators.
     needed: usize,
-    frame: usize,
-    pedestrian: usize,
-    place: Place,
-    per_metre: Option<f64>,
+    header: Header,
     is_mapped: bool,
-    /// Whether names, the layout or the user say a unit of metres.
-    has_unit: bool,
-    scene: Option<usize>,
     filter: RowFilter,
     /// A column whose value stays the same, and its value.
     constant: Option<(usize, Option<f64>)>,
     /// Further columns that must hold numbers.
     numbers: Vec<usize>,
-    time: TimeColumn,
     /// Why the first column is read in its unit, if its name does not say so.
     assumed_unit: Option<&'static str>,
-    /// Names of further columns.
-    unread: Vec<String>,
     note: Option<&'static str>,
-    remarks: Vec<String>,
     /// Whether a stream has told its notes.
     is_told: bool,
 }
@@ -78,7 +68,7 @@ impl TrackColumns {
         } else {
             Self::with_header(choice, comments, (first, line), origin)?
         };
-        if choice.is_mapped && columns.has_unit {
+        if choice.is_mapped && columns.header.has_unit {
             let problem = "the columns say that positions are in metres or parts of them, and the homography maps \
                            pixels; give --homography none, or --unit px if they are pixels";
             return Err(FilePlace::line(line).wrong(origin, problem));
@@ -126,21 +116,13 @@ impl TrackColumns {
             separator,
             needed: names.len() - unnamed,
             names,
-            frame: header.frame,
-            pedestrian: header.pedestrian,
-            place: header.place,
-            per_metre: header.per_metre,
+            header,
             is_mapped: choice.is_mapped,
-            has_unit: header.has_unit,
-            scene: header.scene,
             filter,
             constant: None,
             numbers: Vec::new(),
-            time: header.time,
             assumed_unit: None,
-            unread: header.unread,
             note: None,
-            remarks: header.remarks,
             is_told: false,
         }
     }
@@ -151,10 +133,10 @@ impl TrackColumns {
                 "there is no header, so no column is called {name:?}; write one above the rows"
             ));
         }
-        let filter = RowFilter::of_layout(layout, choice)?;
+        let names: Vec<String> = layout.names.split(' ').map(str::to_owned).collect();
         let is_class = |index: usize| layout.class.is_some_and(|(class, _)| class == index);
         let of_row = [layout.frame, layout.pedestrian];
-        let numbers = (0..layout.names.len())
+        let numbers = (0..names.len())
             .filter(|index| !of_row.contains(index) && !layout.place.columns().contains(index) && !is_class(*index));
         let is_as_usual = choice.unit.is_none() && choice.keep.is_none();
         let mut remarks = Vec::new();
@@ -167,34 +149,33 @@ impl TrackColumns {
         if layout.format == Format::SocialGan && separator != Separator::Blanks {
             remarks.push(UNNAMED.to_owned());
         }
-        Ok(Self {
-            format: layout.format,
-            separator,
-            names: layout.names.iter().map(|&name| name.to_owned()).collect(),
-            needed: layout.names.len(),
+        let header = Header {
+            time: match names[layout.frame].as_str() {
+                "time" => TimeColumn::Known(Some(TimeUnit::Seconds)),
+                _ => TimeColumn::Frame,
+            },
             frame: layout.frame,
             pedestrian: layout.pedestrian,
             place: layout.place,
             per_metre: choice.unit.map_or(layout.per_metre, LengthUnit::per_metre),
-            is_mapped: choice.is_mapped,
             has_unit: choice
                 .unit
                 .map_or(layout.note.is_some() && layout.per_metre.is_some(), |unit| {
                     unit != LengthUnit::Pixels
                 }),
             scene: None,
-            numbers: numbers.collect(),
-            filter,
-            constant: layout.constant.map(|index| (index, None)),
-            time: match layout.names[layout.frame] {
-                "time" => TimeColumn::Known(Some(TimeUnit::Seconds)),
-                _ => TimeColumn::Frame,
-            },
-            assumed_unit: None,
+            class: None,
+            keep: None,
             unread: Vec::new(),
-            note: layout.note.filter(|_| is_as_usual),
             remarks,
-            is_told: false,
+        };
+        Ok(Self {
+            format: layout.format,
+            filter: RowFilter::of_layout(layout, choice)?,
+            constant: layout.constant.map(|index| (index, None)),
+            numbers: numbers.collect(),
+            note: layout.note.filter(|_| is_as_usual),
+            ..Self::named(header, names, separator, choice)
         })
     }
 
@@ -205,21 +186,25 @@ impl TrackColumns {
         line: usize,
         origin: &str,
     ) -> Result<Option<TrackRow>, FormatError> {
-        let before = (self.time, self.assumed_unit);
+        let before = (self.header.time, self.assumed_unit);
         let fields = self.separator.fields(text, line, origin)?;
         if !self.is_comment(text, &fields) {
-            self.look_at(fields.get(self.frame).map(|field| &**field));
+            self.look_at(fields.get(self.header.frame).map(|field| &**field));
         }
         let row = self.row_of(text, &fields, line, origin);
         if row.is_err() {
-            (self.time, self.assumed_unit) = before;
+            (self.header.time, self.assumed_unit) = before;
         }
         row
     }
 
     /// Whether a line after the first row is a comment. A row may begin with the sign, in the name of a pedestrian.
     fn is_comment(&self, text: &str, fields: &[Cow<'_, str>]) -> bool {
-        let has_time = || fields.get(self.frame).is_some_and(|time| time.parse::<f64>().is_ok());
+        let has_time = || {
+            fields
+                .get(self.header.frame)
+                .is_some_and(|time| time.parse::<f64>().is_ok())
+        };
         is_comment(text) && !(fields.len() == self.names.len() && has_time())
     }
 
@@ -231,9 +216,9 @@ impl TrackColumns {
         most: usize,
         origin: &str,
     ) -> Result<Vec<TrackRow>, FormatError> {
-        if self.time == TimeColumn::Time {
+        if self.header.time == TimeColumn::Time {
             let mut times = rows.clone().filter(|(_, text)| !is_comment(text));
-            let time = times.find_map(|(_, text)| self.separator.field(text, self.frame));
+            let time = times.find_map(|(_, text)| self.separator.field(text, self.header.frame));
             self.look_at(time.map(Cow::into_owned).as_deref());
         }
         let before = (self.filter.clone(), self.constant);
@@ -254,7 +239,9 @@ impl TrackColumns {
         let (mut read, mut fields) = (Vec::with_capacity(most), Vec::new());
         for (line, text) in rows {
             self.separator.split(text, line, origin, &mut fields)?;
-            let time = fields.get(self.frame).filter(|_| self.time == TimeColumn::Frame);
+            let time = fields
+                .get(self.header.frame)
+                .filter(|_| self.header.time == TimeColumn::Frame);
             if let Some(time) = time.filter(|time| field::has_fraction(time) && !is_comment(text)) {
                 self.look_at(Some(time));
                 return Ok(None);
@@ -267,7 +254,7 @@ impl TrackColumns {
     /// Tells that rows without a header are read as those of `social-gan`: a stream has no other evidence.
     pub(super) fn tell_layout(&mut self) {
         if self.format == Format::SocialGan && self.separator == Separator::Blanks {
-            self.remarks.push(UNNAMED.to_owned());
+            self.header.remarks.push(UNNAMED.to_owned());
         }
     }
 
@@ -300,14 +287,14 @@ impl TrackColumns {
     /// What a reader should know of the columns.
     fn notes(&self) -> Vec<String> {
         let mut notes: Vec<String> = self.note.into_iter().map(str::to_owned).collect();
-        notes.extend(self.remarks.iter().cloned());
+        notes.extend(self.header.remarks.iter().cloned());
         notes.extend(self.assumed_unit.map(str::to_owned));
-        match &self.unread[..] {
+        match &self.header.unread[..] {
             [] => {}
             [name] => notes.push(format!("the column {name} is not read")),
             names => notes.push(format!("the columns {} are not read", first_of(names))),
         }
-        match self.per_metre {
+        match self.header.per_metre {
             None if self.is_mapped => {}
             None => notes.push(PIXELS.to_owned()),
             Some(1000.0) if self.note.is_none() => notes.push("the positions are in millimetres".to_owned()),
@@ -319,13 +306,13 @@ impl TrackColumns {
 
     /// Finds out what the column of the time counts from a time: a first one, or one with a fraction.
     fn look_at(&mut self, time: Option<&str>) {
-        let unit = match self.time {
+        let unit = match self.header.time {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Time => time.map(field::unit_of),
             TimeColumn::Frame => time.is_some_and(field::has_fraction).then_some(TimeUnit::Seconds),
         };
         let is_whole = |time: &str| !time.contains('.');
-        self.assumed_unit = match self.time {
+        self.assumed_unit = match self.header.time {
             TimeColumn::Frame if unit.is_some() => Some(FRACTIONS),
             TimeColumn::Time => match unit {
                 Some(TimeUnit::Seconds) if time.is_some_and(is_whole) => Some(WHOLE_TIMES),
@@ -336,7 +323,7 @@ impl TrackColumns {
             },
             _ => self.assumed_unit,
         };
-        self.time = TimeColumn::Known(unit);
+        self.header.time = TimeColumn::Known(unit);
     }
 
     /// The observation of a line; `None` where it is left out.
@@ -355,26 +342,26 @@ impl TrackColumns {
         if found < self.needed || self.format != Format::Kitti && beyond.iter().any(|field| !field.is_empty()) {
             return Err(FilePlace::line(line).wrong(origin, self.wrong_count(found)));
         }
-        if !self.filter.counts(fields, self.place.columns()) {
+        if !self.filter.counts(fields, self.header.place.columns()) {
             return Ok(None);
         }
         let place = |index: usize| FilePlace::field(line, index + 1);
-        let unit = match self.time {
+        let unit = match self.header.time {
             TimeColumn::Known(unit) => unit,
             TimeColumn::Frame | TimeColumn::Time => None,
         };
-        let frame = place(self.frame).read(origin, field::frame(&fields[self.frame], "frame", unit))?;
-        let name = &*fields[self.pedestrian];
+        let frame = place(self.header.frame).read(origin, field::frame(&fields[self.header.frame], "frame", unit))?;
+        let name = &*fields[self.header.pedestrian];
         // Pedestrians are floats in this format, never words.
         let pedestrian = if self.format == Format::Obsmat {
             field::integer(name, "pedestrian").map(|number| PedestrianField::Number(number, None))
         } else {
             field::pedestrian(name, "pedestrian")
         };
-        let pedestrian = place(self.pedestrian).read(origin, pedestrian)?;
+        let pedestrian = place(self.header.pedestrian).read(origin, pedestrian)?;
         if matches!(self.format, Format::Mot | Format::MotTruth) && pedestrian == PedestrianField::Number(-1, None) {
             let problem = "the pedestrian is -1: these are detections without tracks; give the output of a tracker";
-            return Err(place(self.pedestrian).wrong(origin, problem));
+            return Err(place(self.header.pedestrian).wrong(origin, problem));
         }
         let position = self.position(fields, line, origin)?;
         // Columns that are not used. Checking that they are numbers confirms the order of the columns.
@@ -382,7 +369,7 @@ impl TrackColumns {
             place(index).read(origin, field::number(&fields[index], &self.names[index]))?;
         }
         self.check_constant(fields, line, origin)?;
-        let scene = match self.scene {
+        let scene = match self.header.scene {
             None => None,
             Some(index) => {
                 let scene = SceneName::new(&fields[index]).map_err(|error| error.to_string());
@@ -400,7 +387,7 @@ impl TrackColumns {
     }
 
     fn position(&self, fields: &[Cow<'_, str>], line: usize, origin: &str) -> Result<Position, FormatError> {
-        let per_metre = self.per_metre.unwrap_or(1.0);
+        let per_metre = self.header.per_metre.unwrap_or(1.0);
         let axes = ["x", "y"];
         let number = |index: usize, name: &str| {
             // Where no comma stands between fields, it is a decimal comma.
@@ -412,12 +399,12 @@ impl TrackColumns {
             };
             FilePlace::field(line, index + 1).read(origin, coordinate)
         };
-        match self.place {
+        match self.header.place {
             Place::Point([x, y]) => Ok([number(x, axes[0])?, number(y, axes[1])?]),
             Place::Centre(columns) | Place::FootOfCorners(columns) => {
                 let [left, top, right, bottom] = columns.map(|index| number(index, &self.names[index]));
                 let (left, top, right, bottom) = (left?, top?, right?, bottom?);
-                let y = match self.place {
+                let y = match self.header.place {
                     Place::Centre(_) => 0.5 * (top + bottom),
                     _ => bottom,
                 };

@@ -1,12 +1,11 @@
 //! The `.vsp` annotations of UCY: a spline for each pedestrian, with control points in pixels.
 
-use ddl_core::{PedestrianId, Position, between};
+use ddl_core::{Position, between};
 
 use crate::error::FormatError;
 use crate::format::choice::ColumnChoice;
-use crate::format::field::{self, PedestrianField};
+use crate::format::field;
 use crate::format::place::FilePlace;
-use crate::format::problem::EMPTY;
 use crate::format::rows::TrackRow;
 use crate::format::text::TextFile;
 use crate::format::track_columns::PIXELS;
@@ -71,9 +70,6 @@ pub(super) fn parse(text: &str, origin: &str, choice: &ColumnChoice) -> Result<T
         return Err(FilePlace::line(1).wrong(origin, problem));
     }
     let (rows, lost) = rows_of(&splines, origin)?;
-    if rows.is_empty() {
-        return Err(FilePlace::line(1).wrong(origin, EMPTY));
-    }
     let left_out = (lost > 0)
         .then(|| format!("left out: {lost} splines of one control point, or parts between two more than 20 s apart"));
     let pixels = (!choice.is_mapped).then(|| PIXELS.to_owned());
@@ -122,14 +118,8 @@ fn along(id: i64, points: &[ControlPoint], origin: &str) -> Result<Vec<TrackRow>
                 continue;
             }
             let share = (frame - before.frame) as f64 / apart.max(1) as f64;
-            rows.push(TrackRow {
-                scene: None,
-                frame,
-                unit: None,
-                pedestrian: PedestrianField::Number(PedestrianId(id).0, None),
-                position: between(before.position, after.position, share),
-                place,
-            });
+            let position = between(before.position, after.position, share);
+            rows.push(TrackRow::numbered(frame, id, position, place));
         }
     }
     Ok(rows)
