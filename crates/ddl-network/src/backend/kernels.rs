@@ -27,8 +27,8 @@ impl Kernels {
         let encoder = |layer: &EncoderLayer| Arc::new(kernel::EncoderKernel::zeros(layer.sizes));
         let mut kernels = Self {
             layout: Arc::clone(layout),
-            linears: layout.linears().iter().map(linear).collect(),
-            encoder_layers: layout.encoder_layers().iter().map(encoder).collect(),
+            linears: layout.linears.iter().map(linear).collect(),
+            encoder_layers: layout.encoder_layers.iter().map(encoder).collect(),
         };
         kernels.update(numbers);
         kernels
@@ -40,10 +40,10 @@ impl Kernels {
     /// If the count of `numbers` differs from the layout's.
     pub fn update(&mut self, numbers: &[f32]) {
         assert_eq!(numbers.len(), self.layout.count(), "number of weights");
-        for (kernel, layer) in self.linears.iter_mut().zip(self.layout.linears()) {
+        for (kernel, layer) in self.linears.iter_mut().zip(&self.layout.linears) {
             Arc::make_mut(kernel).update(&numbers[layer.span()]);
         }
-        let layers = self.layout.encoder_layers();
+        let layers = &self.layout.encoder_layers;
         for (kernel, layer) in self.encoder_layers.iter_mut().zip(layers) {
             Arc::make_mut(kernel).update(&numbers[layer.span()]);
         }
@@ -141,7 +141,7 @@ impl KernelBackend {
         let output = Rc::clone(&rows);
         self.record_backward(move |of_weights| {
             // If there is no gradient, the loss does not depend on this output.
-            if let Some(gradient) = output.take_gradient() {
+            if let Some(gradient) = output.gradient.take() {
                 backward(&gradient, of_weights);
             }
         });

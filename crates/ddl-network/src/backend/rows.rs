@@ -11,7 +11,7 @@ use std::ops::Deref;
 pub struct Rows {
     shape: [usize; 3],
     numbers: Buffer,
-    gradient: RefCell<Option<Buffer>>,
+    pub(super) gradient: RefCell<Option<Buffer>>,
 }
 
 impl Deref for Rows {
@@ -58,10 +58,6 @@ impl Rows {
         let mut gradient = self.gradient.borrow_mut();
         let sums = gradient.get_or_insert_with(|| Buffer::zeros(self.numbers.len()));
         add(&mut sums[first..], terms);
-    }
-
-    pub(super) fn take_gradient(&self) -> Option<Buffer> {
-        self.gradient.take()
     }
 }
 

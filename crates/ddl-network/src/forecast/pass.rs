@@ -114,7 +114,7 @@ impl HypothesisPart<'_> {
         let Pass { observation, batch, .. } = self.pass;
         // If goals are not an input, the observed time steps are the same for all hypotheses.
         let count = self.hypotheses.len();
-        let shared = observation.entries() == 1 && count > 1;
+        let shared = observation.entries == 1 && count > 1;
         let state = RolloutState::new(observation, batch, self.hypotheses.clone());
         let observed = if shared {
             let (memory, features) = self.observe(&RolloutState::new(observation, batch, 0..1));
@@ -169,7 +169,7 @@ impl HypothesisPart<'_> {
                 }
             }
             state.advance(&mut emitted, (t, HORIZON - t));
-            positions.extend(state.positions().iter().map(|position| position.map(f64::from)));
+            positions.extend(state.positions.iter().map(|position| position.map(f64::from)));
             if let Some(factors) = &mut of_factors {
                 let (emitted, _) = emitted.as_chunks::<3>();
                 factors.extend(emitted.iter().map(|factor| factor.map(f64::from)));

@@ -30,7 +30,7 @@ pub(super) struct ObservedSteps<'a> {
     /// Sum of the 8 observed positions of each pedestrian, `[P]`.
     sums: Vec<[f32; 2]>,
     /// Batch entries at an observed time step: G if the inputs are relative to the goals, otherwise 1.
-    entries: usize,
+    pub(super) entries: usize,
 }
 
 /// The state of a rollout of some hypotheses, in metres.
@@ -44,7 +44,7 @@ pub(super) struct RolloutState<'a> {
     /// `[G, P]`.
     goals: Vec<[f32; 2]>,
     /// Newest positions, `[H, P]`.
-    positions: Vec<[f32; 2]>,
+    pub(super) positions: Vec<[f32; 2]>,
     /// Positions one time step before, `[H, P]`.
     before: Vec<[f32; 2]>,
     /// Sums of the positions so far, `[H, P]`.
@@ -86,10 +86,6 @@ impl<'a> ObservedSteps<'a> {
             bounds,
             sums,
         }
-    }
-
-    pub(super) fn entries(&self) -> usize {
-        self.entries
     }
 
     pub(super) fn seen(&self, steps: Range<usize>) -> VisibleScenes {
@@ -168,10 +164,6 @@ impl<'a> RolloutState<'a> {
             sums: observation.sums.repeat(count),
             observation,
         }
-    }
-
-    pub(super) fn positions(&self) -> &[[f32; 2]] {
-        &self.positions
     }
 
     /// Newest positions relative to the mean over the scene and the `steps` time steps so far, `[H, P, 2]`. Adds them

@@ -6,7 +6,7 @@ use ddl_simd::{Floats, LANES, Simd};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct MatrixColumns<'a> {
     numbers: &'a [f32],
-    rows: usize,
+    pub(super) rows: usize,
     /// Length of a row of the whole matrix.
     stride: usize,
     count: usize,
@@ -15,8 +15,8 @@ pub(super) struct MatrixColumns<'a> {
 /// A whole matrix whose numbers are overwritten or added to.
 pub(super) struct MatrixColumnsMut<'a> {
     numbers: &'a mut [f32],
-    rows: usize,
-    count: usize,
+    pub(super) rows: usize,
+    pub(super) count: usize,
 }
 
 impl<'a> MatrixColumns<'a> {
@@ -40,11 +40,6 @@ impl<'a> MatrixColumns<'a> {
     }
 
     #[inline(always)]
-    pub(super) fn rows(&self) -> usize {
-        self.rows
-    }
-
-    #[inline(always)]
     pub(super) fn row(&self, row: usize) -> &'a [f32] {
         &self.numbers[row * self.stride..][..self.count]
     }
@@ -54,16 +49,6 @@ impl<'a> MatrixColumnsMut<'a> {
     pub(super) fn whole(numbers: &'a mut [f32], count: usize) -> Self {
         let rows = MatrixColumns::whole(numbers, count).rows;
         Self { numbers, rows, count }
-    }
-
-    #[inline(always)]
-    pub(super) fn rows(&self) -> usize {
-        self.rows
-    }
-
-    #[inline(always)]
-    pub(super) fn count(&self) -> usize {
-        self.count
     }
 
     #[inline(always)]

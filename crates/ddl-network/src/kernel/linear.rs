@@ -96,7 +96,7 @@ struct LinearForward<'a> {
 impl TiledKernel for LinearForward<'_> {
     #[inline(always)]
     fn run<S: Simd, const R: usize, const V: usize>(mut self, simd: S) {
-        if self.y.count() == LANES {
+        if self.y.count == LANES {
             self.map.forward::<S, R, 1>(simd, self.x, &mut self.y);
         } else {
             self.map.forward::<S, R, V>(simd, self.x, &mut self.y);

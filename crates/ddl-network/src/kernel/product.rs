@@ -99,13 +99,13 @@ pub(super) fn multiply<S: Simd, const R: usize, const V: usize>(
     (start, end): (Start<'_>, End),
     y: &mut MatrixColumnsMut<'_>,
 ) {
-    let rows = a.rows();
-    assert_eq!(rows, y.rows(), "rows of a product");
+    let rows = a.rows;
+    assert_eq!(rows, y.rows, "rows of a product");
     for (column, pairs) in b.pairs.chunks_exact(b.rows_of_whole).enumerate() {
         for part in (0..2).step_by(V) {
             let vector = 2 * column + part;
             // The blocks are padded to two vectors; a narrow y has only one.
-            if vector * LANES >= y.count() {
+            if vector * LANES >= y.count {
                 break;
             }
             let b = (&pairs[b.first..][..b.count], part);
@@ -215,7 +215,7 @@ pub(super) fn add_transposed_product<S: Simd, const R: usize, const V: usize>(
     columns: usize,
     sum: &mut [f32],
 ) {
-    assert_eq!(a.rows(), b.rows(), "rows of a product");
+    assert_eq!(a.rows, b.rows, "rows of a product");
     assert_eq!(sum.len(), rows * columns, "entries of a product");
     let sum = &mut MatrixColumnsMut::whole(sum, columns);
     let mut row = 0;
@@ -241,13 +241,13 @@ fn transposed_tile<S: Simd, const R: usize, const V: usize>(
     for first in (0..columns).step_by(V * LANES) {
         let mut sum = [[simd.splat(0.0); V]; R];
         let mut t = 0;
-        while t + UNROLLED <= a.rows() {
+        while t + UNROLLED <= a.rows {
             for t in t..t + UNROLLED {
                 sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
             }
             t += UNROLLED;
         }
-        for t in t..a.rows() {
+        for t in t..a.rows {
             sum = add_outer_product(simd, sum, a.row(t), row, b.row(t), first);
         }
         for r in 0..R {
@@ -291,7 +291,7 @@ fn add_outer_product<S: Simd, const R: usize, const V: usize>(
 pub(super) fn sum_of_rows<S: Simd>(simd: S, rows: MatrixColumns<'_>, sums: &mut [f32]) {
     for column in (0..sums.len()).step_by(LANES) {
         let mut sum = simd.splat(0.0);
-        for row in 0..rows.rows() {
+        for row in 0..rows.rows {
             sum += load(simd, rows.row(row), column);
         }
         let total = load(simd, sums, column) + sum;

@@ -38,7 +38,8 @@ pub(crate) struct SpatialAttention {
 /// The output of an attention, and what the backward pass of [`SpatialAttention`] needs in addition.
 #[derive(Clone, Debug)]
 pub(crate) struct Attended {
-    mixed: Buffer,
+    /// Mixed values, `[B, P, heads, head width]`.
+    pub(crate) mixed: Buffer,
     /// For each entry, scene, pair of queries and group of heads: the largest score (log2 units), and 1 / Σ 2^(score −
     /// largest). Empty without `keep`.
     normalisers: Vec<[Lanes; 2]>,
@@ -51,11 +52,6 @@ impl Attended {
             mixed,
             normalisers: Vec::new(),
         }
-    }
-
-    /// Mixed values, `[B, P, heads, head width]`.
-    pub(crate) fn mixed(&self) -> &[f32] {
-        &self.mixed
     }
 }
 

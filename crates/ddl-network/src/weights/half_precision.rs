@@ -29,7 +29,7 @@ impl Weights {
     /// Numbers are rounded to 11 significant bits. The relative error is at most 2^-11; numbers below 2^-14 have an
     /// absolute error of at most 2^-25.
     pub fn to_half(&self) -> Result<Vec<HalfTensor>, NetworkError> {
-        let needed = self.iter().filter(|(tensor, _)| !tensor.is_training_only());
+        let needed = self.iter().filter(|(tensor, _)| !tensor.training_only);
         needed
             .map(|(tensor, numbers)| {
                 let halves: Vec<f16> = numbers.iter().map(|&x| f16::from_f32(x)).collect();
@@ -57,7 +57,7 @@ impl Weights {
     /// [`NetworkError::Weights`] if names, shapes or counts of the tensors differ from the layout's, or if a tensor
     /// holds NaN or infinity.
     pub fn from_half(layout: &Arc<Layout>, tensors: &[HalfTensor]) -> Result<Self, NetworkError> {
-        let needed = || layout.tensors().iter().filter(|tensor| !tensor.is_training_only());
+        let needed = || layout.tensors().iter().filter(|tensor| !tensor.training_only);
         let is_needed = |name: &str| needed().any(|tensor| tensor.name() == name);
         if let Some(other) = tensors.iter().find(|tensor| !is_needed(&tensor.name)) {
             return Err(NetworkError::weights(&other.name, "does not belong to this network"));

@@ -29,7 +29,7 @@ pub struct TensorLayout {
     shape: Vec<usize>,
     initial: Initial,
     first: usize,
-    training_only: bool,
+    pub(crate) training_only: bool,
 }
 
 impl TensorLayout {
@@ -47,11 +47,6 @@ impl TensorLayout {
     pub fn span(&self) -> Range<usize> {
         self.first..self.first + self.shape.iter().product::<usize>()
     }
-
-    /// Whether only the training loss reads it; packed models leave it out.
-    pub(crate) fn is_training_only(&self) -> bool {
-        self.training_only
-    }
 }
 
 /// The tensors of a network, in order.
@@ -61,8 +56,8 @@ impl TensorLayout {
 pub struct Layout {
     tensors: Vec<TensorLayout>,
     count: usize,
-    linears: Vec<Linear>,
-    encoder_layers: Vec<EncoderLayer>,
+    pub(crate) linears: Vec<Linear>,
+    pub(crate) encoder_layers: Vec<EncoderLayer>,
 }
 
 /// An affine map y = x W^T + b of a layout: the weight `[outputs, inputs]`, then the bias `[outputs]`.
@@ -115,16 +110,6 @@ impl Layout {
     /// All tensors, in order.
     pub fn tensors(&self) -> &[TensorLayout] {
         &self.tensors
-    }
-
-    /// All affine maps outside encoder layers, in order.
-    pub(crate) fn linears(&self) -> &[Linear] {
-        &self.linears
-    }
-
-    /// All encoder layers, in order.
-    pub(crate) fn encoder_layers(&self) -> &[EncoderLayer] {
-        &self.encoder_layers
     }
 
     /// Number of weights in all tensors.

@@ -36,7 +36,7 @@ impl Weights {
         if Arc::ptr_eq(&self.layout, layout) || self.layout == *layout {
             return Ok(());
         }
-        let (wanted, got) = (layout.count(), self.count());
+        let (wanted, got) = (layout.count(), self.numbers.len());
         Err(NetworkError::shape(
             "weights",
             format!("the {wanted} weights of this network"),
@@ -47,11 +47,6 @@ impl Weights {
     /// Names, shapes and positions of the tensors.
     pub fn layout(&self) -> &Arc<Layout> {
         &self.layout
-    }
-
-    /// Number of weights.
-    pub(crate) fn count(&self) -> usize {
-        self.numbers.len()
     }
 
     /// All weights, tensor after tensor.

@@ -47,7 +47,7 @@ impl EncoderKernel {
         let (mut gx, mut of_mixed) = (through, of_fed);
         let first = Sublayer {
             norm: &self.norm1,
-            map: Some((&self.out, forward_results.attention.attended.mixed())),
+            map: Some((&self.out, &forward_results.attention.attended.mixed)),
             normal: &forward_results.normal1,
             dropout: dropouts.attended,
         };

@@ -42,7 +42,7 @@ impl EncoderKernel {
         keep: bool,
     ) -> (Buffer, ForwardResults) {
         let [mut z, mut fed, mut y] = [0; 3].map(|_| Buffer::any(x.len()));
-        let mixed = attention.attended.mixed();
+        let mixed = &attention.attended.mixed;
         let (norm1, norm2) = (&self.norm1, &self.norm2);
         let normal1 = self.add_norm(norm1, Some(&self.out), [x, mixed], dropouts.attended, &mut z, keep);
         self.feed_forward.forward(&z, dropouts.hidden, &mut fed);

@@ -52,7 +52,7 @@ impl SceneCase {
             &self.gradient,
             gradients.each_mut().map(|gradient| &mut gradient[..]),
         );
-        (attended.mixed().to_vec(), gradients.concat())
+        (attended.mixed.to_vec(), gradients.concat())
     }
 
     fn inputs(&self) -> [&[f32]; 3] {
@@ -217,6 +217,6 @@ fn results_do_not_depend_on_what_was_there() {
     for case in [&big, &small] {
         let scenes = Scenes::new(&case.sizes, lists(&case.sizes, &case.visible));
         let attended = attention.forward(case.inputs(), scenes.throughout(), None, false);
-        assert_eq!(attended.mixed(), case.run(Dispatch::detect().instruction_set()).0);
+        assert_eq!(*attended.mixed, case.run(Dispatch::detect().instruction_set()).0);
     }
 }
