@@ -64,7 +64,7 @@ pub(crate) struct Range {
     /// log2 of the number of paths from a cell to the last one, summed over all cells.
     tails_log2: f64,
     /// log2 of the start value of the recursion: as large as the number of paths allows.
-    start_log2: i16,
+    pub(crate) start_log2: i16,
     longest_path: f64,
 }
 
@@ -96,10 +96,6 @@ impl Range {
             start_log2: (format.top - paths_log2.ceil()) as i16,
             longest_path: (n + m - 1) as f64,
         })
-    }
-
-    pub(crate) fn start_log2(&self) -> i16 {
-        self.start_log2
     }
 
     /// The smallest score (log2, start included) that is accurate despite the clamp on costs and the floor on sums.
@@ -194,7 +190,7 @@ mod tests {
     #[test]
     fn pedestrians_have_room_for_values_of_57_gamma_or_47_if_portable_and_in_f64_of_570() {
         let reach = |range: Range| {
-            let log2 = f64::from(range.start_log2()) - range.smallest_accurate_log2();
+            let log2 = f64::from(range.start_log2) - range.smallest_accurate_log2();
             log2 * std::f64::consts::LN_2
         };
         for (set, gammas) in [(InstructionSet::Avx2, 57.0), (InstructionSet::Portable, 47.0)] {

@@ -42,7 +42,7 @@ impl PairValues {
 
     pub(crate) fn of<const D: usize>(&self, pairs: &[Pair<'_, D>]) -> Vec<PairValue> {
         let mut values = vec![PairValue::AtLeast(f64::NEG_INFINITY); pairs.len()];
-        if !GAMMAS.contains(&self.dtw.gamma()) {
+        if !GAMMAS.contains(&self.dtw.gamma) {
             return values;
         }
         let lengths = |&index: &usize| (pairs[index].0.len(), pairs[index].1.len());
@@ -79,17 +79,17 @@ impl PairValues {
         let mut sums = [0.0; STRIP];
         self.dispatch.run(PairRecursion {
             block,
-            start: f64::from(range.start_log2()).exp2(),
-            scale: -std::f64::consts::LOG2_E / self.dtw.gamma(),
-            cost: self.dtw.cost(),
+            start: f64::from(range.start_log2).exp2(),
+            scale: -std::f64::consts::LOG2_E / self.dtw.gamma,
+            cost: self.dtw.cost,
             sums: &mut sums,
         });
         sums
     }
 
     fn value(&self, range: Range, sum: f64) -> PairValue {
-        let gamma = self.dtw.gamma();
-        let start = f64::from(range.start_log2());
+        let gamma = self.dtw.gamma;
+        let start = f64::from(range.start_log2);
         let smallest = range.smallest_accurate_log2();
         if sum >= smallest.exp2() {
             // Dividing by a power of two is exact, so the start value costs the logarithm no digits.

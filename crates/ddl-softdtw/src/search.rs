@@ -75,9 +75,9 @@ impl<const D: usize> SearchIndex<D> {
             dispatch: Dispatch::detect(),
         };
         index.self_values = index.evaluate_self_values()?;
-        if dtw.gamma() > 0.0 && dtw.cost() == Cost::SquaredEuclidean {
+        if dtw.gamma > 0.0 && dtw.cost == Cost::SquaredEuclidean {
             let candidates: Vec<_> = (0..index.len()).map(|i| index.candidate(i)).collect();
-            index.sieve = CandidateSieve::build(dtw.gamma(), &candidates, &index.self_values);
+            index.sieve = CandidateSieve::build(dtw.gamma, &candidates, &index.self_values);
         }
         Ok(index)
     }

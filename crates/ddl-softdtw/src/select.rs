@@ -14,7 +14,7 @@ pub(crate) struct Selection {
     /// Factor below 1: a score of at least `slack` times the n-th is kept.
     slack: f64,
     /// Smallest score that is kept: `slack` times the n-th largest so far. It only grows.
-    threshold: f32,
+    pub(crate) threshold: f32,
     capacity: usize,
     kept: Vec<Scored>,
 }
@@ -30,10 +30,6 @@ impl Selection {
             capacity,
             kept: Vec::with_capacity(capacity),
         }
-    }
-
-    pub(crate) fn threshold(&self) -> f32 {
-        self.threshold
     }
 
     pub(crate) fn offer(&mut self, score: f32, candidate: usize) {

@@ -37,7 +37,7 @@ impl<const D: usize> CandidateSieve<D> {
     pub(crate) fn build(gamma: f64, candidates: &[&[[f64; D]]], self_values: &[f64]) -> Option<Self> {
         let blocks = Blocks::new(gamma, candidates);
         let range = Range::of_f32(InstructionSet::Portable, 1, blocks.longest)?;
-        range.margin_log2(f64::from(range.start_log2()), blocks.largest, D)?;
+        range.margin_log2(f64::from(range.start_log2), blocks.largest, D)?;
         let half_to_log2 = blocks.narrowing.scale * blocks.narrowing.scale / 2.0;
         let weight = |&member: &usize| match self_values.get(member) {
             Some(value) => (value * half_to_log2).exp2() as f32,
@@ -101,7 +101,7 @@ impl<const D: usize> CandidateSieve<D> {
             steps: narrowing.narrow(query),
             range,
             largest,
-            start: f32::from(range.start_log2()).exp2(),
+            start: f32::from(range.start_log2).exp2(),
             selection: Selection::new(wanted, widest),
         })
     }
@@ -166,7 +166,7 @@ impl<const D: usize> CandidateSweep<'_, D> {
     fn block<S: Simd, const G: usize>(&mut self, simd: S, b: usize, block: &[Step<D>], row: &mut [S::f32s]) {
         let width = <S::f32s as SimdBase<S>>::LEN;
         let mut scores = [0.0; LANES];
-        let threshold = self.selection.threshold();
+        let threshold = self.selection.threshold;
         let mut mask = 0;
         for part in 0..LANES / width {
             let start = load(simd, &self.weights[b], part) * self.start;

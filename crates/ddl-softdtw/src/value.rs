@@ -39,8 +39,8 @@ use crate::grid::Grid;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SoftDtw {
-    gamma: f64,
-    cost: Cost,
+    pub(crate) gamma: f64,
+    pub(crate) cost: Cost,
 }
 
 impl SoftDtw {
@@ -54,16 +54,6 @@ impl SoftDtw {
         } else {
             Err(SoftDtwError::InvalidGamma { gamma })
         }
-    }
-
-    /// The smoothing γ.
-    pub(crate) fn gamma(&self) -> f64 {
-        self.gamma
-    }
-
-    /// The cost between two steps.
-    pub(crate) fn cost(&self) -> Cost {
-        self.cost
     }
 
     /// `D_γ(x, y)`, in the unit of the cost.

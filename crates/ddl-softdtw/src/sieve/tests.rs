@@ -64,7 +64,7 @@ fn scores_keep_their_error_bound() {
                 }
                 let value = dtw.value_unchecked(query, walk) - self_values[candidate] / 2.0;
                 let scale = sieve.blocks.narrowing.scale;
-                let exact = f64::from(range.start_log2()) - value * scale * scale;
+                let exact = f64::from(range.start_log2) - value * scale * scale;
                 let share = (score - exact).abs() / range.error_log2(score, search.largest, 2);
                 worst = worst.max(share);
                 accurate += 1;
