@@ -34,7 +34,7 @@ pub(crate) fn run(workspace: &Workspace) -> Result<()> {
     let mut faults = Vec::new();
     let mut pages = 0;
     for file in workspace.files()? {
-        let path = workspace.root().join(&file);
+        let path = workspace.root.join(&file);
         let bytes = std::fs::read(&path).with_context(|| format!("{} cannot be read", file.display()))?;
         let mut of_file = Vec::from_iter(recording_fault(&file, &sha256(&path)?, &recordings));
         // Only text files have lines to check.

@@ -23,7 +23,7 @@ pub(crate) const FETCHED: &str = "datasets/eth_ucy";
 
 #[derive(Debug, Clone)]
 pub(crate) struct Workspace {
-    root: PathBuf,
+    pub(crate) root: PathBuf,
 }
 
 impl Workspace {
@@ -43,10 +43,6 @@ impl Workspace {
 
     pub(crate) fn at(root: &Path) -> Self {
         Self { root: root.into() }
-    }
-
-    pub(crate) fn root(&self) -> &Path {
-        &self.root
     }
 
     pub(crate) fn path(&self, relative: &str) -> PathBuf {

@@ -125,11 +125,12 @@ pub fn parse_columns(
             Ok(file.rows)
         }
     }?;
-    let recording = rows::into_recording(rows, origin)?;
+    let mut recording = rows::into_recording(rows, origin)?;
     // The rate of comments is that of the frame numbers, that of TrajNet++ that of the rows.
     let of_rows = frame_rate.filter(|_| recording.time_unit().is_none());
     let of_rows = of_rows.map(|rate: f64| rate / recording.frame_step() as f64);
-    Ok(recording.with_rate(rate.or(of_rows)).with_notes(notes))
+    (recording.rate, recording.notes) = (rate.or(of_rows), notes);
+    Ok(recording)
 }
 
 /// First bytes of files compressed by gzip, zip (also spreadsheets), bzip2, xz and zstd.

@@ -152,7 +152,7 @@ impl LiveTracks {
             interval: None,
             // A file is in memory already.
             most_pedestrians: usize::MAX,
-            ..Self::with_clock(recording.tick_clock())
+            ..Self::with_clock(Clock::of_ticks(recording.frame_step()))
         }
     }
 

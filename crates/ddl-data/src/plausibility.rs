@@ -154,7 +154,7 @@ impl Recording {
     /// the summary.
     #[must_use]
     pub fn speed_warning(&self) -> Option<PlausibilityWarning> {
-        restarted(self.restarts()).or_else(|| self.speeds(&self.tracks()).warning())
+        restarted(self.restarts).or_else(|| self.speeds(&self.tracks()).warning())
     }
 
     pub(crate) fn speeds(&self, tracks: &BTreeMap<PedestrianId, Vec<&Observation>>) -> Speeds {

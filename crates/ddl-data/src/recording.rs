@@ -25,10 +25,11 @@ pub struct Recording {
     frames: Vec<i64>,
     /// `starts[k]..starts[k + 1]` are the observations of `frames[k]`.
     starts: Vec<usize>,
-    rate: Option<f64>,
+    pub(crate) rate: Option<f64>,
     time_unit: Option<TimeUnit>,
-    restarts: usize,
-    notes: Vec<String>,
+    /// How often the frame numbers begin again in the file.
+    pub(crate) restarts: usize,
+    pub(crate) notes: Vec<String>,
     names: PedestrianNames,
 }
 
@@ -191,27 +192,9 @@ impl Recording {
         }
     }
 
-    pub(crate) fn with_notes(self, notes: Vec<String>) -> Self {
-        Self { notes, ..self }
-    }
-
     /// What was assumed while the file was read, a sentence each.
     pub fn notes(&self) -> &[String] {
         &self.notes
-    }
-
-    pub(crate) fn with_restarts(self, restarts: usize) -> Self {
-        Self { restarts, ..self }
-    }
-
-    /// How often the frame numbers begin again in the file.
-    pub(crate) fn restarts(&self) -> usize {
-        self.restarts
-    }
-
-    /// The clock of its frame numbers, which are ticks.
-    pub(crate) fn tick_clock(&self) -> Clock {
-        Clock::of_ticks(self.frame_step)
     }
 
     pub(crate) fn with_observations(
@@ -227,10 +210,6 @@ impl Recording {
             names: self.names.clone(),
             ..Self::new(self.shared_name(), frame_step, observations)?
         })
-    }
-
-    pub(crate) fn with_rate(self, rate: Option<f64>) -> Self {
-        Self { rate, ..self }
     }
 
     pub(crate) fn with_names(self, names: PedestrianNames) -> Self {

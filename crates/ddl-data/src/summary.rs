@@ -224,7 +224,7 @@ impl Recording {
             brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
             frozen: plausibility::count_frozen(&tracks, step),
-            restarts: self.restarts(),
+            restarts: self.restarts,
             unseen: self.unseen(&tracks),
             holes: gaps.len(),
             longest_hole: gaps.into_iter().max_by(|a, b| a.seconds.total_cmp(&b.seconds)),

@@ -68,7 +68,7 @@ impl FirstMotion {
 pub(crate) struct Piece {
     /// Motions of the segments relative to the present position of the first; lanes without a segment are infinite.
     motions: [[f32; LANES]; COMPONENTS],
-    path: Vec<Position>,
+    pub(crate) path: Vec<Position>,
 }
 
 impl Piece {
@@ -122,10 +122,6 @@ impl Piece {
     /// Number of segments.
     pub(crate) fn len(&self) -> usize {
         self.path.len().saturating_sub(SHARED)
-    }
-
-    pub(crate) fn path(&self) -> &[Position] {
-        &self.path
     }
 
     /// The 20 positions of the segment of a lane.

@@ -73,7 +73,7 @@ impl Track {
     pub(crate) fn positions(&self) -> Vec<Position> {
         let mut positions: Vec<Position> = Vec::new();
         for piece in &self.pieces {
-            let path = piece.path();
+            let path = &piece.path;
             let shared = path.get(..SHARED);
             let follows = shared.is_some_and(|shared| positions.ends_with(shared));
             positions.extend(&path[if follows { SHARED } else { 0 }..]);
@@ -116,7 +116,7 @@ impl RunningTrack {
     }
 
     fn last_position(&self) -> Option<Position> {
-        self.track.pieces.last()?.path().last().copied()
+        self.track.pieces.last()?.path.last().copied()
     }
 
     /// Whether the track has ended by this frame.

@@ -150,7 +150,7 @@ mod tests {
             if page.extension().is_none_or(|extension| extension != "md") {
                 continue;
             }
-            let text = fs::read_to_string(workspace.root().join(&page)).unwrap();
+            let text = fs::read_to_string(workspace.root.join(&page)).unwrap();
             for command in console::commands(&text) {
                 let words = command.words().unwrap_or_default();
                 if let ["cargo", "xtask", arguments @ ..] | ["./xtask", arguments @ ..] = words.as_slice() {

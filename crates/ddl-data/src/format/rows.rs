@@ -62,11 +62,12 @@ pub(super) fn into_recording(rows: Vec<TrackRow>, origin: &str) -> Result<Record
     refuse_duplicates(&mut placed, &names, unit, origin)?;
     let observations = placed.into_iter().map(|(seen, _)| seen).collect();
     let recording = Recording::in_usual_step(origin, observations);
-    let recording = recording.map_err(|source| DataError::Recording {
+    let mut recording = recording.map_err(|source| DataError::Recording {
         name: origin.to_owned(),
         source,
     })?;
-    Ok(recording.with_names(names).with_time_unit(unit).with_restarts(restarts))
+    recording.restarts = restarts;
+    Ok(recording.with_names(names).with_time_unit(unit))
 }
 
 /// The observations with pedestrian numbers. These are the numbers of the file or, if any pedestrian of the file is a

@@ -58,7 +58,7 @@ pub(super) struct Axes {
     /// Lower left and upper right corner, metres.
     low: Position,
     high: Position,
-    plan: PlanView,
+    pub(super) plan: PlanView,
     layout: &'static PlotLayout,
 }
 
@@ -95,10 +95,6 @@ impl Axes {
     pub(super) fn size(&self) -> [f64; 2] {
         let [from, to] = self.frame();
         [0, 1].map(|axis| self.layout.before[axis] + to[axis] - from[axis] + self.layout.after[axis])
-    }
-
-    pub(super) fn plan(&self) -> &PlanView {
-        &self.plan
     }
 
     /// Upper left and lower right corner of the plot, pixels.
@@ -143,11 +139,11 @@ mod tests {
     fn one_metre_is_as_long_up_as_across() {
         for layout in [&SCENE, &PANEL] {
             let axes = Axes::around(&[[0.0, 0.0], [30.0, 2.0]], layout).moved([700.0, 90.0]);
-            let [a, b, c] = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0]].map(|p| axes.plan().px(p));
+            let [a, b, c] = [[1.0, 1.0], [2.0, 1.0], [1.0, 2.0]].map(|p| axes.plan.px(p));
             assert!(((b[0] - a[0]) - (a[1] - c[1])).abs() < 1e-9);
             let [from, to] = axes.frame();
             for corner in [[0.0, 0.0], [30.0, 2.0]] {
-                let shown = axes.plan().px(corner);
+                let shown = axes.plan.px(corner);
                 assert!((0..2).all(|axis| (from[axis]..=to[axis]).contains(&shown[axis])));
             }
         }

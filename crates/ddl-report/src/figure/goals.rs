@@ -104,7 +104,7 @@ impl<'a> GoalPanel<'a> {
 
     fn draw(self, drawing: &mut Drawing, origin: [f64; 2]) {
         let (case, axes) = (self.case, self.axes.moved(origin));
-        let plan = axes.plan();
+        let plan = &axes.plan;
         axes.draw(drawing);
         draw_heading(drawing, &axes, case);
         drawing.within(axes.frame(), |drawing| {

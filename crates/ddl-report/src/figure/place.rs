@@ -29,7 +29,7 @@ const SAMPLE: f64 = 28.0;
 /// `title` and `numbers` are lines above the picture; each track holds positions in metres, in temporal order.
 pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     let axes = Axes::around(&tracks.concat(), &PLACE);
-    let smallest = SMALLEST / axes.plan().scale;
+    let smallest = SMALLEST / axes.plan.scale;
     let side = if smallest <= SIDE { SIDE } else { round_step(smallest) };
     let traffic = Traffic::of(tracks, side);
     let [width, height] = axes.size();
@@ -76,7 +76,7 @@ fn draw_squares(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, shades: &
     for (square, &count) in &traffic.crossed {
         let shade = shades.partition_point(|&least| least <= count).saturating_sub(1);
         let corner = |by: i64| square.map(|number| (number + by) as f64 * traffic.side);
-        let [[left, bottom], [right, top]] = [corner(0), corner(1)].map(|corner| axes.plan().px(corner));
+        let [[left, bottom], [right, top]] = [corner(0), corner(1)].map(|corner| axes.plan.px(corner));
         drawing.rectangle(&shade_class(shade, shades), [[left, top], [right, bottom]]);
     }
 }
@@ -87,7 +87,7 @@ fn draw_ends(drawing: &mut Drawing, axes: &Axes, traffic: &Traffic, most: usize)
     ends.sort_by_key(|(_, ends)| std::cmp::Reverse(ends.begun.max(ends.ended)));
     for (square, ends) in ends {
         let middle = square.map(|number| (number as f64 + 0.5) * 2.0 * traffic.side);
-        draw_mark(drawing, axes.plan().px(middle), *ends, most);
+        draw_mark(drawing, axes.plan.px(middle), *ends, most);
     }
 }
 

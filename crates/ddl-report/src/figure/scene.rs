@@ -37,22 +37,22 @@ pub fn scene(window: &Window, forecast: &Forecast) -> Result<String, ReportError
     legend::draw_column(&mut drawing, [right + 20.0, top], &entries(window, forecast));
     drawing.within(axes.frame(), |drawing| {
         for disc in regions(forecast) {
-            let radius = axes.plan().scale * disc.radius;
-            drawing.circle("region", axes.plan().px(disc.centre), radius);
+            let radius = axes.plan.scale * disc.radius;
+            drawing.circle("region", axes.plan.px(disc.centre), radius);
         }
         for pedestrian in drawn {
-            pedestrian::other_hypotheses(drawing, axes.plan(), pedestrian);
+            pedestrian::other_hypotheses(drawing, &axes.plan, pedestrian);
         }
         for pedestrian in drawn {
-            pedestrian::representative_goal(drawing, axes.plan(), pedestrian);
+            pedestrian::representative_goal(drawing, &axes.plan, pedestrian);
         }
         for pedestrian in drawn {
             let (observed, truth) = (&pedestrian.observed, &pedestrian.truth);
-            drawing.path("seen", &axes.plan().path(observed));
-            pedestrian::track(drawing, axes.plan(), observed, truth);
+            drawing.path("seen", &axes.plan.path(observed));
+            pedestrian::track(drawing, &axes.plan, observed, truth);
         }
         for pedestrian in drawn {
-            pedestrian::representative(drawing, axes.plan(), pedestrian, false);
+            pedestrian::representative(drawing, &axes.plan, pedestrian, false);
         }
     });
     Ok(drawing.to_file(PLOT_STYLE))
