@@ -4,13 +4,11 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::sync::Arc;
 
-use ddl_core::{
-    OBSERVED, ObservationQuality, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_finite, is_frame,
-};
+use ddl_core::{OBSERVED, PedestrianId, PedestrianNames, Position, TIME_STEP, Window, is_finite, is_frame};
 use thiserror::Error;
 
 use crate::clock::{Clock, ClockError};
-use crate::observe::{self, Arrival, Misfit, ON_STEP, ObservedTrack, RecordingNoise, Row};
+use crate::observe::{self, Misfit, MisfitTreatment, ON_STEP, ObservedTrack, RecordingNoise, Row};
 use crate::recording::Recording;
 
 const NAME: &str = "live";
@@ -272,14 +270,19 @@ impl LiveTracks {
                     pedestrian.last_row = tick;
                     let row = Row { time, position };
                     let swap = exchanged.iter().find(|(other, _)| *other == id);
-                    let arrival = if let Some((_, distance)) = swap {
+                    let misfit = if let Some((_, distance)) = swap {
                         pedestrian.track = ObservedTrack::beginning(time, position);
-                        Arrival::Jumped(*distance)
+                        Some((*distance, MisfitTreatment::BegunAnew))
                     } else {
                         pedestrian.track.push(row, tick_time, &known, &mut self.noise)
                     };
                     pedestrian.track.forget_before(time, self.clock.frame_step() as f64);
-                    self.misfits.extend(Misfit::of(tick, id, arrival));
+                    self.misfits.extend(misfit.map(|(distance, treatment)| Misfit {
+                        tick,
+                        pedestrian: id,
+                        distance,
+                        treatment,
+                    }));
                 }
             }
         }
@@ -380,12 +383,10 @@ impl LiveTracks {
             // A wrong position says that the pedestrian is there.
             let max_age = self.max_age.unwrap_or_else(|| track.usual_interval().max(step as f64));
             let is_present = age == 0.0 || age < max_age || (*last_row == last && age <= max_age);
-            let observed = if is_present {
-                track.observed(time, step as f64, self.tick_time(), &self.noise)
-            } else {
-                None
-            };
-            if let Some(observed) = observed.filter(|observed| self.is_enough(observed.quality)) {
+            if is_present
+                && let Some(observed) = track.observed(time, step as f64, self.tick_time(), &self.noise)
+                && (self.completeness == Completeness::Partial || observed.quality.is_whole())
+            {
                 ids.push(*id);
                 positions.extend(observed.positions);
                 qualities.push(observed.quality);
@@ -397,10 +398,6 @@ impl LiveTracks {
         let frames = (1 - OBSERVED as i64..=0).map(|t| last + t * step).collect();
         let window = Window::cut(Arc::clone(&self.name), step, frames, ids, positions);
         Some(window.with_names(self.names.clone()).with_qualities(qualities))
-    }
-
-    fn is_enough(&self, quality: ObservationQuality) -> bool {
-        self.completeness == Completeness::Partial || quality.is_whole()
     }
 }
 

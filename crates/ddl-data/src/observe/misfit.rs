@@ -2,8 +2,6 @@
 
 use ddl_core::PedestrianId;
 
-use crate::observe::track::Arrival;
-
 /// A row too far from where its pedestrian was expected.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -28,20 +26,6 @@ pub enum MisfitTreatment {
 }
 
 impl Misfit {
-    pub(crate) fn of(tick: i64, pedestrian: PedestrianId, arrival: Arrival) -> Option<Self> {
-        let (distance, treatment) = match arrival {
-            Arrival::First | Arrival::Expected => return None,
-            Arrival::Wrong(distance) | Arrival::Corrected(distance) => (distance, MisfitTreatment::LeftOut),
-            Arrival::Jumped(distance) => (distance, MisfitTreatment::BegunAnew),
-        };
-        Some(Self {
-            tick,
-            pedestrian,
-            distance,
-            treatment,
-        })
-    }
-
     /// A sentence about these rows, `None` without any; `place` names a row.
     pub fn words(misfits: &[Self], place: impl Fn(&Self) -> String) -> Option<String> {
         let first = misfits.first()?;

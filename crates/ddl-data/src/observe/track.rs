@@ -4,6 +4,8 @@ use std::collections::VecDeque;
 
 use ddl_core::{OBSERVED, Position, between, distance as distance_between};
 
+use crate::observe::misfit::MisfitTreatment;
+use crate::observe::motion::Motion;
 use crate::observe::noise::{NoiseLevel, RecordingNoise, TrackNoise};
 
 /// Distance between an expected and a true position that no noise explains (m) ...
@@ -37,21 +39,6 @@ pub(crate) struct Row {
     /// In ticks.
     pub(crate) time: f64,
     pub(crate) position: Position,
-}
-
-/// How a row fits to the earlier ones of its track.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Arrival {
-    /// It is the first, or the first after a long gap.
-    First,
-    /// It is where the pedestrian was expected.
-    Expected,
-    /// It is left out: so many metres from where the pedestrian was expected.
-    Wrong(f64),
-    /// It is where the pedestrian was expected but for its last row, which is left out: that was so many metres off.
-    Corrected(f64),
-    /// The track begins anew with rows left out before: so many metres from the old one.
-    Jumped(f64),
 }
 
 /// Time without a row after which a track begins anew (s).
@@ -133,17 +120,18 @@ impl ObservedTrack {
 
     /// Adds a row, later than the last, at a time in ticks of `tick_time` seconds. Whether it fits is decided with the
     /// noise `known` before, so that it does not depend on the order of pedestrians; what it shows is added to
-    /// `recording`.
+    /// `recording`. Returns how far off (m) a row is that is not where the pedestrian was expected, this one or the one
+    /// before, and how it is treated.
     pub(crate) fn push(
         &mut self,
         row: Row,
         tick_time: f64,
         known: &RecordingNoise,
         recording: &mut RecordingNoise,
-    ) -> Arrival {
+    ) -> Option<(f64, MisfitTreatment)> {
         if (row.time - self.last_time()) * tick_time > LONGEST_GAP {
             *self = Self::beginning(row.time, row.position);
-            return Arrival::First;
+            return None;
         }
         let fit = self.fit(row, tick_time, known);
         if fit.is_expected || fit.is_turn {
@@ -154,7 +142,7 @@ impl ObservedTrack {
             };
             self.turned = (!fit.is_expected).then(|| Box::new(turn()));
             self.accept(row, tick_time, known, recording);
-            return Arrival::Expected;
+            return None;
         }
         if let Some(turn) = self.turned.take() {
             // Either the last row or this one is wrong.
@@ -166,10 +154,10 @@ impl ObservedTrack {
             if without.fit(row, tick_time, known).is_expected {
                 without.accept(row, tick_time, known, recording);
                 *self = without;
-                return Arrival::Corrected(turn.distance);
+                return Some((turn.distance, MisfitTreatment::LeftOut));
             }
         }
-        self.doubt(row, fit.distance, tick_time, known, recording)
+        Some(self.doubt(row, fit.distance, tick_time, known, recording))
     }
 
     /// Where the pedestrian is expected at a time; `None` if too few rows show its speed, or the last is too old.
@@ -178,23 +166,25 @@ impl ObservedTrack {
         if self.rows.len() < SHOW_SPEED || seconds > LONGEST_DOUBT {
             return None;
         }
-        let level = self.level(known);
-        let expected = self.noise.motion(level).expected_after(seconds);
-        let noise = level.walk().noise;
-        let margin = DEVIATIONS * (expected.variance + noise * noise).sqrt();
+        let (expected, margin) = self.expected_after(seconds, known);
         Some(Expectation {
             position: expected.position,
             reach: ACCELERATION * seconds * seconds + margin,
         })
     }
 
-    fn fit(&self, row: Row, tick_time: f64, known: &RecordingNoise) -> Fit {
-        let seconds = (row.time - self.last_time()) * tick_time;
+    /// The motion expected some seconds after the last row, and how far off a row may be then for its noise (m).
+    fn expected_after(&self, seconds: f64, known: &RecordingNoise) -> (Motion, f64) {
         let level = self.level(known);
         let expected = self.noise.motion(level).expected_after(seconds);
-        let distance = expected.distance(row.position);
         let noise = level.walk().noise;
-        let margin = DEVIATIONS * (expected.variance + noise * noise).sqrt();
+        (expected, DEVIATIONS * (expected.variance + noise * noise).sqrt())
+    }
+
+    fn fit(&self, row: Row, tick_time: f64, known: &RecordingNoise) -> Fit {
+        let seconds = (row.time - self.last_time()) * tick_time;
+        let (expected, margin) = self.expected_after(seconds, known);
+        let distance = expected.distance(row.position);
         // A speed not yet seen may be that of a runner.
         let speed = if self.rows.len() < SHOW_SPEED {
             RUNNING
@@ -228,7 +218,7 @@ impl ObservedTrack {
         tick_time: f64,
         known: &RecordingNoise,
         recording: &mut RecordingNoise,
-    ) -> Arrival {
+    ) -> (f64, MisfitTreatment) {
         let follows = |before: &Suspect| {
             let seconds = (row.time - before.row.time) * tick_time;
             distance_between(row.position, before.row.position) <= SURPRISE + FASTEST * seconds
@@ -243,14 +233,14 @@ impl ObservedTrack {
         let first = self.suspects[0];
         let is_confirmed = (row.time - first.row.time) * tick_time >= CONFIRMED;
         if !is_confirmed && (row.time - self.last_time()) * tick_time <= LONGEST_DOUBT {
-            return Arrival::Wrong(distance);
+            return (distance, MisfitTreatment::LeftOut);
         }
         let suspects = std::mem::take(&mut self.suspects);
         *self = Self::beginning(first.row.time, first.row.position);
         for suspect in &suspects[1..] {
             self.accept(suspect.row, tick_time, known, recording);
         }
-        Arrival::Jumped(first.distance)
+        (first.distance, MisfitTreatment::BegunAnew)
     }
 
     /// Time of the last row that was not left out, in ticks.
