@@ -1,6 +1,6 @@
 //! Observations estimated from the rows of a track.
 
-use ddl_core::{ObservationQuality, Position};
+use ddl_core::{Position, distance};
 use proptest::prelude::*;
 use rand::SeedableRng as _;
 use rand_chacha::ChaCha8Rng;
@@ -37,7 +37,7 @@ fn bits(position: Position) -> [u64; 2] {
 }
 
 fn farthest(a: &[Position], b: &[Position]) -> f64 {
-    let distances = a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
+    let distances = a.iter().zip(b).map(|(a, b)| distance(*a, *b));
     distances.fold(0.0, f64::max)
 }
 
@@ -113,34 +113,7 @@ fn noise_is_averaged() {
     assert!(of_estimate < 0.5 * of_rows, "{of_estimate} {of_rows}");
 }
 
-#[test]
-fn one_row_is_no_observation() {
-    let track = ObservedTrack::beginning(0.0, [1.0, 2.0]);
-    assert_eq!(track.observed(0.0, 0.4, 1.0, &RecordingNoise::default()), None);
-}
-
 proptest! {
-    /// Exact rows at the steps pass to the bit, with or without rows between them.
-    #[test]
-    fn rows_at_the_steps_pass_unchanged(
-        velocity in prop::array::uniform2(-1.5..1.5),
-        bend in -0.2..0.2,
-        between in 1_usize..12,
-    ) {
-        let rows: Vec<(f64, Position)> = (0..=8 * between)
-            .map(|k| {
-                let t = k as f64 / between as f64 * 0.4;
-                (t, [velocity[0] * t + bend * t * t, velocity[1] * t])
-            })
-            .collect();
-        let last = rows.len() - 1;
-        let estimate = observed(&rows, rows[last].0);
-        for place in 0..8 {
-            prop_assert_eq!(bits(estimate.positions[place]), bits(rows[last - between * (7 - place)].1));
-        }
-        prop_assert_eq!(estimate.quality, ObservationQuality::default());
-    }
-
     /// A turned and moved track has a turned and moved estimate, at any clock.
     #[test]
     fn estimates_move_with_their_track(
