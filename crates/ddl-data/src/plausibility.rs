@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP};
+use ddl_core::{PedestrianId, PedestrianName, Position, TIME_STEP, distance};
 use serde::Serialize;
 use thiserror::Error;
 
@@ -34,7 +34,7 @@ const FROZEN: f64 = 4.0;
 const WALKING: f64 = 0.3;
 /// A warning is given from this share of missing positions on, counted between the first and last frame of each
 /// pedestrian.
-const OFTEN: f64 = 0.03;
+pub(crate) const OFTEN: f64 = 0.03;
 
 /// A plausibility warning; its message says how to correct the recording. Speeds are in m/s, distances in m.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -123,10 +123,11 @@ impl Speeds {
             let frame_step = self.frame_step;
             return Some(PlausibilityWarning::NoSteps { frame_step });
         };
+        let crosses = self.farthest > CROSSED * self.side;
         if self.farthest < STILL && self.steps >= MANY_STEPS {
             let farthest = self.farthest;
             Some(PlausibilityWarning::Still { farthest })
-        } else if self.is_narrow() {
+        } else if self.side < NARROW && self.pedestrians >= A_CROWD && self.steps >= MANY_STEPS && crosses {
             Some(PlausibilityWarning::Narrow {
                 pedestrians: self.pedestrians,
                 side: self.side,
@@ -139,13 +140,6 @@ impl Speeds {
             let brisk = self.brisk.filter(|&brisk| brisk < CREEPING);
             brisk.map(|brisk| PlausibilityWarning::Slow { brisk })
         }
-    }
-}
-
-impl Speeds {
-    fn is_narrow(&self) -> bool {
-        let crosses = self.farthest > CROSSED * self.side;
-        self.side < NARROW && self.pedestrians >= A_CROWD && self.steps >= MANY_STEPS && crosses
     }
 }
 
@@ -195,16 +189,8 @@ pub(crate) fn restarted(count: usize) -> Option<PlausibilityWarning> {
     (count > 0).then_some(PlausibilityWarning::Restarted { count })
 }
 
-pub(crate) fn frozen(count: usize) -> Option<PlausibilityWarning> {
-    (count > 0).then_some(PlausibilityWarning::Frozen { count })
-}
-
-/// The number of tracks that walk, and then repeat one position to their end.
-pub(crate) fn count_frozen(tracks: &BTreeMap<PedestrianId, Vec<&Observation>>, step: i64) -> usize {
-    tracks.values().filter(|track| is_frozen(track, step)).count()
-}
-
-fn is_frozen(track: &[&Observation], step: i64) -> bool {
+/// Whether a track walks, and then repeats one position to its end.
+pub(crate) fn is_frozen(track: &[&Observation], step: i64) -> bool {
     let last = track[track.len() - 1];
     let same = |row: &&&Observation| row.position.map(f64::to_bits) == last.position.map(f64::to_bits);
     let frozen = track.iter().rev().take_while(same).count();
@@ -214,16 +200,11 @@ fn is_frozen(track: &[&Observation], step: i64) -> bool {
     is_long && before.is_some_and(|before| speed(before, start.position) > WALKING)
 }
 
-pub(crate) fn unseen(share: f64) -> Option<PlausibilityWarning> {
-    (share >= OFTEN).then_some(PlausibilityWarning::Unseen { share })
-}
-
 /// Distance between the first and last position of a track, m.
 fn way(track: &[&Observation]) -> f64 {
-    let (first, last) = (track[0].position, track[track.len() - 1].position);
-    (last[0] - first[0]).hypot(last[1] - first[1])
+    distance(track[0].position, track[track.len() - 1].position)
 }
 
 fn speed(from: Position, to: Position) -> f64 {
-    (to[0] - from[0]).hypot(to[1] - from[1]) / TIME_STEP
+    distance(from, to) / TIME_STEP
 }

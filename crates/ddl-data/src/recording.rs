@@ -315,11 +315,8 @@ impl Recording {
 
     /// Index of the annotated frame at which the last share of the recording begins.
     pub(crate) fn cut_index(&self, fraction: f64) -> usize {
-        let fraction = if fraction.is_nan() {
-            0.0
-        } else {
-            fraction.clamp(0.0, 1.0)
-        };
+        // NaN counts as 0.
+        let fraction = fraction.max(0.0).clamp(0.0, 1.0);
         #[expect(clippy::cast_sign_loss, reason = "a share of a count is not negative")]
         let cut = ((1.0 - fraction) * self.frames.len() as f64).floor() as usize;
         cut.min(self.frames.len())

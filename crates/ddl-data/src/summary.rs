@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::live::Completeness;
 use crate::observation::Observation;
 use crate::observe::Misfit;
-use crate::plausibility::{self, Fastest, PlausibilityWarning, Speeds};
+use crate::plausibility::{Fastest, OFTEN, PlausibilityWarning, Speeds, is_frozen, restarted};
 use crate::recording::Recording;
 
 /// Summary of a recording, in steps of 0.4 s.
@@ -113,12 +113,13 @@ impl Summary {
             pedestrians: self.pedestrians,
             side: (self.high[0] - self.low[0]).max(self.high[1] - self.low[1]),
         };
+        let (count, share) = (self.frozen, self.unseen);
         let learning = self.to_learn_from == 0 && self.median_speed.is_some();
-        plausibility::restarted(self.restarts)
+        restarted(self.restarts)
             .into_iter()
             .chain(speeds.warning())
-            .chain(plausibility::frozen(self.frozen))
-            .chain(plausibility::unseen(self.unseen))
+            .chain((count > 0).then_some(PlausibilityWarning::Frozen { count }))
+            .chain((share >= OFTEN).then_some(PlausibilityWarning::Unseen { share }))
             .chain(learning.then_some(PlausibilityWarning::NothingToLearnFrom))
             .collect()
     }
@@ -151,14 +152,6 @@ impl Recording {
         off.get(off.len() / 2).copied().unwrap_or(0)
     }
 
-    fn first_frame(&self) -> i64 {
-        self.frames()[0]
-    }
-
-    fn last_frame(&self) -> i64 {
-        self.frames()[self.frames().len() - 1]
-    }
-
     /// The least and the largest coordinates.
     pub(crate) fn corners(&self) -> (Position, Position) {
         let corner = |pick: fn(f64, f64) -> f64, from: f64| {
@@ -173,11 +166,12 @@ impl Recording {
     /// A summary of the recording.
     #[must_use]
     pub fn summary(&self) -> Summary {
-        let tracks = self.tracks();
+        let (tracks, step) = (self.tracks(), self.frame_step());
         let speeds = self.speeds(&tracks);
-        let step = self.frame_step();
         let spacing = self.usual_spacing().unwrap_or(step);
         let (low, high) = self.corners();
+        let (first_frame, last_frame) = (self.frames()[0], self.frames()[self.frames().len() - 1]);
+        let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
         let pairs = tracks.values().flat_map(|track| track.windows(2));
         let gaps: Vec<Gap> = pairs
             .filter(|pair| {
@@ -187,10 +181,9 @@ impl Recording {
             .map(|pair| Gap {
                 pedestrian: self.names().of(pair[0].pedestrian),
                 after: pair[0].frame,
-                seconds: (pair[1].frame - pair[0].frame) as f64 * TIME_STEP / step as f64,
+                seconds: seconds(pair[1].frame - pair[0].frame),
             })
             .collect();
-        let seconds = |ticks: i64| ticks as f64 * TIME_STEP / step as f64;
         let futures = self.futures();
         let (mut to_forecast, mut seen_whole, mut windows, mut to_learn_from) = (0, 0, 0, 0);
         let tracks_so_far = self.live_tracks().with_completeness(Completeness::Partial);
@@ -205,10 +198,10 @@ impl Recording {
         Summary {
             recording: self.name().to_owned(),
             frames: self.frames().len(),
-            first_frame: self.first_frame(),
-            last_frame: self.last_frame(),
+            first_frame,
+            last_frame,
             frame_step: step,
-            seconds: seconds(self.last_frame() - self.first_frame()),
+            seconds: seconds(last_frame - first_frame),
             rows_a_second: self.usual_spacing().map(|spacing| 1.0 / seconds(spacing)),
             jitter: seconds(self.jitter()),
             common_frames: observed.has_common_frames,
@@ -223,7 +216,7 @@ impl Recording {
             fastest: speeds.fastest,
             brisk_speed: speeds.brisk,
             farthest: speeds.farthest,
-            frozen: plausibility::count_frozen(&tracks, step),
+            frozen: tracks.values().filter(|track| is_frozen(track, step)).count(),
             restarts: self.restarts,
             unseen: self.unseen(&tracks),
             holes: gaps.len(),
