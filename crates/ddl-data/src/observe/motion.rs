@@ -1,6 +1,6 @@
 //! The motion between two rows of a track: constant velocity, disturbed by accelerations.
 
-use ddl_core::Position;
+use ddl_core::{Position, distance};
 
 /// Variance of a pedestrian's velocity before it is seen to move ((m/s)², on each axis).
 const UNSEEN_VELOCITY: f64 = 2.0;
@@ -62,7 +62,7 @@ impl Motion {
 
     /// Distance of a position from the expected one (m).
     pub(super) fn distance(&self, position: Position) -> f64 {
-        (position[0] - self.position[0]).hypot(position[1] - self.position[1])
+        distance(position, self.position)
     }
 
     /// The motion corrected by a position with this standard deviation (m).

@@ -128,11 +128,7 @@ impl Engine<'_> {
             let [x, y]: [f64; 2] = [StandardNormal.sample(rng), StandardNormal.sample(rng)];
             let velocity = add(velocity, scale([x, y], liveliness));
             let excess = norm(velocity) / (TOP_SPEED * speed);
-            let velocity = if excess > 1.0 {
-                scale(velocity, 1.0 / excess)
-            } else {
-                velocity
-            };
+            let velocity = scale(velocity, 1.0 / excess.max(1.0));
             self.pedestrians[index].motion.velocity = velocity;
             self.pedestrians[index].motion.position = add(before[index].position, scale(velocity, DT));
         }

@@ -1,9 +1,9 @@
 //! Layouts of the five scenes: walls, pillars, entries and destinations.
 
-use ddl_core::Position;
+use ddl_core::{Position, between};
 
 use crate::simulate::obstacle::{Pillar, Wall};
-use crate::simulate::vector::{dot, left, lerp, norm, scale, sub, unit};
+use crate::simulate::vector::{dot, left, norm, scale, sub, unit};
 
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GateLine {
@@ -17,7 +17,7 @@ impl GateLine {
     }
 
     pub(super) fn at(&self, share: f64) -> Position {
-        lerp(self.a, self.b, share)
+        between(self.a, self.b, share)
     }
 
     pub(super) fn width(&self) -> f64 {

@@ -41,7 +41,3 @@ pub(super) fn unit(a: Position) -> Position {
 pub(super) fn left(a: Position) -> Position {
     [-a[1], a[0]]
 }
-
-pub(super) fn lerp(a: Position, b: Position, share: f64) -> Position {
-    add(a, scale(sub(b, a), share))
-}
