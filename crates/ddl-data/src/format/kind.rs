@@ -47,50 +47,31 @@ pub enum Format {
     Edinburgh,
 }
 
+/// Implements `ALL` and `name` for the formats.
+macro_rules! named {
+    ($($format:ident $name:literal,)*) => {
+        impl Format {
+            /// Every format that is read.
+            pub const ALL: [Self; 16] = [$(Self::$format),*];
+
+            /// The format's name.
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$format => $name,)*
+                }
+            }
+        }
+    };
+}
+named! {
+    StarCsv "star-csv", SocialGan "social-gan", Table "table", TrajNet "trajnet", Obsmat "obsmat", IdFirst "id-first",
+    PeTrack "petrack", PeTrackCm "petrack-cm", Sdd "sdd", Mot "mot", MotTruth "mot-truth", Atc "atc", Kitti "kitti",
+    ApolloScape "apolloscape", Vsp "vsp", Edinburgh "edinburgh",
+}
+
 impl Format {
-    /// Every format that is read.
-    pub const ALL: [Self; 16] = [
-        Self::StarCsv,
-        Self::SocialGan,
-        Self::Table,
-        Self::TrajNet,
-        Self::Obsmat,
-        Self::IdFirst,
-        Self::PeTrack,
-        Self::PeTrackCm,
-        Self::Sdd,
-        Self::Mot,
-        Self::MotTruth,
-        Self::Atc,
-        Self::Kitti,
-        Self::ApolloScape,
-        Self::Vsp,
-        Self::Edinburgh,
-    ];
     /// Every format that is also written.
     pub const WRITTEN: [Self; 5] = [Self::StarCsv, Self::SocialGan, Self::Table, Self::TrajNet, Self::Obsmat];
-
-    /// The format's name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::StarCsv => "star-csv",
-            Self::SocialGan => "social-gan",
-            Self::Table => "table",
-            Self::TrajNet => "trajnet",
-            Self::Obsmat => "obsmat",
-            Self::IdFirst => "id-first",
-            Self::PeTrack => "petrack",
-            Self::PeTrackCm => "petrack-cm",
-            Self::Sdd => "sdd",
-            Self::Mot => "mot",
-            Self::MotTruth => "mot-truth",
-            Self::Atc => "atc",
-            Self::Kitti => "kitti",
-            Self::ApolloScape => "apolloscape",
-            Self::Vsp => "vsp",
-            Self::Edinburgh => "edinburgh",
-        }
-    }
 }
 
 impl fmt::Display for Format {

@@ -130,7 +130,8 @@ pub(super) static LAYOUTS: [Layout; 11] = [
     },
     Layout {
         format: Format::Kitti,
-        names: "frame pedestrian class truncated occluded alpha left top right bottom height width length x down y rotation",
+        names: "frame pedestrian class truncated occluded alpha left top right bottom \
+                height width length x down y rotation",
         place: Place::Point([13, 15]),
         class: Some((2, "Pedestrian")),
         note: Some("read as tracking labels of KITTI: pedestrians on the ground, relative to the camera"),
