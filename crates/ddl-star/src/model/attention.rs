@@ -7,11 +7,11 @@ use tch::Tensor;
 /// B -> `[B, P, width]`.
 pub(super) fn spatial_attention(qkv: &Tensor, heads: i64, seen: &AttentionBlocks, dropout: f64) -> Tensor {
     let (entries, width) = (qkv.size()[0], qkv.size()[2] / 3);
-    let queries = seen.queries_of(&qkv.narrow(2, 0, width));
+    let queries = seen.in_blocks(&qkv.narrow(2, 0, width), &seen.queries);
     let (blocks, length) = (queries.size()[1], queries.size()[2]);
     let count = entries * blocks;
     let query = queries.view([count, length, heads, width / heads]).transpose(1, 2);
-    let pairs = seen.keys_of(&qkv.narrow(2, width, 2 * width));
+    let pairs = seen.in_blocks(&qkv.narrow(2, width, 2 * width), &seen.keys);
     let parts = pairs.view([count, -1, 2, heads, width / heads]).unbind(2);
     let [key, value] = [0, 1].map(|part: usize| parts[part].transpose(1, 2));
     let (mask, scale) = (seen.mask(entries), scale(width, heads));

@@ -18,9 +18,9 @@ const ALIGNMENT: usize = 8;
 pub struct AttentionBlocks {
     blocks: i64,
     /// `[S * L]`, the pedestrian of each query, padded with the first of the block.
-    queries: Tensor,
+    pub(super) queries: Tensor,
     /// `[S * M]`, the pedestrian of each key, padded likewise.
-    keys: Tensor,
+    pub(super) keys: Tensor,
     /// `[P]`, the place of each pedestrian among the queries.
     places: Tensor,
     /// `[F, S, L, M]`: 0 for a key that the query sees, -inf elsewhere. A padded query sees one key, so that its
@@ -77,17 +77,7 @@ impl AttentionBlocks {
         }
     }
 
-    /// Shapes: `x` `[B, P, n]` -> `[B, S, L, n]`.
-    pub(super) fn queries_of(&self, x: &Tensor) -> Tensor {
-        self.in_blocks(x, &self.queries)
-    }
-
-    /// Shapes: `x` `[B, P, n]` -> `[B, S, M, n]`.
-    pub(super) fn keys_of(&self, x: &Tensor) -> Tensor {
-        self.in_blocks(x, &self.keys)
-    }
-
-    /// The inverse of [`queries_of`](Self::queries_of), which drops the padding.
+    /// The inverse of [`in_blocks`](Self::in_blocks) of the queries, which drops the padding.
     pub(super) fn out_of_blocks(&self, x: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[3]);
         x.reshape([batch, -1, width]).index_select(1, &self.places)
@@ -100,7 +90,8 @@ impl AttentionBlocks {
         mask.reshape([entries * self.blocks, 1, length, width])
     }
 
-    fn in_blocks(&self, x: &Tensor, pedestrians: &Tensor) -> Tensor {
+    /// The rows of `pedestrians`, queries or keys. Shapes: `x` `[B, P, n]` -> `[B, S, L, n]` or `[B, S, M, n]`.
+    pub(super) fn in_blocks(&self, x: &Tensor, pedestrians: &Tensor) -> Tensor {
         let (batch, width) = (x.size()[0], x.size()[2]);
         let gathered = x.index_select(1, pedestrians);
         gathered.view([batch, self.blocks, -1, width])

@@ -33,10 +33,7 @@ pub(crate) struct ForecastSteps {
 }
 
 /// A backend, and the backbone in its operations.
-struct BackbonePass<'a, B: TensorBackend> {
-    backend: &'a B,
-    backbone: &'a dyn Backbone<B>,
-}
+type BackbonePass<'a, B> = (&'a B, &'a dyn Backbone<B>);
 
 impl Layers {
     /// One-step-ahead positions: the next position from the true positions up to each frame.
@@ -54,22 +51,8 @@ impl Layers {
     ) -> Tensor {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Engine::Torch(backend) => {
-                let backbone = &*self.on_tensors;
-                self.teacher_forced_by(batch, goals, noise, &BackbonePass { backend, backbone })
-            }
-            Engine::Kernels(pass) => {
-                let backbone = &*self.on_rows;
-                self.teacher_forced_by(
-                    batch,
-                    goals,
-                    noise,
-                    &BackbonePass {
-                        backend: &pass.backend,
-                        backbone,
-                    },
-                )
-            }
+            Engine::Torch(backend) => self.teacher_forced_by(batch, goals, noise, (backend, &*self.on_tensors)),
+            Engine::Kernels(pass) => self.teacher_forced_by(batch, goals, noise, (&pass.backend, &*self.on_rows)),
         }
     }
 
@@ -78,9 +61,8 @@ impl Layers {
         batch: &WindowBatch,
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
-        pass: &BackbonePass<'_, B>,
+        (backend, backbone): BackbonePass<'_, B>,
     ) -> Tensor {
-        let BackbonePass { backend, backbone } = *pass;
         let steps = batch.positions.size()[0] as usize - 1;
         let positions = batch.positions.narrow(0, 0, steps as i64);
         // The frames are known, so the backbone encodes all their scenes at once.
@@ -126,23 +108,8 @@ impl Layers {
     ) -> Rollout {
         let noise = (noise, &pass.noise_weight(self.output, &self.config));
         match pass {
-            Engine::Torch(backend) => {
-                let backbone = &*self.on_tensors;
-                self.roll_out_by(batch, goals, noise, steps, &BackbonePass { backend, backbone })
-            }
-            Engine::Kernels(pass) => {
-                let backbone = &*self.on_rows;
-                self.roll_out_by(
-                    batch,
-                    goals,
-                    noise,
-                    steps,
-                    &BackbonePass {
-                        backend: &pass.backend,
-                        backbone,
-                    },
-                )
-            }
+            Engine::Torch(backend) => self.roll_out_by(batch, goals, noise, steps, (backend, &*self.on_tensors)),
+            Engine::Kernels(pass) => self.roll_out_by(batch, goals, noise, steps, (&pass.backend, &*self.on_rows)),
         }
     }
 
@@ -152,9 +119,8 @@ impl Layers {
         goals: &Tensor,
         (noise, noise_weight): (&NoiseInput, &Tensor),
         ForecastSteps { horizon, rule }: ForecastSteps,
-        pass: &BackbonePass<'_, B>,
+        (backend, backbone): BackbonePass<'_, B>,
     ) -> Rollout {
-        let BackbonePass { backend, backbone } = *pass;
         let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
         let last = OBSERVED as i64 - 1;
         let hypotheses = goals.size()[0].max(noise.count());
@@ -162,7 +128,7 @@ impl Layers {
         let shaped = self.config.variant.dynamics();
         let emission = Emission::new(backend, self.output, noise_weight, noise, shape, shaped);
         let guidance = self.guidance(batch, goals, rule);
-        let (mut features, mut memory) = observe(batch, &guidance, pass);
+        let (mut features, mut memory) = observe(batch, &guidance, (backend, backbone));
         if backend.entries(&features) < hypotheses as usize {
             features = backend.repeated(&features, hypotheses as usize);
             memory = memory.repeated(backend, hypotheses as usize);
@@ -238,7 +204,7 @@ impl Layers {
 fn observe<B: TensorBackend>(
     batch: &WindowBatch,
     guidance: &Guidance,
-    BackbonePass { backend, backbone }: &BackbonePass<'_, B>,
+    (backend, backbone): BackbonePass<'_, B>,
 ) -> (B::Tokens, Memory<B>) {
     let observed = batch.positions.narrow(0, 0, OBSERVED as i64);
     let centred = backend.given(&centre(batch, &observed));
@@ -247,13 +213,8 @@ fn observe<B: TensorBackend>(
     let mut step = |t: usize| {
         let position = |t: usize| observed.get(t as i64);
         let relative = backend.given(&guidance.seen(&position(t), &position(t.saturating_sub(1))));
-        backbone.step(
-            backend,
-            &mut memory,
-            &relative,
-            &scenes[t],
-            &backend.seen(batch, t..t + 1),
-        )
+        let seen = backend.seen(batch, t..t + 1);
+        backbone.step(backend, &mut memory, &relative, &scenes[t], &seen)
     };
     let mut features = step(0);
     for t in 1..OBSERVED {

@@ -41,25 +41,15 @@ impl SceneRows {
         }
     }
 
-    /// Shapes: `x` `[B, P, n]` -> `[B, S, L, n]`.
-    fn in_rows(&self, x: &Tensor) -> Tensor {
-        let (batch, width) = (x.size()[0], x.size()[2]);
-        let rows = x.index_select(1, &self.pedestrians);
-        rows.view([batch, self.scenes, self.length, width])
-    }
-
-    /// The inverse of [`in_rows`](Self::in_rows), which drops the padding.
-    fn out_of_rows(&self, rows: &Tensor) -> Tensor {
-        let (batch, width) = (rows.size()[0], rows.size()[3]);
-        rows.reshape([batch, -1, width]).index_select(1, &self.places)
-    }
-
     /// For every pedestrian, the mean of `x` over its scene, summed in a fixed order: CUDA's sums by index have none.
     /// Shapes: `x` `[B, P, n]` -> the same.
     pub(crate) fn means(&self, x: &Tensor) -> Tensor {
-        let rows = self.in_rows(x);
+        let (batch, width) = (x.size()[0], x.size()[2]);
+        let rows = x.index_select(1, &self.pedestrians);
+        let rows = rows.view([batch, self.scenes, self.length, width]);
         let means = (&rows * &self.shares).sum_dim_intlist([2i64].as_slice(), true, None::<Kind>);
-        self.out_of_rows(&means.expand_as(&rows))
+        let rows = means.expand_as(&rows).reshape([batch, -1, width]);
+        rows.index_select(1, &self.places)
     }
 
     pub(crate) fn shallow_clone(&self) -> Self {

@@ -53,14 +53,6 @@ impl RememberedViews {
             present: tensor(&present, &[count, slots], options)?,
         })
     }
-
-    fn map(&self, change: impl Fn(&Tensor) -> Tensor) -> Self {
-        Self {
-            tracks: change(&self.tracks),
-            distances: change(&self.distances),
-            present: change(&self.present),
-        }
-    }
 }
 
 impl Views {
@@ -96,27 +88,28 @@ impl Views {
     /// The views of the given rows, in the shape of `rows`.
     /// Shapes: `rows` `[M, B]` -> tensors `[M, B, ..]`.
     pub(crate) fn rows(&self, rows: &Tensor) -> Self {
-        let take = |tensor: &Tensor| rows_of(tensor, rows);
-        Self {
-            own: take(&self.own),
-            neighbours: take(&self.neighbours),
-            present: take(&self.present),
-            remembered: self.remembered.map(take),
-        }
+        self.map(|tensor| rows_of(tensor, rows))
     }
 
     /// The same pedestrians for each of `members` members: `[B, ..]` -> `[M, B, ..]`, without a copy.
     pub(crate) fn for_each_of(&self, members: i64) -> Self {
-        let repeat = |tensor: &Tensor| {
+        self.map(|tensor| {
             let mut shape = tensor.size();
             shape.insert(0, members);
             tensor.unsqueeze(0).expand(shape.as_slice(), false)
-        };
+        })
+    }
+
+    fn map(&self, change: impl Fn(&Tensor) -> Tensor) -> Self {
         Self {
-            own: repeat(&self.own),
-            neighbours: repeat(&self.neighbours),
-            present: repeat(&self.present),
-            remembered: self.remembered.map(repeat),
+            own: change(&self.own),
+            neighbours: change(&self.neighbours),
+            present: change(&self.present),
+            remembered: RememberedViews {
+                tracks: change(&self.remembered.tracks),
+                distances: change(&self.remembered.distances),
+                present: change(&self.remembered.present),
+            },
         }
     }
 }

@@ -76,24 +76,21 @@ mod tests {
             waypoints: Tensor::zeros([1, 1, 3, 3, 2], (Kind::Double, Device::Cpu)),
             logits: Tensor::from_slice(&[0.0, 0.0, 0.0]).reshape([1, 1, 3]),
         };
-        let loss = |relaxed: f64| {
+        let both = |relaxed: f64, probability: f64| {
+            let waypoints = 0.0;
             let weights = LossWeights {
                 relaxed,
-                waypoints: 0.0,
-                probability: 0.0,
+                waypoints,
+                probability,
             };
-            winner_takes_all(&proposals, &future, weights).0.double_value(&[])
+            winner_takes_all(&proposals, &future, weights)
         };
+        let loss = |relaxed: f64| both(relaxed, 0.0).0.double_value(&[]);
         assert!((loss(1.0) - 1.0).abs() < 1e-6);
         assert!((loss(2.0) - 1.5).abs() < 1e-6);
         assert!((loss(2.5) - (1.0 + 2.0 + 0.5 * 3.0) / 2.5).abs() < 1e-6);
         assert!((loss(9.0) - 2.0).abs() < 1e-6);
-        let weights = LossWeights {
-            relaxed: 1.0,
-            waypoints: 0.0,
-            probability: 1.0,
-        };
-        let (total, distance) = winner_takes_all(&proposals, &future, weights);
+        let (total, distance) = both(1.0, 1.0);
         let surprise = (&total - &distance).double_value(&[]);
         assert!((surprise - 3.0_f64.ln()).abs() < 1e-9);
     }
