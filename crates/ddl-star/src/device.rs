@@ -11,7 +11,7 @@ pub const LIBTORCH_VERSION: &str = "2.11.0";
 
 /// A device that has been opened and is available.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ComputeDevice(tch::Device);
+pub struct ComputeDevice(pub(crate) tch::Device);
 
 impl ComputeDevice {
     /// Opens the device. Call it before any other use of libtorch: CUDA registers itself only if its library is loaded
@@ -37,12 +37,6 @@ impl ComputeDevice {
             tch::Device::Cpu => "cpu",
             _ => "cuda",
         }
-    }
-
-    /// The device in libtorch's type.
-    #[must_use]
-    pub(crate) fn torch(self) -> tch::Device {
-        self.0
     }
 }
 

@@ -21,7 +21,7 @@ pub struct TorchBackend {
 impl TorchBackend {
     /// A pass with libtorch's own gradients, if any.
     pub(crate) fn new(parameters: &Parameters, mode: Mode) -> Self {
-        let tensors = parameters.tensors().iter();
+        let tensors = parameters.tensors.iter();
         Self {
             tensors: tensors.map(Tensor::shallow_clone).collect(),
             mode,

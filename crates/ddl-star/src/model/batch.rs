@@ -104,11 +104,6 @@ impl WindowBatch {
     pub(crate) fn pedestrians(&self) -> usize {
         self.positions.size()[1] as usize
     }
-
-    /// Positions, `[T, P, 2]`, metres.
-    pub(crate) fn positions(&self) -> &Tensor {
-        &self.positions
-    }
 }
 
 fn check_length(window: &Window, frames: usize) -> Result<(), StarError> {

@@ -23,15 +23,15 @@ impl TorchNetwork {
     #[must_use]
     pub fn into_forecaster(self) -> Box<dyn ForecastWindows> {
         Box::new(TorchForecaster {
-            config: self.config().clone(),
-            options: (self.kind(), self.device()),
+            config: self.layers.config.clone(),
+            options: (self.kind, self.device),
             network: Mutex::new(self),
         })
     }
 
     fn roll_out_batch(&self, batch: &ForecastBatch<'_>, mut scenes: WindowBatch) -> Result<BatchRollout, StarError> {
         let _guard = tch::no_grad_guard();
-        let (device, kind) = (self.device(), self.kind());
+        let (device, kind) = (self.device, self.kind);
         let tensor = |values: &[f64], shape: &[i64]| tensor(values, shape, (kind, device));
         let pedestrians = scenes.pedestrians() as i64;
         if let Some(shares) = &batch.shares {
@@ -43,7 +43,7 @@ impl TorchNetwork {
         let noise = match &batch.noise {
             None => NoiseInput::Expected,
             Some(draws) => {
-                let shape = [batch.noise_vectors as i64, self.config().noise_width];
+                let shape = [batch.noise_vectors as i64, self.layers.config.noise_width];
                 NoiseInput::Draws(tensor(draws, &shape)?)
             }
         };
@@ -53,7 +53,7 @@ impl TorchNetwork {
             horizon: HORIZON,
             rule: batch.rule,
         };
-        let Rollout { positions, factors } = self.layers().roll_out(&scenes, &goals, &noise, steps, pass);
+        let Rollout { positions, factors } = self.layers.roll_out(&scenes, &goals, &noise, steps, pass);
         Ok(BatchRollout {
             hypotheses: positions.size()[1] as usize,
             positions: arrays(&positions)?,

@@ -15,16 +15,16 @@ use tch::{Device, Kind, Tensor};
 /// The network on libtorch's tensors, on a device.
 #[derive(Debug)]
 pub struct TorchNetwork {
-    layers: Layers,
+    pub(crate) layers: Layers,
     parameters: Parameters,
-    device: Device,
-    kind: Kind,
+    pub(crate) device: Device,
+    pub(crate) kind: Kind,
 }
 
 /// The layers of a network. Threads can share them, but not its tensors.
 #[derive(Debug)]
 pub(crate) struct Layers {
-    pub(super) config: StarConfig,
+    pub(crate) config: StarConfig,
     pub(super) on_tensors: Box<dyn Backbone<TorchBackend>>,
     pub(super) on_rows: Box<dyn Backbone<KernelBackend>>,
     pub(super) output: Linear,
@@ -69,7 +69,7 @@ impl TorchNetwork {
     where
         T: Backbone<TorchBackend> + Backbone<KernelBackend> + Clone + 'static,
     {
-        let device = device.torch();
+        let device = device.0;
         config.check()?;
         let mut layout = Layout::default();
         let backbone = make(&mut layout, &config);
@@ -88,29 +88,14 @@ impl TorchNetwork {
         })
     }
 
-    /// Size and constants.
-    pub(crate) fn config(&self) -> &StarConfig {
-        &self.layers.config
-    }
-
     /// The learned tensors.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
     }
 
-    /// The device of the network.
-    pub(crate) fn device(&self) -> Device {
-        self.device
-    }
-
-    /// The precision of all its numbers.
-    pub(crate) fn kind(&self) -> Kind {
-        self.kind
-    }
-
     /// A copy of the output layer's weight for the noise, `[outputs, noise]`, with a gradient of its own.
     pub(crate) fn copy_noise_weight(&self) -> Tensor {
-        let weight = &self.parameters.tensors()[self.layers.output.tensor];
+        let weight = &self.parameters.tensors[self.layers.output.tensor];
         let of_noise = weight.narrow(1, self.layers.config.output_inputs(), self.layers.config.noise_width);
         of_noise.detach().copy().set_requires_grad(true)
     }
@@ -124,9 +109,5 @@ impl TorchNetwork {
         let weights = self.parameters.to_weights()?;
         let kernels = Kernels::new(weights.layout(), weights.numbers());
         Ok(Some(Arc::new(kernels)))
-    }
-
-    pub(crate) fn layers(&self) -> &Layers {
-        &self.layers
     }
 }

@@ -14,8 +14,9 @@ use tch::{Device, Kind, Tensor};
 #[derive(Debug)]
 pub struct Parameters {
     layout: Arc<Layout>,
-    tensors: Vec<Tensor>,
-    flat: Tensor,
+    pub(crate) tensors: Vec<Tensor>,
+    /// All learned parameters as one vector that shares its memory with the tensors.
+    pub(crate) flat: Tensor,
 }
 
 /// Of the learned tensors, and of others.
@@ -64,11 +65,6 @@ impl Parameters {
             .map(|(_, tensor)| tensor)
     }
 
-    /// The number of learned parameters.
-    pub(crate) fn count(&self) -> usize {
-        self.layout.count()
-    }
-
     /// A copy of all learned parameters in single precision.
     ///
     /// # Errors
@@ -91,16 +87,7 @@ impl Parameters {
         Ok(())
     }
 
-    pub(crate) fn tensors(&self) -> &[Tensor] {
-        &self.tensors
-    }
-
-    /// All learned parameters as one vector that shares its memory with the tensors.
-    pub(crate) fn flat(&self) -> &Tensor {
-        &self.flat
-    }
-
-    /// The gradient of a loss computed by libtorch's operations only, as one vector like [`flat`](Self::flat).
+    /// The gradient of a loss computed by libtorch's operations only, as one vector like `flat`.
     pub(crate) fn gradient_of(&self, loss: &Tensor) -> Result<Tensor, tch::TchError> {
         let (gradients, _) = self.gradients_of(loss, &[])?;
         let rows = gradients.into_iter().zip(&self.tensors).map(|(gradient, tensor)| {

@@ -100,7 +100,7 @@ impl Reference {
             set += 1;
         }
         assert_eq!(set, network.parameters().iter().count());
-        assert_eq!(network.parameters().count(), 827_443);
+        assert_eq!(network.parameters().layout().count(), 827_443);
         network
     }
 
@@ -126,7 +126,7 @@ fn agrees(kind: Kind, tolerance: f64) {
     let torch = TorchBackend::new(network.parameters(), Mode::Evaluate);
     let goal = reference.tensor("/true_goal", &[pedestrians, 2], kind);
     let forecast = network
-        .layers()
+        .layers
         .teacher_forced(&batch, &goal, &noise, Engine::Torch(&torch));
     let expected = reference.tensor("/train_forward/positions", &[19, pedestrians, 2], kind);
     let difference = largest_difference(&forecast, &expected);
@@ -135,7 +135,7 @@ fn agrees(kind: Kind, tolerance: f64) {
         "teacher-forced positions differ by {difference}"
     );
 
-    let loss = mean_squared_distance(&forecast, &batch.positions().narrow(0, 1, 19));
+    let loss = mean_squared_distance(&forecast, &batch.positions.narrow(0, 1, 19));
     let expected = reference.numbers("/train_forward/loss")[0];
     let relative = (loss.double_value(&[]) / expected - 1.0).abs();
     assert!(relative < 1e-3, "loss differs by {relative}");
@@ -156,7 +156,7 @@ fn agrees(kind: Kind, tolerance: f64) {
         rule: StepRule::Euler,
     };
     let rollout = network
-        .layers()
+        .layers
         .roll_out(&batch, &goal, &noise, steps, Engine::Torch(&torch));
     let rolled = rollout.positions.squeeze_dim(1);
     let expected = reference.tensor("/test_forward/positions", &[19, pedestrians, 2], kind);

@@ -103,7 +103,7 @@ impl SharedWeights {
         let outputs: Vec<&Tensor> = uses.iter().map(|of| &of.output).collect();
         let (direct, of_outputs) = parameters.gradients_of(loss, &outputs)?;
         let mut shares = shares(&uses, of_outputs)?;
-        let tensors = parameters.tensors().iter().enumerate().zip(direct);
+        let tensors = parameters.tensors.iter().enumerate().zip(direct);
         let gradients = tensors.map(|((index, tensor), direct)| match (direct, shares.remove(&index)) {
             (Some(direct), Some(share)) => direct.f_add(&share)?.f_reshape([-1]),
             (Some(one), None) | (None, Some(one)) => one.f_reshape([-1]),

@@ -29,9 +29,9 @@ pub(crate) struct Proposals {
 /// The ensemble.
 #[derive(Debug)]
 pub struct TorchProposals {
-    config: ProposalConfig,
-    device: ComputeDevice,
-    kind: Kind,
+    pub(crate) config: ProposalConfig,
+    pub(crate) device: ComputeDevice,
+    pub(crate) kind: Kind,
     parameters: Parameters,
     layers: ProposalLayers,
 }
@@ -47,7 +47,7 @@ impl TorchProposals {
         let mut layout = Layout::default();
         let layers = ProposalLayers::new(&mut layout, &config);
         let initial = layout.initial(stream(seed, Stage::ProposalWeights, 0));
-        let parameters = Parameters::new(layout, &initial, device.torch(), kind);
+        let parameters = Parameters::new(layout, &initial, device.0, kind);
         Ok(Self {
             config,
             device,
@@ -69,26 +69,13 @@ impl TorchProposals {
     /// y = x W + b of every member.
     /// Shapes: `x` `[M, B, inputs]` -> `[M, B, outputs]`.
     fn affine(&self, layer: MemberAffine, x: &Tensor) -> Tensor {
-        let tensors = &self.parameters.tensors()[layer.tensor()..];
+        let tensors = &self.parameters.tensors[layer.tensor()..];
         tensors[1].baddbmm(x, &tensors[0], 1.0, 1.0)
-    }
-
-    /// The shape of the network.
-    pub(crate) fn config(&self) -> &ProposalConfig {
-        &self.config
     }
 
     /// The learned tensors, each with the ensemble's members along its first dimension.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
-    }
-
-    pub(crate) fn device(&self) -> ComputeDevice {
-        self.device
-    }
-
-    pub(crate) fn kind(&self) -> Kind {
-        self.kind
     }
 
     /// Proposes endpoints for each of the pedestrians.
@@ -102,40 +89,37 @@ impl TorchProposals {
         let _guard = tch::no_grad_guard();
         let mut proposed = Vec::with_capacity(views.len());
         for chunk in views.chunks(CHUNK) {
-            let views = Views::new(chunk.iter(), &self.config, self.device.torch(), self.kind)?
-                .for_each_of(self.config.members);
+            let views =
+                Views::new(chunk.iter(), &self.config, self.device.0, self.kind)?.for_each_of(self.config.members);
             let alone = self.forward(&views);
             // [M, B, K, ..] -> B times [M K, ..]
             let per_pedestrian = (self.config.members * self.config.ends) as usize;
             let members = self.config.members as f64;
-            let listed = |proposals: &Proposals| -> Result<_, StarError> {
+            let listed = |proposals: &Proposals| -> Result<Vec<ProposedEndpoints>, StarError> {
                 let weights = proposals.logits.softmax(-1, Kind::Double) / members;
                 let ends: Vec<Position> = arrays(&proposals.ends.transpose(0, 1))?;
-                let weights = arrays::<1>(&weights.transpose(0, 1))?;
-                Ok((ends, weights.into_flattened()))
+                let weights = arrays::<1>(&weights.transpose(0, 1))?.into_flattened();
+                let pairs = ends
+                    .chunks_exact(per_pedestrian)
+                    .zip(weights.chunks_exact(per_pedestrian));
+                let pairs = pairs.map(|(endpoints, weights)| (endpoints.to_vec(), weights.to_vec()));
+                let listed = pairs.map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights });
+                Ok(listed.collect())
             };
-            let (endpoints, weights) = listed(&alone)?;
-            let endpoints = endpoints.chunks_exact(per_pedestrian).map(<[_]>::to_vec);
-            let weights = weights.chunks_exact(per_pedestrian).map(<[_]>::to_vec);
-            let mut of_chunk: Vec<ProposedEndpoints> = endpoints
-                .zip(weights)
-                .map(|(endpoints, weights)| ProposedEndpoints { endpoints, weights })
-                .collect();
+            let mut of_chunk = listed(&alone)?;
             let remembers = chunk.iter().any(|view| !view.remembered.is_empty());
             let branch = self.config.memory.as_ref().filter(|_| remembers);
             if let Some((memory, proposals)) = branch.zip(self.forward_remembering(&views)) {
-                let (ends, weights) = listed(&proposals)?;
-                let others = ends
-                    .chunks_exact(per_pedestrian)
-                    .zip(weights.chunks_exact(per_pedestrian));
-                for ((view, proposed), (ends, weights)) in chunk.iter().zip(&mut of_chunk).zip(others) {
+                for ((view, proposed), other) in chunk.iter().zip(&mut of_chunk).zip(listed(&proposals)?) {
                     if !view.remembered.is_empty() {
                         let share = memory.share(&view.remembered);
                         for weight in &mut proposed.weights {
                             *weight *= 1.0 - share;
                         }
-                        proposed.endpoints.extend(ends);
-                        proposed.weights.extend(weights.iter().map(|weight| weight * share));
+                        proposed.endpoints.extend(other.endpoints);
+                        proposed
+                            .weights
+                            .extend(other.weights.iter().map(|weight| weight * share));
                     }
                 }
             }
@@ -222,11 +206,11 @@ impl TorchProposals {
     }
 
     fn placed(&self, readings: Proposals, views: &Views) -> Proposals {
-        let onward = self.recent_velocity(&views.own) * (HORIZON as f64 * self.config.time_step);
+        let onward = self.velocity(&views.own, OBSERVED - 1) * (HORIZON as f64 * self.config.time_step);
         let ends = readings.ends + onward.unsqueeze(2);
         let shares = Tensor::from_slice(&WAYPOINTS)
             .to_kind(self.kind)
-            .to_device(self.device.torch())
+            .to_device(self.device.0)
             .reshape([WAYPOINTS.len() as i64, 1]);
         let on_the_way = ends.unsqueeze(3) * shares;
         Proposals {
@@ -261,7 +245,7 @@ impl TorchProposals {
         let hidden = present.eq(0.0).unsqueeze(-1);
         let scores = scores.masked_fill(&hidden, f64::NEG_INFINITY);
         // The additional entry of score 0.
-        let empty = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.torch()));
+        let empty = Tensor::zeros([m, b, 1, heads], (self.kind, self.device.0));
         let attention = Tensor::cat(&[scores, empty], 2)
             .softmax(2, None::<Kind>)
             .narrow(2, 0, slots);
@@ -304,8 +288,8 @@ impl TorchProposals {
         let here = views.own.select(-2, OBSERVED as i64 - 1).unsqueeze(2);
         let offset = last - here;
         let distance = (sum(&offset.square()) + 1e-6).sqrt();
-        let velocity = self.recent_velocity(&views.neighbours);
-        let relative = &velocity - self.recent_velocity(&views.own).unsqueeze(2);
+        let velocity = self.velocity(&views.neighbours, OBSERVED - 1);
+        let relative = &velocity - self.velocity(&views.own, OBSERVED - 1).unsqueeze(2);
         let closing = sum(&(&offset * &relative)) / &distance;
         let features = Tensor::cat(
             &[
@@ -325,11 +309,6 @@ impl TorchProposals {
     fn velocities(&self, track: &Tensor) -> Tensor {
         let steps = OBSERVED as i64 - 1;
         (track.narrow(-2, 1, steps) - track.narrow(-2, 0, steps)) / self.config.time_step
-    }
-
-    /// Mean velocity over the last [`RECENT_STEPS`] steps (m/s): `[.., T, 2]` -> `[.., 2]`.
-    fn recent_velocity(&self, track: &Tensor) -> Tensor {
-        self.velocity(track, OBSERVED - 1)
     }
 
     /// Mean velocity over the [`RECENT_STEPS`] steps that end at a step (m/s): `[.., T, 2]` -> `[.., 2]`.

@@ -8,7 +8,7 @@ use crate::proposal::data::{Views, rows_of};
 use crate::proposal::loss::{LossWeights, winner_takes_all};
 use crate::proposal::network::TorchProposals;
 use crate::training::GENERATOR;
-use crate::training::checkpoint::{self, Extra};
+use crate::training::checkpoint;
 use crate::training::optimizer::Adam;
 use ddl_core::WorkDone;
 use ddl_network::seed::{Stage, stream};
@@ -64,9 +64,9 @@ impl ProposalTrainer {
         if examples.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
-        let (device, kind) = (network.device().torch(), network.kind());
+        let (device, kind) = (network.device.0, network.kind);
         let both: Vec<&ProposalExample> = examples.iter().chain(reversed).collect();
-        let views = Views::new(both.iter().map(|example| &example.view), network.config(), device, kind)?;
+        let views = Views::new(both.iter().map(|example| &example.view), &network.config, device, kind)?;
         let future: Vec<f64> = both
             .iter()
             .flat_map(|example| example.future.as_flattened())
@@ -75,7 +75,7 @@ impl ProposalTrainer {
         let future = tensor(&future, &[both.len() as i64, -1, 2], (kind, device))?;
         Ok(Self {
             adam: Adam::new(network.parameters()),
-            average: network.parameters().flat().detach().copy(),
+            average: network.parameters().flat.detach().copy(),
             network,
             views,
             future,
@@ -87,7 +87,7 @@ impl ProposalTrainer {
 
     /// Steps of both parts.
     pub fn steps(&self) -> WorkDone {
-        let memory = self.network.config().memory.as_ref();
+        let memory = self.network.config.memory.as_ref();
         let of_memory = memory.map_or(0, |_| self.training.memory.steps);
         WorkDone {
             done: self.progress.steps,
@@ -107,7 +107,7 @@ impl ProposalTrainer {
     /// [`StarError::Torch`] when libtorch fails.
     pub fn into_network(self) -> Result<TorchProposals, StarError> {
         let _guard = tch::no_grad_guard();
-        let mut flat = self.network.parameters().flat().shallow_clone();
+        let mut flat = self.network.parameters().flat.shallow_clone();
         flat.f_copy_(&self.average)?;
         Ok(self.network)
     }
@@ -117,11 +117,9 @@ impl ProposalTrainer {
     /// # Errors
     /// When the file cannot be written; an earlier one is unchanged.
     pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        let extra = Extra {
-            progress: vec![self.progress.steps as f64, self.progress.distance],
-            vectors: vec![(AVERAGED, &self.average)],
-        };
-        checkpoint::save(self.network.parameters(), &self.adam, &extra, origin, path)
+        let progress = [self.progress.steps as f64, self.progress.distance];
+        let average = [(AVERAGED, &self.average)];
+        checkpoint::save(self.network.parameters(), &self.adam, &progress, &average, origin, path)
     }
 
     /// Continues from a saved state of the same run.
@@ -129,19 +127,13 @@ impl ProposalTrainer {
     /// # Errors
     /// [`StarError::Network`] when the file is of another origin, or not a complete state of this network.
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        let mut extra = Extra {
-            progress: vec![0.0; 2],
-            vectors: vec![(AVERAGED, &self.average)],
-        };
         let (parameters, most) = (self.network.parameters(), self.steps().total);
-        let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, most, origin, path)?;
+        let average = [(AVERAGED, &self.average)];
+        let (steps, [_, distance]) = checkpoint::load(parameters, &mut self.adam, &average, most, origin, path)?;
         if let Some(of_memory) = steps.checked_sub(self.training.steps) {
-            self.adam.set_steps(of_memory);
+            self.adam.steps = of_memory;
         }
-        self.progress = ProposalProgress {
-            steps,
-            distance: extra.progress[1],
-        };
+        self.progress = ProposalProgress { steps, distance };
         Ok(())
     }
 
@@ -181,12 +173,12 @@ impl ProposalTrainer {
         let rate = training.learning_rate * LearningRateSchedule::Cosine.factor(done, total);
         // Members are trained independently, so the norm of all their gradients grows with the square root of their
         // number.
-        let clip = training.gradient_clip * (self.network.config().members as f64).sqrt();
+        let clip = training.gradient_clip * (self.network.config.members as f64).sqrt();
         self.adam.step(parameters, &gradient, &norm, clip, rate);
         let _guard = tch::no_grad_guard();
         // The decay is smaller at first, so that the initial weights are soon forgotten.
         let decay = AVERAGE.min((done as f64 + 1.0) / (done as f64 + 10.0));
-        let _ = self.average.lerp_(&parameters.flat().detach(), 1.0 - decay);
+        let _ = self.average.lerp_(&parameters.flat.detach(), 1.0 - decay);
         let decay = if done == 0 { 0.0 } else { REPORTED };
         self.progress.distance = decay * self.progress.distance + (1.0 - decay) * distance;
         self.progress.steps += 1;
@@ -201,7 +193,7 @@ impl ProposalTrainer {
     fn begin_memory_branch(&mut self) -> Result<(), StarError> {
         let _guard = tch::no_grad_guard();
         let parameters = self.network.parameters();
-        parameters.flat().shallow_clone().f_copy_(&self.average)?;
+        parameters.flat.shallow_clone().f_copy_(&self.average)?;
         self.adam = Adam::new(parameters);
         Ok(())
     }
@@ -226,7 +218,7 @@ impl ProposalTrainer {
     /// The rows `[M, B]` of a step, drawn for each member, and their augmented views and futures.
     fn batch(&self, step: u64) -> (Tensor, Views, Tensor) {
         let mut rng = stream(self.training.seed, Stage::ProposalStep, step);
-        let (members, batch) = (self.network.config().members, self.training.batch);
+        let (members, batch) = (self.network.config.members, self.training.batch);
         let (onward, examples) = (self.onward as i64, self.future.size()[0]);
         let reversed = if examples > onward { self.training.reversed } else { 0.0 };
         let rows: Vec<i64> = (0..members * batch)

@@ -13,14 +13,8 @@ const FIRST_MOMENT: &str = "first_moment";
 const SECOND_MOMENT: &str = "second_moment";
 const PROGRESS: &str = "progress";
 
-/// Additional content of the file: the counters of a training, as `progress`, and vectors of the size of the weights.
-#[derive(Debug)]
-pub(crate) struct Extra<'a> {
-    /// Counters of the training; the first one is the number of steps.
-    pub(crate) progress: Vec<f64>,
-    /// Vectors with their names.
-    pub(crate) vectors: Vec<(&'static str, &'a Tensor)>,
-}
+/// Vectors of the size of the weights, with their names.
+type Vectors<'a> = [(&'static str, &'a Tensor)];
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct TrainerProgress {
@@ -32,71 +26,75 @@ pub(crate) struct TrainerProgress {
     pub(crate) seconds: f64,
 }
 
-/// Writes everything that a killed run needs to continue into one file, so that its parts always match.
+/// Writes everything that a killed run needs to continue into one file, so that its parts always match: also `vectors`,
+/// and the counters `progress` of the training, of which the first is the number of steps.
 pub(crate) fn save(
     parameters: &Parameters,
     adam: &Adam,
-    extra: &Extra<'_>,
+    progress: &[f64],
+    vectors: &Vectors<'_>,
     origin: &Origin,
     path: &Path,
 ) -> Result<(), StarError> {
     let state = [
-        (WEIGHTS, parameters.flat()),
+        (WEIGHTS, &parameters.flat),
         (FIRST_MOMENT, &adam.first_moment),
         (SECOND_MOMENT, &adam.second_moment),
     ];
     let mut tensors = state
         .iter()
-        .chain(&extra.vectors)
+        .chain(vectors)
         .map(|(name, tensor)| stored(name, tensor))
         .collect::<Result<Vec<_>, _>>()?;
     tensors.push(StoredTensor {
         name: PROGRESS.to_owned(),
-        shape: vec![extra.progress.len()],
-        numbers: TensorData::Double(extra.progress.clone()),
+        shape: vec![progress.len()],
+        numbers: TensorData::Double(progress.to_vec()),
     });
     Ok(write_tensors(&tensors, origin, path)?)
 }
 
-/// Restores the state and returns the progress; changes nothing if the file is not complete.
-pub(crate) fn load(
+/// Restores the state and returns the number of steps and the N counters of the training; changes nothing if the file
+/// is not complete.
+pub(crate) fn load<const N: usize>(
     parameters: &Parameters,
     adam: &mut Adam,
-    extra: &mut Extra<'_>,
+    vectors: &Vectors<'_>,
     most_steps: u64,
     origin: &Origin,
     path: &Path,
-) -> Result<u64, StarError> {
-    let vectors = 3 + extra.vectors.len() as u64;
-    let tensors = read_tensors(path, parameters.count() as u64 * vectors * 8, origin)?;
+) -> Result<(u64, [f64; N]), StarError> {
+    let count = 3 + vectors.len() as u64;
+    let tensors = read_tensors(path, parameters.layout().count() as u64 * count * 8, origin)?;
     let find = |name: &str| -> Result<Tensor, StarError> {
         let stored = find_tensor(&tensors, name, path)?;
-        let shape = [parameters.count()];
-        Ok(match parameters.flat().kind() {
+        let shape = [parameters.layout().count()];
+        Ok(match parameters.flat.kind() {
             Kind::Double => Tensor::f_from_slice(&stored.double(&shape, path)?)?,
             _ => Tensor::f_from_slice(&stored.single(&shape, path)?)?,
         })
     };
     let (weights, first, second) = (find(WEIGHTS)?, find(FIRST_MOMENT)?, find(SECOND_MOMENT)?);
-    let names = extra.vectors.iter();
+    let names = vectors.iter();
     let others = names.map(|(name, _)| find(name)).collect::<Result<Vec<_>, _>>()?;
     // Adam divides by the root of its second moment, so a negative value would give NaN.
     if second.lt(0.0).any().int64_value(&[]) != 0 {
         let problem = format!("{SECOND_MOMENT} holds negative numbers; delete it and run the same training again");
         return Err(NetworkError::checkpoint(path, problem).into());
     }
-    let progress = find_tensor(&tensors, PROGRESS, path)?.double(&[extra.progress.len()], path)?;
+    let found = find_tensor(&tensors, PROGRESS, path)?.double(&[N], path)?;
+    let mut progress = [0.0; N];
+    progress.copy_from_slice(&found);
     let steps = whole_steps(progress[0], most_steps, path)?;
     let _guard = tch::no_grad_guard();
-    parameters.flat().shallow_clone().f_copy_(&weights)?;
+    parameters.flat.shallow_clone().f_copy_(&weights)?;
     adam.first_moment.f_copy_(&first)?;
     adam.second_moment.f_copy_(&second)?;
-    adam.set_steps(steps);
-    for ((_, vector), stored) in extra.vectors.iter().zip(others) {
+    adam.steps = steps;
+    for ((_, vector), stored) in vectors.iter().zip(others) {
         vector.shallow_clone().f_copy_(&stored)?;
     }
-    extra.progress = progress;
-    Ok(steps)
+    Ok((steps, progress))
 }
 
 fn whole_steps(number: f64, most: u64, path: &Path) -> Result<u64, StarError> {

@@ -50,10 +50,10 @@ impl StepDraw {
         config: &TrainingConfig,
         network: &TorchNetwork,
     ) -> Result<Self, StarError> {
-        let options = (network.kind(), network.device());
-        let mut rng = stream(schedule.seed(), Stage::Step, step);
+        let options = (network.kind, network.device);
+        let mut rng = stream(schedule.seed, Stage::Step, step);
         let libtorch = (rng.next_u64() >> 1).cast_signed();
-        let width = network.config().noise_width;
+        let width = network.layers.config.noise_width;
         let noise: Vec<f64> = (0..width).map(|_| rng.sample(StandardNormal)).collect();
         let kernels = rng.next_u64();
         let turn = (config.rotate || config.mirror).then(|| {

@@ -23,7 +23,7 @@ pub(crate) fn by_torch(
 ) -> Result<(Tensor, Tensor), StarError> {
     let parameters = network.parameters();
     let torch = TorchBackend::training(parameters, Mode::Train);
-    let loss = loss(network.layers(), objective, batch, noise, Engine::Torch(&torch))?;
+    let loss = loss(&network.layers, objective, batch, noise, Engine::Torch(&torch))?;
     let gradient = torch.gradient(&loss, parameters)?;
     Ok((loss, gradient))
 }
@@ -36,7 +36,7 @@ pub(crate) fn by_kernels(
     parts: Vec<TrainingBatch>,
     draw: &StepDraw,
 ) -> Result<(Tensor, Tensor), StarError> {
-    let (layers, count) = (network.layers(), network.parameters().count());
+    let (layers, count) = (&network.layers, network.parameters().layout().count());
     let sizes = parts.iter().map(|part| part.scenes.pedestrians());
     let pedestrians: usize = sizes.sum();
     let jobs = parts.into_iter().zip(0..).map(|(part, index)| {
@@ -87,7 +87,7 @@ fn loss(
     let (scenes, goals) = (&batch.scenes, &batch.goals);
     let after = |frames: usize| {
         let count = (WINDOW - frames) as i64;
-        scenes.positions().f_narrow(0, frames as i64, count)
+        scenes.positions.f_narrow(0, frames as i64, count)
     };
     match objective {
         Objective::NextStep => {

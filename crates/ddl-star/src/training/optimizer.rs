@@ -10,7 +10,7 @@ const EPSILON: f64 = 1e-8;
 /// Adam over all learned parameters as one vector.
 #[derive(Debug)]
 pub(crate) struct Adam {
-    steps: u64,
+    pub(crate) steps: u64,
     pub(crate) first_moment: Tensor,
     pub(crate) second_moment: Tensor,
 }
@@ -20,17 +20,13 @@ impl Adam {
     pub(crate) fn new(parameters: &Parameters) -> Self {
         Self {
             steps: 0,
-            first_moment: parameters.flat().zeros_like(),
-            second_moment: parameters.flat().zeros_like(),
+            first_moment: parameters.flat.zeros_like(),
+            second_moment: parameters.flat.zeros_like(),
         }
     }
 
-    pub(crate) fn set_steps(&mut self, steps: u64) {
-        self.steps = steps;
-    }
-
     /// One step against `gradient`, whose norm is `norm`, clipped to norm `clip`. Shapes: `gradient` has
-    /// [`Parameters::count`] entries; `norm` is a scalar.
+    /// [`Layout::count`](ddl_network::weights::Layout::count) entries; `norm` is a scalar.
     ///
     /// # Numerics
     /// m / (1 - b1^n) / (sqrt(v / (1 - b2^n)) + e) is computed as c m / (sqrt(v) + e'), with both corrections in the
@@ -54,7 +50,7 @@ impl Adam {
         let mut scale = self.second_moment.sqrt();
         scale += EPSILON * correction_2;
         let rate = -learning_rate * correction_2 / correction_1;
-        let mut flat = parameters.flat().shallow_clone();
+        let mut flat = parameters.flat.shallow_clone();
         let _ = flat.addcdiv_(&(&self.first_moment * rate), &scale);
     }
 }
@@ -73,7 +69,7 @@ mod tests {
         let initial = layout.initial(stream(1, Stage::Weights, 0));
         let parameters = Parameters::new(layout, &initial, Device::Cpu, Kind::Double);
         let mut adam = Adam::new(&parameters);
-        let mut expected: Vec<f64> = Vec::try_from(parameters.flat()).unwrap();
+        let mut expected: Vec<f64> = Vec::try_from(&parameters.flat).unwrap();
         let (mut m, mut v) = ([0.0; 12], [0.0; 12]);
         for step in 1..=5_i32 {
             let gradient: Vec<f64> = (0..12).map(|i| f64::from(i - 5) * 0.3 * f64::from(step)).collect();
@@ -88,7 +84,7 @@ mod tests {
             }
             let gradient = Tensor::from_slice(&gradient);
             adam.step(&parameters, &gradient, &gradient.norm(), 2.0, 0.01);
-            let difference = parameters.flat() - Tensor::from_slice(&expected);
+            let difference = &parameters.flat - Tensor::from_slice(&expected);
             assert!(difference.abs().max().double_value(&[]) < 1e-13, "step {step}");
         }
     }

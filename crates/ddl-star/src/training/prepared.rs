@@ -186,7 +186,7 @@ mod tests {
         };
         tch::manual_seed(7);
         let off = exact.shared().jittered(0.05);
-        let moved = off.scenes.positions() - exact.scenes.positions();
+        let moved = &off.scenes.positions - &exact.scenes.positions;
         let (observed, future) = (moved.slice(0, 0, 8, 1), moved.slice(0, 8, 20, 1));
         assert_eq!(future, future.zeros_like());
         assert_eq!(off.goals, exact.goals);

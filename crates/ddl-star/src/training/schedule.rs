@@ -9,9 +9,9 @@ use std::f64::consts::PI;
 /// Batches of window indices, visited repeatedly in a fixed order (as published: windows are shuffled once).
 #[derive(Debug)]
 pub(crate) struct Schedule {
-    batches: Vec<Vec<usize>>,
-    steps_per_epoch: usize,
-    seed: u64,
+    pub(crate) batches: Vec<Vec<usize>>,
+    pub(crate) steps_per_epoch: usize,
+    pub(crate) seed: u64,
 }
 
 impl Schedule {
@@ -48,28 +48,8 @@ impl Schedule {
         }
     }
 
-    pub(crate) fn is_empty(&self) -> bool {
-        self.batches.is_empty()
-    }
-
-    pub(crate) fn steps_per_epoch(&self) -> usize {
-        self.steps_per_epoch
-    }
-
-    pub(crate) fn batches(&self) -> usize {
-        self.batches.len()
-    }
-
-    pub(crate) fn seed(&self) -> u64 {
-        self.seed
-    }
-
     pub(crate) fn batch_index(&self, step: u64) -> usize {
         (step % self.batches.len() as u64) as usize
-    }
-
-    pub(crate) fn batch(&self, index: usize) -> &[usize] {
-        &self.batches[index]
     }
 
     /// The rotation of the batch of a step: the sum over its visits of one angle in [0, pi) for each visit.

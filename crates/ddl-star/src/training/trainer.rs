@@ -3,7 +3,7 @@
 use crate::StarError;
 use crate::model::TorchNetwork;
 use crate::training::GENERATOR;
-use crate::training::checkpoint::{self, Extra, TrainerProgress};
+use crate::training::checkpoint::{self, TrainerProgress};
 use crate::training::draws::StepDraw;
 use crate::training::gradient;
 use crate::training::optimizer::Adam;
@@ -64,23 +64,23 @@ impl Trainer {
             goals.retain(|_| of_windows.next().is_some_and(Window::has_future));
         }
         windows.retain(Window::has_future);
-        config.check(network.config().variant)?;
+        config.check(network.layers.config.variant)?;
         let schedule = Schedule::new(&windows, &config);
-        if schedule.is_empty() {
+        if schedule.batches.is_empty() {
             return Err(StarError::NoTrainingWindows);
         }
         let kernels = network.kernels()?;
         #[cfg(target_os = "linux")]
-        let recorded = match network.device() {
-            tch::Device::Cuda(_) => Some(RecordedSteps::new(schedule.batches())?),
+        let recorded = match network.device {
+            tch::Device::Cuda(_) => Some(RecordedSteps::new(schedule.batches.len())?),
             _ => None,
         };
         let batches = PreparedBatches::new(
             (windows, goals),
-            schedule.batches(),
-            network.config().neighbour_box,
+            schedule.batches.len(),
+            network.layers.config.neighbour_box,
             kernels.is_some().then_some(PART),
-            (network.device(), network.kind()),
+            (network.device, network.kind),
         );
         Ok(Self {
             adam: Adam::new(network.parameters()),
@@ -110,14 +110,14 @@ impl Trainer {
 
     /// Whole epochs done.
     pub fn completed_epochs(&self) -> usize {
-        (self.progress.steps / self.schedule.steps_per_epoch() as u64) as usize
+        (self.progress.steps / self.schedule.steps_per_epoch as u64) as usize
     }
 
     /// Steps over all epochs.
     pub fn steps(&self) -> WorkDone {
         WorkDone {
             done: self.progress.steps,
-            total: (self.schedule.steps_per_epoch() * self.config.epochs) as u64,
+            total: (self.schedule.steps_per_epoch * self.config.epochs) as u64,
         }
     }
 
@@ -126,16 +126,9 @@ impl Trainer {
     /// # Errors
     /// When the file cannot be written; an earlier one is unchanged.
     pub fn save(&self, origin: &Origin, path: &Path) -> Result<(), StarError> {
-        let TrainerProgress {
-            steps,
-            loss_sum,
-            seconds,
-        } = self.progress;
-        let extra = Extra {
-            progress: vec![steps as f64, loss_sum, seconds],
-            vectors: Vec::new(),
-        };
-        checkpoint::save(self.network.parameters(), &self.adam, &extra, origin, path)
+        let of = &self.progress;
+        let progress = [of.steps as f64, of.loss_sum, of.seconds];
+        checkpoint::save(self.network.parameters(), &self.adam, &progress, &[], origin, path)
     }
 
     /// Continues from a saved state of the same run.
@@ -145,15 +138,11 @@ impl Trainer {
     pub fn resume(&mut self, origin: &Origin, path: &Path) -> Result<(), StarError> {
         let total = self.steps().total;
         let parameters = self.network.parameters();
-        let mut extra = Extra {
-            progress: vec![0.0; 3],
-            vectors: Vec::new(),
-        };
-        let steps = checkpoint::load(parameters, &mut self.adam, &mut extra, total, origin, path)?;
+        let (steps, [_, loss_sum, seconds]) = checkpoint::load(parameters, &mut self.adam, &[], total, origin, path)?;
         self.progress = TrainerProgress {
             steps,
-            loss_sum: extra.progress[1],
-            seconds: extra.progress[2],
+            loss_sum,
+            seconds,
         };
         Ok(())
     }
@@ -195,7 +184,7 @@ impl Trainer {
     /// The loss of a step and its gradient with respect to all learned numbers, as one vector.
     fn gradient(&mut self, step: u64, draw: &StepDraw) -> Result<(Tensor, Tensor), StarError> {
         let index = self.schedule.batch_index(step);
-        let parts = self.batches.batch(index, self.schedule.batch(index))?;
+        let parts = self.batches.batch(index, &self.schedule.batches[index])?;
         let network = &self.network;
         let TrainingConfig { objective, jitter, .. } = self.config;
         if self.kernels.is_none() {
@@ -232,7 +221,7 @@ impl Trainer {
             return Ok(());
         };
         let batch = self.schedule.batch_index(self.progress.steps);
-        let windows = self.schedule.batch(batch).first().map_or_else(String::new, |&index| {
+        let windows = self.schedule.batches[batch].first().map_or_else(String::new, |&index| {
             let window = self.batches.window(index);
             format!("{}@{} and following", window.recording(), window.start_frame())
         });
@@ -246,7 +235,7 @@ impl Trainer {
     }
 
     fn report(&mut self, step: u64, loss: f64) -> StepReport {
-        let steps_per_epoch = self.schedule.steps_per_epoch();
+        let steps_per_epoch = self.schedule.steps_per_epoch;
         let epoch = (step / steps_per_epoch as u64) as usize + 1;
         let done = (step % steps_per_epoch as u64) as usize + 1;
         let finished_epoch = (done == steps_per_epoch).then(|| {

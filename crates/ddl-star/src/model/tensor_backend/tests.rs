@@ -76,7 +76,7 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Engine
     let (loss, gradient) = if let Some(kernels) = kernels {
         let pass = KernelPass::new(&kernels, Mode::Evaluate, 0, network.copy_noise_weight());
         let loss = loss(&network, Engine::Kernels(&pass));
-        let gradient = pass.gradient(&loss, network.layers(), parameters.count());
+        let gradient = pass.gradient(&loss, &network.layers, parameters.layout().count());
         (loss, Tensor::from_slice(&gradient.unwrap()))
     } else {
         let torch = TorchBackend::training(parameters, Mode::Evaluate);
@@ -89,26 +89,26 @@ fn gradient(config: &StarConfig, by: By, loss: impl FnOnce(&TorchNetwork, Engine
 
 /// The mean square of single steps from true positions.
 fn teacher_forced(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor {
-    let kind = network.kind();
+    let kind = network.kind;
     let batch = batch(windows, kind);
     let ones = Tensor::ones([1, 16], (kind, tch::Device::Cpu));
     let noise = NoiseInput::Draws(ones * 0.3);
-    let goals = batch.positions().get(WINDOW as i64 - 1);
-    let forecast = network.layers().teacher_forced(&batch, &goals, &noise, pass);
-    let truth = batch.positions().narrow(0, 1, WINDOW as i64 - 1);
+    let goals = batch.positions.get(WINDOW as i64 - 1);
+    let forecast = network.layers.teacher_forced(&batch, &goals, &noise, pass);
+    let truth = batch.positions.narrow(0, 1, WINDOW as i64 - 1);
     (forecast - truth).square().mean(None::<Kind>)
 }
 
 fn walk(windows: &[Window], network: &TorchNetwork, pass: Engine<'_>) -> Tensor {
-    let batch = batch(windows, network.kind());
-    let goals = batch.positions().narrow(0, WINDOW as i64 - 1, 1) + 0.3;
+    let batch = batch(windows, network.kind);
+    let goals = batch.positions.narrow(0, WINDOW as i64 - 1, 1) + 0.3;
     let noise = NoiseInput::Expected;
     let steps = ForecastSteps {
         horizon: 12,
         rule: StepRule::Bounded,
     };
-    let walk = network.layers().roll_out(&batch, &goals, &noise, steps, pass);
-    let truth = batch.positions().narrow(0, 8, 12);
+    let walk = network.layers.roll_out(&batch, &goals, &noise, steps, pass);
+    let truth = batch.positions.narrow(0, 8, 12);
     crate::training::mean_distance(&walk.positions.squeeze_dim(1), &truth)
 }
 
@@ -231,7 +231,7 @@ fn kernels_give_the_forecasts_of_libtorch() {
 
         let before = answers(&plain, &bounded);
         let torch = network(&config, Kind::Double);
-        let mut flat = torch.parameters().flat().shallow_clone();
+        let mut flat = torch.parameters().flat.shallow_clone();
         flat *= 1.3;
         let weights = torch.parameters().to_weights().unwrap();
         let plain = plain.with_weights(weights).unwrap();

@@ -10,7 +10,7 @@ use tch::Kind;
 
 fn state(trainer: &Trainer) -> [Tensor; 3] {
     let adam = &trainer.adam;
-    let flat = trainer.network.parameters().flat();
+    let flat = &trainer.network.parameters().flat;
     [flat, &adam.first_moment, &adam.second_moment].map(|tensor| tensor.detach().copy())
 }
 
@@ -60,7 +60,7 @@ fn every_device_gives_the_same_gradients() {
         };
         let gradient = |device: ComputeDevice, kind: Kind| {
             let mut trainer = of_large_batches(&star, &training, (device, kind));
-            let parts = trainer.batches.batch(0, trainer.schedule.batch(0)).unwrap();
+            let parts = trainer.batches.batch(0, &trainer.schedule.batches[0]).unwrap();
             let sizes: Vec<usize> = parts.iter().map(|part| part.scenes.pedestrians()).collect();
             let by_kernels = (device, kind) == (cpu, Kind::Float);
             assert_eq!(sizes.len(), if by_kernels { 3 } else { 1 }, "{sizes:?}");
