@@ -6,7 +6,7 @@ use crate::config::BackboneKind;
 use crate::forecast::batch::{BatchRollout, ForecastBatch};
 use crate::forecast::emission::NoiseSpread;
 use crate::forecast::forecast_windows::ForecastWindows;
-use crate::forecast::pass::{Pass, PassLayers};
+use crate::forecast::pass::Pass;
 use crate::seed::{Stage, stream};
 use crate::weights::{Layout, Linear, Weights};
 use crate::{NetworkError, StarConfig};
@@ -18,12 +18,13 @@ use std::sync::Arc;
 /// The rollout of a window has the same bits alone and together with other windows, with any number of threads.
 #[derive(Debug)]
 pub struct MotionNetwork {
-    config: StarConfig,
+    pub(super) config: StarConfig,
     weights: Weights,
-    kernels: Arc<Kernels>,
-    backbone: Box<dyn Backbone<KernelBackend>>,
-    output: Linear,
-    spread: Option<NoiseSpread>,
+    pub(super) kernels: Arc<Kernels>,
+    pub(super) backbone: Box<dyn Backbone<KernelBackend>>,
+    pub(super) output: Linear,
+    /// Needed for the expectation over the noise; `None` for the variants without dynamics.
+    pub(super) spread: Option<NoiseSpread>,
 }
 
 impl MotionNetwork {
@@ -123,11 +124,6 @@ impl ForecastWindows for MotionNetwork {
     }
 
     fn roll_out(&self, batch: &ForecastBatch<'_>) -> Result<BatchRollout, NetworkError> {
-        let layers = PassLayers {
-            backbone: &*self.backbone,
-            output: self.output,
-            spread: self.spread,
-        };
-        Ok(Pass::new(layers, &self.kernels, batch, &self.config).roll_out())
+        Ok(Pass::new(self, batch).roll_out())
     }
 }

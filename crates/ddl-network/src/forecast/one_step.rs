@@ -15,34 +15,27 @@ pub(super) fn around<T: Copy>(entries: &[T], i: usize) -> T {
 pub(super) fn next(
     place: [f32; 2],
     goal: [f32; 2],
-    factor: [f32; 3],
-    constants: (f32, StepTime<f32>),
-    bounds: Option<&MotionBounds<f32>>,
-) -> [f32; 2] {
-    checked(place, goal, factor, constants, bounds).unwrap_or([f32::NAN; 2])
-}
-
-fn checked(
-    place: [f32; 2],
-    goal: [f32; 2],
     [a, b, c]: [f32; 3],
     (sigma, time): (f32, StepTime<f32>),
     bounds: Option<&MotionBounds<f32>>,
-) -> Result<[f32; 2], DynamicsError> {
-    let attractor = Attractor::new(Vector2::from(goal))?;
-    let metric = CholeskyMetric::planar(a, b, c, sigma)?;
-    let start = Vector2::from(place);
-    let mut path = [start; 2];
-    match bounds {
-        None => {
-            let flow = NaturalGradientFlow::new(attractor, metric);
-            rollout_into(&flow, &Euler, start, time.dt, &mut path)?;
+) -> [f32; 2] {
+    let step = || -> Result<[f32; 2], DynamicsError> {
+        let attractor = Attractor::new(Vector2::from(goal))?;
+        let metric = CholeskyMetric::planar(a, b, c, sigma)?;
+        let start = Vector2::from(place);
+        let mut path = [start; 2];
+        match bounds {
+            None => {
+                let flow = NaturalGradientFlow::new(attractor, metric);
+                rollout_into(&flow, &Euler, start, time.dt, &mut path)?;
+            }
+            Some(bounds) => {
+                let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
+                let flow = NaturalGradientFlow::new(attractor, metric);
+                rollout_into(&flow, &StableEuler, start, time.dt, &mut path)?;
+            }
         }
-        Some(bounds) => {
-            let metric = bounds.shape(&metric, &(attractor.goal() - start), time);
-            let flow = NaturalGradientFlow::new(attractor, metric);
-            rollout_into(&flow, &StableEuler, start, time.dt, &mut path)?;
-        }
-    }
-    Ok(path[1].into())
+        Ok(path[1].into())
+    };
+    step().unwrap_or([f32::NAN; 2])
 }

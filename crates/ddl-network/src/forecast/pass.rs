@@ -1,13 +1,10 @@
 //! The rollout of one batch of windows, some hypotheses at a time.
 
-use crate::StarConfig;
-use crate::backbone::Backbone;
-use crate::backend::{Backend as _, Buffer, KernelBackend, Kernels, Memory, Rows};
+use crate::backend::{Backend as _, Buffer, KernelBackend, Memory, Rows};
 use crate::forecast::batch::{BatchRollout, ForecastBatch};
-use crate::forecast::emission::NoiseSpread;
+use crate::forecast::network::MotionNetwork;
 use crate::forecast::rollout_state::{ObservedSteps, RolloutState};
 use crate::kernel::KeepBuffers;
-use crate::weights::Linear;
 use ddl_data::{HORIZON, OBSERVED};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -18,21 +15,11 @@ use std::sync::Arc;
 /// key-value caches of all time steps stay in the processor's cache. Threads take such parts in turns.
 const ROWS_AT_ONCE: usize = 128;
 
-#[derive(Clone, Copy)]
-pub(super) struct PassLayers<'a> {
-    pub(super) backbone: &'a dyn Backbone<KernelBackend>,
-    pub(super) output: Linear,
-    /// Needed for the expectation over the noise; `None` for the variants without dynamics.
-    pub(super) spread: Option<NoiseSpread>,
-}
-
 /// The data that all hypotheses of a batch share.
 pub(super) struct Pass<'a> {
-    layers: PassLayers<'a>,
-    kernels: &'a Arc<Kernels>,
+    network: &'a MotionNetwork,
     batch: &'a ForecastBatch<'a>,
     observation: ObservedSteps<'a>,
-    noise_width: usize,
     /// Output of the backbone's spatial encoder at the observed time steps, `[8, P, width]`.
     scene: Buffer,
 }
@@ -48,24 +35,17 @@ struct HypothesisPart<'a> {
 }
 
 impl<'a> Pass<'a> {
-    pub(super) fn new(
-        layers: PassLayers<'a>,
-        kernels: &'a Arc<Kernels>,
-        batch: &'a ForecastBatch<'a>,
-        config: &'a StarConfig,
-    ) -> Self {
-        let observation = ObservedSteps::new(batch, config);
+    pub(super) fn new(network: &'a MotionNetwork, batch: &'a ForecastBatch<'a>) -> Self {
+        let observation = ObservedSteps::new(batch, &network.config);
         let seen = observation.seen(0..OBSERVED);
         let centred = observation.centred();
-        let backend = KernelBackend::forward_only(Arc::clone(kernels));
-        let scene = layers.backbone.scene(&backend, &centred, &seen);
+        let backend = KernelBackend::forward_only(Arc::clone(&network.kernels));
+        let scene = network.backbone.scene(&backend, &centred, &seen);
         Self {
             scene: Buffer::copy(&scene),
-            layers,
-            kernels,
+            network,
             batch,
             observation,
-            noise_width: config.noise_width as usize,
         }
     }
 
@@ -79,7 +59,7 @@ impl<'a> Pass<'a> {
             .map_init(KeepBuffers::new, |_, first| {
                 let part = HypothesisPart {
                     pass: self,
-                    backend: KernelBackend::forward_only(Arc::clone(self.kernels)),
+                    backend: KernelBackend::forward_only(Arc::clone(&self.network.kernels)),
                     hypotheses: first..hypotheses.min(first + at_once),
                 };
                 part.roll_out()
@@ -134,7 +114,7 @@ impl HypothesisPart<'_> {
             let relative = state.observed_relative(t);
             let seen = self.pass.observation.seen(t..t + 1);
             let scene = self.scene(t);
-            let backbone = self.pass.layers.backbone;
+            let backbone = &self.pass.network.backbone;
             backbone.step(&self.backend, &mut memory, &relative, &scene, &seen)
         };
         for t in 0..OBSERVED - 1 {
@@ -146,13 +126,8 @@ impl HypothesisPart<'_> {
 
     /// Computes the time steps to forecast.
     fn walk(&self, mut state: RolloutState<'_>, (mut memory, mut features): Observed) -> BatchRollout {
-        let Pass {
-            layers,
-            observation,
-            batch,
-            ..
-        } = self.pass;
-        let PassLayers { backbone, spread, .. } = *layers;
+        let Pass { observation, batch, .. } = self.pass;
+        let MotionNetwork { backbone, spread, .. } = self.pass.network;
         let hypotheses = self.hypotheses.len();
         let size = HORIZON * hypotheses * batch.pedestrians();
         let mut positions = Vec::with_capacity(size);
@@ -177,7 +152,7 @@ impl HypothesisPart<'_> {
             if t + 1 < HORIZON {
                 let centred = state.centred(OBSERVED + t + 1);
                 let scene = backbone.scene(&self.backend, &centred, &seen);
-                let relative = state.newest_relative();
+                let relative = state.relative(&state.positions, &state.before);
                 features = backbone.step(&self.backend, &mut memory, &relative, &scene, &seen);
             }
         }
@@ -199,12 +174,12 @@ impl HypothesisPart<'_> {
 
     fn emit(&self, features: &Rc<Rows>, noise: &Rc<Rows>) -> Buffer {
         let inputs = self.backend.concatenate(features, noise);
-        Buffer::copy(&self.backend.linear(self.pass.layers.output, &inputs))
+        Buffer::copy(&self.backend.linear(self.pass.network.output, &inputs))
     }
 
     /// The noise input of each pedestrian, `[H, P, noise]`; zeros if the expectation is added afterwards.
     fn noise(&self) -> Rc<Rows> {
-        let (width, batch) = (self.pass.noise_width, self.pass.batch);
+        let (width, batch) = (self.pass.network.config.noise_width as usize, self.pass.batch);
         let hypotheses = self.hypotheses.clone();
         let shape = [hypotheses.len(), batch.pedestrians(), width];
         let mut numbers = Buffer::zeros(shape.iter().product());

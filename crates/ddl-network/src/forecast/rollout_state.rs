@@ -46,7 +46,7 @@ pub(super) struct RolloutState<'a> {
     /// Newest positions, `[H, P]`.
     pub(super) positions: Vec<[f32; 2]>,
     /// Positions one time step before, `[H, P]`.
-    before: Vec<[f32; 2]>,
+    pub(super) before: Vec<[f32; 2]>,
     /// Sums of the positions so far, `[H, P]`.
     sums: Vec<[f32; 2]>,
 }
@@ -187,14 +187,9 @@ impl<'a> RolloutState<'a> {
         self.relative(self.observation.at(t), before)
     }
 
-    /// Inputs of the temporal encoders at the newest positions, `[H, P, inputs]`.
-    pub(super) fn newest_relative(&self) -> Rc<Rows> {
-        self.relative(&self.positions, &self.before)
-    }
-
-    /// Inputs from `positions` and the positions one step before, `[1 or H, P]`: relative to the references and, in the
-    /// pedestrians' own frames, with the velocity.
-    fn relative(&self, positions: &[[f32; 2]], before: &[[f32; 2]]) -> Rc<Rows> {
+    /// Inputs of the temporal encoders from `positions` and the positions one step before, `[1 or H, P]`: relative to
+    /// the references and, in the pedestrians' own frames, with the velocity.
+    pub(super) fn relative(&self, positions: &[[f32; 2]], before: &[[f32; 2]]) -> Rc<Rows> {
         let count = positions.len().max(self.references.len());
         let pedestrians = self.observation.pedestrians;
         let (entries, time_step) = (count / pedestrians, self.observation.time_step());

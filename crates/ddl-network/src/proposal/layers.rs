@@ -16,8 +16,8 @@ pub struct MemberAffine {
     tensor: usize,
     first: usize,
     members: usize,
-    inputs: usize,
-    outputs: usize,
+    pub(super) inputs: usize,
+    pub(super) outputs: usize,
 }
 
 impl MemberAffine {
@@ -39,11 +39,6 @@ impl MemberAffine {
     /// Index of its weight among the tensors of the layout; its bias is the next tensor.
     pub fn tensor(self) -> usize {
         self.tensor
-    }
-
-    /// Number of inputs and of outputs.
-    pub(super) fn sizes(self) -> [usize; 2] {
-        [self.inputs, self.outputs]
     }
 
     /// The ranges of a member's weight `[inputs, outputs]` and bias among all weights.

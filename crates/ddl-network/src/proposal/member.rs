@@ -190,7 +190,7 @@ fn rows_of(numbers: &Buffer, rows: &[usize], count: usize) -> Buffer {
 }
 
 fn kernel(layer: MemberAffine, member: usize, weights: &Weights) -> LinearKernel {
-    let [inputs, outputs] = layer.sizes();
+    let MemberAffine { inputs, outputs, .. } = layer;
     let [weight, bias] = layer.of_member(member).map(|span| &weights.numbers()[span]);
     // The kernel takes W as `[outputs, inputs]`.
     let by_outputs = (0..outputs).flat_map(|o| (0..inputs).map(move |i| weight[i * outputs + o]));
