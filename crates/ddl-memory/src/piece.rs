@@ -130,13 +130,8 @@ impl Piece {
     }
 
     /// The motion of the segment of a lane.
-    fn motion(&self, lane: usize) -> FirstMotion {
+    pub(crate) fn motion(&self, lane: usize) -> FirstMotion {
         FirstMotion::of(&std::array::from_fn(|t| self.path[lane + t]))
-    }
-
-    /// The motion of its first segment.
-    pub(crate) fn first_motion(&self) -> Option<FirstMotion> {
-        (self.len() > 0).then(|| self.motion(0))
     }
 
     /// Whether one of its segments lies within [`ALIKE`] of a motion.

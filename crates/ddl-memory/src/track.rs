@@ -37,9 +37,8 @@ impl Track {
     pub(crate) fn is_repeated_by(&self, others: &[Self]) -> bool {
         let middle = self.pieces.get(self.pieces.len().saturating_sub(1) / 2);
         let mut others = others.iter().flat_map(|track| &track.pieces);
-        middle
-            .and_then(Piece::first_motion)
-            .is_some_and(|motion| others.any(|other| other.is_alike(&motion)))
+        let motion = middle.filter(|piece| piece.len() > 0).map(|piece| piece.motion(0));
+        motion.is_some_and(|motion| others.any(|other| other.is_alike(&motion)))
     }
 
     /// Adds a piece. The previous last piece is removed if it repeats an earlier piece, except the one right before it.
@@ -115,10 +114,6 @@ impl RunningTrack {
         }
     }
 
-    fn last_position(&self) -> Option<Position> {
-        self.track.pieces.last()?.path.last().copied()
-    }
-
     /// Whether the track has ended by this frame.
     pub(crate) fn is_gone(&self, frame: i64, step: i64) -> bool {
         frame - self.last > MAX_ABSENCE_STEPS * step
@@ -128,7 +123,8 @@ impl RunningTrack {
     /// Returns the numbers of segments added and removed.
     pub(crate) fn see(&mut self, frame: i64, position: Position, step: i64) -> (usize, usize) {
         let (mut new, mut gone) = (0, 0);
-        let last = self.last_position().map(|last| (self.last, last));
+        let last = self.track.pieces.last().and_then(|piece| piece.path.last());
+        let last = last.map(|&last| (self.last, last));
         let before = self.between.take().or(last);
         let before = before.filter(|(before, _)| frame - before <= LONGEST_JOINED * step);
         while let Some((from, start)) = before
