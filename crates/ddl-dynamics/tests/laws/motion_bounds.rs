@@ -134,23 +134,11 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn arrives_within_bounds_f32(scene in any_scene(), draw in any_bounds()) {
+    fn bounds_hold(scene in any_scene(), draw in any_bounds(), distance in 0.0..10.0_f64, left in 1..13_usize) {
         arrives_within_bounds::<f32>(&scene, draw)?;
-    }
-
-    #[test]
-    fn arrives_within_bounds_f64(scene in any_scene(), draw in any_bounds()) {
         arrives_within_bounds::<f64>(&scene, draw)?;
-    }
-
-    #[test]
-    fn shaped_within_f64(scene in any_scene(), distance in 0.0..10.0_f64, left in 1..13_usize) {
-        shaped_within::<f64>(&scene, distance, left)?;
-    }
-
-    #[test]
-    fn shaped_within_f32(scene in any_scene(), distance in 0.0..10.0_f64, left in 1..13_usize) {
         shaped_within::<f32>(&scene, distance, left)?;
+        shaped_within::<f64>(&scene, distance, left)?;
     }
 }
 
