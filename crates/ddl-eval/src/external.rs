@@ -100,8 +100,9 @@ pub fn read(
     let origin = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let reader = BufReader::with_capacity(1 << 20, file);
-    let matched = read_from(reader, &origin, format, windows, coverage)?;
-    Ok(matched.named_after(name.into_owned()))
+    let mut matched = read_from(reader, &origin, format, windows, coverage)?;
+    matched.file = name.into_owned();
+    Ok(matched)
 }
 
 /// [`read`] for any reader; `origin` is the file's name in error messages.

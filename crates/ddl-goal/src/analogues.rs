@@ -32,7 +32,7 @@ pub(crate) struct Analogues {
 
 impl Analogues {
     pub(crate) fn new(library: &ExpertLibrary) -> Result<Self, LibraryError> {
-        let time_step = library.time_step();
+        let time_step = library.time_step;
         let prepared = library.of_each(|track| {
             let motion = Motion::new(track, time_step)?;
             let deviation = motion.deviation(track[WINDOW - 1], 1.0);

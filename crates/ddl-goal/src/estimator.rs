@@ -170,8 +170,8 @@ impl GoalEstimator {
             let moved = |p: &[f64; 2]| [0, 1].map(|d| track[0][d] + p[d] - other[0][d]);
             return Ok(other.iter().map(moved).collect());
         }
-        let pedestrian = Motion::new(track, library.time_step())?;
-        let expert_motion = Motion::new(other, library.time_step())?;
+        let pedestrian = Motion::new(track, library.time_step)?;
+        let expert_motion = Motion::new(other, library.time_step)?;
         let mirror = if expert.mirrored { -1.0 } else { 1.0 };
         let horizon = (WINDOW - observed) as f64;
         let transferred = |(step, &position): (usize, &[f64; 2])| {
@@ -195,7 +195,7 @@ struct Retriever {
 impl Retriever {
     fn new(library: &ExpertLibrary, gamma: f64, span: QuerySpan) -> Result<Self, GoalError> {
         let dtw = SoftDtw::new(gamma, Cost::SquaredEuclidean)?;
-        let time_step = library.time_step();
+        let time_step = library.time_step;
         let sequences = library.of_each(|track| velocities(track, time_step, span))?;
         Ok(Self {
             index: SearchIndex::build(&dtw, &sequences)?,

@@ -33,7 +33,8 @@ const NEGLIGIBLE: f64 = 1e-6;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HeadingFrame {
     origin: [f64; 2],
-    heading: [f64; 2],
+    /// Unit vector of the heading in world coordinates: the first axis.
+    pub(crate) heading: [f64; 2],
 }
 
 impl HeadingFrame {
@@ -70,11 +71,6 @@ impl HeadingFrame {
             toward.map(|component| component / length)
         };
         Ok(Self { origin: last, heading })
-    }
-
-    /// Unit vector of the heading in world coordinates: the first axis.
-    pub(crate) fn heading(&self) -> [f64; 2] {
-        self.heading
     }
 
     /// Transforms a position from world coordinates (m) to this frame: metres ahead, metres to the left.

@@ -19,7 +19,8 @@ use crate::span::check_finite;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "UncheckedLibrary")]
 pub struct ExpertLibrary {
-    time_step: f64,
+    /// Seconds between two positions of a track.
+    pub(crate) time_step: f64,
     tracks: Vec<Vec<[f64; 2]>>,
 }
 
@@ -78,11 +79,6 @@ impl ExpertLibrary {
     /// The tracks, at least one, positions in metres.
     pub fn tracks(&self) -> &[Vec<[f64; 2]>] {
         &self.tracks
-    }
-
-    /// Seconds between two positions of a track.
-    pub(crate) fn time_step(&self) -> f64 {
-        self.time_step
     }
 
     /// Endpoint of track `index` relative to its first position (m): equation 6 of the paper.

@@ -52,7 +52,7 @@ impl Motion {
         }
         // A standing pedestrian has no direction.
         let share = DIRECTION * (recently / WALKING).min(1.0);
-        for (component, direction) in components[STEPS..SIGNED].iter_mut().zip(frame.heading()) {
+        for (component, direction) in components[STEPS..SIGNED].iter_mut().zip(frame.heading) {
             *component = (share * direction) as f32;
         }
         let seconds = (WINDOW - span.positions()) as f64 * time_step;

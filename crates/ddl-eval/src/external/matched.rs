@@ -31,20 +31,12 @@ pub struct Matched {
     pub full_windows: Vec<Window>,
     /// Their forecasts.
     pub forecasts: Vec<Forecast>,
-    file: String,
+    /// The name of the file, without its folder.
+    pub(crate) file: String,
     pedestrians: usize,
 }
 
 impl Matched {
-    pub(super) fn named_after(self, file: String) -> Self {
-        Self { file, ..self }
-    }
-
-    /// The name of the file, without its folder.
-    pub(crate) fn file(&self) -> &str {
-        &self.file
-    }
-
     /// Number of pedestrians in the windows.
     pub fn pedestrians(&self) -> usize {
         self.pedestrians

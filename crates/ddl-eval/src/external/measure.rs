@@ -33,7 +33,7 @@ pub fn measure(conditions: &Conditions, matched: &Matched, noise_seed: u64) -> R
         .collect();
     let conditions = Conditions {
         test_subset: (!subsets.is_empty()).then(|| subsets.join("; ")),
-        selection: Some(format!("made by another program, read from {}", matched.file())),
+        selection: Some(format!("made by another program, read from {}", matched.file)),
         ..conditions.clone()
     };
     let forecasts = conditions
@@ -82,7 +82,7 @@ impl Matched {
             "are they in metres, and of the same data convention and fold?"
         };
         Err(ExternalError::OutOfPlace {
-            origin: self.file().to_owned(),
+            origin: self.file.clone(),
             metres,
             hint,
         })

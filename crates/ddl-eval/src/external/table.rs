@@ -25,7 +25,7 @@ pub(super) fn read(lines: Lines<impl BufRead>, expected: &mut ExpectedForecasts<
     let mut group: Option<PedestrianRows> = None;
     while let Some(fields) = rows.next()? {
         let row = columns.row(&fields).map_err(|wrong| rows.wrong(wrong))?;
-        let number = rows.number();
+        let number = rows.number;
         if group.as_ref().is_some_and(|group| group.who != row.who) {
             put(group.take(), expected, &mut numbering).map_err(|wrong| rows.wrong_at(wrong))?;
         }

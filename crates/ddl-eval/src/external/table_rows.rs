@@ -15,7 +15,7 @@ pub(super) struct TableRows<R> {
     reader: Reader,
     /// The current line, its number, and the start of its next row: a carriage return also ends a row.
     line: Vec<u8>,
-    number: usize,
+    pub(super) number: usize,
     at: usize,
     fields: Vec<u8>,
     ends: Vec<usize>,
@@ -50,10 +50,6 @@ impl<R: BufRead> TableRows<R> {
             fields: Vec::new(),
             ends: Vec::new(),
         }
-    }
-
-    pub(super) fn number(&self) -> usize {
-        self.number
     }
 
     pub(super) fn next(&mut self) -> Result<Option<Fields<'_>>, ExternalError> {
