@@ -56,7 +56,8 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
         .find_subcommand(name)
         .into_iter()
         .flat_map(Command::get_arguments);
-    let (outputs, inputs): (Vec<&Arg>, Vec<&Arg>) = arguments.partition(|argument| is_output(argument));
+    let is_output = |argument: &&Arg| OUTPUTS.contains(&argument.get_id().as_str());
+    let (outputs, inputs): (Vec<&Arg>, Vec<&Arg>) = arguments.partition(is_output);
     let named = |arguments: Vec<&Arg>| -> Vec<Named<'_>> {
         let paths = arguments.into_iter().flat_map(|argument| paths(argument, matches));
         paths.collect()
@@ -133,10 +134,6 @@ fn is_standard(argument: &Arg, matches: &ArgMatches) -> bool {
     let given = matches.try_get_many::<PathBuf>(argument.get_id().as_str());
     let mut given = given.ok().flatten().into_iter().flatten();
     given.any(|path| path == Path::new("-"))
-}
-
-fn is_output(argument: &Arg) -> bool {
-    OUTPUTS.contains(&argument.get_id().as_str())
 }
 
 fn paths<'a>(argument: &Arg, matches: &'a ArgMatches) -> Vec<Named<'a>> {
