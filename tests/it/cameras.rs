@@ -4,7 +4,8 @@ use crate::live::Live;
 use ddl::data::{Completeness, LiveTracks, PedestrianId, Position, SceneName, Window};
 use ddl::eval::baseline::ConstantVelocity;
 use ddl::memory::SceneMemory;
-use ddl::{DdlError, Forecast, ForecastError, Forecaster, LiveForecaster, LiveScenes, Variant};
+use ddl::{DdlError, Forecaster, LiveForecaster, LiveScenes, Variant};
+use ddl_tests::failing_model::FailingModel;
 use ddl_tests::own_tracks::{self, FRAME_STEP, Row};
 use ddl_tests::place::{Place, json_lines};
 use ddl_tests::{bits, drawn_model};
@@ -123,22 +124,6 @@ proptest! {
     }
 }
 
-/// A forecaster that refuses windows with a pedestrian at x = 99.
-struct Picky;
-
-impl Forecaster for Picky {
-    fn name(&self) -> String {
-        "picky".to_owned()
-    }
-
-    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        if window.observed(0)[7][0] > 98.0 {
-            return Err(ForecastError::model("picky", std::io::Error::other("far")));
-        }
-        ConstantVelocity::LastStep.forecast(window)
-    }
-}
-
 #[test]
 fn a_failure_of_one_scene_is_its_own() {
     let mut scenes = LiveScenes::new(LiveTracks::new());
@@ -148,7 +133,8 @@ fn a_failure_of_one_scene_is_its_own() {
             scenes.observe(Some(&name(scene)), frame, seen).unwrap();
         }
     }
-    let made = scenes.forecast(&Picky, 100);
+    let far_fails = FailingModel(|window: &Window| window.observed(0)[7][0] > 98.0);
+    let made = scenes.forecast(&far_fails, 100);
     let made: Vec<_> = made.iter().map(|made| made.forecast.is_ok()).collect();
     assert_eq!(made, [true, false, true]);
     // A frame that cannot be observed is also an error.

@@ -1,39 +1,22 @@
-//! A model whose forecasts fail on demand.
+//! A forecaster that fails on demand.
 
-use crate::drawn_model;
-use ddl::{Ddl, Forecast, ForecastError, Forecaster, Variant};
+use ddl::eval::baseline::ConstantVelocity;
+use ddl::{Forecast, ForecastError, Forecaster};
 use ddl_data::Window;
-use std::cell::Cell;
 
-/// A model whose forecasts fail while `fails` is set.
+/// Constant velocity that fails for the windows of which the function is true.
 #[derive(Debug)]
-pub struct FailingModel {
-    model: Ddl,
-    /// Whether forecasts fail.
-    pub fails: Cell<bool>,
-}
+pub struct FailingModel<F>(pub F);
 
-impl FailingModel {
-    /// A model with random weights.
-    #[must_use]
-    #[expect(clippy::new_without_default, reason = "a test names what it makes")]
-    pub fn new() -> Self {
-        Self {
-            model: drawn_model::of(Variant::Full),
-            fails: Cell::new(false),
-        }
-    }
-}
-
-impl Forecaster for &FailingModel {
+impl<F: Fn(&Window) -> bool> Forecaster for FailingModel<F> {
     fn name(&self) -> String {
-        self.model.name()
+        "failing".to_owned()
     }
 
     fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
-        if self.fails.get() {
-            return Err(ForecastError::model("test", "on demand"));
+        if (self.0)(window) {
+            return Err(ForecastError::model("failing", "on demand"));
         }
-        self.model.forecast(window)
+        ConstantVelocity::LastStep.forecast(window)
     }
 }
