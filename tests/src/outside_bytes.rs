@@ -33,58 +33,36 @@ enum Seeds {
 
 /// The test function of a reader, with the name of its fuzz target.
 #[derive(Debug, Clone, Copy)]
-pub struct Reader {
-    name: &'static str,
-    seeds: Seeds,
-    read: fn(&[u8]),
-}
-
-impl Reader {
-    const fn with_seeds(name: &'static str, read: fn(&[u8])) -> Self {
-        Self {
-            name,
-            seeds: Seeds::Corpus,
-            read,
-        }
-    }
-
-    const fn of_valid_file(name: &'static str, read: fn(&[u8])) -> Self {
-        Self {
-            name,
-            seeds: Seeds::None,
-            read,
-        }
-    }
-}
+pub struct Reader(&'static str, Seeds, fn(&[u8]));
 
 /// The readers that need no libtorch.
 pub const READERS: [Reader; 21] = [
-    Reader::with_seeds("table", tracks::table),
-    Reader::with_seeds("star_csv", tracks::star_csv),
-    Reader::with_seeds("social_gan", tracks::social_gan),
-    Reader::with_seeds("trajnet", tracks::trajnet),
-    Reader::with_seeds("obsmat", tracks::obsmat),
-    Reader::with_seeds("own_tracks", own_tracks::read),
-    Reader::with_seeds("stream", stream::read),
-    Reader::with_seeds("live_tracks", live_tracks::read),
-    Reader::with_seeds("homography", values::homography),
-    Reader::with_seeds("foreign_json_lines", external::json_lines),
-    Reader::with_seeds("foreign_table", external::table),
-    Reader::with_seeds("foreign_trajnet", external::trajnet),
-    Reader::with_seeds("report", values::report),
-    Reader::with_seeds("moments", values::moments),
-    Reader::with_seeds("goal_library", values::goal_library),
-    Reader::of_valid_file("scene_memory", scene_memory::read),
-    Reader::of_valid_file("packed_model", model_files::packed_model),
-    Reader::with_seeds("run_config", model_files::run_config),
-    Reader::with_seeds("metrics", model_files::metrics),
-    Reader::of_valid_file("weights", model_files::weights),
-    Reader::of_valid_file("experts", model_files::experts),
+    Reader("table", Seeds::Corpus, tracks::table),
+    Reader("star_csv", Seeds::Corpus, tracks::star_csv),
+    Reader("social_gan", Seeds::Corpus, tracks::social_gan),
+    Reader("trajnet", Seeds::Corpus, tracks::trajnet),
+    Reader("obsmat", Seeds::Corpus, tracks::obsmat),
+    Reader("own_tracks", Seeds::Corpus, own_tracks::read),
+    Reader("stream", Seeds::Corpus, stream::read),
+    Reader("live_tracks", Seeds::Corpus, live_tracks::read),
+    Reader("homography", Seeds::Corpus, values::homography),
+    Reader("foreign_json_lines", Seeds::Corpus, external::json_lines),
+    Reader("foreign_table", Seeds::Corpus, external::table),
+    Reader("foreign_trajnet", Seeds::Corpus, external::trajnet),
+    Reader("report", Seeds::Corpus, values::report),
+    Reader("moments", Seeds::Corpus, values::moments),
+    Reader("goal_library", Seeds::Corpus, values::goal_library),
+    Reader("scene_memory", Seeds::None, scene_memory::read),
+    Reader("packed_model", Seeds::None, model_files::packed_model),
+    Reader("run_config", Seeds::Corpus, model_files::run_config),
+    Reader("metrics", Seeds::Corpus, model_files::metrics),
+    Reader("weights", Seeds::None, model_files::weights),
+    Reader("experts", Seeds::None, model_files::experts),
 ];
 
 /// The readers that need libtorch.
 #[cfg(feature = "torch")]
-pub const TORCH_READERS: [Reader; 1] = [Reader::of_valid_file("training_state", training_state::read)];
+pub const TORCH_READERS: [Reader; 1] = [Reader("training_state", Seeds::None, training_state::read)];
 
 /// Edited inputs of each reader in a plain test, unless `PROPTEST_CASES` is set.
 const CASES: u32 = 1000;
@@ -96,19 +74,19 @@ pub fn read(name: &str, bytes: &[u8]) {
     #[cfg(not(feature = "torch"))]
     const TORCH_READERS: [Reader; 0] = [];
     let mut readers = READERS.iter().chain(&TORCH_READERS);
-    let reader = readers.find(|reader| reader.name == name);
-    (reader.unwrap_or_else(|| panic!("no reader {name}")).read)(bytes);
+    let reader = readers.find(|reader| reader.0 == name);
+    (reader.unwrap_or_else(|| panic!("no reader {name}")).2)(bytes);
 }
 
 /// Passes every seed of a reader to it, with truncations and random edits, the same ones in every run.
-pub fn check(reader: Reader) {
-    let seeds = seeds(reader);
+pub fn check(Reader(name, seeds, read): Reader) {
+    let seeds = files(name, seeds);
     for (path, seed) in &seeds {
         let stride = seed.len().div_ceil(TRUNCATIONS).max(1);
         for length in (0..seed.len()).step_by(stride).chain([seed.len()]) {
-            let outcome = catch_unwind(|| (reader.read)(&seed[..length]));
+            let outcome = catch_unwind(|| read(&seed[..length]));
             outcome.unwrap_or_else(|panic| {
-                eprintln!("{}: the first {length} bytes of {}", reader.name, path.display());
+                eprintln!("{name}: the first {length} bytes of {}", path.display());
                 resume_unwind(panic)
             });
         }
@@ -122,22 +100,20 @@ pub fn check(reader: Reader) {
     let edited = (select(seeds), prop::collection::vec(any::<u8>(), 1..24));
     let outcome = TestRunner::new_with_rng(config, random).run(&edited, |((_, seed), choices)| {
         if seed.is_empty() {
-            (reader.read)(&choices);
+            read(&choices);
         } else {
-            (reader.read)(&edits::edited(&mut Unstructured::new(&choices), &seed));
+            read(&edits::edited(&mut Unstructured::new(&choices), &seed));
         }
         Ok(())
     });
-    outcome.unwrap_or_else(|error| panic!("{}: {error}", reader.name));
+    outcome.unwrap_or_else(|error| panic!("{name}: {error}"));
 }
 
 /// The seeds of a reader with their files, and no bytes.
-fn seeds(reader: Reader) -> Vec<(PathBuf, Vec<u8>)> {
+fn files(name: &str, kind: Seeds) -> Vec<(PathBuf, Vec<u8>)> {
     let mut seeds = vec![(PathBuf::from("no file"), Vec::new())];
-    if reader.seeds == Seeds::Corpus {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-            .join("fuzz/corpus")
-            .join(reader.name);
+    if kind == Seeds::Corpus {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(name);
         let entries = std::fs::read_dir(&folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
         for entry in entries {
             let path = entry.expect("the folder can be listed").path();

@@ -2,24 +2,8 @@
 
 use arbitrary::Unstructured;
 
-const ODD_NUMBERS: [&str; 16] = [
-    "0",
-    "-0.0",
-    "1",
-    "-1",
-    "2",
-    "3",
-    "65536",
-    "65537",
-    "4294967296",
-    "9007199254740993",
-    "9223372036854775807",
-    "18446744073709551615",
-    "1e308",
-    "1e-320",
-    "0.5",
-    "null",
-];
+const ODD_NUMBERS: &str = "0 -0.0 1 -1 2 3 65536 65537 4294967296 9007199254740993 9223372036854775807 \
+                           18446744073709551615 1e308 1e-320 0.5 null";
 
 /// A number below `limit`; 0 if `limit` is 0, or the choices are used up.
 pub(super) fn below(choices: &mut Unstructured<'_>, limit: usize) -> usize {
@@ -50,7 +34,11 @@ pub(super) fn edited(choices: &mut Unstructured<'_>, whole: &[u8]) -> Vec<u8> {
                 let end = (start + overwritten).min(bytes.len());
                 drop(bytes.splice(start..end, new.iter().copied()));
             }
-            _ => replace_number(&mut bytes, start, ODD_NUMBERS[end % ODD_NUMBERS.len()]),
+            _ => replace_number(
+                &mut bytes,
+                start,
+                ODD_NUMBERS.split(' ').nth(end % 16).unwrap_or_default(),
+            ),
         }
     }
     bytes
