@@ -4,15 +4,9 @@ use ddl_tests::own_tracks;
 use ddl_tests::place::{Place, json};
 use serde_json::Value;
 
-fn with_recordings() -> Place {
-    let place = Place::empty();
-    place.write_recordings();
-    place
-}
-
 #[test]
 fn own_recordings_are_summarised() {
-    let place = with_recordings();
+    let place = Place::with_recordings();
     let summary = place.json("data mine --json");
     let recordings = summary["recordings"].as_array().unwrap();
     assert_eq!(recordings.len(), 2);
@@ -31,7 +25,7 @@ fn own_recordings_are_summarised() {
 
 #[test]
 fn models_are_measured_on_own_recordings() {
-    let place = with_recordings();
+    let place = Place::with_recordings();
     let windows = place.ok("windows --data mine --fold yard");
     assert!(windows.lines().count() > 100 && !windows.contains("lobby"));
     let measure = "--test-pedestrians 40 --protocol single --threads 1";
@@ -49,7 +43,7 @@ fn models_are_measured_on_own_recordings() {
 
 #[test]
 fn unreadable_files_are_reported_together() {
-    let place = with_recordings();
+    let place = Place::with_recordings();
     place.write("mine/roof.csv", "frame,pedestrian,x,y\n1,1,a,0\n");
     let finished = place.run("data mine");
     assert_eq!(finished.code, Some(1));
@@ -79,7 +73,7 @@ fn unreadable_files_are_reported_together() {
 
 #[test]
 fn errors_with_own_recordings_give_advice() {
-    let place = with_recordings();
+    let place = Place::with_recordings();
     std::fs::create_dir(place.at("empty")).unwrap();
     // A folder with a recording of ETH/UCY.
     place.write("star/zara01.csv", "");

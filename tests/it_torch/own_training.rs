@@ -11,12 +11,6 @@ use serde_json::Value;
 const SMALL: &str = "--train-pedestrians 64 --batch-pedestrians 16 --proposal-steps 5 --threads 1";
 const ALONE: &str = "--from none --epochs 3";
 
-fn with_recordings() -> Place {
-    let place = Place::empty();
-    place.write_recordings();
-    place
-}
-
 fn with_clips(frames: i64, count: i64) -> Place {
     let place = Place::empty();
     place.write_clips(frames, count);
@@ -40,7 +34,7 @@ fn errors(run: &RunDirectory) -> (Vec<f64>, usize) {
 
 #[test]
 fn own_recordings_are_used_for_training_and_evaluation() {
-    let place = with_recordings();
+    let place = Place::with_recordings();
     let train = format!("train --data mine --out run {ALONE} {SMALL}");
     let trained = place.json(&format!("{train} --json"));
     let run = RunDirectory::new(place.at("run"));
@@ -104,7 +98,7 @@ fn training_recordings_are_refused_as_test_data(place: &Place) {
 
 #[test]
 fn a_recording_can_be_left_out_and_the_run_resumes() {
-    let place = with_recordings();
+    let place = Place::with_recordings();
     let train = format!("train --data mine --convention own --fold yard --patience 1 {ALONE} {SMALL} --out");
     let message = place.ok(&format!("{train} run"));
     let next = "next: ddl evaluate --model run --data mine\n";

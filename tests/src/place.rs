@@ -34,6 +34,13 @@ impl Place {
         place
     }
 
+    /// A folder with [recordings](Self::write_recordings).
+    pub fn with_recordings() -> Self {
+        let place = Self::empty();
+        place.write_recordings();
+        place
+    }
+
     /// The path of the folder.
     pub fn path(&self) -> &Path {
         self.0.path()
