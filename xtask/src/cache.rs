@@ -4,7 +4,6 @@
 use std::env;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
@@ -40,17 +39,8 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<()> {
 
 /// The SHA-256 of a file, in hexadecimal digits.
 pub(crate) fn sha256(path: &Path) -> Result<String> {
-    let failed = || format!("{} cannot be read", path.display());
-    let mut file = fs::File::open(path).with_context(failed)?;
-    let mut hasher = Sha256::new();
-    let mut block = vec![0; 1 << 16];
-    loop {
-        match file.read(&mut block).with_context(failed)? {
-            0 => break,
-            length => hasher.update(&block[..length]),
-        }
-    }
-    let digits = hasher.finalize().iter().fold(String::new(), |mut text, byte| {
+    let bytes = fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    let digits = Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
         // Writing to a string cannot fail.
         let _ = write!(text, "{byte:02x}");
         text
