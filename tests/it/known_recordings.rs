@@ -20,7 +20,11 @@ fn recordings_are_known_in_the_files_of_each_convention() {
         };
         for recording in dataset.recordings() {
             let known = BuiltinModel::World.known_share(recording).unwrap();
-            assert!(known > Some(0.2), "{convention}: world, {}: {known:?}", recording.name());
+            assert!(
+                known > Some(0.2),
+                "{convention}: world, {}: {known:?}",
+                recording.name()
+            );
         }
         for model in BuiltinModel::OF_FOLDS {
             let fold = dataset.fold(model.name()).unwrap();

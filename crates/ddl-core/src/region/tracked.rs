@@ -204,6 +204,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "paces that follow another have its bits")]
     fn a_pace_that_was_seen_enough_learns_from_itself_alone() {
         let mut tracked = TrackedQuantiles::new(table(&[(0.9, 4.0)]));
         let mut quantiles_after = |pace: Pace, frames: usize| {

@@ -12,7 +12,7 @@ pub struct DeployableErrors {
     pub ade: f64,
     /// FDE.
     pub fde: f64,
-    /// CVaR95 of the ADE: its mean over the 5 % of the pedestrians with the largest, at least one.
+    /// `CVaR95` of the ADE: its mean over the 5 % of the pedestrians with the largest, at least one.
     pub worst_ade: f64,
 }
 

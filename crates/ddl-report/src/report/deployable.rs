@@ -45,7 +45,7 @@ pub(super) fn table(fair: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Optio
             row(&mut table, format!("{label}{words}"), line, &folds, choice);
         }
     }
-    (!table.rows().is_empty()).then_some(table)
+    (!table.rows.is_empty()).then_some(table)
 }
 
 fn row(
@@ -66,8 +66,8 @@ fn row(
         Some(format!("{ade:.3}/{fde:.3} ({worst:.2})"))
     };
     let of = |scores: &Scores, metric: fn(DeployableErrors) -> f64| choice(scores).map_or(f64::NAN, metric);
-    let of_fold = |fold: &&str| cell(&|metric| Some(line.on_fold(fold, |s| of(s, metric))?.mean()));
-    let mean = cell(&|metric| Some(line.over_folds(folds, |s| of(s, metric))?.mean()));
+    let of_fold = |fold: &&str| cell(&|metric| Some(line.on_fold(fold, |s| of(s, metric))?.mean));
+    let mean = cell(&|metric| Some(line.over_folds(folds, |s| of(s, metric))?.mean));
     let cells: Vec<Option<String>> = folds.iter().map(of_fold).chain([mean]).collect();
     if cells.iter().any(Option::is_some) {
         let cells = cells.into_iter().map(|cell| cell.unwrap_or_else(|| NOTHING.to_owned()));

@@ -5,7 +5,9 @@ mod wording;
 
 use ddl_data::{Convention, WindowRule};
 use ddl_eval::significance::BlockErrors;
-use ddl_eval::{Category, CategoryScores, Conditions, MotionKind, Protocol, ResultRow, Scores, StabilityScores};
+use ddl_eval::{
+    Category, CategoryScores, Conditions, DeployableErrors, MotionKind, Protocol, ResultRow, Scores, StabilityScores,
+};
 use ddl_report::page::Page;
 use ddl_report::{Report, ReportError};
 
@@ -355,6 +357,35 @@ fn categories_are_pooled_over_the_pedestrians_of_shared_folds() {
         cells(line(&page, "| turning left ")),
         ["turning left", "40", "0.200/0.400", "0.300/0.600"]
     );
+}
+
+#[test]
+fn one_path_without_the_truth_stands_beside_the_one_forecast() {
+    let with = |protocol, hypotheses, fde| {
+        let mut row = row(protocol, "eth", 1, 0.25);
+        let errors = |fde| DeployableErrors {
+            ade: 0.5,
+            fde,
+            worst_ade: 2.0,
+        };
+        row.scores.hypotheses = hypotheses;
+        row.scores.likeliest = Some(errors(fde));
+        row.scores.medoid = Some(errors(1.25));
+        row
+    };
+    let page = markdown(vec![with(Protocol::Fair, 20, 1.5), with(Protocol::Single, 1, 1.0)]);
+    let (_, table) = page.split_once("What can be deployed").unwrap();
+    eprintln!("{}", &table[..1200]);
+    for (start, errors) in [
+        ("DDL", "0.500/1.000 (2.00)"),
+        ("DDL, likeliest", "0.500/1.500 (2.00)"),
+        ("DDL, medoid", "0.500/1.250 (2.00)"),
+    ] {
+        let mut rows = table.lines().filter(|line| line.starts_with('|')).map(cells);
+        assert!(rows.any(|row| row[..2] == [start, errors]), "{start}: {table}");
+    }
+    // Results of earlier versions have none.
+    assert!(!markdown(vec![row(Protocol::Fair, "eth", 1, 0.25)]).contains("What can be deployed"));
 }
 
 #[test]
