@@ -1,16 +1,17 @@
 //! Regions that contain a pedestrian with a given probability.
 //!
-//! With the weights `w_k` and positions `p_k` of the hypotheses at one step and the standard deviation `s` around them,
-//! the score of a position `x` is
+//! With the weights `w_k` and positions `p_k` of the hypotheses at one step, and the [scale](crate::Spread) `s` around
+//! them, the score of a position `x` is
 //!
 //! ```text
 //! score(x) = min_k |x - p_k|^2 / (2 s^2) - ln(w_k / max w)        no unit
 //! ```
 //!
 //! The region of a level is the set of positions whose score is at most `q`. Here `q` is the quantile of this level of
-//! the scores of true positions in separate calibration recordings (split-conformal prediction). It is one disc around
-//! each hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, and no disc if the root is not real. The coverage
-//! holds on average over places like those of the calibration.
+//! the scores of true positions of this pace in separate calibration recordings (split-conformal prediction). It is one
+//! disc around each hypothesis, of radius `s sqrt(2 (q + ln(w_k / max w)))`, and no disc if the root is not real. The
+//! coverage holds on average over places like those of the calibration. Scores from the density of Student's t instead
+//! give regions of the same size (`docs/tried.md`).
 //!
 //! # References
 //! Vovk et al., *Algorithmic Learning in a Random World*, 2005 (split-conformal prediction).
