@@ -62,11 +62,14 @@ fn a_renamed_training_recording_is_no_test() {
     for line in [
         "evaluate --data obsmat.txt",
         "evaluate --data obsmat.txt --model hotel --validation",
+        "evaluate --data obsmat.txt --model world",
         "data obsmat.txt",
     ] {
         let said = place.run(line);
         assert_eq!(said.code == Some(0), line.starts_with("data"), "{said:?}");
         assert!(told.iter().all(|told| said.stderr.contains(told)), "{}", said.stderr);
+        let advised = line.contains("hotel") || said.stderr.contains("(--model eth)") || line.starts_with("data");
+        assert!(advised, "{}", said.stderr);
     }
     let _ = place.ok("evaluate --data obsmat.txt --model eth --protocol fair --test-pedestrians 20 --threads 1");
 }

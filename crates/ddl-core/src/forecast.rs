@@ -191,8 +191,8 @@ impl Forecast {
         self
     }
 
-    /// The same forecast with the weights of each pedestrian raised to the power of its pace, then divided by their sum;
-    /// unchanged without a spread.
+    /// The same forecast with the weights of each pedestrian raised to the power of its pace, then divided by their
+    /// sum; unchanged without a spread.
     pub(crate) fn with_powers(mut self, power: impl Fn(Pace) -> f64) -> Self {
         let paces = self.spread.iter().flat_map(|spread| &spread.paces);
         for (weights, &pace) in self.weights.chunks_exact_mut(self.hypotheses).zip(paces) {

@@ -35,7 +35,7 @@ impl TryFrom<LevelQuantiles> for RegionTable {
             Ok(Self(columns))
         } else {
             Err(
-                "a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles for three paces",
+                "a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles for each pace",
             )
         }
     }

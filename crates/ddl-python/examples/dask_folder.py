@@ -15,7 +15,7 @@ from dask.distributed import Client, LocalCluster, as_completed
 from forecast_file import forecast_file
 
 
-def forecast_folder(client: Client, folder: Path, out: Path, model: str = "hotel") -> list[str]:
+def forecast_folder(client: Client, folder: Path, out: Path, model: str = "world") -> list[str]:
     """Forecast every csv file of a folder. Each worker process loads the model once, from its name."""
     out.mkdir(exist_ok=True, parents=True)
     files = sorted(str(path) for path in folder.glob("*.csv"))

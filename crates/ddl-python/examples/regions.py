@@ -1,11 +1,10 @@
 """Regions of the built-in models: their coverage over the time of recordings, and their calibration.
 
-    python regions.py measure STAR_FOLDER [FOLDER=FPS ...]
+    python regions.py measure STAR_FOLDER [MODEL:FOLDER=FPS ...]
 
 prints the tables of docs/regions.md, and draws the curves of its figure as regions.svg. The folder of the convention
 ``star`` holds the recordings of ETH/UCY; each is forecast by the model of its fold. The other folders hold csv files
-(frame, pedestrian, x, y in metres), forecast by the default model. On these, and on the two recordings that no fold
-tests, the constants were chosen.
+(frame, pedestrian, x, y in metres), forecast by a model that was not trained on them.
 
     python regions.py calibrate MODEL:FOLDER=FPS ...
 
@@ -32,7 +31,6 @@ Floats = NDArray[np.float64]
 #: Recordings of the convention ``star`` that a fold tests on, and its model.
 TESTED = {"eth": "eth", "hotel": "hotel", "zara01": "zara1", "zara02": "zara2"}
 TESTED |= {"students001": "univ", "students003": "univ"}
-DEFAULT = "world"
 LEVELS = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9]
 HALF, MOST = 4, 8  # the levels that have columns in the table
 CALIBRATED = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99]
@@ -68,6 +66,7 @@ class Coverage:
     seen: Floats  # positions at which a forecast pedestrian was observed
     held: Floats  # (frames, 2, levels) of these inside the fixed and the adaptive regions
     radii: Floats  # (frames, 2, 2) sums over pedestrians for the levels HALF and MOST, metres
+    of_paces: Floats  # (frames, 3, 5) positions seen, and of these inside the regions of HALF and MOST, of both kinds
 
     @property
     def later(self) -> slice:
@@ -91,10 +90,11 @@ class Coverage:
         return np.array(points)
 
 
-def inside(forecast: ddl.Forecast, radii: Floats, ahead: Floats) -> int:
-    """How many of the later positions (n, 12, 2), NaN where unobserved, are inside the regions of these radii."""
+def inside(forecast: ddl.Forecast, radii: Floats, ahead: Floats) -> Floats:
+    """(n,) how many of the later positions (n, 12, 2), NaN where unobserved, are inside the regions of these radii."""
     off = np.linalg.norm(ahead[:, None] - forecast.paths, axis=-1)
-    return int((off <= radii).any(axis=1).sum())
+    held: Floats = (off <= radii).any(axis=1).sum(axis=1)
+    return held
 
 
 def equivalent_radius(centres: Floats, radii: Floats, cells: int = 24) -> float:
@@ -137,17 +137,21 @@ def later(frames: Floats, track: Floats, number: int, step: float) -> Floats:
 
 
 def coverage(recording: ddl.Recording, model: str) -> Coverage:
-    rows: list[tuple[float, int, int, list[list[int]], list[list[float]]]] = []
+    rows: list[tuple[float, int, int, Floats, list[list[float]], Floats]] = []
     for minute, kinds, ahead in forecasts(recording, model):
         valid = [kind.valid for kind in kinds]
         assert all(mask.all() for mask in valid) and kinds[0].paths.shape == kinds[1].paths.shape
         held, sums = [], []
         for forecast in kinds:
             radii = [forecast.regions(level) for level in LEVELS]
-            held.append([inside(forecast, of_level, ahead) for of_level in radii])
+            held.append([inside(forecast, of_level, ahead) for of_level in radii])  # levels of pedestrians
             ends = [(forecast.paths[:, :, -1], radii[level][:, :, -1]) for level in (HALF, MOST)]
             sums.append([sum(map(equivalent_radius, centres, ends_of)) for centres, ends_of in ends])
-        rows.append((minute, len(ahead), int((~np.isnan(ahead[..., 0])).sum()), held, sums))
+        seen = (~np.isnan(ahead[..., 0])).sum(axis=1)
+        of_each = [seen, *(kind[level] for kind in held for level in (HALF, MOST))]
+        pace = paces(kinds[0].past)
+        of_paces = np.array([[column[pace == which].sum() for column in of_each] for which in range(len(PACES))])
+        rows.append((minute, len(ahead), int(seen.sum()), np.array(held).sum(axis=2), sums, of_paces))
     columns = [np.array(column, dtype=float) for column in zip(*rows, strict=True)]
     return Coverage(recording.name, model, *columns)
 
@@ -174,6 +178,19 @@ def table(coverages: Sequence[Coverage]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def table_of_paces(coverages: Sequence[Coverage]) -> str:
+    """Shares inside after the first quarter, fixed and adaptive, of paces with enough positions."""
+    lines = [f"| recording | {' | '.join(PACES)} |", "|" + "---|" * 4]
+    for one in coverages:
+        shares = []
+        for seen, *held in one.of_paces[one.later].sum(axis=0):
+            half, most, half_adaptive, most_adaptive = (100 * share / max(seen, 1) for share in held)
+            words = f"{half:.0f}/{most:.0f}, adaptive {half_adaptive:.0f}/{most_adaptive:.0f}"
+            shares.append(words if seen >= 12 * LEAST else "-")
+        lines.append(f"| {one.name} | {' | '.join(shares)} |")
+    return "\n".join(lines) + "\n"
+
+
 def draw(coverages: Sequence[Coverage], path: str) -> None:
     matplotlib.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "regions", "font.size": 9})
     figure, axes = plt.subplots(-(-len(coverages) // 3), 3, figsize=(10, 5.4), sharey=True, layout="constrained")
@@ -195,14 +212,16 @@ def measure(star: str, places: Sequence[str]) -> None:
     for path in sorted(Path(star).glob("*.csv")):
         recording = ddl.read(path, format="star-csv")
         model = TESTED.get(path.stem)
-        (tested if model else others).append(coverage(recording, model or DEFAULT))
-    for recording in (recording for place in places for recording in recordings_of(place, DEFAULT)):
-        one = coverage(recording, DEFAULT)
+        if model:
+            tested.append(coverage(recording, model))
+    named = [place.split(":") for place in places]
+    for model, recording in ((model, recording) for model, of in named for recording in recordings_of(of, model)):
+        one = coverage(recording, model)
         minutes = (recording.frame[-1] - recording.frame[0]) / recording.frame_step * STEP
         if minutes >= SHORTEST and one.people.sum() >= FEWEST:
             others.append(one)
-    print(f"# Recordings that are tested on\n\n{table(tested)}")
-    print(f"# Recordings that the constants were chosen on\n\n{table(others)}")
+    print(f"# Recordings that are tested on\n\n{table(tested)}\n{table_of_paces(tested)}")
+    print(f"# Other recordings\n\n{table(others)}\n{table_of_paces(others)}")
     draw(tested, "regions.svg")
 
 
@@ -232,6 +251,8 @@ def table_of(places: Sequence[tuple[NDArray[np.int64], Floats]], levels: Sequenc
     tables = []
     for pace in range(3):
         of_places = [scores[of == pace] for of, scores in places if np.count_nonzero(of == pace) >= LEAST]
+        if not of_places:
+            sys.exit(f"too few pedestrians in the other folders: {PACES[pace]}")
         least = min(map(len, of_places))
         same = [scores[np.arange(least) * len(scores) // least] for scores in of_places]
         tables.append(quantiles(np.concatenate(same), levels))
@@ -257,8 +278,10 @@ def calibrate(places: Sequence[str]) -> None:
     constants: dict[str, Any] = json.loads(file.read_text())
     rows = table_of(of_place, CALIBRATED).round(4).tolist()
     constants["regions"] = {"levels": CALIBRATED, "quantiles": rows}
-    text = json.dumps(constants, indent=2)
-    file.write_text(re.sub(r"\[[^][{}]*\]", lambda row: " ".join(row[0].split()).replace("[ ", "[").replace(" ]", "]"), text))
+    # Rows of numbers on one line each.
+    one_line = re.compile(r"\[[^][{}]*\]")
+    text = json.dumps(constants, indent=2) + "\n"
+    file.write_text(one_line.sub(lambda row: f"[{' '.join(row[0][1:-1].split())}]", text))
     print(file)
 
 

@@ -1,7 +1,7 @@
 """Many cameras in one process over Zenoh: it receives tracks and publishes forecasts.
 
     pip install ddl-forecast eclipse-zenoh
-    python zenoh_cameras.py [--model hotel] [--memory FOLDER] [--connect tcp/HOST:7447] [--listen tcp/HOST:7447]
+    python zenoh_cameras.py [--model world] [--memory FOLDER] [--connect tcp/HOST:7447] [--listen tcp/HOST:7447]
 
 A tracker publishes each frame of camera NAME on the key `tracks/NAME` as JSON, positions in metres:
 {"frame": 12, "fps": 2.5, "ids": [1, 2], "xy": [[0.1, 2.0], [3.4, 1.0]]}. The answer is published on `forecasts/NAME`:
@@ -61,7 +61,7 @@ class Cameras:
 
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    arguments.add_argument("--model", default="hotel")
+    arguments.add_argument("--model", default="world")
     arguments.add_argument("--memory", type=Path)
     arguments.add_argument("--connect")
     arguments.add_argument("--listen")

@@ -87,3 +87,21 @@ impl Selection {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Selection;
+
+    #[test]
+    fn keeps_the_best_and_the_band_below_them() {
+        let mut selection = Selection::new(3, 1.0);
+        for i in 0..5000_usize {
+            let score = ((i * 7919) % 5000) as f32;
+            selection.offer(score, i);
+        }
+        assert_eq!(selection.nth(), Some(4997.0));
+        let mut kept: Vec<f32> = selection.finish(0.001).iter().map(|s| s.score).collect();
+        kept.sort_by(f32::total_cmp);
+        assert_eq!(kept, [4994.0, 4995.0, 4996.0, 4997.0, 4998.0, 4999.0]);
+    }
+}

@@ -61,13 +61,14 @@ impl AdaptiveRegions {
         self.learned.as_ref().map(|learned| learned.table().as_ref())
     }
 
-    /// Forgets the pending forecasts, as after a restart of a tracker. The [table](Self::table) is kept.
+    /// Forgets the pending forecasts, as after a restart of a tracker. The [table](Self::table) and the powers of the
+    /// weights are kept.
     pub fn clear(&mut self) {
         self.pending.clear();
     }
 
-    /// Learns from the positions at the last observed frame of the window, and gives the forecast its new regions. If
-    /// the frame is not later than the previous one, the pending forecasts are [cleared](Self::clear) first.
+    /// Learns from the positions at the last observed frame of the window, and gives the forecast its new regions
+    /// and weights. If the frame is not later than the previous one, the pending forecasts are [cleared](Self::clear) first.
     ///
     /// # Panics
     /// When the forecast has fewer pedestrians than the window.
@@ -91,9 +92,9 @@ impl AdaptiveRegions {
             .filter_map(|pending| pending.outcomes(window, previous))
             .collect();
         learned.learn(&outcomes, share);
-        let ended = self.pending.front().filter(|first| first.is_over(now, step));
-        let gradients = ended.map(|ended| ended.gradients(window, previous));
-        self.powers.learn(&gradients.unwrap_or_default(), share);
+        let ended = self.pending.iter().take_while(|first| first.is_over(now, step));
+        let gradients: Vec<_> = ended.flat_map(|ended| ended.gradients(window, previous)).collect();
+        self.powers.learn(gradients, share);
         let forecast = self.powers.raised(forecast).with_regions(learned.table());
         while self.pending.front().is_some_and(|first| first.is_over(now, step)) {
             self.pending.pop_front();
@@ -231,10 +232,10 @@ mod tests {
         (7..tracks.len()).map(until).collect()
     }
 
-    fn adapted(regions: &mut AdaptiveRegions, stream: &[(Window, Forecast)]) -> Vec<RegionTable> {
+    fn adapted(regions: &mut AdaptiveRegions, stream: &[(Window, Forecast)]) -> Vec<(RegionTable, TrackedPowers)> {
         let adapt = |(window, forecast): &(Window, Forecast)| {
             let adapted = regions.adapt(window, forecast.clone());
-            adapted.regions().unwrap().clone()
+            (adapted.regions().unwrap().clone(), regions.powers.clone())
         };
         stream.iter().map(adapt).collect()
     }

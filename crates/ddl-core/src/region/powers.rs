@@ -5,10 +5,11 @@
 //! weight:
 //!
 //! ```text
-//! ln p += STEP * w * mean (ln w_j - sum_k w_k ln w_k)        w = share * min(sqrt(n), LARGEST_WEIGHT)
+//! ln p += STEP * w * mean max(ln w_j - sum_k w_k ln w_k, -10)        w = share * min(sqrt(n), LARGEST_WEIGHT)
 //! ```
 //!
-//! The mean is over the `n` pedestrians of this pace whose forecasts end at this frame; w as in [`tracked`](super::tracked).
+//! The mean is over the `n` pedestrians of this pace whose forecasts end at this frame; w as in [`tracked`](super::tracked). ln p stays
+//! between -1.5 and 1.
 
 use crate::forecast::Forecast;
 use crate::pace::Pace;
@@ -27,7 +28,9 @@ pub(super) struct TrackedPowers([f64; Pace::ALL.len()]);
 impl TrackedPowers {
     /// Learns from the paces and [gradients](gradient) of forecasts that end at one frame, `share` of a step (0 to 1)
     /// after the frame before.
-    pub(super) fn learn(&mut self, gradients: &[(Pace, f64)], share: f64) {
+    pub(super) fn learn(&mut self, mut gradients: Vec<(Pace, f64)>, share: f64) {
+        // The sum does not depend on the order of the pedestrians.
+        gradients.sort_by(|a, b| a.1.total_cmp(&b.1));
         for (pace, log_power) in Pace::ALL.into_iter().zip(&mut self.0) {
             let own: Vec<f64> = gradients.iter().filter(|(of, _)| *of == pace).map(|g| g.1).collect();
             let mean = own.iter().sum::<f64>() / own.len().max(1) as f64;
@@ -46,7 +49,7 @@ impl TrackedPowers {
 }
 
 /// By how much a larger power would raise the log weight of the hypothesis nearest to the true end (m) of pedestrian
-/// `i`; none for an impossible hypothesis.
+/// `i`; at least -10, also for a hypothesis of weight 0.
 pub(super) fn gradient(forecast: &Forecast, i: usize, end: Position) -> f64 {
     let off = |k: usize| distance(forecast.hypothesis(i, k)[HORIZON - 1], end);
     let nearest = (0..forecast.hypotheses()).min_by(|&a, &b| off(a).total_cmp(&off(b)));
@@ -83,7 +86,7 @@ mod tests {
         let gradient = gradient(&forecast, 0, [0.4, 0.3]);
         assert!((gradient - 0.2 * 4.0_f64.ln()).abs() < 1e-12);
         let mut powers = TrackedPowers::default();
-        powers.learn(&[(Pace::Standing, gradient); 4], 0.5);
+        powers.learn(vec![(Pace::Standing, gradient); 4], 0.5);
         let power = (0.01 * gradient).exp();
         let raised = powers.raised(forecast.clone());
         let expected = 0.8_f64.powf(power) / (0.8_f64.powf(power) + 0.2_f64.powf(power));
@@ -97,7 +100,7 @@ mod tests {
         for (gradient, expected) in [(9.0, 1.0), (-9.0, -1.5)] {
             let mut powers = TrackedPowers::default();
             for _ in 0..1000 {
-                powers.learn(&[(Pace::Slow, gradient); 20], 1.0);
+                powers.learn(vec![(Pace::Slow, gradient); 20], 1.0);
             }
             assert_eq!(powers, TrackedPowers([0.0, expected, 0.0]));
         }

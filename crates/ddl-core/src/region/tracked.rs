@@ -13,9 +13,9 @@
 //! others: as long as the sum W of its own `w` is below [`YOUTH`], their moves are added to its own, multiplied by
 //! `1 - W / YOUTH`.
 //!
-//! As long as no shift reaches its bound, the shift after some frames is the sum of these moves. So from then on, the
-//! mean of `missed` of each pace, weighted by `w`, differs from `1 - a` by at most `2 LARGEST_SHIFT / (STEP sum w)`, for
-//! any motion of the pedestrians. If the quantiles of two levels cross, they are sorted; the bound then holds for the
+//! As long as no shift reaches its bound, it is the sum of these moves. So from then on, the mean of `missed` of each
+//! pace, weighted by `w`, differs from `1 - a` by at most `2 LARGEST_SHIFT / (STEP sum w)`, for any motion of the
+//! pedestrians. If the quantiles of two levels cross, they are sorted; the bound then holds for the
 //! levels together.
 //!
 //! # References
@@ -34,7 +34,8 @@ const STEP: f64 = 0.06;
 /// Weight of a frame with nine pedestrians or more. Outcomes come up to 12 steps late; with a larger weight the
 /// quantiles of crowds oscillate.
 const LARGEST_WEIGHT: f64 = 3.0;
-/// ln 64: a quantile stays between 1/64 and 64 times that of the table, a radius between about 1/8 and 8 times.
+/// ln 64: a quantile stays between 1/64 and 64 times that of the table (or [`LEAST`]), a radius between about 1/8 and 8
+/// times.
 const LARGEST_SHIFT: f64 = 4.158_883_083_359_672;
 /// Sum of the weights of a pace from which it learns from itself alone.
 const YOUTH: f64 = 30.0;
@@ -228,43 +229,53 @@ mod tests {
         scores.iter().map(|&score| (Pace::Walking, score)).collect()
     }
 
-    /// One frame: for each observed pedestrian, whether it is missed, and its distance from the edge.
-    type Judged = Vec<(bool, f64)>;
+    /// One frame: for each observed pedestrian its pace, whether it is missed, and its distance from the edge.
+    type Judged = Vec<(usize, bool, f64)>;
 
     proptest! {
-        /// An adversary that knows the region cannot move the weighted mean beyond the bound, if the scores stay within
-        /// a factor of 7 of the table's quantile. Then no shift reaches its bound.
+        /// An adversary that knows the regions cannot move the weighted mean of a pace beyond the bound once it learns
+        /// from itself alone, if the scores stay within a factor of 7 of the table's quantile. Then no shift reaches its
+        /// bound.
         #[test]
         fn the_share_missed_is_bounded_for_any_stream(
             level in 0.05..0.95f64,
             t in 0..HORIZON,
-            frames in vec((vec((any::<bool>(), 1.0..1.5f64), 1..20), 0.1..1.0f64), 1..600),
+            frames in vec((vec((0..3usize, any::<bool>(), 1.0..1.5f64), 1..20), 0.1..1.0f64), 1..600),
             run in 1..50usize,
         ) {
             let base = 2.0;
             let mut tracked = TrackedQuantiles::new(table(&[(level, base)]));
             let mut issued = VecDeque::from(vec![Arc::clone(tracked.table()); t + 1]);
-            let (mut error, mut weights) = (0.0, 0.0);
+            let (mut learned, mut error, mut weights) = ([0.0; 3], [0.0; 3], [0.0; 3]);
             for (at, (judged, share)) in frames.iter().enumerate() {
                 let judged: &Judged = judged;
                 let table = issued.pop_front().unwrap();
-                let edge = table.quantile(Pace::Walking, level, t).unwrap();
+                let edges = Pace::ALL.map(|pace| table.quantile(pace, level, t).unwrap());
                 // Runs in which all regions miss, or no region misses, move the quantile furthest.
-                let mood = (at / run) % 3;
-                let score = |&(coin, by): &(bool, f64)| {
+                let score = |&(pace, coin, by): &(usize, bool, f64)| {
+                    let mood = (at / run + pace) % 3;
                     let misses = if mood == 2 { coin } else { mood == 0 };
-                    let wanted = if misses { edge * by } else { edge / by };
-                    wanted.clamp(base / 7.0, base * 7.0)
+                    let wanted = if misses { edges[pace] * by } else { edges[pace] / by };
+                    (Pace::ALL[pace], wanted.clamp(base / 7.0, base * 7.0))
                 };
-                let scores: Vec<f64> = judged.iter().map(score).collect();
-                let missed = scores.iter().filter(|&&score| score > edge).count();
-                let weight = share * (scores.len() as f64).sqrt().min(3.0);
-                error += weight * (missed as f64 / scores.len() as f64 - (1.0 - level));
-                weights += weight;
-                tracked.learn(&[Outcomes { step: t, table, scores: walking(&scores) }], *share);
+                let scores: Vec<(Pace, f64)> = judged.iter().map(score).collect();
+                for pace in 0..3 {
+                    let own = scores.iter().filter(|(of, _)| *of as usize == pace);
+                    let count = own.clone().count() as f64;
+                    let missed = own.filter(|(_, score)| *score > edges[pace]).count() as f64;
+                    let weight = share * count.sqrt().min(3.0);
+                    if learned[pace] >= YOUTH {
+                        error[pace] += weight * (missed / count.max(1.0) - (1.0 - level));
+                        weights[pace] += weight;
+                    }
+                    learned[pace] += weight;
+                }
+                tracked.learn(&[Outcomes { step: t, table, scores }], *share);
                 issued.push_back(Arc::clone(tracked.table()));
             }
-            prop_assert!((error / weights).abs() <= LARGEST_SHIFT / (STEP * weights) + 1e-9);
+            for (error, weights) in error.into_iter().zip(weights) {
+                prop_assert!(error.abs() <= 2.0 * LARGEST_SHIFT / STEP + 1e-9, "{error} {weights}");
+            }
         }
 
         #[test]

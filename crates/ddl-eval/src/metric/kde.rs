@@ -12,12 +12,12 @@
 //! KDE NLL = - mean over frames and pedestrians of max(ln f(p), -20)        nats
 //! ```
 //!
-//! A forecast with a [spread](ddl_core::Spread) is already a mixture, of Student's t around its hypotheses; its density
-//! takes the place of f.
-//!
 //! This is `scipy.stats.gaussian_kde(x, weights=w).logpdf(p)`, clipped as in Trajectron++ and Social-Implicit, except
 //! for the smallest bandwidth: eigenvalues of H below (1 cm)^2 are raised to it. Other implementations fail or skip the
 //! frame in this case.
+//!
+//! A forecast with a [spread](ddl_core::Spread) is already a mixture, of Student's t around its hypotheses; its density
+//! takes the place of f.
 //!
 //! Lower is better, and it may be negative. A forecast of one hypothesis has no density. The value depends strongly on
 //! the number of hypotheses: values for 1,000 samples and for 20 are not comparable.

@@ -28,8 +28,8 @@ MOST_WORDS = 100_000
 class Live:
     """Forecasts for each frame of one camera or robot.
 
-    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same rows, except for regions, which adapt
-    to the observations so that they keep their share in this place too.
+    Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same rows, except for regions and
+    weights, which adapt to the observations so that they keep their share in this place too.
 
     Parameters
     ----------

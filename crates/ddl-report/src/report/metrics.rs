@@ -38,7 +38,8 @@ pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the fo
     hypothesis of least FDE; expected: weighted mean error of all hypotheses; likely: error of the hypothesis of \
     greatest weight; missed 1 m, 2 m: every hypothesis ends farther off; runs into: forecasts of protocol `single` \
     that overlap the TRUE future of another pedestrian (Col-II; discs of radius 0.2 m); KDE NLL: negative \
-    log-likelihood of the truth under a Gaussian kernel density of the weighted hypotheses, clipped at 20 nats; AMD: \
+    log-likelihood of the truth under a kernel density of the weighted hypotheses, or the mixture of Student's t of a \
+    forecast with a spread, clipped at 20 nats; AMD: \
     Mahalanobis distance of the truth from the distribution of the hypotheses; AMV: largest eigenvalue of their mean \
     covariance; APD, FPD: mean distance between two hypotheses, over the path and at the endpoints. These metrics need \
     several hypotheses and depend on their number.";

@@ -375,7 +375,6 @@ fn one_path_without_the_truth_stands_beside_the_one_forecast() {
     };
     let page = markdown(vec![with(Protocol::Fair, 20, 1.5), with(Protocol::Single, 1, 1.0)]);
     let (_, table) = page.split_once("What can be deployed").unwrap();
-    eprintln!("{}", &table[..1200]);
     for (start, errors) in [
         ("DDL", "0.500/1.000 (2.00)"),
         ("DDL, likeliest", "0.500/1.500 (2.00)"),

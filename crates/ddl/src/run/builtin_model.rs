@@ -10,7 +10,7 @@ use std::str::FromStr;
 /// ETH/UCY scene that it was trained without; `models/reported.json` of this crate holds its scores there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub enum BuiltinModel {
-    /// Trained on all scenes of ETH/UCY and on five other places (`docs/world.md`).
+    /// Trained on all scenes of ETH/UCY and on five other places (`docs/elsewhere.md`).
     #[default]
     World,
     /// Trained without the scene `eth`.

@@ -1,6 +1,6 @@
 //! Constants that determine how far a model is trusted. They are the same for all models; `docs/tried.md` describes how
-//! they were chosen. `ddl-python/examples/regions.py` writes the regions in `calibration.json`, from places that no
-//! model was trained on.
+//! they were chosen. `ddl-python/examples/regions.py` writes the regions in `calibration.json`, from places, each
+//! forecast by a model that was not trained on it.
 
 use crate::run::sha256;
 use ddl_core::{Pace, RegionTable, mean_speed};

@@ -320,7 +320,7 @@ fn ensure_unknown(goals: &GoalModel, recordings: &[&Recording]) -> Result<(), Dd
         recordings.all(|recording| model.is_untrained_on(recording).unwrap_or(false))
     });
     let other = match others.next() {
-        _ if goals.config().data.convention == Convention::Own => {
+        _ if goals.config().data.convention == Convention::Own && goals.source().run().is_some() => {
             "on its validation part (--validation), or on a recording that it is trained without (`ddl train \
              --convention own --fold NAME`)"
                 .to_owned()

@@ -62,8 +62,8 @@ pub(crate) struct ForecastCommand {
     /// hypotheses
     ///
     /// csv adds a column of radii (metres) for each, empty where a hypothesis has no disc; jsonl adds the discs of each
-    /// step. The initial regions were calibrated on other places. From frame to frame they adapt to the observations,
-    /// so that they keep their share in this place too (docs/regions.md). --last uses the initial regions.
+    /// step. The initial regions were calibrated on other places. From frame to frame they and the weights adapt to the
+    /// observations, so that they keep their share in this place too (docs/regions.md). --last uses the initial ones.
     #[arg(long, value_name = "PROBABILITIES", value_delimiter = ',', value_parser = probability)]
     #[arg(conflicts_with = "one")]
     pub(super) region: Vec<f64>,
