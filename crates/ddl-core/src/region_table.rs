@@ -34,9 +34,7 @@ impl TryFrom<LevelQuantiles> for RegionTable {
         if is_valid {
             Ok(Self(columns))
         } else {
-            Err(
-                "a table of regions needs ascending levels between 0 and 1, each with 12 finite quantiles for each pace",
-            )
+            Err("a table of regions needs ascending levels between 0 and 1, with 12 finite quantiles for each pace")
         }
     }
 }

@@ -8,8 +8,8 @@
 //! ln p += STEP * w * mean max(ln w_j - sum_k w_k ln w_k, -10)        w = share * min(sqrt(n), LARGEST_WEIGHT)
 //! ```
 //!
-//! The mean is over the `n` pedestrians of this pace whose forecasts end at this frame; w as in [`tracked`](super::tracked). ln p stays
-//! between -1.5 and 1.
+//! The mean is over the `n` pedestrians of this pace whose forecasts end at this frame; w as in
+//! [`tracked`](super::tracked). ln p stays between -1.5 and 1.
 
 use crate::forecast::Forecast;
 use crate::pace::Pace;

@@ -234,8 +234,8 @@ mod tests {
 
     proptest! {
         /// An adversary that knows the regions cannot move the weighted mean of a pace beyond the bound once it learns
-        /// from itself alone, if the scores stay within a factor of 7 of the table's quantile. Then no shift reaches its
-        /// bound.
+        /// from itself alone, if the scores stay within a factor of 7 of the table's quantile. Then no shift reaches
+        /// its bound.
         #[test]
         fn the_share_missed_is_bounded_for_any_stream(
             level in 0.05..0.95f64,

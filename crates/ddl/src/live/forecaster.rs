@@ -14,10 +14,10 @@ use std::borrow::Borrow;
 ///
 /// Every [`push`](Self::push) forecasts all pedestrians that have been observed at 8 consecutive time steps, or as a
 /// [`Completeness`](ddl_data::Completeness) asks for. The forecast has the bits of [`Forecaster::forecast`] on the
-/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far. With
-/// a memory, this window also holds the recalled tracks. Adaptive regions, with their weights, are the only other difference. For gaps, see
-/// [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`, one model serves several
-/// places.
+/// window that [`Recording::observed_windows`](ddl_data::Recording::observed_windows) cuts from all frames so far.
+/// With a memory, this window also holds the recalled tracks. Adaptive regions, with their weights, are the only other
+/// difference. For gaps, see [`LiveTracks`]. The forecaster is owned or borrowed: with `LiveForecaster::new(&model)`,
+/// one model serves several places.
 ///
 /// # State kept between frames
 /// It keeps the last 8 time steps of the pedestrians that are present, so the memory use is bounded by their number.
