@@ -214,12 +214,13 @@ def measure(star: str, places: Sequence[str]) -> None:
         model = TESTED.get(path.stem)
         if model:
             tested.append(coverage(recording, model))
-    named = [place.split(":") for place in places]
-    for model, recording in ((model, recording) for model, of in named for recording in recordings_of(of, model)):
-        one = coverage(recording, model)
-        minutes = (recording.frame[-1] - recording.frame[0]) / recording.frame_step * STEP
-        if minutes >= SHORTEST and one.people.sum() >= FEWEST:
-            others.append(one)
+    for place in places:
+        named, folder = place.split(":")
+        for recording in recordings_of(folder, named):
+            one = coverage(recording, named)
+            minutes = (recording.frame[-1] - recording.frame[0]) / recording.frame_step * STEP
+            if minutes >= SHORTEST and one.people.sum() >= FEWEST:
+                others.append(one)
     print(f"# Recordings that are tested on\n\n{table(tested)}\n{table_of_paces(tested)}")
     print(f"# Other recordings\n\n{table(others)}\n{table_of_paces(others)}")
     draw(tested, "regions.svg")
