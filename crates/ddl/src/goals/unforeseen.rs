@@ -29,7 +29,7 @@ mod tests {
 
     /// At 1 m/s a pedestrian would come 4.8 m far.
     #[test]
-    fn endpoints_of_a_walker_by_hand() {
+    fn endpoints_of_a_pedestrian_by_hand() {
         let observed = std::array::from_fn(|t| [0.4 * (t as f64 - 7.0), 0.0]);
         let mut proposed = ProposedEndpoints {
             endpoints: vec![[4.8, 0.0]],
