@@ -41,6 +41,19 @@ fn models_are_measured_on_own_recordings() {
     assert_eq!(of_fold, of_model);
 }
 
+/// Windows of own recordings also hold pedestrians without a future, who have goals too.
+#[test]
+fn goals_have_the_same_error_in_both_commands() {
+    let place = Place::with_recordings();
+    let of_goals = place.json("goals --measure test --data mine/yard.csv --json --threads 1");
+    let evaluated = place.json("evaluate --data mine/yard.csv --protocol fair --json --threads 1");
+    let scores = &evaluated["rows"][0]["scores"];
+    assert_eq!(of_goals["all"]["pedestrians"], scores["pedestrians"]);
+    let [one, other] = [&of_goals["all"]["oracle_fde"], &scores["goal_fde"]].map(|fde| fde.as_f64().unwrap());
+    assert!((one - other).abs() < 1e-9, "{one} {other}");
+    let _ = place.ok("goals --measure test --data mine/yard.csv --svg goals.svg --threads 1");
+}
+
 #[test]
 fn unreadable_files_are_reported_together() {
     let place = Place::with_recordings();

@@ -1,6 +1,6 @@
 //! The kernels against libtorch: forecasts of the built-in models on their test scenes.
 
-use ddl::data::{Convention, Dataset, Position, Window, WindowRule};
+use ddl::data::{Convention, Dataset, Window, WindowRule};
 use ddl::{BuiltinModel, Ddl, DeviceChoice, Forecast, Forecaster as _, ModelSource, Remembering};
 use ddl_core::distance;
 use ddl_tests::recordings;

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::position::{Position, distance};
 
+/// Uncertainty (m) of an observation above which its pace is not known.
+const LARGEST_UNCERTAINTY: f64 = 0.3;
+
 /// The pace of an observed pedestrian, by its mean speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -21,21 +24,14 @@ impl Pace {
     /// All of them, slowest first.
     pub const ALL: [Self; 3] = [Self::Standing, Self::Slow, Self::Walking];
 
-    /// The pace of a pedestrian observed at these positions (m), `time_step` seconds apart.
-    pub fn of(observed: &[Position], time_step: f64) -> Self {
+    /// The pace of a pedestrian observed at these positions (m), `time_step` seconds apart, whose observation adds this
+    /// [uncertainty](crate::ObservationQuality::uncertainty) (m). Who was hardly observed may as well walk.
+    pub fn of(observed: &[Position], time_step: f64, uncertainty: f64) -> Self {
         match mean_speed(observed, time_step) {
+            _ if uncertainty > LARGEST_UNCERTAINTY => Self::Walking,
             speed if speed < 0.15 => Self::Standing,
             speed if speed < 0.7 => Self::Slow,
             _ => Self::Walking,
-        }
-    }
-
-    /// Its name in lower case.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Standing => "standing",
-            Self::Slow => "slow",
-            Self::Walking => "walking",
         }
     }
 }
@@ -45,4 +41,19 @@ pub fn mean_speed(observed: &[Position], time_step: f64) -> f64 {
     let path: f64 = observed.array_windows().map(|&[a, b]| distance(a, b)).sum();
     let steps = observed.len().saturating_sub(1).max(1);
     path / (steps as f64 * time_step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paces_by_hand() {
+        for (step, pace) in [(0.05, Pace::Standing), (0.1, Pace::Slow), (0.5, Pace::Walking)] {
+            let observed = [[0.0, 1.0], [0.0, 1.0 + step], [step, 1.0 + step]];
+            assert_eq!(Pace::of(&observed, 0.4, 0.1), pace);
+            assert_eq!(Pace::of(&observed, 0.4, 0.5), Pace::Walking);
+        }
+        assert_eq!(Pace::of(&[[3.0, 1.0]], 0.4, 0.0), Pace::Standing);
+    }
 }

@@ -6,7 +6,7 @@ use crate::moments::Moments;
 use crate::observed::Observed;
 use ddl::data::{HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, TIME_STEP, Window};
 use ddl::{CertifiedForecast, Forecast, Pace, RegionTable, Spread};
-use numpy::{PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods as _};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -217,12 +217,13 @@ fn json(table: &RegionTable) -> PyResult<String> {
 #[pyfunction]
 pub(crate) fn region_radii<'py>(
     py: Python<'py>,
-    past: PyReadonlyArray3<'py, f64>,
+    observed: (PyReadonlyArray3<'py, f64>, PyReadonlyArray1<'py, f64>),
     weights: PyReadonlyArray2<'py, f64>,
     spread: PyReadonlyArray2<'py, f64>,
     region_table: &str,
     level: f64,
 ) -> PyResult<Py<PyAny>> {
+    let (past, uncertainty) = observed;
     let table: RegionTable = serde_json::from_str(region_table).map_err(of_any)?;
     let [low, high] = table.range();
     if !(low..=high).contains(&level) {
@@ -241,7 +242,7 @@ pub(crate) fn region_radii<'py>(
             let observed: Vec<_> = (0..OBSERVED)
                 .map(|t| [0, 1].map(|axis| past.as_array()[[i, t, axis]]))
                 .collect();
-            Pace::of(&observed, TIME_STEP)
+            Pace::of(&observed, TIME_STEP, uncertainty.as_array()[i])
         });
         let spread = Spread {
             scales: scales.collect(),

@@ -152,15 +152,8 @@ impl Train {
         let from = self.starting_model(&dataset, &fold, &part)?;
         let mut goals = self.goal_recipe(from.is_some())?;
         let (mut star, training) = self.recipe(from.is_some());
-        if let Some(from) = from.as_ref().filter(|_| self.names_no_sizes()) {
-            let config = from.config()?;
-            if config.star.variant == star.variant {
-                star = config.star;
-                if let (Some(proposal), Some(theirs)) = (&mut goals.proposal, config.goals.proposal) {
-                    proposal.network = theirs.network;
-                    proposal.unforeseen_share = theirs.unforeseen_share;
-                }
-            }
+        if let Some(from) = &from {
+            self.take_sizes(from, &mut star, &mut goals)?;
         }
         let mut request = TrainingRequest::recommended(fold, RunDirectory::new(self.out));
         request.star = star;
@@ -238,7 +231,7 @@ impl Train {
             return Ok((!none).then(|| ModelSource::named(named)));
         }
         let usual = self.variant == Variant::Full && self.goals == GoalsFrom::Proposed && self.names_no_sizes();
-        if dataset.convention() != Convention::Own || !usual {
+        if dataset.convention() != Convention::Own {
             return Ok(None);
         }
         let fold = ddl::fold_by_name(dataset, fold)?.with_validation_recordings(&part.recordings)?;
@@ -246,6 +239,13 @@ impl Train {
         let windows = fold.training_split(rule, part.share.clamp(0.0, 1.0)).training;
         let pedestrians: usize = windows.iter().map(Window::len).sum();
         if pedestrians == 0 || pedestrians >= FEW {
+            return Ok(None);
+        }
+        if !usual {
+            tell(format_args!(
+                "note: only {pedestrians} pedestrian-windows for training, from random weights, because the options \
+                 name another network than that of the built-in model"
+            ));
             return Ok(None);
         }
         let model = BuiltinModel::default();
@@ -299,9 +299,7 @@ impl Train {
             ),
             Recipe::Published => (StarConfig::published(self.variant), TrainingConfig::published()),
         };
-        set(&mut star.backbone, self.backbone);
-        set(&mut star.feed_forward_width, self.feed_forward_width);
-        set(&mut star.spatial_layers, self.spatial_layers);
+        self.set_sizes(&mut star);
         set(&mut training.epochs, self.epochs);
         set(&mut training.batch_pedestrians, self.batch_pedestrians);
         set(&mut training.learning_rate, self.learning_rate);
@@ -311,6 +309,31 @@ impl Train {
         }
         training.seed = self.seed;
         (star, training)
+    }
+
+    /// Takes the sizes of the networks from the starting model, except those that are requested.
+    fn take_sizes(&self, from: &ModelSource, star: &mut StarConfig, goals: &mut GoalRecipe) -> anyhow::Result<()> {
+        if self.recipe != Recipe::Recommended {
+            return Ok(());
+        }
+        let config = from.config()?;
+        if config.star.variant == star.variant {
+            *star = config.star;
+            self.set_sizes(star);
+        }
+        let of_from = config.goals.proposal.filter(|_| self.goal_recipe.is_none());
+        if let (Some(proposal), Some(theirs)) = (&mut goals.proposal, of_from) {
+            proposal.network = theirs.network;
+            proposal.unforeseen_share = theirs.unforeseen_share;
+        }
+        Ok(())
+    }
+
+    /// Sets the sizes that are requested.
+    fn set_sizes(&self, star: &mut StarConfig) {
+        set(&mut star.backbone, self.backbone);
+        set(&mut star.feed_forward_width, self.feed_forward_width);
+        set(&mut star.spatial_layers, self.spatial_layers);
     }
 
     fn goal_recipe(&self, further: bool) -> anyhow::Result<GoalRecipe> {

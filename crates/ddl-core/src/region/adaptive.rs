@@ -220,7 +220,7 @@ mod tests {
             }
             let weights = [0.6, 0.4].repeat(window.len());
             let forecast = Forecast::new(window.len(), 2, walks, weights, None).unwrap();
-            let paces = (0..window.len()).map(|i| Pace::of(window.observed(i), 0.4));
+            let paces = (0..window.len()).map(|i| Pace::of(window.observed(i), 0.4, 0.0));
             let spread = Spread {
                 scales: vec![0.7; HORIZON * window.len()],
                 paces: paces.collect(),

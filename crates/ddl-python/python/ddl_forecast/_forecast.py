@@ -158,7 +158,7 @@ class Forecast:
         """
         if self.spread is None or self._region_table is None:
             raise ValueError("this forecast has no regions: only the 20 hypotheses of a model have them")
-        return _core.region_radii(self.past, self.weights, self.spread, self._region_table, level)
+        return _core.region_radii((self.past, self.uncertainty), self.weights, self.spread, self._region_table, level)
 
     def to_dict(self) -> dict[str, NDArray[Any]]:
         """Columns of a table, one row per position, for ``pandas.DataFrame`` or ``polars.DataFrame``.

@@ -24,7 +24,10 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
             fair.window_rule, fair.convention
         );
         let table = table(fair, groups)?;
-        let caption = format!("{NOTE} {}", fair.conditions_in_words());
+        let words = fair
+            .conditions_in_words()
+            .replace("protocol `fair`", "protocols `single` and `fair`");
+        let caption = format!("{NOTE} {words}");
         Some([Part::heading(title), Part::Table(table.captioned(caption))])
     };
     tables.filter_map(part).flatten().collect()

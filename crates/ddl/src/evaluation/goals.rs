@@ -94,6 +94,12 @@ pub fn evaluate_goals(
     let started = Instant::now();
     let sets = model.goals(&observed)?;
     let seconds = started.elapsed().as_secs_f64();
+    // Bystanders have goals and no future.
+    let with_future = |(window, sets): (&Window, Vec<GoalSet>)| {
+        let indices = window.indices_in_scene().into_iter();
+        indices.map(|i| sets[i].clone()).collect()
+    };
+    let sets: Vec<Vec<GoalSet>> = windows.iter().zip(sets).map(with_future).collect();
     let pairs: Vec<(&Window, &GoalSet, Position)> = windows
         .iter()
         .zip(&sets)

@@ -120,21 +120,22 @@ impl Walked<'_> {
         }
         let calibration = Calibration::fitted();
         let time_step = self.config.time_step;
+        let pace = |i: usize| Pace::of(self.window.observed(i), time_step, self.window.quality(i).uncertainty());
+        let paces: Vec<Pace> = (0..pedestrians).map(pace).collect();
         let goals = self.goals.par_chunks_exact(hypotheses);
         let pairs = goals.zip(self.weights.par_chunks_exact(hypotheses)).enumerate();
         let scales = pairs
             .flat_map_iter(|(i, (goals, weights))| {
-                let spread = calibration.spread(self.window.observed(i), goals, weights, time_step);
+                let spread = calibration.spread(paces[i], self.window.observed(i), goals, weights, time_step);
                 let quality = self.window.quality(i);
                 (1..)
                     .zip(spread)
                     .map(move |(t, spread)| spread.hypot(quality.deviation_after(f64::from(t) * time_step)))
             })
             .collect();
-        let paces = (0..pedestrians).map(|i| Pace::of(self.window.observed(i), time_step));
         Ok(forecast.with_spread(Spread {
             scales,
-            paces: paces.collect(),
+            paces,
             regions: Calibration::shared_regions(),
         })?)
     }

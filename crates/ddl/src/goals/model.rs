@@ -294,7 +294,7 @@ impl GoalModel {
             let sets = reach::within(window, sets, time_step).into_par_iter();
             let familiarity = self.familiarity(window);
             let tempered = |((i, set), familiarity)| {
-                let pace = Pace::of(window.observed(i), time_step);
+                let pace = Pace::of(window.observed(i), time_step, window.quality(i).uncertainty());
                 Calibration::fitted().tempered(set, pace, familiarity)
             };
             sets.enumerate().zip(familiarity).map(tempered).collect()

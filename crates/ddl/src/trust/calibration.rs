@@ -109,12 +109,13 @@ impl Calibration {
     /// observed at these positions (m), `time_step` seconds apart, and has these goals.
     pub(crate) fn spread(
         &self,
+        pace: Pace,
         observed: &[Position],
         goals: &[Position],
         weights: &[f64],
         time_step: f64,
     ) -> [f64; HORIZON] {
-        let of_pace = self.of_pace(Pace::of(observed, time_step));
+        let of_pace = self.of_pace(pace);
         let of_speed = of_pace.spread_of_speed * mean_speed(observed, time_step);
         let at_end = of_speed + of_pace.spread_of_goals * deviation(goals, weights);
         std::array::from_fn(|t| {
@@ -161,7 +162,7 @@ mod tests {
         calibration.paces.walking.spread_of_goals = 0.2;
         let observed: Vec<Position> = (0..8).map(|t| [0.8 * f64::from(t), 0.0]).collect();
         let goals = [[5.0, 3.0], [5.0, -3.0]];
-        let spread = calibration.spread(&observed, &goals, &[0.5, 0.5], 0.4);
+        let spread = calibration.spread(Pace::Walking, &observed, &goals, &[0.5, 0.5], 0.4);
         let at_end = 0.1 * 2.0 + 0.2 * 4.5_f64.sqrt();
         assert!((spread[11] - at_end).abs() < 1e-12 && (spread[5] - at_end / 2.0).abs() < 1e-12);
     }
