@@ -185,7 +185,8 @@ impl Train {
             error => error.into(),
         })?;
         if let (Some(from), true) = (&request.from, is_validated) {
-            warn_of_known(from, &ddl::fold_by_name(&dataset, &request.fold)?)?;
+            let fold = ddl::fold_by_name(&dataset, &request.fold)?;
+            warn_of_known(from, &fold, &request.validation_recordings)?;
         }
         let compared = finished::compare_with_builtin(&request, &dataset, &self.reporting, &interrupt)?;
         finished::print(&request, compared.as_ref(), &self.recordings, &self.reporting)
@@ -372,9 +373,13 @@ impl Train {
 }
 
 /// A validation part that the starting model has seen is no measure.
-fn warn_of_known(from: &ModelSource, fold: &Fold<'_>) -> anyhow::Result<()> {
+///
+/// `whole` are the recordings kept for validation as a whole; without any, each has a part.
+fn warn_of_known(from: &ModelSource, fold: &Fold<'_>, whole: &[String]) -> anyhow::Result<()> {
     let goals = GoalModel::open(from, DeviceChoice::Cpu)?;
+    let is_validated = |name: &str| whole.is_empty() || whole.iter().any(|kept| kept == name);
     let recordings = fold.training_recordings().iter();
+    let recordings = recordings.filter(|recording| is_validated(recording.name()));
     let known = recordings.filter(|recording| goals.known_share(recording).is_some());
     let known: Vec<&str> = known.map(|recording| recording.name()).collect();
     if !known.is_empty() {
