@@ -8,7 +8,7 @@ use crate::report::group::{ResultGroup, TableLine};
 
 const NOTE: &str = "One path for each pedestrian, chosen without the truth: the forecast of one hypothesis, or the \
     likeliest or the medoid of several. Cells: ADE/FDE in metres, in brackets the mean ADE of the worst 5 % of the \
-    pedestrians (CVaR95); mean over seeds; `mean`: plain mean of all folds.";
+    pedestrians (CVaR95); mean over seeds; last the plain mean of all folds.";
 
 /// The choice of a path, and its errors.
 type Choice = (&'static str, fn(&Scores) -> Option<DeployableErrors>);
