@@ -244,7 +244,9 @@ def quantiles(scores: Floats, levels: Sequence[float]) -> Floats:
 
 def paces(past: Floats) -> NDArray[np.int64]:
     """(n,) 0 standing, 1 slow, 2 walking: crates/ddl-core/src/pace.rs has the limits."""
-    return np.digitize(np.linalg.norm(np.diff(past, axis=1), axis=-1).mean(axis=1) / 0.4, [0.15, 0.7])
+    speeds = np.linalg.norm(np.diff(past, axis=1), axis=-1).mean(axis=1) / 0.4
+    pace: NDArray[np.int64] = np.digitize(speeds, [0.15, 0.7])
+    return pace
 
 
 def table_of(places: Sequence[tuple[NDArray[np.int64], Floats]], levels: Sequence[float]) -> Floats:
