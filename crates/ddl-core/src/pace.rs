@@ -1,16 +1,13 @@
 //! How fast a pedestrian was observed to move. Who stands, strolls or walks goes on in other ways, so each pace has its
 //! own spread, weights and regions.
 
-use serde::{Deserialize, Serialize};
-
 use crate::position::{Position, distance};
 
 /// Uncertainty (m) of an observation above which its pace is not known.
 const LARGEST_UNCERTAINTY: f64 = 0.3;
 
 /// The pace of an observed pedestrian, by its mean speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
     /// Below 0.15 m/s.
     Standing,

@@ -231,7 +231,6 @@ impl Train {
             let none = named.as_os_str() == "none";
             return Ok((!none).then(|| ModelSource::named(named)));
         }
-        let usual = self.variant == Variant::Full && self.goals == GoalsFrom::Proposed && self.names_no_sizes();
         if dataset.convention() != Convention::Own {
             return Ok(None);
         }
@@ -242,6 +241,13 @@ impl Train {
         if pedestrians == 0 || pedestrians >= FEW {
             return Ok(None);
         }
+        let usual = self.variant == Variant::Full
+            && self.recipe == Recipe::Recommended
+            && self.feed_forward_width.is_none()
+            && self.spatial_layers.is_none()
+            && self.backbone.is_none()
+            && self.goals == GoalsFrom::Proposed
+            && self.goal_recipe.is_none();
         if !usual {
             tell(format_args!(
                 "note: only {pedestrians} pedestrian-windows for training, from random weights, because the options \
@@ -255,15 +261,6 @@ impl Train {
              model {model} (--from none for random weights)"
         ));
         Ok(Some(ModelSource::Builtin(model)))
-    }
-
-    /// Whether a starting model determines the sizes of the networks.
-    fn names_no_sizes(&self) -> bool {
-        self.recipe == Recipe::Recommended
-            && self.feed_forward_width.is_none()
-            && self.spatial_layers.is_none()
-            && self.backbone.is_none()
-            && self.goal_recipe.is_none()
     }
 
     fn scene(&self) -> anyhow::Result<(Convention, String)> {

@@ -114,13 +114,13 @@ impl Outcomes {
                 .filter(|(of, _)| *of == pace)
                 .map(|(_, score)| *score)
         };
-        let count = own().count() as f64;
-        let weight = weight_of(own().count(), share);
+        let count = own().count();
+        let weight = weight_of(count, share);
         let LevelQuantiles { levels, quantiles } = &self.table.0;
         let rows = levels.iter().zip(&quantiles[pace as usize]);
         let moves = rows.map(|(level, quantiles)| {
             let missed = own().filter(|score| *score > quantiles[self.step]).count() as f64;
-            STEP * weight * (missed / count.max(1.0) - (1.0 - level))
+            STEP * weight * (missed / count.max(1) as f64 - (1.0 - level))
         });
         (weight, moves.collect())
     }

@@ -24,10 +24,12 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
             fair.window_rule, fair.convention
         );
         let table = table(fair, groups)?;
-        let words = fair
-            .conditions_in_words()
-            .replace("protocol `fair`", "protocols `single` and `fair`");
-        let caption = format!("{NOTE} {words}");
+        let caption = format!(
+            "{NOTE} Data convention `{}`, window rule `{}`, protocols `single` and `fair`; scored: {}.",
+            fair.convention,
+            fair.window_rule,
+            fair.test_subset.unwrap_or("all test windows")
+        );
         Some([Part::heading(title), Part::Table(table.captioned(caption))])
     };
     tables.filter_map(part).flatten().collect()
