@@ -4,8 +4,12 @@
 
 use ddl::data::{Completeness, HORIZON, LiveTracks, OBSERVED, PedestrianId, Position, Window};
 use ddl::eval::metric::stability::RolloutStability;
-use ddl::{BuiltinModel, CertifiedForecast, Ddl, DeviceChoice, Forecaster as _, Variant};
+use ddl::{
+    BuiltinModel, CertificateError, CertifiedForecast, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _,
+    LiveForecaster, Variant,
+};
 use ddl_core::distance;
+use ddl_tests::place::Place;
 use ddl_tests::{bits, crowd, drawn_model};
 use proptest::prelude::*;
 use std::sync::LazyLock;
@@ -208,5 +212,29 @@ fn filled_in_positions_are_not_evidence() {
         let median = model.goal_model().goals(windows).unwrap()[0][0].median();
         let one = model.forecast_central(windows).unwrap();
         assert_eq!(one[0].goal(0, 0), Some(median), "{}", model.source());
+    }
+}
+
+#[test]
+fn models_without_a_flow_are_refused() {
+    for variant in [Variant::Star, Variant::NoDynamics] {
+        let place = Place::with_variant(variant);
+        let forecast = "forecast --model run tracks.csv --certificate";
+        place.fails(forecast, &[&format!("`{variant}`"), "no flow to certify"]);
+        let model = drawn_model::of(variant);
+        let no_flow = |error: ForecastError| {
+            let ForecastError::Model { source, .. } = error else {
+                panic!("{error}")
+            };
+            let expected = CertificateError::NoFlow { variant };
+            assert_eq!(source.downcast_ref::<CertificateError>(), Some(&expected));
+        };
+        no_flow(model.forecast_certified(&crowd::windows(1, 2)).unwrap_err());
+        let mut live = LiveForecaster::new(&model);
+        match live.push_certified(0, [(PedestrianId(1), [0.0, 0.0])]) {
+            Err(DdlError::Forecast(error)) => no_flow(error),
+            other => panic!("{other:?}"),
+        }
+        assert_eq!(live.tracks().last_frame(), None);
     }
 }

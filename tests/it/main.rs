@@ -16,7 +16,6 @@ mod golden_forecasts;
 mod guarantee_on_real_people;
 #[cfg(unix)]
 mod guide;
-mod keep_clear;
 mod kept_memory;
 mod known_recordings;
 mod leak;

@@ -23,7 +23,7 @@ use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset, locate};
 use ddl::report::Report;
-use ddl::{BuiltinModel, Clearance, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, RunConfig};
+use ddl::{BuiltinModel, Ddl, DdlError, DeviceChoice, GoalModel, ModelSource, RunConfig};
 use std::path::{Path, PathBuf};
 
 /// Seed of the simulated crowds, the same for all users.
@@ -77,37 +77,6 @@ impl Machine {
     pub(crate) fn prepare_for_little(&self) -> Result<(), DdlError> {
         ddl::prepare(self.device, self.threads.or(Some(1)))
     }
-}
-
-/// Whether pedestrians keep a clearance from each other.
-#[derive(Debug, Args)]
-pub(crate) struct KeepClear {
-    /// Let pedestrians keep this distance from each other, in metres between centres, such as 0.4
-    ///
-    /// Each hypothesis is computed again among the most likely paths of the other pedestrians. Near another pedestrian
-    /// it slows down and slides past. The distance to the goal still falls at every step. The clearance is not
-    /// guaranteed, because both pedestrians move and neither steps aside.
-    #[arg(
-        long,
-        value_name = "METRES",
-        value_parser = clearance,
-        allow_negative_numbers = true
-    )]
-    keep_clear: Option<Clearance>,
-}
-
-impl KeepClear {
-    pub(crate) fn of(&self, model: Ddl) -> Result<Ddl, DdlError> {
-        match self.keep_clear {
-            None => Ok(model),
-            Some(clearance) => model.with_clearance(clearance),
-        }
-    }
-}
-
-fn clearance(text: &str) -> Result<Clearance, String> {
-    let metres: f64 = text.parse().map_err(|error| format!("must be a number: {error}"))?;
-    Clearance::new(metres).map_err(|error| error.to_string())
 }
 
 /// Help of the option in commands without progress. Every command that reports takes the option.

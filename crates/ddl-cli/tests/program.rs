@@ -7,7 +7,7 @@ use std::process::Command;
 
 #[test]
 fn options_of_the_network_do_not_go_with_forecasts_of_another_program() {
-    for option in [["--device", "cpu"], ["--threads", "1"], ["--keep-clear", "0.4"]] {
+    for option in [["--device", "cpu"], ["--threads", "1"]] {
         let output = Command::new(env!("CARGO_BIN_EXE_ddl"))
             .args(["evaluate", "--fold", "plaza", "--convention", "simulated"])
             .args(["--forecasts", "no such file.jsonl"])

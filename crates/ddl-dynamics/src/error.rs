@@ -21,10 +21,6 @@ pub enum DynamicsError {
     NotLowerTriangular { row: usize, column: usize, value: f64 },
     #[error("the Cholesky factor is too large: L L^T overflows; scale the factor down or use f64")]
     FactorTooLarge,
-    #[error("the share is {0}: it must be above 0, so that P stays positive definite, and at most 1")]
-    InvalidShare(f64),
-    #[error("the direction is the zero vector: its length must be positive")]
-    NoDirection,
     #[error("the distance from the position to the goal overflows; use smaller units or f64")]
     DistanceTooLarge,
     #[error("the metric schedule is empty: give the metric of at least one step")]

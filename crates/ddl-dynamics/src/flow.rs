@@ -1,13 +1,11 @@
 //! Flows: the velocity with which a pedestrian approaches its goal.
 
-mod avoiding;
 mod natural_gradient;
 
 use nalgebra::SVector;
 
 use crate::{attractor::Attractor, error::DynamicsError, metric::CholeskyMetric, real::Real, state::State};
 
-pub use avoiding::AvoidingFlow;
 pub use natural_gradient::NaturalGradientFlow;
 
 /// A velocity field with one attractor, stable by construction.
@@ -38,12 +36,5 @@ pub trait Flow<T: Real, const D: usize> {
     fn velocity(&self, state: &State<T, D>) -> Result<SVector<T, D>, DynamicsError> {
         let metric = self.metric(state)?;
         Ok(-metric.apply(&self.attractor().gradient(&state.position)))
-    }
-
-    /// The longest time for which `velocity` (m/s) may be followed from `state` (seconds, positive); `None` if the flow
-    /// sets no limit.
-    fn longest_step(&self, state: &State<T, D>, velocity: &SVector<T, D>) -> Option<T> {
-        let _ = (state, velocity);
-        None
     }
 }

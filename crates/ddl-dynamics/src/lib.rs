@@ -1,11 +1,10 @@
 #![doc = include_str!("../README.md")]
 //!
-//! ## A hand that reaches past a pillar
+//! ## A hand that reaches for a cup
 //!
 //! ```rust
 //! use ddl_dynamics::{
-//!     Attractor, AvoidingFlow, Ball, CholeskyMetric, LyapunovCertificate, NaturalGradientFlow,
-//!     StableEuler, rollout,
+//!     Attractor, CholeskyMetric, LyapunovCertificate, NaturalGradientFlow, StableEuler, rollout,
 //! };
 //! use nalgebra::{Matrix3, Vector3};
 //!
@@ -24,14 +23,7 @@
 //! // The longest possible duration: distance over the smallest eigenvalue (of the continuous flow).
 //! let slowest = metric.eigenvalue_range().smallest;
 //! println!("{:.1} s", cup.distance(&path[0]) / slowest);
-//!
-//! // The same with a pillar in the way: the hand passes it and still reaches the cup.
-//! let pillar = Ball::new(Vector3::new(0.3, 0.08, 0.12), 0.1)?;
-//! let careful = AvoidingFlow::new(reach, [pillar], 0.1)?;
-//! let path = rollout(&careful, &StableEuler, Vector3::zeros(), 0.05, 400)?;
-//! assert!(path.iter().all(|hand| pillar.gap_and_normal(hand).0 > 0.0));
-//! assert!(cup.distance(&path[400]) < 1e-3);
-//! assert!(LyapunovCertificate::of_rollout(&careful, &path, 0.05)?.verify().is_ok());
+//! assert!(LyapunovCertificate::of_rollout(&reach, &path, 0.05)?.verify().is_ok());
 //! # Ok::<(), ddl_dynamics::DynamicsError>(())
 //! ```
 //!
@@ -40,7 +32,6 @@
 //! | | guaranteed | condition |
 //! |---|---|---|
 //! | continuous time | `Phi` falls at `u^T P u`, at least `lambda_min`; goal after at most `Phi(0) / lambda_min` seconds | `P` positive definite: every [`CholeskyMetric`] |
-//! | [`AvoidingFlow`] | `Phi` falls outside the balls; no ball is entered; the goal is the only attractor | balls stand still and do not touch; goal and start outside; eigenvalues within `[m, M]`, `m > 0` |
 //! | [`Euler`] | `Phi` falls in a step | only if `dt < 2 Phi u^T P u / \|P u\|^2`: never near the goal |
 //! | [`StableEuler`] | `Phi`, as computed, falls in every step until it is 0; then rest | none: any finite input, `f32` or `f64` |
 //! | [`StableEuler`] | `Phi <= tolerance` in a bounded number of steps | eigenvalues within `[m, M]`, `m > 0` |
@@ -58,7 +49,6 @@ mod lyapunov;
 mod metric;
 mod metric_source;
 mod motion_bounds;
-mod obstacle;
 mod polar;
 mod real;
 mod rollout;
@@ -67,13 +57,12 @@ mod state;
 
 pub use attractor::Attractor;
 pub use error::DynamicsError;
-pub use flow::{AvoidingFlow, Flow, NaturalGradientFlow};
+pub use flow::{Flow, NaturalGradientFlow};
 pub use integrate::{Euler, Integrator, StableEuler};
-pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Obstacles, Violation};
+pub use lyapunov::{Bounded, CertifiedStep, LyapunovCertificate, MotionEvidence, Violation};
 pub use metric::{CholeskyMetric, PUBLISHED_SIGMA};
 pub use metric_source::{ArrivingSchedule, MetricSchedule, MetricSource};
 pub use motion_bounds::{MotionBounds, StepTime};
-pub use obstacle::{Ball, ObstacleSchedule, ObstacleSource};
 pub use real::Real;
 pub use rollout::{rollout, rollout_into};
 pub use spectrum::EigenvalueRange;

@@ -18,14 +18,14 @@ use crate::{
 };
 
 pub use certified_step::CertifiedStep;
-pub use motion::{Bounded, MotionEvidence, Obstacles};
+pub use motion::{Bounded, MotionEvidence};
 pub use violation::Violation;
 
 /// Evidence that a rollout approached its goal: the quantities of the stability proof for every step.
 ///
 /// It is computed from the positions alone, for any integrator, so it can also check rollouts of other programs. It
-/// does not check that the positions follow from the metrics, that the pedestrian arrived
-/// ([`final_potential`](Self::final_potential) is the remaining distance), or that obstacles were avoided.
+/// does not check that the positions follow from the metrics, or that the pedestrian arrived
+/// ([`final_potential`](Self::final_potential) is the remaining distance).
 ///
 /// JSON keeps it exactly with the feature `float_roundtrip` of `serde_json`. Without the feature, rounding can change
 /// the result of the strict check for a pedestrian that hardly moves.
@@ -73,7 +73,6 @@ impl<T: Real> LyapunovCertificate<T> {
         path: &[SVector<T, 2>],
         attractor: &Attractor<T, 2>,
         bounds: &MotionBounds<T>,
-        obstacles: Obstacles,
     ) -> Result<Self, DynamicsError> {
         if path.len() != self.steps.len() + 1 {
             return Err(DynamicsError::LengthMismatch {
@@ -88,7 +87,7 @@ impl<T: Real> LyapunovCertificate<T> {
         if let Some(position) = distances.zip(certified).position(|(a, b)| a != b) {
             return Err(DynamicsError::OtherPath { position });
         }
-        let motion = MotionEvidence::new(path, attractor, bounds, self.time_step, obstacles);
+        let motion = MotionEvidence::new(path, attractor, bounds, self.time_step);
         Ok(Self {
             motion: Some(motion),
             ..self

@@ -1,7 +1,5 @@
 //! The metric `P = L L^T + sigma I`, stored as its Cholesky factor.
 
-mod damping;
-
 use nalgebra::{SMatrix, SVector};
 
 use crate::{

@@ -12,8 +12,8 @@ use std::{
 };
 
 use ddl_dynamics::{
-    Attractor, AvoidingFlow, Ball, CholeskyMetric, Euler, Flow, Integrator, MetricSchedule, NaturalGradientFlow,
-    PUBLISHED_SIGMA, Real, StableEuler, rollout, rollout_into,
+    Attractor, CholeskyMetric, Euler, Integrator, MetricSchedule, NaturalGradientFlow, PUBLISHED_SIGMA, Real,
+    StableEuler, rollout, rollout_into,
 };
 use nalgebra::{SMatrix, SVector};
 use rand::{RngExt, SeedableRng};
@@ -118,27 +118,6 @@ fn no_step_allocates() {
     allocates_nothing::<f64, 2>(&Euler);
     allocates_nothing::<f32, 2>(&Euler);
     allocates_nothing::<f64, 3>(&Euler);
-}
-
-#[test]
-fn around_obstacles() {
-    let hypotheses: Vec<MadeUpWalk<f64, 2>> = drawn(300, 7);
-    let mut positions = [SVector::<f64, 2>::zeros(); 41];
-    for MadeUpWalk { flow, start, .. } in &hypotheses {
-        let goal = flow.attractor().goal();
-        let ball = |along: f64, aside: f64| {
-            let way = goal - start;
-            let beside = SVector::<f64, 2>::new(-way.y, way.x);
-            Ball::new(start + way * along + beside * aside, 0.3).unwrap()
-        };
-        let balls = [ball(0.4, 0.1), ball(0.5, -0.1), ball(0.7, 0.05)];
-        let flow = AvoidingFlow::new(flow.clone(), balls, 1.0).unwrap();
-        let made = allocations(|| {
-            rollout_into(&flow, &StableEuler, *start, TIME_STEP, &mut positions).unwrap();
-            black_box(&positions);
-        });
-        assert_eq!(made, 0);
-    }
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use crate::arrays::{array, flat, points};
 use crate::errors::of_any;
 use ddl::dynamics::{
-    Attractor, AvoidingFlow, Ball, CholeskyMetric, Flow as _, LyapunovCertificate, MetricSchedule, NaturalGradientFlow,
-    StableEuler, State, rollout,
+    Attractor, CholeskyMetric, Flow as _, LyapunovCertificate, MetricSchedule, NaturalGradientFlow, StableEuler, State,
+    rollout,
 };
 use nalgebra::{Matrix2, Vector2};
 use numpy::{PyReadonlyArray2, PyReadonlyArray3};
@@ -15,34 +15,21 @@ use pyo3::types::PyDict;
 /// Limit of the positions of one call, for all paths together: 1.6 GB.
 const MOST_POSITIONS: usize = 100_000_000;
 
-/// Without obstacles this is the free flow.
-type Avoiding = AvoidingFlow<f64, 2, MetricSchedule<f64, 2>, Vec<Ball<f64, 2>>>;
-
 #[pyclass(frozen, module = "ddl_forecast._core")]
-pub(crate) struct Flow(Avoiding);
+pub(crate) struct Flow(NaturalGradientFlow<f64, 2, MetricSchedule<f64, 2>>);
 
 #[pymethods]
 impl Flow {
-    /// `metrics` `(steps, 2, 2)`, symmetric and positive definite; further steps use the last one. `obstacles` `(m,
-    /// 3)`: x, y and radius.
+    /// `metrics` `(steps, 2, 2)`, symmetric and positive definite; further steps use the last one.
     #[new]
-    #[pyo3(signature = (goal, metrics, obstacles, margin))]
-    fn new(
-        goal: [f64; 2],
-        metrics: PyReadonlyArray3<'_, f64>,
-        obstacles: PyReadonlyArray2<'_, f64>,
-        margin: f64,
-    ) -> PyResult<Self> {
+    #[pyo3(signature = (goal, metrics))]
+    fn new(goal: [f64; 2], metrics: PyReadonlyArray3<'_, f64>) -> PyResult<Self> {
         let attractor = Attractor::new(goal.into()).map_err(of_any)?;
         let matrices = flat("P", &metrics)?.as_chunks::<4>().0.iter().enumerate();
         let metrics = matrices.map(|(step, &[xx, xy, yx, yy])| metric(step, [xx, xy, yx, yy]));
         let metrics: Vec<_> = metrics.collect::<PyResult<_>>()?;
         let schedule = MetricSchedule::new(metrics).map_err(of_any)?;
-        let balls = flat("obstacles", &obstacles)?.as_chunks::<3>().0.iter();
-        let balls = balls.map(|&[x, y, radius]| Ball::new(Vector2::new(x, y), radius));
-        let balls: Vec<_> = balls.collect::<Result<_, _>>().map_err(of_any)?;
-        let free = NaturalGradientFlow::new(attractor, schedule);
-        Ok(Self(AvoidingFlow::new(free, balls, margin).map_err(of_any)?))
+        Ok(Self(NaturalGradientFlow::new(attractor, schedule)))
     }
 
     fn velocity(&self, py: Python<'_>, position: PyReadonlyArray2<'_, f64>, step: usize) -> PyResult<Py<PyAny>> {

@@ -7,7 +7,7 @@ use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, WindowOptions, completeness, past_tracks};
 use crate::recording::{ObservedWindows, Recording};
 use ddl::data::Window;
-use ddl::{Clearance, Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, ModelSource, RecordingPlayer};
+use ddl::{Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, ModelSource, RecordingPlayer};
 use numpy::PyReadonlyArray3;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -79,16 +79,12 @@ impl ForecastOptions {
 impl Model {
     /// The built-in model of that name, or the model at that path.
     #[staticmethod]
-    fn open(py: Python<'_>, name: PathBuf, clearance: Option<f64>) -> PyResult<Self> {
+    fn open(py: Python<'_>, name: PathBuf) -> PyResult<Self> {
         let opened = run(py, move |_| {
             // A built-in model takes precedence over a folder of that name, which is `./hotel`.
             let builtin = name.to_str().and_then(|name| name.parse().ok());
             let source = builtin.map_or_else(|| ModelSource::at(&name), ModelSource::Builtin);
-            let model = Ddl::open(&source, DeviceChoice::Cpu)?;
-            match clearance {
-                None => Ok(model),
-                Some(distance) => model.with_clearance(Clearance::new(distance)?),
-            }
+            Ddl::open(&source, DeviceChoice::Cpu)
         })?;
         Ok(Self(Arc::new(opened.map_err(raised)?)))
     }

@@ -99,14 +99,6 @@ def test_pickled_and_many_scenes(forecaster, crossing):
         assert np.array_equal(scene.paths, forecaster.forecast(past).paths)
 
 
-def test_keeping_clear(crossing):
-    free, clear = ddl.Forecaster(), ddl.Forecaster(keep_clear=0.5)
-    assert repr(pickle.loads(pickle.dumps(clear))) == "Forecaster('world', keep_clear=0.5)"
-    towards = np.stack([np.linspace([-4, 0.05], [-1, 0.05], 8), np.linspace([4, 0], [1, 0], 8)])
-    near = [metrics.closest_approach(of.forecast(towards).most_likely())[0] for of in (free, clear)]
-    assert near[1] > near[0]
-
-
 def test_bits_of_the_program(forecaster, tracks, program):
     lines = run(
         program, "forecast", tracks, "--format", "jsonl", "--last", "--region", "0.9", check=True

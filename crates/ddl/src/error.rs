@@ -67,13 +67,6 @@ pub enum DdlError {
     Patience { patience: usize, validation: f64 },
     #[error("{field} = {share} is out of range: 0 to 1")]
     GoalShare { field: &'static str, share: f64 },
-    #[error("a clearance of {0} m is out of range: it must be above 0 and at most 10 m, for example 0.4")]
-    Clearance(f64),
-    #[error(
-        "the variant `{variant}` cannot keep a clearance: its network emits positions and has no flow; \
-         use a model of the variant `full` or `no-goal-shift`"
-    )]
-    NoFlow { variant: ddl_network::Variant },
     #[error(
         "the training recordings hold {tracks} tracks of 20 steps, but the published goal estimator, which evaluation \
          also runs, retrieves {experts}; train on more or longer recordings (the validation part does not count)"

@@ -1,7 +1,6 @@
 //! From goals to forecasts: the paths that the network shapes, and their certificates.
 
 pub(crate) mod certified;
-pub(crate) mod clearance;
 pub(crate) mod name;
 pub(crate) mod shaped;
 pub(crate) mod walk;

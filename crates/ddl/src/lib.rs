@@ -54,7 +54,6 @@ pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare};
 pub use error::DdlError;
 pub use forecast::certified::{CertificateError, CertifiedForecast};
-pub use forecast::clearance::Clearance;
 pub use goals::model::GoalModel;
 pub use goals::remembering::Remembering;
 pub use live::forecaster::{LiveForecast, LiveForecaster};

@@ -2,7 +2,7 @@
 
 mod forecasts;
 
-use crate::command::{KeepClear, Machine, RecordingsAt, Reporting, at_least_one};
+use crate::command::{Machine, RecordingsAt, Reporting, at_least_one};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use anyhow::{Context as _, bail};
@@ -52,8 +52,6 @@ pub(crate) struct Evaluate {
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_pedestrians: Option<usize>,
     #[command(flatten)]
-    clear: KeepClear,
-    #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
     reporting: Reporting,
@@ -91,7 +89,6 @@ impl Evaluate {
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
         let model = Ddl::open(source, self.machine.device)?;
-        let model = self.clear.of(model)?;
         let mut request = EvaluationRequest::new(self.protocols.clone());
         if self.validation {
             request.on = Split::Validation;

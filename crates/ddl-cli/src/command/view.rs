@@ -1,6 +1,6 @@
 //! `ddl view`: a page that plays the forecasts of a recording.
 
-use crate::command::{KeepClear, Machine, ModelChoice};
+use crate::command::{Machine, ModelChoice};
 use crate::output;
 use crate::tracks::TrackOptions;
 use anyhow::{Context as _, bail};
@@ -32,8 +32,6 @@ pub(crate) struct View {
     #[arg(long)]
     no_open: bool,
     #[command(flatten)]
-    clear: KeepClear,
-    #[command(flatten)]
     machine: Machine,
 }
 
@@ -43,7 +41,7 @@ impl View {
             bail!("a page needs a file of tracks; for live tracks, use `ddl forecast -`");
         }
         self.machine.prepare_for_little()?;
-        let model = self.clear.of(self.model.load(self.machine.device)?)?;
+        let model = self.model.load(self.machine.device)?;
         let observed = self.tracks.observed(model.config())?;
         let recording = &observed.recording;
         let player = RecordingPlayer {

@@ -111,9 +111,6 @@ impl<T: Real, const D: usize> Integrator<T, D> for StableEuler {
         dt: T,
     ) -> Result<SVector<T, D>, DynamicsError> {
         let velocity = flow.velocity(state)?;
-        let dt = flow
-            .longest_step(state, &velocity)
-            .map_or(dt, |longest| longest.min(dt));
         Self::advance(flow.attractor(), &state.position, &velocity, dt)
     }
 }

@@ -27,17 +27,8 @@ impl<T: Real> Bounded<T> {
     }
 }
 
-/// Whether a motion had to avoid obstacles, which may delay it, so that only its speed is bounded.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Obstacles {
-    /// There were none.
-    Absent,
-    /// They were avoided.
-    Avoided,
-}
-
-/// Quantities of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. For a
-/// motion that avoids obstacles, which may delay it, `deviation` and `distance_left` have no bound.
+/// Quantities of a motion within [`MotionBounds`], each with its bound, by the theorem of `docs/stability.md`. Some
+/// certificates of earlier versions have no `deviation` and `distance_left`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct MotionEvidence<T> {
@@ -55,13 +46,7 @@ pub struct MotionEvidence<T> {
 
 impl<T: Real> MotionEvidence<T> {
     /// The evidence of `path` (metres, finite; the start first), with steps of `dt` seconds within `bounds`.
-    pub(super) fn new(
-        path: &[SVector<T, 2>],
-        attractor: &Attractor<T, 2>,
-        bounds: &MotionBounds<T>,
-        dt: T,
-        obstacles: Obstacles,
-    ) -> Self {
+    pub(super) fn new(path: &[SVector<T, 2>], attractor: &Attractor<T, 2>, bounds: &MotionBounds<T>, dt: T) -> Self {
         let coordinates = path.iter().chain([attractor.goal()]);
         let largest_coordinate = coordinates.map(SVector::amax).fold(T::zero(), T::max);
         let off = T::rounded(ROUNDINGS) * T::EPSILON * largest_coordinate;
@@ -79,39 +64,25 @@ impl<T: Real> MotionEvidence<T> {
                 most_change = most_change.max((range.largest - before.smallest).max(before.largest - range.smallest));
             }
         }
-        let alone = obstacles == Obstacles::Absent;
         let top = bounds.top_speed();
-        let speed = Bounded {
-            largest: fastest,
-            bound: rounded(top, off / dt),
-        };
-        let speed_change = Bounded {
-            largest: change,
-            bound: rounded(if alone { most_change.min(top) } else { top }, (off + off) / dt),
-        };
-        let (deviation, distance_left) = if alone {
-            let left = path.last().map_or(T::zero(), |last| attractor.distance(last));
-            (
-                Some(Bounded {
-                    largest: farthest_from_line(path, attractor.goal()),
-                    bound: rounded(sideways, off * T::rounded(steps as f64 + 1.0)),
-                }),
-                Some(Bounded {
-                    largest: left,
-                    bound: rounded(
-                        out_of_reach(path, attractor, bounds, dt),
-                        off * T::rounded(steps as f64 + 1.0),
-                    ),
-                }),
-            )
-        } else {
-            (None, None)
-        };
+        let off_at_end = off * T::rounded(steps as f64 + 1.0);
         Self {
-            speed,
-            speed_change,
-            deviation,
-            distance_left,
+            speed: Bounded {
+                largest: fastest,
+                bound: rounded(top, off / dt),
+            },
+            speed_change: Bounded {
+                largest: change,
+                bound: rounded(most_change.min(top), (off + off) / dt),
+            },
+            deviation: Some(Bounded {
+                largest: farthest_from_line(path, attractor.goal()),
+                bound: rounded(sideways, off_at_end),
+            }),
+            distance_left: Some(Bounded {
+                largest: path.last().map_or(T::zero(), |last| attractor.distance(last)),
+                bound: rounded(out_of_reach(path, attractor, bounds, dt), off_at_end),
+            }),
         }
     }
 
@@ -165,7 +136,7 @@ mod tests {
         let path: Vec<Vector2<f64>> = (0..13).map(|t| place(f64::from(t)).into()).collect();
         let attractor = Attractor::new(Vector2::new(4.8, 0.0)).unwrap();
         let bounds = MotionBounds::default();
-        let evidence = MotionEvidence::new(&path, &attractor, &bounds, 0.4, Obstacles::Absent);
+        let evidence = MotionEvidence::new(&path, &attractor, &bounds, 0.4);
         evidence
             .check()
             .map_or_else(|violation| violation.to_string(), |()| String::new())

@@ -3,10 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(clippy::cast_sign_loss, reason = "numbers of steps are computed as positive floats")]
 
-mod avoiding;
 mod certificate;
 mod convergence;
-mod damping;
 mod draw;
 mod metric;
 mod motion_bounds;

@@ -1,8 +1,8 @@
 //! Motions within bounds: limited speed, nearer to the goal at every step, never past it, and on it with the last step.
 
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Obstacles,
-    Real, StableEuler, StepTime, rollout,
+    ArrivingSchedule, Attractor, CholeskyMetric, LyapunovCertificate, MotionBounds, NaturalGradientFlow, Real,
+    StableEuler, StepTime, rollout,
 };
 use nalgebra::Vector2;
 use proptest::{prelude::*, test_runner::TestCaseResult};
@@ -39,9 +39,7 @@ fn within<T: Real>(scene: &SceneDraw, (spare, share, dt, velocity, absolute): Bo
     let flow = NaturalGradientFlow::new(attractor, schedule);
     let path = rollout(&flow, &StableEuler, start, dt, METRICS).unwrap();
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, dt).unwrap();
-    let certificate = certificate
-        .within(&path, &attractor, &bounds, Obstacles::Absent)
-        .unwrap();
+    let certificate = certificate.within(&path, &attractor, &bounds).unwrap();
     Some((path, attractor, bounds, certificate))
 }
 
@@ -181,9 +179,7 @@ fn a_goal_out_of_reach_is_reported() {
     let path = rollout(&flow, &StableEuler, Vector2::zeros(), 0.4, 12).unwrap();
     assert!((path[12] - Vector2::new(9.6, 0.0)).norm() < 1e-12);
     let certificate = LyapunovCertificate::of_rollout(&flow, &path, 0.4).unwrap();
-    let certificate = certificate
-        .within(&path, &attractor, &bounds, Obstacles::Absent)
-        .unwrap();
+    let certificate = certificate.within(&path, &attractor, &bounds).unwrap();
     assert_eq!(certificate.verify(), Ok(()));
     let left = certificate.motion().unwrap().distance_left.unwrap();
     assert!((left.largest - 10.4).abs() < 1e-9 && (left.bound - 10.4).abs() < 1e-6);

@@ -28,8 +28,6 @@ class Forecaster:
         A built-in model: ``"world"``, or ``"eth"``, ``"hotel"``, ``"univ"``, ``"zara1"`` or ``"zara2"``, each named
         after the ETH/UCY scene that it was trained without. Or a path: the folder of a training run, or a packed model
         (``./world`` for a folder with the name of a built-in model).
-    keep_clear
-        Distance in metres, such as 0.4, that pedestrians keep from each other's most likely paths, or None.
 
     Raises
     ------
@@ -47,7 +45,7 @@ class Forecaster:
     20
     """
 
-    def __init__(self, model: str | os.PathLike[str] = "world", *, keep_clear: float | None = None) -> None:
+    def __init__(self, model: str | os.PathLike[str] = "world") -> None:
         name = os.fspath(model)
         names = _core.Model.builtin_names()
         if name not in names and not os.path.exists(name):
@@ -55,8 +53,7 @@ class Forecaster:
             raise FileNotFoundError(f"there is no model {name!r}: give a path, or the name of {builtin}")
         # A built-in model takes precedence over a folder of that name.
         self._name = name if name in names else os.path.abspath(name)
-        self._keep_clear = keep_clear
-        self._core = _core.Model.open(self._name, keep_clear)
+        self._core = _core.Model.open(self._name)
 
     @property
     def hypotheses(self) -> int:
@@ -242,11 +239,10 @@ class Forecaster:
         return Page(written)
 
     def __repr__(self) -> str:
-        clear = "" if self._keep_clear is None else f", keep_clear={self._keep_clear}"
-        return f"Forecaster({self._name!r}{clear})"
+        return f"Forecaster({self._name!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuilt, (self._name, self._keep_clear)
+        return Forecaster, (self._name,)
 
 
 def _tell_doubt(recording: Recording) -> None:
@@ -271,10 +267,6 @@ def _told(forecasts: list[Forecast], doubt: str | None) -> list[Forecast]:
             warnings.warn(words + frame, DoubtWarning, stacklevel=4)
             break
     return forecasts
-
-
-def _rebuilt(name: str, keep_clear: float | None) -> Forecaster:
-    return Forecaster(name, keep_clear=keep_clear)
 
 
 class Page:

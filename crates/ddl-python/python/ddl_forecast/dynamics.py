@@ -51,10 +51,6 @@ class Flow:
     P
         (2, 2) symmetric positive definite, m/s: the identity is 1 m/s straight to the goal. Or (steps, 2, 2), one
         matrix for each step; further steps use the last one.
-    obstacles
-        (m, 3) discs that the flow does not enter: x, y and radius, metres.
-    margin
-        Distance from a disc, metres, within which the approach slows down.
 
     Raises
     ------
@@ -62,20 +58,15 @@ class Flow:
         A matrix is not symmetric and positive definite (the message names it), or a number is not finite.
     """
 
-    def __init__(
-        self, goal: ArrayLike, P: ArrayLike, *, obstacles: ArrayLike | None = None, margin: float = 0.5
-    ) -> None:
+    def __init__(self, goal: ArrayLike, P: ArrayLike) -> None:
         matrices = np.asarray(P, dtype=np.float64)
         if matrices.ndim not in (2, 3) or matrices.shape[-2:] != (2, 2):
             raise ValueError(f"P must have the shape (2, 2) or (steps, 2, 2); found {matrices.shape}")
         at = floats(goal, 1, "goal", "(2,)")
         if at.shape != (2,):
             raise ValueError(f"goal must have the shape (2,); found {at.shape}")
-        discs = np.empty((0, 3)) if obstacles is None else floats(obstacles, 2, "obstacles", "(m, 3)")
-        if discs.shape[1] != 3:
-            raise ValueError(f"obstacles must have the shape (m, 3): x, y, radius; found {discs.shape}")
         metrics = np.ascontiguousarray(matrices.reshape(-1, 2, 2))
-        self._core = _core.Flow((float(at[0]), float(at[1])), metrics, discs, margin)
+        self._core = _core.Flow((float(at[0]), float(at[1])), metrics)
 
     def velocity(self, position: ArrayLike, *, step: int = 0) -> Floats:
         """(2,) or (m, 2) velocities, m/s, at positions of the same shape."""

@@ -197,7 +197,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 };
                 match variant.motion {
                     VariantMotion::Shaped(integrator) => model.forecast_towards(windows, goals, integrator),
-                    VariantMotion::Neutral(clearance) => model.forecast_neutral(windows, goals, clearance),
+                    VariantMotion::Neutral => model.forecast_neutral(windows, goals),
                 }
             };
             Ok(Forecasts {

@@ -91,7 +91,7 @@ impl Published {
         };
         let integrator = match config.frame {
             NetworkFrame::World => PathIntegrator::PlainEuler,
-            NetworkFrame::Goal => PathIntegrator::Stable(None),
+            NetworkFrame::Goal => PathIntegrator::Stable,
         };
         let rollouts = self
             .network

@@ -2,7 +2,6 @@
 
 use crate::error::DdlError;
 use crate::evaluation::evaluate::EvaluationRequest;
-use crate::forecast::clearance::Clearance;
 use crate::model::ddl::Ddl;
 use crate::run::directory::{RunDirectory, read_json, write_atomically, write_compact_json, write_json};
 use crate::run::lock::RunLock;
@@ -20,8 +19,6 @@ struct EvaluationRecord {
     #[serde(default)]
     recordings: Vec<MeasuredRecording>,
     device: String,
-    #[serde(default)]
-    clearance: Option<Clearance>,
     /// Version of the set of rows; an older set is evaluated again.
     #[serde(default)]
     rows: u32,
@@ -52,7 +49,6 @@ impl EvaluationRecord {
             request: request.clone(),
             recordings: dataset.recordings().iter().map(measured).collect(),
             device: model.device().words().to_owned(),
-            clearance: model.clearance(),
             rows: ROWS,
             calibration: Calibration::digest(),
         }

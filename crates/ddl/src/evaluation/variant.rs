@@ -1,6 +1,5 @@
 //! The variants of a model that an evaluation compares, each with its goals and its motion.
 
-use crate::forecast::clearance::Clearance;
 use crate::forecast::name::WITHOUT_LIBRARY;
 use crate::forecast::walk::PathIntegrator;
 use crate::model::ddl::Ddl;
@@ -35,8 +34,8 @@ pub(crate) enum GivenGoals {
 pub(crate) enum VariantMotion {
     /// The motion that the network shapes.
     Shaped(PathIntegrator),
-    /// The neutral motion, with a clearance or without regard to others.
-    Neutral(Option<Clearance>),
+    /// The neutral motion.
+    Neutral,
 }
 
 /// Describes the memory under a protocol. The text is the same for all folds of a convention, because they share a line
@@ -68,9 +67,8 @@ impl EvaluationVariant {
         }
     }
 
-    /// The unchanged model and, where requested, the model with a clearance. Further variants appear once each: with
-    /// plain Euler steps, without the expert library, with the published goals, and, under `single`, with the dynamics
-    /// of the network.
+    /// The unchanged model, and further variants once each: with plain Euler steps, without the expert library, with
+    /// the published goals, and, under `single`, with the dynamics of the network.
     pub(crate) fn all(model: &Ddl, asked: &[Protocol]) -> Vec<Self> {
         let network = model.config().star.variant;
         let mut variants = Vec::new();
@@ -84,21 +82,12 @@ impl EvaluationVariant {
                 });
             }
         };
-        let stable = VariantMotion::Shaped(PathIntegrator::Stable(None));
-        let minding = |clearance: Clearance| {
-            let change = format!("minding others within {} m", clearance.distance());
-            (Some(clearance), Some(change))
-        };
-        let careful = model.clearance().map(minding);
-        for (clearance, change) in [(None, None)].into_iter().chain(careful) {
-            let shaped = VariantMotion::Shaped(PathIntegrator::Stable(clearance));
-            let neutral = VariantMotion::Neutral(clearance);
-            for protocol in [Protocol::Fair, Protocol::Online] {
-                add(protocol, GivenGoals::Own, shaped, change.clone());
-            }
-            for protocol in [Protocol::Single, Protocol::OnlineSingle] {
-                add(protocol, GivenGoals::Central, neutral, change.clone());
-            }
+        let stable = VariantMotion::Shaped(PathIntegrator::Stable);
+        for protocol in [Protocol::Fair, Protocol::Online] {
+            add(protocol, GivenGoals::Own, stable, None);
+        }
+        for protocol in [Protocol::Single, Protocol::OnlineSingle] {
+            add(protocol, GivenGoals::Central, VariantMotion::Neutral, None);
         }
         let said = |change: &str| Some(change.to_owned());
         // Plain steps diverge for a network that was trained on whole paths of the stable integrator.

@@ -1,8 +1,7 @@
 //! Forecasts with a certificate for every hypothesis.
 
-use crate::forecast::clearance::{Clearance, Others};
 use crate::forecast::name::NAME;
-use crate::forecast::walk::{Approach, PathIntegrator, Walk};
+use crate::forecast::walk::{Approach, PathIntegrator};
 use crate::trust::calibration::Calibration;
 use ddl_core::{Forecast, ForecastError, Pace, Spread};
 use ddl_data::{HORIZON, OBSERVED, PedestrianName, Position, Window};
@@ -162,50 +161,22 @@ impl Walked<'_> {
             return Err(no_flow(self.config.variant));
         };
         let mut positions = rolled_out;
-        if let PathIntegrator::Stable(_) = self.integrator {
+        if let PathIntegrator::Stable = self.integrator {
             // Another path replaces each.
             positions.resize(factors.len(), [0.0; 2]);
         }
         assert_eq!(positions.len(), factors.len(), "a position for each factor");
-        let put = |path: &mut [Position], walk: Walk| {
-            path.copy_from_slice(&walk.positions);
-            keep(walk.certificate)
-        };
         let certificates = match self.integrator {
-            PathIntegrator::PlainEuler => self.each(factors, &mut positions, |_, approach, factors, path| {
+            PathIntegrator::PlainEuler => self.each(factors, &mut positions, |approach, factors, path| {
                 approach.certify(path, factors).map(&keep)
             })?,
-            PathIntegrator::Stable(None) => self.each(factors, &mut positions, |_, approach, factors, path| {
-                Ok(put(path, approach.walk(factors)?))
+            PathIntegrator::Stable => self.each(factors, &mut positions, |approach, factors, path| {
+                let walk = approach.walk(factors)?;
+                path.copy_from_slice(&walk.positions);
+                Ok(keep(walk.certificate))
             })?,
-            PathIntegrator::Stable(Some(clearance)) => {
-                let others = self.others(factors, clearance)?;
-                self.each(factors, &mut positions, |pair, approach, factors, path| {
-                    let near = others.near(pair / self.hypotheses, approach.start, approach.goal)?;
-                    Ok(put(path, approach.walk_among(&near, factors)?))
-                })?
-            }
         };
         Ok((positions, certificates))
-    }
-
-    /// The obstacles of all pedestrians: the paths to their most likely goals, each computed without the others.
-    fn others(&self, factors: &[[f64; 3]], clearance: Clearance) -> Result<Others, ForecastError> {
-        let hypotheses = self.hypotheses;
-        let weights = self.weights.chunks_exact(hypotheses).enumerate();
-        let likeliest = weights
-            .map(|(i, weights)| {
-                let heaviest = weights.iter().copied().fold(0.0, f64::max);
-                let first = weights.iter().position(|weight| *weight >= heaviest);
-                let pair = i * hypotheses + first.unwrap_or(0);
-                let factors = &factors[pair * HORIZON..][..HORIZON];
-                let walk = self.one(pair, &self.bounds(i), factors, |_, approach, factors| {
-                    approach.walk(factors)
-                })?;
-                Ok(walk.positions)
-            })
-            .collect::<Result<Vec<_>, ForecastError>>()?;
-        Ok(Others::new(clearance, likeliest))
     }
 
     fn bounds(&self, i: usize) -> MotionBounds<f64> {
@@ -217,53 +188,38 @@ impl Walked<'_> {
         }
     }
 
-    /// Applies `integrate` to every hypothesis, in order. Its arguments are the index (pedestrian x hypotheses +
-    /// hypothesis), the approach, the factors and the place of the path. The error is that of the first hypothesis that
-    /// fails.
+    /// Applies `integrate` to every hypothesis, in order. Its arguments are the approach, the factors and the place of
+    /// the path. The error is that of the first hypothesis that fails.
     fn each<R: Send>(
         &self,
         factors: &[[f64; 3]],
         positions: &mut [Position],
-        integrate: impl Fn(usize, &Approach, &[[f64; 3]], &mut [Position]) -> Result<R, DynamicsError> + Sync,
+        integrate: impl Fn(&Approach, &[[f64; 3]], &mut [Position]) -> Result<R, DynamicsError> + Sync,
     ) -> Result<Vec<R>, ForecastError> {
         let bounds: Vec<_> = (0..self.window.len()).map(|i| self.bounds(i)).collect();
         let pairs = factors.par_chunks_exact(HORIZON).enumerate();
         let pairs = pairs.zip(positions.par_chunks_exact_mut(HORIZON));
         let results = pairs.map(|((pair, factors), path)| {
-            let bounds = &bounds[pair / self.hypotheses];
-            self.one(pair, bounds, factors, |pair, approach, factors| {
-                integrate(pair, approach, factors, path)
+            let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
+            let approach = Approach {
+                start: self.window.observed(i)[OBSERVED - 1],
+                goal: self.goals[pair],
+                sigma: self.config.sigma,
+                time_step: self.config.time_step,
+                bounds: bounds[i],
+            };
+            integrate(&approach, factors, path).map_err(|cause| {
+                failed(CertificateError::Walk {
+                    recording: self.window.recording().to_owned(),
+                    start_frame: self.window.start_frame(),
+                    pedestrian: self.window.name(i),
+                    hypothesis,
+                    cause,
+                })
             })
         });
         // A parallel collect into a `Result` could return the error of any hypothesis.
         results.collect::<Vec<_>>().into_iter().collect()
-    }
-
-    /// Runs `integrate` for one hypothesis; `pair` = pedestrian x hypotheses + hypothesis.
-    fn one<R>(
-        &self,
-        pair: usize,
-        bounds: &MotionBounds<f64>,
-        factors: &[[f64; 3]],
-        integrate: impl FnOnce(usize, &Approach, &[[f64; 3]]) -> Result<R, DynamicsError>,
-    ) -> Result<R, ForecastError> {
-        let (i, hypothesis) = (pair / self.hypotheses, pair % self.hypotheses);
-        let approach = Approach {
-            start: self.window.observed(i)[OBSERVED - 1],
-            goal: self.goals[pair],
-            sigma: self.config.sigma,
-            time_step: self.config.time_step,
-            bounds: *bounds,
-        };
-        integrate(pair, &approach, factors).map_err(|cause| {
-            failed(CertificateError::Walk {
-                recording: self.window.recording().to_owned(),
-                start_frame: self.window.start_frame(),
-                pedestrian: self.window.name(i),
-                hypothesis,
-                cause,
-            })
-        })
     }
 }
 

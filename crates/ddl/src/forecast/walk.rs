@@ -2,11 +2,10 @@
 //! to positions in `f64`, with the integrator whose guarantee holds for the computed numbers. Positions from elsewhere
 //! can be certified as well.
 
-use crate::forecast::clearance::Clearance;
 use ddl_data::{HORIZON, Position};
 use ddl_dynamics::{
-    ArrivingSchedule, Attractor, AvoidingFlow, CholeskyMetric, DynamicsError, Flow, LyapunovCertificate, MetricSource,
-    MotionBounds, NaturalGradientFlow, ObstacleSchedule, Obstacles, StableEuler, State, rollout_into,
+    ArrivingSchedule, Attractor, CholeskyMetric, DynamicsError, LyapunovCertificate, MetricSource, MotionBounds,
+    NaturalGradientFlow, StableEuler, State, rollout_into,
 };
 use ddl_network::StepRule;
 use nalgebra::Vector2;
@@ -16,15 +15,15 @@ use std::cell::RefCell;
 pub(crate) enum PathIntegrator {
     /// Plain Euler steps as published, which may overshoot the goal.
     PlainEuler,
-    /// `StableEuler` within bounds, with or without a clearance from the others.
-    Stable(Option<Clearance>),
+    /// `StableEuler` within bounds.
+    Stable,
 }
 
 impl PathIntegrator {
     pub(crate) fn rule(self) -> StepRule {
         match self {
             Self::PlainEuler => StepRule::Euler,
-            Self::Stable(_) => StepRule::Bounded,
+            Self::Stable => StepRule::Bounded,
         }
     }
 }
@@ -46,9 +45,6 @@ pub(crate) struct Walk {
     pub(crate) positions: [Position; HORIZON],
     pub(crate) certificate: LyapunovCertificate<f64>,
 }
-
-/// The flow to a goal, shaped by one metric for each step.
-type ShapedFlow = NaturalGradientFlow<f64, 2, MetricCache>;
 
 /// Computes the metric of each step once, for the integrator and for the certificate.
 ///
@@ -79,35 +75,19 @@ impl MetricSource<f64, 2> for MetricCache {
 impl Approach {
     /// Integrates the approach with `StableEuler` steps in `f64`, shaped by one factor (a, b, c) for each step.
     pub(crate) fn walk(&self, factors: &[[f64; 3]]) -> Result<Walk, DynamicsError> {
-        self.follow(&self.flow(factors)?, Obstacles::Absent)
-    }
-
-    pub(crate) fn walk_among(
-        &self,
-        others: &ObstacleSchedule<f64, 2>,
-        factors: &[[f64; 3]],
-    ) -> Result<Walk, DynamicsError> {
-        let flow = AvoidingFlow::new(self.flow(factors)?, others.clone(), Clearance::MARGIN)?;
-        self.follow(&flow, Obstacles::Avoided)
-    }
-
-    fn flow(&self, factors: &[[f64; 3]]) -> Result<ShapedFlow, DynamicsError> {
         let attractor = Attractor::new(Vector2::from(self.goal))?;
         let metrics = self.metrics(factors)?;
         let metrics = MetricCache {
             metrics: ArrivingSchedule::new(metrics, attractor, self.bounds, self.time_step)?,
             computed: RefCell::new(Vec::with_capacity(HORIZON)),
         };
-        Ok(NaturalGradientFlow::new(attractor, metrics))
-    }
-
-    fn follow(&self, flow: &impl Flow<f64, 2>, obstacles: Obstacles) -> Result<Walk, DynamicsError> {
+        let flow = NaturalGradientFlow::new(attractor, metrics);
         let mut path = [Vector2::zeros(); HORIZON + 1];
         let start = Vector2::from(self.start);
-        rollout_into(flow, &StableEuler, start, self.time_step, &mut path)?;
-        let certificate = LyapunovCertificate::of_rollout(flow, &path, self.time_step)?;
+        rollout_into(&flow, &StableEuler, start, self.time_step, &mut path)?;
+        let certificate = LyapunovCertificate::of_rollout(&flow, &path, self.time_step)?;
         Ok(Walk {
-            certificate: certificate.within(&path, flow.attractor(), &self.bounds, obstacles)?,
+            certificate: certificate.within(&path, &attractor, &self.bounds)?,
             positions: std::array::from_fn(|t| path[t + 1].into()),
         })
     }
@@ -146,9 +126,6 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
     use super::*;
-    use crate::forecast::clearance::Others;
-    use ddl_dynamics::Ball;
-    use proptest::prelude::*;
 
     fn approach() -> Approach {
         Approach {
@@ -176,48 +153,6 @@ mod tests {
         let certified = approach.certify(&walk.positions, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
         assert_eq!(certified.verify(), Ok(()));
         assert_eq!(certified.motion(), None);
-    }
-
-    /// The path around a standing pedestrian keeps the clearance, and the distance to the goal still falls at every
-    /// step.
-    #[test]
-    fn a_pedestrian_in_the_way_is_passed() {
-        let (approach, factors) = (approach(), [[1.0, 0.0, 1.0]; HORIZON]);
-        let clearance = Clearance::new(0.5).unwrap();
-        let stands = [[1.5, 0.1]; HORIZON];
-        let among = |others| Others::new(clearance, others).near(0, [0.0, 0.0], [3.0, 0.0]);
-        let others = among(vec![[[9.0, 9.0]; HORIZON], stands]).unwrap();
-        let apart = |walk: &Walk| {
-            let distances = walk.positions.map(|[x, y]| (x - 1.5).hypot(y - 0.1));
-            distances.into_iter().fold(f64::INFINITY, f64::min)
-        };
-        assert!(apart(&approach.walk(&factors).unwrap()) < 0.15);
-        let walk = approach.walk_among(&others, &factors).unwrap();
-        assert!(apart(&walk) > 0.5);
-        assert_eq!(walk.certificate.verify(), Ok(()));
-        assert_eq!(walk.certificate.motion().unwrap().distance_left, None);
-        let no_others = among(vec![stands]).unwrap();
-        let alone = approach.walk_among(&no_others, &factors).unwrap();
-        assert_eq!(alone.positions, approach.walk(&factors).unwrap().positions);
-    }
-
-    proptest! {
-        /// Discs that `Others::near` leaves out because of their distance have no effect on the path.
-        #[test]
-        fn discs_that_are_left_out_change_no_bit(
-            others in prop::collection::vec(prop::array::uniform2(-25.0..25.0_f64), 1..40),
-            goal in prop::array::uniform2(-4.0..4.0_f64),
-        ) {
-            let (approach, clearance) = (Approach { goal, ..approach() }, Clearance::new(0.5).unwrap());
-            let stands = |&position: &Position| [position; HORIZON];
-            let others: Vec<_> = [approach.start].iter().chain(&others).map(stands).collect();
-            let disc = |path: &[Position; HORIZON]| Ball::new(path[0].into(), 0.5).unwrap();
-            let discs = others[1..].iter().map(disc).collect();
-            let discs = ObstacleSchedule::new(vec![discs; HORIZON]);
-            let near = Others::new(clearance, others).near(0, approach.start, goal).unwrap();
-            let walk = |others| approach.walk_among(others, &[[1.0, 0.0, 1.0]; HORIZON]).unwrap();
-            prop_assert_eq!(walk(&near).positions, walk(&discs).positions);
-        }
     }
 
     #[test]

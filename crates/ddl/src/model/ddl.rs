@@ -3,7 +3,6 @@
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast, Walked};
-use crate::forecast::clearance::Clearance;
 use crate::forecast::name::{NAME, WITHOUT_LIBRARY};
 use crate::forecast::shaped::{self, GuidedGoals};
 use crate::forecast::walk::PathIntegrator;
@@ -50,25 +49,9 @@ pub struct Ddl {
     pub(super) device: Device,
     pub(super) network: Box<dyn ForecastWindows>,
     pub(super) parameters: usize,
-    pub(super) clearance: Option<Clearance>,
 }
 
 impl Ddl {
-    /// The same model, with a clearance that its pedestrians keep from each other.
-    ///
-    /// # Errors
-    /// [`DdlError::NoFlow`] for the variants without dynamics.
-    pub fn with_clearance(self, clearance: Clearance) -> Result<Self, DdlError> {
-        let variant = self.config().star.variant;
-        if !variant.dynamics() {
-            return Err(DdlError::NoFlow { variant });
-        }
-        Ok(Self {
-            clearance: Some(clearance),
-            ..self
-        })
-    }
-
     /// The configuration of the model.
     pub fn config(&self) -> &RunConfig {
         self.goals.config()
@@ -87,11 +70,6 @@ impl Ddl {
     /// The device that it computes on.
     pub(crate) fn device(&self) -> Device {
         self.device
-    }
-
-    /// The clearance that its pedestrians keep from each other; `None` if they ignore each other.
-    pub(crate) fn clearance(&self) -> Option<Clearance> {
-        self.clearance
     }
 
     /// Number of learned parameters of the forecasting network.
@@ -122,7 +100,7 @@ impl Ddl {
         certified::ensure_flow(self.config().star.variant)?;
         let goals = self.goals.goals(windows)?;
         let goals = self.guided(windows, goals);
-        shaped::walked(&*self.network, windows, goals, PathIntegrator::Stable(self.clearance))?
+        shaped::walked(&*self.network, windows, goals, PathIntegrator::Stable)?
             .map(Walked::certified)
             .collect()
     }
@@ -138,7 +116,7 @@ impl Ddl {
     /// As [`forecast_all`](Forecaster::forecast_all).
     pub fn forecast_central(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = sets::with_central_only(windows, &self.goals.goals(windows)?);
-        self.forecast_neutral(windows, goals, self.clearance)
+        self.forecast_neutral(windows, goals)
     }
 
     /// [`forecast_central`](Self::forecast_central) with evidence for every path that it approaches its goal.
@@ -152,9 +130,7 @@ impl Ddl {
             certified::ensure_flow(variant)?;
         }
         let goals = sets::with_central_only(windows, &self.goals.goals(windows)?);
-        self.neutral(windows, goals, self.clearance)
-            .map(Walked::certified)
-            .collect()
+        self.neutral(windows, goals).map(Walked::certified).collect()
     }
 
     /// One neutral path for every pedestrian, to the single goal of its set; for the variant without goals, noise
@@ -163,27 +139,21 @@ impl Ddl {
         &self,
         windows: &[Window],
         sets: Vec<Vec<GoalSet>>,
-        clearance: Option<Clearance>,
     ) -> Result<Vec<Forecast>, ForecastError> {
         if !self.config().star.variant.uses_goal() {
             let seed = self.config().training.seed;
             return shaped::without_goals(&*self.network, seed, windows);
         }
-        self.neutral(windows, sets, clearance).map(Walked::forecast).collect()
+        self.neutral(windows, sets).map(Walked::forecast).collect()
     }
 
-    fn neutral<'a>(
-        &'a self,
-        windows: &'a [Window],
-        sets: Vec<Vec<GoalSet>>,
-        clearance: Option<Clearance>,
-    ) -> impl Iterator<Item = Walked<'a>> {
+    fn neutral<'a>(&'a self, windows: &'a [Window], sets: Vec<Vec<GoalSet>>) -> impl Iterator<Item = Walked<'a>> {
         let config = &self.config().star;
         windows.iter().zip(sets).map(move |(window, sets)| {
             let goals: Vec<Position> = sets.iter().flat_map(GoalSet::goals).copied().collect();
             Walked {
                 config,
-                integrator: PathIntegrator::Stable(clearance),
+                integrator: PathIntegrator::Stable,
                 window,
                 hypotheses: 1,
                 rolled_out: Vec::new(),
@@ -232,6 +202,6 @@ impl Forecaster for Ddl {
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
         let goals = self.goals.goals(windows)?;
-        self.forecast_towards(windows, goals, PathIntegrator::Stable(self.clearance))
+        self.forecast_towards(windows, goals, PathIntegrator::Stable)
     }
 }

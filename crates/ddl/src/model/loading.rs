@@ -72,7 +72,6 @@ impl Ddl {
             device,
             parameters: network.copy_weights()?.numbers().len(),
             network,
-            clearance: None,
         })
     }
 

@@ -56,7 +56,7 @@ impl EarlyStopping {
     /// minADE over the pedestrians in metres, as under the protocol `fair`.
     pub(crate) fn min_ade(&self, network: &dyn ForecastWindows) -> Result<f64, DdlError> {
         let (scenes, goals) = (&self.scenes, self.goals.clone());
-        let forecasts = shaped::towards(network, self.seed, scenes, goals, PathIntegrator::Stable(None))?;
+        let forecasts = shaped::towards(network, self.seed, scenes, goals, PathIntegrator::Stable)?;
         let (mut sum, mut pedestrians) = (0.0, 0);
         for (window, forecast) in self.windows.iter().zip(forecasts) {
             let forecast = forecast.without_bystanders(window);

@@ -21,7 +21,7 @@ pub(crate) struct OtherProgram {
         long,
         value_name = "FILE",
         // no network runs
-        conflicts_with_all = ["device", "threads", "keep_clear"],
+        conflicts_with_all = ["device", "threads"],
         help_heading = "Forecasts of another program"
     )]
     pub(crate) forecasts: Option<PathBuf>,

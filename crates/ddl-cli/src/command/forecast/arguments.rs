@@ -2,7 +2,7 @@
 
 use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::forecast::{json_lines, table};
-use crate::command::{KeepClear, Machine, ModelChoice};
+use crate::command::{Machine, ModelChoice};
 use crate::tracks::TrackOptions;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
@@ -68,8 +68,6 @@ pub(crate) struct ForecastCommand {
     #[arg(conflicts_with = "one")]
     pub(super) region: Vec<f64>,
     #[command(flatten)]
-    pub(super) clear: KeepClear,
-    #[command(flatten)]
     pub(super) machine: Machine,
 }
 
@@ -81,8 +79,7 @@ pub(super) enum OutputFormat {
 
 impl ForecastCommand {
     pub(super) fn model(&self) -> anyhow::Result<Ddl> {
-        let model = self.model.load(self.machine.device)?;
-        Ok(self.clear.of(model)?)
+        Ok(self.model.load(self.machine.device)?)
     }
 
     /// Forecasts of the windows in order of time, as text. The first text starts with the names of the columns, if the
