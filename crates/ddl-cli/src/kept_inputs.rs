@@ -104,9 +104,6 @@ pub(crate) fn ensure_kept(command: &Command, matches: &ArgMatches) -> anyhow::Re
             }
         }
     }
-    if let Some([one, two]) = same(&outputs) {
-        bail!("{one} and {two} name the same file; give another {two}");
-    }
     Ok(())
 }
 
@@ -186,15 +183,6 @@ fn lost(output: &Path, Named { option, path: input }: &Named<'_>) -> Option<Path
 fn is_written(file: &Path) -> bool {
     let name = file.file_name().and_then(std::ffi::OsStr::to_str);
     name.is_some_and(|name| WRITTEN.contains(&name))
-}
-
-/// The options of two outputs that name one file.
-fn same<'a>(outputs: &'a [Named<'_>]) -> Option<[&'a str; 2]> {
-    outputs.iter().enumerate().find_map(|(index, one)| {
-        let mut others = outputs[..index].iter();
-        let other = others.find(|other| place(one.path).is_some_and(|at| Some(at) == place(other.path)))?;
-        Some([other.option.as_str(), one.option.as_str()])
-    })
 }
 
 /// The absolute path without links; the last part need not exist.

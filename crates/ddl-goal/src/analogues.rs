@@ -35,7 +35,7 @@ impl Analogues {
         let time_step = library.time_step;
         let prepared = library.of_each(|track| {
             let motion = Motion::new(track, time_step)?;
-            let deviation = motion.deviation(track[WINDOW - 1], 1.0);
+            let deviation = motion.deviation(track[WINDOW - 1]);
             let index = WINDOW - 2;
             is_in_range(deviation)
                 .then_some((motion.components, deviation))
@@ -54,7 +54,7 @@ impl Analogues {
         let analogues = self.index.nearest(&motion.components, experts);
         let points = self.weighted_deviations(&analogues);
         let choice = choose(&points, clusters, STEPS);
-        let goals: Vec<_> = choice.goals.iter().map(|&d| motion.place(d, 1.0)).collect();
+        let goals: Vec<_> = choice.goals.iter().map(|&d| motion.place(d)).collect();
         if !goals.as_flattened().iter().all(|value| value.is_finite()) {
             let index = QuerySpan::Observed.velocities() - 1;
             return Err(TrackError::VelocityOverflow { index }.into());

@@ -1,16 +1,14 @@
 //! The goal estimator: it retrieves similar pedestrians and places goals among their endpoints.
 
-use ddl_core::WINDOW;
 use ddl_softdtw::{Cost, Neighbour, SearchIndex, SoftDtw};
 use rayon::prelude::*;
 
 use crate::analogues::Analogues;
-use crate::error::{GoalError, TrackError};
+use crate::error::GoalError;
 use crate::expert::Expert;
 use crate::goal_set::GoalSet;
 use crate::kmeans::KMeans;
 use crate::library::ExpertLibrary;
-use crate::motion::Motion;
 use crate::params::{GoalEstimatorParams, RetrievalFrame};
 use crate::span::{QuerySpan, velocities};
 
@@ -143,43 +141,6 @@ impl GoalEstimator {
                 })
             })
             .collect()
-    }
-
-    /// The track of an expert, transformed to the pedestrian of `track` like its endpoint for the goals; for example
-    /// for figures.
-    ///
-    /// In [`RetrievalFrame::World`] it is moved to the pedestrian's first position. In [`RetrievalFrame::Heading`] its
-    /// deviation from repeating the last observed step is added to the pedestrian's own last step, repeated.
-    ///
-    /// # Shapes
-    /// `track`: as for [`GoalEstimator::estimate`]; the result has 20 positions (m).
-    ///
-    /// # Errors
-    /// As [`GoalEstimator::estimate`].
-    ///
-    /// # Panics
-    /// If `expert` is not of this estimator's library.
-    pub fn transfer_track(&self, expert: &Expert, track: &[[f64; 2]]) -> Result<Vec<[f64; 2]>, GoalError> {
-        let (library, observed) = (self.library(), QuerySpan::Observed.positions());
-        let other = &library.tracks()[expert.index];
-        if track.len() < observed {
-            let (positions, needed) = (track.len(), observed);
-            return Err(TrackError::TooShort { positions, needed }.into());
-        }
-        if self.params().frame == RetrievalFrame::World {
-            let moved = |p: &[f64; 2]| [0, 1].map(|d| track[0][d] + p[d] - other[0][d]);
-            return Ok(other.iter().map(moved).collect());
-        }
-        let pedestrian = Motion::new(track, library.time_step)?;
-        let expert_motion = Motion::new(other, library.time_step)?;
-        let mirror = if expert.mirrored { -1.0 } else { 1.0 };
-        let horizon = (WINDOW - observed) as f64;
-        let transferred = |(step, &position): (usize, &[f64; 2])| {
-            let share = (step as f64 - (observed - 1) as f64) / horizon;
-            let [ahead, left] = expert_motion.deviation(position, share);
-            pedestrian.place([ahead, mirror * left], share)
-        };
-        Ok(other.iter().enumerate().map(transferred).collect())
     }
 }
 

@@ -66,16 +66,15 @@ impl Motion {
         })
     }
 
-    /// Deviation (m, ahead and to the left) of a position (m) from the position after repeating the last step for the
-    /// given share of the forecast.
-    pub(crate) fn deviation(&self, place: [f64; 2], share: f64) -> [f64; 2] {
-        let place = self.frame.to_frame(place);
-        [0, 1].map(|d| place[d] - share * self.straight_on[d])
+    /// Deviation (m, ahead and to the left) of an endpoint (m) from the endpoint after repeating the last step.
+    pub(crate) fn deviation(&self, end: [f64; 2]) -> [f64; 2] {
+        let end = self.frame.to_frame(end);
+        [0, 1].map(|d| end[d] - self.straight_on[d])
     }
 
-    /// The position (m) with a given deviation (m): the inverse of [`Motion::deviation`].
-    pub(crate) fn place(&self, deviation: [f64; 2], share: f64) -> [f64; 2] {
-        let in_frame = [0, 1].map(|d| share * self.straight_on[d] + deviation[d]);
+    /// The endpoint (m) with a given deviation (m): the inverse of [`Motion::deviation`].
+    pub(crate) fn place(&self, deviation: [f64; 2]) -> [f64; 2] {
+        let in_frame = [0, 1].map(|d| self.straight_on[d] + deviation[d]);
         self.frame.to_world(in_frame)
     }
 }

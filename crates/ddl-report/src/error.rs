@@ -48,8 +48,4 @@ pub enum ReportError {
     },
     #[error("the window holds {expected} pedestrians, the forecast {found}")]
     Pedestrians { expected: usize, found: usize },
-    #[error("a picture of goals holds 1 to {most} cases, found {found}; draw several pictures")]
-    Cases { found: usize, most: usize },
-    #[error("case `{case}`: {problem}")]
-    GoalCase { case: String, problem: String },
 }

@@ -3,7 +3,6 @@
 pub(crate) mod baselines;
 pub(crate) mod comparison;
 pub(crate) mod evaluate;
-pub(crate) mod goal_picture;
 pub(crate) mod goals;
 pub(crate) mod published;
 pub(crate) mod record;

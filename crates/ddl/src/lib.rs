@@ -83,7 +83,6 @@ mod with_report {
     pub use crate::evaluation::baselines::{BaselineRequest, measure_baselines};
     pub use crate::evaluation::comparison::{BestOf20Errors, Comparison, compare_on_validation};
     pub use crate::evaluation::evaluate::{Evaluation, EvaluationProgress, EvaluationRequest, evaluate};
-    pub use crate::evaluation::goal_picture::goal_picture;
     pub use crate::evaluation::goals::{GoalErrors, GoalEvaluation, evaluate_goals};
     pub use crate::evaluation::record::{is_evaluated, save_evaluation};
     pub use crate::evaluation::results::Results;

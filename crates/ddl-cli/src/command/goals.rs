@@ -16,9 +16,7 @@ use std::path::PathBuf;
 /// Writes csv; with --measure it evaluates a model's goals instead.
 #[derive(Debug, Args)]
 #[command(mut_arg("progress", |arg| arg.help(crate::command::NO_PROGRESS)))]
-#[command(
-    after_help = "Examples:\n  ddl goals tracks.csv\n  ddl goals --model runs/eth --measure test --svg goals.svg"
-)]
+#[command(after_help = "Examples:\n  ddl goals tracks.csv\n  ddl goals --model runs/eth --measure test")]
 pub(crate) struct Goals {
     #[command(flatten)]
     model: ModelChoice,
@@ -37,9 +35,6 @@ pub(crate) struct Goals {
     data: Option<PathBuf>,
     #[command(flatten)]
     telling: Telling,
-    /// Also draw pedestrians with typical errors, one for each kind of motion, as SVG
-    #[arg(long, value_name = "FILE")]
-    svg: Option<PathBuf>,
     /// File to write [default: standard output]
     #[arg(long, short)]
     output: Option<PathBuf>,
@@ -78,8 +73,8 @@ struct GoalRow {
 
 impl Goals {
     pub(crate) fn run(self) -> anyhow::Result<()> {
-        if self.measure.is_none() && (self.telling.json || self.svg.is_some() || self.data.is_some()) {
-            bail!("--json, --svg and --data need --measure test or --measure validation");
+        if self.measure.is_none() && (self.telling.json || self.data.is_some()) {
+            bail!("--json and --data need --measure test or --measure validation");
         }
         let tracks = &self.tracks;
         let text = match self.measure {
@@ -120,9 +115,6 @@ impl Goals {
             MemoryOption::Online => Remembering::Online,
         });
         let evaluation = ddl::evaluate_goals(&model, &dataset, on, memory)?;
-        if let Some(path) = &self.svg {
-            write_output(Some(path), &ddl::goal_picture(&model, &evaluation)?)?;
-        }
         Ok(if self.telling.json {
             serde_json::to_string_pretty(&evaluation)? + "\n"
         } else {

@@ -231,21 +231,3 @@ fn invalid_input_is_reported() {
     );
     assert_eq!(estimator.params().query, QuerySpan::Observed);
 }
-
-#[test]
-fn in_the_world_a_track_is_carried_to_where_the_pedestrian_was_first_seen() {
-    let (other, pedestrian) = (walk(1.2, 0.3, 0.05), walk(1.0, 2.0, -0.04));
-    let params = GoalEstimatorParams {
-        experts: 1,
-        clusters: 1,
-        ..GoalEstimatorParams::published()
-    };
-    let estimator = tracks::estimator(params, vec![other.clone()]);
-    let expert = estimator.estimate(&pedestrian).unwrap().experts()[0];
-    assert!(estimator.transfer_track(&expert, &pedestrian[..7]).is_err());
-    let transferred = estimator.transfer_track(&expert, &pedestrian[..8]).unwrap();
-    let by = [0, 1].map(|axis| pedestrian[0][axis] - other[0][axis]);
-    for (transferred, [x, y]) in transferred.into_iter().zip(other) {
-        assert!(distance(transferred, [x + by[0], y + by[1]]) < 1e-12);
-    }
-}

@@ -1,12 +1,4 @@
-//! Stars, arrows, and goals as rings whose area is proportional to their probability.
-
-use crate::figure::drawing::Drawing;
-
-const CERTAIN: f64 = 24.0;
-/// Least radius, so that goals of small weight are visible.
-const SMALLEST: f64 = 2.4;
-/// Length of the ticks around the nearest goal, pixels.
-const TICK: f64 = 6.0;
+//! Stars and arrows.
 
 pub(crate) fn star([x, y]: [f64; 2], radius: f64) -> Vec<[f64; 2]> {
     (0..10)
@@ -34,28 +26,6 @@ pub(crate) fn arrow(from: [f64; 2], to: [f64; 2]) -> Option<[Vec<[f64; 2]>; 2]> 
         ]
     };
     Some([vec![from, to], vec![side(1.0), to, side(-1.0)]])
-}
-
-/// Radius of the ring of a goal, pixels: `24 sqrt(w)`, at least 2.4.
-fn radius(weight: f64) -> f64 {
-    (CERTAIN * weight.sqrt()).max(SMALLEST)
-}
-
-pub(super) fn goal_ring(drawing: &mut Drawing, centre: [f64; 2], weight: f64) {
-    drawing.circle("goal weighted", centre, radius(weight));
-}
-
-/// The goal nearest the true endpoint: a bold ring on a white rim, with four ticks around it.
-pub(super) fn nearest_goal(drawing: &mut Drawing, [x, y]: [f64; 2], weight: f64) {
-    let radius = radius(weight);
-    drawing.circle("rim", [x, y], radius);
-    drawing.circle("nearest", [x, y], radius);
-    let (from, to) = (radius + 3.0, radius + 3.0 + TICK);
-    for [right, down] in [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]] {
-        let along = |distance: f64| [x + right * distance, y + down * distance];
-        drawing.line("rim", along(from), along(to + 1.2));
-        drawing.line("nearest", along(from), along(to));
-    }
 }
 
 #[cfg(test)]

@@ -31,12 +31,6 @@ pub struct GoalEvaluation {
     pub calibration: Option<Reliability>,
     /// Wall-clock seconds that the estimation took.
     pub seconds: f64,
-    /// Windows with their futures, for [`goal_picture`](crate::goal_picture).
-    #[serde(skip)]
-    pub(crate) measured_windows: Vec<Window>,
-    /// Their goals, `[window][pedestrian]`.
-    #[serde(skip)]
-    pub(crate) sets: Vec<Vec<GoalSet>>,
 }
 
 /// Distances between goals and true endpoints in metres, means over pedestrians.
@@ -136,7 +130,5 @@ pub fn evaluate_goals(
         calibration: Reliability::of(likelihoods),
         recordings,
         seconds,
-        measured_windows: windows,
-        sets,
     })
 }

@@ -172,18 +172,6 @@ impl Plan {
         self.on_machine(words, threads).option("--progress", Some("json")).0
     }
 
-    pub(super) fn goals_arguments(&self, task: &Task, out: &Path, threads: usize) -> Vec<String> {
-        let data = self.settings.data.as_ref().map(|data| data.display());
-        let words = ProgramArguments::of("goals")
-            .flag("--json", true)
-            .path("--model", &task.run_folder(out))
-            .option("--measure", Some("test"))
-            .option("--data", data)
-            .path("--svg", &task.folder(out).join("goals.svg"))
-            .path("--output", &task.folder(out).join("goals.json"));
-        self.on_machine(words, threads).0
-    }
-
     fn on_machine(&self, words: ProgramArguments, threads: usize) -> ProgramArguments {
         words
             .option("--device", Some(self.settings.device))

@@ -63,11 +63,6 @@ fn a_task_becomes_arguments_of_the_program() {
         "evaluate --model runs/x/eth-full-7/run --protocol published --protocol fair \
          --protocol single --test-pedestrians 9 --device cpu --threads 2 --progress json"
     );
-    assert_eq!(
-        plan.goals_arguments(&plan.tasks[0], out, 2).join(" "),
-        "goals --json --model runs/x/eth-full-7/run --measure test --svg runs/x/eth-full-7/goals.svg \
-         --output runs/x/eth-full-7/goals.json --device cpu --threads 2"
-    );
     let words = train(&published(&["eth"], &[Method::PERCEPTRON], &[7]).unwrap());
     assert!(words.contains("--fold eth --backbone perceptron --seed"), "{words}");
 }

@@ -158,7 +158,6 @@ impl Workers {
     ) -> Option<TaskEnd> {
         let steps = [
             (plan.train_arguments(task, out, self.threads), 0.0, TRAINING),
-            (plan.goals_arguments(task, out, self.threads), TRAINING, TRAINING),
             (plan.evaluate_arguments(task, out, self.threads), TRAINING, 1.0),
         ];
         for (arguments, from, to) in steps {

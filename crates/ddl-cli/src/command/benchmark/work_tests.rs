@@ -40,7 +40,6 @@ if [ "$verb" = train ]; then
   done
   exit 0
 fi
-[ "$verb" = goals ] && exit 0
 echo "not json"
 echo '{"stage":"score","done":1,"total":1,"message":""}'
 echo '{}' > "$run/report.json"
