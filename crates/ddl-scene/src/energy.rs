@@ -1,0 +1,134 @@
+//! The energy of a scene: how badly the hypotheses of two pedestrians go together.
+//!
+//! A future chooses a hypothesis for each pedestrian. Its probability is
+//!
+//! ```text
+//! p(h_1 .. h_N) ~ prod_i w_i(h_i) prod_(i,j) exp(-C_ij - T_ij)
+//! C = conflict(d / near)                    d: least distance of the two paths, near = min(0.4 m, 0.9 x present distance)
+//! T = c / sqrt(partners) log(1 + D² / 3)    D = |difference of the displacements in 4.8 s| / scale
+//! ```
+//!
+//! `conflict` is piecewise linear between 0, 1/2, 1, 3/2, 2 and 5/2. The strength `c` depends on how close the two
+//! walked over the observation and how much their velocities differed; it is 0 for people who did not walk together.
+//! All constants are in `energy.json`.
+
+use ddl_core::{OBSERVED, Position, TIME_STEP, distance};
+use serde::Deserialize;
+use std::sync::LazyLock;
+
+/// The constants of the energy.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Energy {
+    conflict: Conflict,
+    together: Together,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Conflict {
+    /// Distance (m) below which two people collide.
+    near: f64,
+    /// People who are closer than that already collide below this share of their present distance.
+    share_of_present: f64,
+    /// Energies of pairs that do not walk together at 0, 1/2, 1, 3/2 and 2 times the distance.
+    alone: [f32; 5],
+    /// Energies of pairs that walk together.
+    together: [f32; 5],
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Together {
+    /// Upper limits of the mean distance over the observation, metres.
+    distances: [f64; 3],
+    /// Upper limits of the difference of the mean velocities, m/s.
+    velocities: [f64; 3],
+    /// By distance, then velocity.
+    strengths: [[f32; 3]; 3],
+    /// Scale of the difference of displacements, metres.
+    scale: f32,
+}
+
+static LEARNED: LazyLock<Option<Energy>> =
+    LazyLock::new(|| serde_json::from_str(include_str!("energy.json")).ok());
+
+/// The energy of one pair of pedestrians.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PairEnergy {
+    /// Distance (m) that counts as 1 in `conflict`.
+    pub(crate) near: f32,
+    conflict: [f32; 5],
+    /// Strength and scale of walking together.
+    together: Option<(f32, f32)>,
+}
+
+impl Energy {
+    /// The constants that come with the program.
+    ///
+    /// # Panics
+    /// Never: a test reads the file.
+    pub(crate) fn learned() -> &'static Self {
+        #[expect(clippy::expect_used, reason = "the file is part of the program, and a test reads it")]
+        LEARNED.as_ref().expect("energy.json holds the constants")
+    }
+
+    /// Least distance (m) of two paths at which no pair has a conflict.
+    pub(crate) fn reach(&self) -> f64 {
+        2.5 * self.conflict.near
+    }
+
+    /// Distance (m) beyond which nobody walks together.
+    pub(crate) fn together_within(&self) -> f64 {
+        self.together.distances[2]
+    }
+
+    /// How strongly two observed tracks (8 positions, metres) belong together; 0 for strangers.
+    pub(crate) fn strength(&self, a: &[Position], b: &[Position]) -> f32 {
+        let apart = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum::<f64>() / a.len() as f64;
+        let moved = |track: &[Position]| [0, 1].map(|axis| track[OBSERVED - 1][axis] - track[0][axis]);
+        let velocities = distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64);
+        let bin = |limits: &[f64; 3], value: f64| limits.iter().position(|limit| value < *limit);
+        match (
+            bin(&self.together.distances, apart),
+            bin(&self.together.velocities, velocities),
+        ) {
+            (Some(distance), Some(velocity)) => self.together.strengths[distance][velocity],
+            _ => 0.0,
+        }
+    }
+
+    /// The energy of a pair at this present distance (m), whose [strength](Self::strength) is divided among partners.
+    pub(crate) fn of_pair(&self, present_distance: f64, strength: f32, partners: f32) -> PairEnergy {
+        let near = self.conflict.near.min(self.conflict.share_of_present * present_distance);
+        PairEnergy {
+            near: (near as f32).max(0.01),
+            conflict: if strength > 0.0 { self.conflict.together } else { self.conflict.alone },
+            together: (strength > 0.0).then(|| (strength / partners.max(1.0).sqrt(), self.together.scale)),
+        }
+    }
+}
+
+impl PairEnergy {
+    /// The energy of paths that come this close (m).
+    pub(crate) fn conflict(&self, distance: f32) -> f32 {
+        let at = 2.0 * distance / self.near;
+        let knot = at as usize;
+        let energy = |knot: usize| self.conflict.get(knot).copied().unwrap_or(0.0);
+        let share = at - at.floor();
+        energy(knot) * (1.0 - share) + energy(knot + 1) * share
+    }
+
+    /// The energy of displacements whose difference has this squared length (m²).
+    pub(crate) fn apart(&self, squared: f32) -> f32 {
+        match self.together {
+            Some((strength, scale)) => strength * (squared / (3.0 * scale * scale)).ln_1p(),
+            None => 0.0,
+        }
+    }
+
+    /// Whether the two walk together.
+    pub(crate) fn is_together(&self) -> bool {
+        self.together.is_some()
+    }
+}
