@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! p(h_1 .. h_N) ~ prod_i w_i(h_i) prod_(i,j) exp(-C_ij - T_ij)
-//! C = conflict(d / near)                    d: least distance of the two paths, near = min(0.4 m, 0.9 x present distance)
+//! C = conflict(d / near)                    d: least distance of the two paths, near = min(0.4 m, present distance)
 //! T = c / sqrt(partners) log(1 + D² / 3)    D = |difference of the displacements in 4.8 s| / scale
 //! ```
 //!
@@ -50,8 +50,7 @@ struct Together {
     scale: f32,
 }
 
-static LEARNED: LazyLock<Option<Energy>> =
-    LazyLock::new(|| serde_json::from_str(include_str!("energy.json")).ok());
+static LEARNED: LazyLock<Option<Energy>> = LazyLock::new(|| serde_json::from_str(include_str!("energy.json")).ok());
 
 /// The energy of one pair of pedestrians.
 #[derive(Debug, Clone, Copy)]
@@ -100,10 +99,17 @@ impl Energy {
 
     /// The energy of a pair at this present distance (m), whose [strength](Self::strength) is divided among partners.
     pub(crate) fn of_pair(&self, present_distance: f64, strength: f32, partners: f32) -> PairEnergy {
-        let near = self.conflict.near.min(self.conflict.share_of_present * present_distance);
+        let near = self
+            .conflict
+            .near
+            .min(self.conflict.share_of_present * present_distance);
         PairEnergy {
-            near: (near as f32).max(0.01),
-            conflict: if strength > 0.0 { self.conflict.together } else { self.conflict.alone },
+            near: (near as f32).max(0.1),
+            conflict: if strength > 0.0 {
+                self.conflict.together
+            } else {
+                self.conflict.alone
+            },
             together: (strength > 0.0).then(|| (strength / partners.max(1.0).sqrt(), self.together.scale)),
         }
     }

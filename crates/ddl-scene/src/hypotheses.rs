@@ -1,0 +1,88 @@
+//! The hypotheses of a scene in `f32`, each relative to the present position of its pedestrian, so that large
+//! coordinates lose no digits.
+
+use ddl_core::{Forecast, HORIZON, OBSERVED, Position, Window};
+
+/// The paths of one pedestrian.
+#[derive(Debug, Clone)]
+pub(crate) struct Hypotheses {
+    /// The last observed position, metres.
+    pub(crate) present: Position,
+    /// `[K]`.
+    pub(crate) weights: Vec<f32>,
+    /// Coordinates `[axis][t][K]` relative to the present position, metres; t = 0 is the present.
+    paths: [Vec<f32>; 2],
+    /// Largest distance from the present position, metres.
+    pub(crate) reach: f64,
+}
+
+impl Hypotheses {
+    /// Of pedestrian `i` of a forecast.
+    pub(crate) fn of(window: &Window, forecast: &Forecast, i: usize) -> Self {
+        let present = window.observed(i)[OBSERVED - 1];
+        let count = forecast.hypotheses();
+        let weights = (0..count).map(|k| forecast.weight(i, k) as f32).collect();
+        Self::new(present, weights, |k| forecast.hypothesis(i, k))
+    }
+
+    /// One certain path, as of a plan: 12 positions (m).
+    pub(crate) fn certain(present: Position, path: &[Position; HORIZON]) -> Self {
+        Self::new(present, vec![1.0], |_| path)
+    }
+
+    fn new<'a>(present: Position, weights: Vec<f32>, path: impl Fn(usize) -> &'a [Position]) -> Self {
+        let count = weights.len();
+        let mut paths = [0, 1].map(|_| vec![0.0; (HORIZON + 1) * count]);
+        let mut reach = 0.0_f64;
+        for k in 0..count {
+            for (t, position) in (1..).zip(path(k)) {
+                let from_present = [0, 1].map(|axis| position[axis] - present[axis]);
+                reach = reach.max(from_present[0].hypot(from_present[1]));
+                for axis in 0..2 {
+                    paths[axis][t * count + k] = from_present[axis] as f32;
+                }
+            }
+        }
+        Self {
+            present,
+            weights,
+            paths,
+            reach,
+        }
+    }
+
+    /// Number of hypotheses, K.
+    pub(crate) fn count(&self) -> usize {
+        self.weights.len()
+    }
+
+    /// The x (axis 0) or y (axis 1) of all hypotheses at step `t`, 0 to 12, relative to the present position, metres.
+    pub(crate) fn at(&self, axis: usize, t: usize) -> &[f32] {
+        let count = self.count();
+        &self.paths[axis][t * count..][..count]
+    }
+
+    /// The path of hypothesis `k`, `[t]` of `[x, y]` relative to the present position.
+    pub(crate) fn path(&self, k: usize) -> [[f32; 2]; HORIZON + 1] {
+        std::array::from_fn(|t| [0, 1].map(|axis| self.at(axis, t)[k]))
+    }
+
+    /// The path of a mixture of the hypotheses, `[t]` of `[x, y]` relative to the present position.
+    pub(crate) fn mean(&self, shares: &[f32]) -> [[f32; 2]; HORIZON + 1] {
+        std::array::from_fn(|t| {
+            [0, 1].map(|axis| self.at(axis, t).iter().zip(shares).map(|(x, share)| x * share).sum())
+        })
+    }
+}
+
+/// The squared least distance of two points that move on straight lines from `from` to `to`, one relative to the other.
+pub(crate) fn least_squared(from: [f32; 2], to: [f32; 2]) -> f32 {
+    let step = [to[0] - from[0], to[1] - from[1]];
+    let length = step[0] * step[0] + step[1] * step[1];
+    let along = -(from[0] * step[0] + from[1] * step[1]) / (length + 1e-12);
+    // Not `clamp`, which is not computed on vectors.
+    let along = if along > 0.0 { along } else { 0.0 };
+    let along = if along < 1.0 { along } else { 1.0 };
+    let nearest = [from[0] + along * step[0], from[1] + along * step[1]];
+    nearest[0] * nearest[0] + nearest[1] * nearest[1]
+}

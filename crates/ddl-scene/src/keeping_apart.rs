@@ -1,0 +1,86 @@
+//! Paths of one future that do not collide.
+//!
+//! A future is the mean of similar samples. The mean may lead two people through each other where its samples do not,
+//! and a few samples collide too. Then one of the two follows one of its hypotheses instead: of those that collide with
+//! the fewest others, the one nearest to the mean.
+
+use crate::hypotheses::{Hypotheses, least_squared};
+use crate::pairs::{Pair, neighbours};
+use ddl_core::HORIZON;
+
+/// Rounds in which paths that collide are replaced.
+const ROUNDS: usize = 3;
+/// Paths are kept apart by this multiple of the distance at which they collide, because the flow to a mean goal is not
+/// exactly the mean of the paths.
+const MARGIN: f32 = 1.05;
+
+/// `[t]` of `[x, y]` relative to the present position, metres.
+type Path = [[f32; 2]; HORIZON + 1];
+
+/// Changes the shares of the hypotheses of each pedestrian, `[N][H]`, where paths of a pair collide.
+pub(crate) fn keep_apart(people: &[Hypotheses], pairs: &[Pair], shares: &mut [&mut [f32]]) {
+    let means = people
+        .iter()
+        .zip(shares.iter())
+        .map(|(one, shares)| one.mean(&shares[..one.count()]));
+    let means: Vec<Path> = means.collect();
+    let mut paths = means.clone();
+    let collide = |pair: &Pair, first: &Path, second: &Path| {
+        apart_squared(people, pair, first, second) < (MARGIN * pair.energy.near).powi(2)
+    };
+    let mut partners = None;
+    for _ in 0..ROUNDS {
+        let mut changed = false;
+        for pair in pairs {
+            if !collide(pair, &paths[pair.first], &paths[pair.second]) {
+                continue;
+            }
+            let partners = partners.get_or_insert_with(|| neighbours(people.len(), pairs));
+            let collisions = |i: usize, path: &Path| {
+                let with = |&&(pair, other): &&(usize, usize)| {
+                    let pair = &pairs[pair];
+                    if pair.first == i {
+                        collide(pair, path, &paths[other])
+                    } else {
+                        collide(pair, &paths[other], path)
+                    }
+                };
+                partners[i].iter().filter(with).count()
+            };
+            let candidates = [pair.first, pair.second].into_iter().flat_map(|i| {
+                let now = collisions(i, &paths[i]);
+                let fewer = move |h: &usize| people[i].weights[*h] > 0.0;
+                (0..people[i].count()).filter(fewer).map(move |h| (i, h, now))
+            });
+            let costs = candidates.filter_map(|(i, hypothesis, now)| {
+                let path = people[i].path(hypothesis);
+                let then = collisions(i, &path);
+                (then < now).then(|| (now - then, far(&path, &means[i]), i, hypothesis))
+            });
+            let best = costs.min_by(|a, b| b.0.cmp(&a.0).then(a.1.total_cmp(&b.1)));
+            if let Some((_, _, i, hypothesis)) = best {
+                paths[i] = people[i].path(hypothesis);
+                shares[i].fill(0.0);
+                shares[i][hypothesis] = 1.0;
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+}
+
+/// Squared least distance (m²) of two paths of a pair.
+fn apart_squared(people: &[Hypotheses], pair: &Pair, first: &Path, second: &Path) -> f32 {
+    let [from, to] = [pair.first, pair.second].map(|i| people[i].present);
+    let offset = [0, 1].map(|axis| (to[axis] - from[axis]) as f32);
+    let between = |t: usize| [0, 1].map(|axis| second[t][axis] + offset[axis] - first[t][axis]);
+    let squared = (0..HORIZON).map(|t| least_squared(between(t), between(t + 1)));
+    squared.fold(f32::INFINITY, f32::min)
+}
+
+/// Sum of the distances of two paths at all steps, metres.
+fn far(a: &Path, b: &Path) -> f32 {
+    a.iter().zip(b).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).sum()
+}

@@ -1,0 +1,147 @@
+//! From the hypotheses of the pedestrians of a scene to K joint futures, each a mixture of hypotheses.
+
+use crate::energy::Energy;
+use crate::hypotheses::Hypotheses;
+use crate::keeping_apart::keep_apart;
+use crate::pairs::{Pair, pairs_of};
+use crate::plan::Plan;
+use crate::{quantisation, sampling};
+use ddl_core::{Forecast, Position, TIME_STEP, Window};
+
+/// Samples of a scene.
+const SAMPLES: usize = 300;
+/// Gibbs sweeps of each sample.
+const SWEEPS: usize = 2;
+
+/// K joint futures of N pedestrians with H hypotheses: in future k pedestrian i follows a mixture of its hypotheses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointMixture {
+    /// `[K]`; they sum to 1.
+    pub weights: Vec<f64>,
+    /// `[N][K][H]`: shares of the hypotheses; they sum to 1 for each pedestrian and future.
+    pub shares: Vec<f32>,
+    /// Pairs of pedestrians who walk together, each once.
+    pub together: Vec<[usize; 2]>,
+}
+
+impl JointMixture {
+    /// As many joint futures of this window as its forecast has hypotheses. Who follows the plan, if there is one, is
+    /// somebody else, or the pedestrian `ego` of the window; the others react to it.
+    ///
+    /// # Panics
+    /// When the forecast has another number of pedestrians than the window, or more than 256 hypotheses.
+    pub fn of(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
+        let hypotheses = forecast.hypotheses();
+        assert!(
+            window.len() == forecast.pedestrians() && hypotheses <= 256,
+            "a forecast of this window"
+        );
+        let scene = Scene::new(window, forecast, plan, ego);
+        if scene.people.len() == 1 {
+            return Self::alone(forecast);
+        }
+        let mut mixture = scene.mixture(hypotheses);
+        scene.in_order_of_window(&mut mixture, hypotheses);
+        mixture
+    }
+
+    /// The futures of one pedestrian are its hypotheses.
+    fn alone(forecast: &Forecast) -> Self {
+        let count = forecast.hypotheses();
+        let same = |k: usize| (0..count).map(move |h| if h == k { 1.0 } else { 0.0 });
+        Self {
+            weights: (0..count).map(|k| forecast.weight(0, k)).collect(),
+            shares: (0..count).flat_map(same).collect(),
+            together: Vec::new(),
+        }
+    }
+}
+
+/// The pedestrians in the order of their ids, which does not depend on the order of the window, and then who follows the
+/// plan.
+struct Scene {
+    people: Vec<Hypotheses>,
+    seeds: Vec<u64>,
+    pairs: Vec<Pair>,
+    /// Index in the window of each pedestrian.
+    order: Vec<usize>,
+}
+
+impl Scene {
+    fn new(window: &Window, forecast: &Forecast, plan: Option<&Plan>, ego: Option<usize>) -> Self {
+        let ids = window.pedestrians();
+        let mut order: Vec<usize> = (0..window.len()).collect();
+        order.sort_unstable_by_key(|&i| ids[i]);
+        let mut people: Vec<Hypotheses> = order.iter().map(|&i| Hypotheses::of(window, forecast, i)).collect();
+        let mut seeds: Vec<u64> = order.iter().map(|&i| ids[i].0.cast_unsigned()).collect();
+        let mut tracks: Vec<Option<&[Position]>> = order.iter().map(|&i| Some(window.observed(i))).collect();
+        if let Some(plan) = plan {
+            let path = std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position);
+            if let Some(ego) = ego.and_then(|ego| order.iter().position(|&i| i == ego)) {
+                people[ego] = Hypotheses::certain(people[ego].present, &path);
+            } else {
+                people.push(Hypotheses::certain(plan.at(0.0).position, &path));
+                seeds.push(0);
+                tracks.push(None);
+            }
+        }
+        let pairs = pairs_of(Energy::learned(), &people, &tracks);
+        Self {
+            people,
+            seeds,
+            pairs,
+            order,
+        }
+    }
+
+    /// The futures, with the pedestrians in the order of the scene.
+    fn mixture(&self, hypotheses: usize) -> JointMixture {
+        let chosen = sampling::samples(&self.people, &self.pairs, &self.seeds, SAMPLES, SWEEPS);
+        let labels = quantisation::clusters(&self.people, &chosen, hypotheses);
+        let mut sizes = vec![0_u32; hypotheses];
+        for &label in &labels {
+            sizes[label] += 1;
+        }
+        let row = hypotheses * hypotheses;
+        let mut shares = vec![0.0; self.people.len() * row];
+        for (shares, chosen) in shares.chunks_exact_mut(row).zip(&chosen) {
+            for (&label, &hypothesis) in labels.iter().zip(chosen) {
+                shares[label * hypotheses + usize::from(hypothesis)] += 1.0 / sizes[label] as f32;
+            }
+            // Fewer different samples than futures: a future without weight is hypothesis k of everybody.
+            for k in (0..hypotheses).filter(|&k| sizes[k] == 0) {
+                shares[k * hypotheses + k] = 1.0;
+            }
+        }
+        for k in (0..hypotheses).filter(|&k| sizes[k] > 0) {
+            let future = shares
+                .chunks_exact_mut(row)
+                .map(|of_each| &mut of_each[k * hypotheses..][..hypotheses]);
+            keep_apart(&self.people, &self.pairs, &mut future.collect::<Vec<_>>());
+        }
+        JointMixture {
+            weights: sizes.iter().map(|size| f64::from(*size) / SAMPLES as f64).collect(),
+            shares,
+            together: Vec::new(),
+        }
+    }
+
+    /// The pedestrians of the mixture in the order of the window, without who follows the plan.
+    fn in_order_of_window(&self, mixture: &mut JointMixture, hypotheses: usize) {
+        let row = hypotheses * hypotheses;
+        let mut shares = vec![0.0; self.order.len() * row];
+        for (rank, &i) in self.order.iter().enumerate() {
+            shares[i * row..][..row].copy_from_slice(&mixture.shares[rank * row..][..row]);
+        }
+        mixture.shares = shares;
+        let pairs = self.pairs.iter().filter(|pair| pair.energy.is_together());
+        mixture.together = pairs
+            .map(|pair| {
+                let mut both = [self.order[pair.first], self.order[pair.second]];
+                both.sort_unstable();
+                both
+            })
+            .collect();
+        mixture.together.sort_unstable();
+    }
+}

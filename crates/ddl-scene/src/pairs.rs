@@ -1,0 +1,141 @@
+//! The pairs of pedestrians that may meet or walk together, with a table of factors for each.
+
+use crate::energy::{Energy, PairEnergy};
+use crate::hypotheses::{Hypotheses, least_squared};
+use ddl_core::{HORIZON, Position, distance};
+use ddl_data::SpatialIndex;
+use std::collections::BTreeSet;
+
+/// Each pedestrian has at most this many partners: the nearest ones. It bounds time and memory in a dense crowd.
+const MOST_NEIGHBOURS: usize = 16;
+/// A factor is at least this large relative to the largest of its row.
+const LEAST_FACTOR: f32 = 3e-4;
+
+/// Two pedestrians, `first` before `second` in the order of the scene.
+#[derive(Debug)]
+pub(crate) struct Pair {
+    pub(crate) first: usize,
+    pub(crate) second: usize,
+    pub(crate) energy: PairEnergy,
+    /// Factors `exp(-energy)`, `[first][second]`, and transposed.
+    factors: [Vec<f32>; 2],
+}
+
+impl Pair {
+    /// The factors of the hypotheses of one of the two, given the hypothesis of the other.
+    pub(crate) fn factors(&self, of_first: bool, other: usize, count: usize) -> &[f32] {
+        &self.factors[usize::from(of_first)][other * count..][..count]
+    }
+}
+
+/// The pairs of a scene. `tracks`: 8 observed positions of each pedestrian (m); `None` for one who was not observed,
+/// and so walks with nobody.
+pub(crate) fn pairs_of(energy: &Energy, people: &[Hypotheses], tracks: &[Option<&[Position]>]) -> Vec<Pair> {
+    let near = near_pairs(energy, people);
+    let strength = |&(i, j): &(usize, usize)| match (tracks[i], tracks[j]) {
+        (Some(a), Some(b)) => energy.strength(a, b),
+        _ => 0.0,
+    };
+    let strengths: Vec<f32> = near.iter().map(strength).collect();
+    let mut partners = vec![0.0_f32; people.len()];
+    for (&(i, j), _) in near.iter().zip(&strengths).filter(|(_, strength)| **strength > 0.0) {
+        partners[i] += 1.0;
+        partners[j] += 1.0;
+    }
+    let pairs = near.into_iter().zip(strengths);
+    pairs
+        .filter_map(|((i, j), strength)| {
+            let apart = distance(people[i].present, people[j].present);
+            let pair = energy.of_pair(apart, strength, partners[i].max(partners[j]));
+            let energies = table(&pair, &people[i], &people[j])?;
+            Some(Pair {
+                first: i,
+                second: j,
+                energy: pair,
+                factors: factors(&energies, people[i].count(), people[j].count()),
+            })
+        })
+        .collect()
+}
+
+/// For each pedestrian its pairs, each with the other pedestrian.
+pub(crate) fn neighbours(people: usize, pairs: &[Pair]) -> Vec<Vec<(usize, usize)>> {
+    let mut neighbours = vec![Vec::new(); people];
+    for (index, pair) in pairs.iter().enumerate() {
+        neighbours[pair.first].push((index, pair.second));
+        neighbours[pair.second].push((index, pair.first));
+    }
+    neighbours
+}
+
+/// Pairs, in ascending order, that are close enough for a conflict or for walking together.
+fn near_pairs(energy: &Energy, people: &[Hypotheses]) -> BTreeSet<(usize, usize)> {
+    let present: Vec<Position> = people.iter().map(|one| one.present).collect();
+    let index = SpatialIndex::new(&present);
+    let mut pairs = BTreeSet::new();
+    for (i, one) in people.iter().enumerate() {
+        for j in index.nearest_others(i, one.present, MOST_NEIGHBOURS) {
+            let apart = distance(one.present, people[j].present);
+            let meet = one.reach + people[j].reach + energy.reach();
+            if apart < meet.max(energy.together_within()) {
+                pairs.insert((i.min(j), i.max(j)));
+            }
+        }
+    }
+    pairs
+}
+
+/// The energies `[first][second]` of a pair; `None` if all are 0.
+fn table(energy: &PairEnergy, first: &Hypotheses, second: &Hypotheses) -> Option<Vec<f32>> {
+    let to_second = [0, 1].map(|axis| (second.present[axis] - first.present[axis]) as f32);
+    let (rows, columns) = (first.count(), second.count());
+    let mut energies = vec![0.0; rows * columns];
+    let mut least = vec![f32::INFINITY; columns];
+    let reach = 2.5 * energy.near;
+    let mut some = false;
+    for a in 0..rows {
+        least.fill(f32::INFINITY);
+        for t in 0..HORIZON {
+            let [ax, ay] = [0, 1].map(|axis| [t, t + 1].map(|t| first.at(axis, t)[a] - to_second[axis]));
+            let [bx, by] = [0, 1].map(|axis| [t, t + 1].map(|t| second.at(axis, t)));
+            for b in 0..columns {
+                let squared = least_squared(
+                    [bx[0][b] - ax[0], by[0][b] - ay[0]],
+                    [bx[1][b] - ax[1], by[1][b] - ay[1]],
+                );
+                least[b] = if squared < least[b] { squared } else { least[b] };
+            }
+        }
+        let row = &mut energies[a * columns..][..columns];
+        for (value, squared) in row.iter_mut().zip(&least) {
+            if *squared < reach * reach {
+                *value = energy.conflict(squared.sqrt());
+            }
+        }
+        if energy.is_together() {
+            let [ends_x, ends_y] = [0, 1].map(|axis| second.at(axis, HORIZON));
+            let end = [0, 1].map(|axis| first.at(axis, HORIZON)[a]);
+            for (b, value) in row.iter_mut().enumerate() {
+                let [dx, dy] = [ends_x[b] - end[0], ends_y[b] - end[1]];
+                *value += energy.apart(dx * dx + dy * dy);
+            }
+        }
+        some |= row.iter().any(|value| *value > 0.0);
+    }
+    some.then_some(energies)
+}
+
+/// The factors of the second given the first and of the first given the second, each row with its largest as 1.
+fn factors(energies: &[f32], rows: usize, columns: usize) -> [Vec<f32>; 2] {
+    let transposed: Vec<f32> = (0..columns)
+        .flat_map(|b| (0..rows).map(move |a| energies[a * columns + b]))
+        .collect();
+    [(energies, columns), (&transposed, rows)].map(|(energies, length)| {
+        let rows = energies.chunks_exact(length);
+        rows.flat_map(|row| {
+            let least = row.iter().copied().fold(f32::INFINITY, f32::min);
+            row.iter().map(move |energy| (least - energy).exp().max(LEAST_FACTOR))
+        })
+        .collect()
+    })
+}

@@ -1,0 +1,70 @@
+//! Samples of scenes: a hypothesis for each pedestrian, drawn from the energy by Gibbs sweeps.
+
+use crate::hypotheses::Hypotheses;
+use crate::pairs::{Pair, neighbours};
+use rand::{RngExt as _, SeedableRng as _};
+use rand_chacha::ChaCha8Rng;
+
+/// Factors multiplied before the product is divided by its largest, so that it does not underflow.
+const BETWEEN_RESCALES: usize = 4;
+
+/// The hypothesis of each pedestrian in each sample, `[N][S]`.
+///
+/// Each pedestrian has its own random numbers, from `seeds`, so that a scene in another order gives the same samples.
+pub(crate) fn samples(
+    people: &[Hypotheses],
+    pairs: &[Pair],
+    seeds: &[u64],
+    count: usize,
+    sweeps: usize,
+) -> Vec<Vec<u8>> {
+    let mut randoms: Vec<ChaCha8Rng> = seeds.iter().map(|seed| ChaCha8Rng::seed_from_u64(*seed)).collect();
+    let mut chosen: Vec<Vec<u8>> = people
+        .iter()
+        .zip(&mut randoms)
+        .map(|(one, random)| (0..count).map(|_| draw(&one.weights, random.random())).collect())
+        .collect();
+    let neighbours = neighbours(people.len(), pairs);
+    let mut product = Vec::new();
+    for _ in 0..sweeps {
+        for (i, one) in people.iter().enumerate() {
+            if neighbours[i].is_empty() {
+                continue;
+            }
+            let mut own = std::mem::take(&mut chosen[i]);
+            for (s, hypothesis) in own.iter_mut().enumerate() {
+                product.clone_from(&one.weights);
+                for (n, &(pair, other)) in neighbours[i].iter().enumerate() {
+                    let pair = &pairs[pair];
+                    let factors = pair.factors(pair.first == i, usize::from(chosen[other][s]), one.count());
+                    for (value, factor) in product.iter_mut().zip(factors) {
+                        *value *= factor;
+                    }
+                    if n % BETWEEN_RESCALES == BETWEEN_RESCALES - 1 {
+                        let largest = product.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
+                        for value in &mut product {
+                            *value /= largest;
+                        }
+                    }
+                }
+                *hypothesis = draw(&product, randoms[i].random());
+            }
+            chosen[i] = own;
+        }
+    }
+    chosen
+}
+
+/// The index at which the sum of the weights reaches a share (0 to 1) of the whole.
+fn draw(weights: &[f32], share: f32) -> u8 {
+    let total: f32 = weights.iter().sum();
+    let mut rest = share * total;
+    for (index, weight) in (0..).zip(weights) {
+        rest -= weight;
+        if rest < 0.0 {
+            return index;
+        }
+    }
+    let last = weights.iter().rposition(|weight| *weight > 0.0);
+    last.unwrap_or(0) as u8
+}
