@@ -206,6 +206,22 @@ impl Forecast {
         self
     }
 
+    /// The same forecast, where pedestrian `i` follows these 12 positions (m) in every hypothesis, without a certificate.
+    #[must_use]
+    pub fn with_path(mut self, i: usize, path: &[Position; HORIZON]) -> Self {
+        for k in 0..self.hypotheses {
+            let pair = self.pair(i, k);
+            self.positions[pair * HORIZON..][..HORIZON].copy_from_slice(path);
+            if let Some(goals) = &mut self.goals {
+                goals[pair] = path[HORIZON - 1];
+            }
+            if let Some(certified) = &mut self.certified {
+                certified[pair] = false;
+            }
+        }
+        self
+    }
+
     /// Similarity of the observed motion of pedestrian `i` to the training data, 0 to 1; `None` if unknown.
     pub fn familiarity(&self, i: usize) -> Option<f64> {
         self.familiarity.as_ref().map(|familiarity| familiarity[i])

@@ -6,7 +6,7 @@ use crate::keeping_apart::keep_apart;
 use crate::pairs::{Pair, pairs_of};
 use crate::plan::Plan;
 use crate::{quantisation, sampling};
-use ddl_core::{Forecast, Position, TIME_STEP, Window};
+use ddl_core::{Forecast, HORIZON, Position, Spread, TIME_STEP, Window};
 
 /// Samples of a scene.
 const SAMPLES: usize = 300;
@@ -43,6 +43,49 @@ impl JointMixture {
         let mut mixture = scene.mixture(hypotheses);
         scene.in_order_of_window(&mut mixture, hypotheses);
         mixture
+    }
+
+    /// The mean of the values `[i][h]` of the hypotheses of a pedestrian in one future; `pair` = `i * K + k`. Exactly the
+    /// value of a hypothesis where the future is one.
+    pub fn mean<const D: usize>(&self, pair: usize, value: impl Fn(usize, usize) -> [f64; D]) -> [f64; D] {
+        let hypotheses = self.weights.len();
+        let shares = &self.shares[pair * hypotheses..][..hypotheses];
+        let (mut mean, mut total) = ([0.0; D], 0.0);
+        for (h, &share) in shares.iter().enumerate().filter(|(_, share)| **share > 0.0) {
+            let value = value(pair / hypotheses, h);
+            total += f64::from(share);
+            for (mean, value) in mean.iter_mut().zip(value) {
+                *mean += f64::from(share) * value;
+            }
+        }
+        // The shares are in `f32`: their sum is 1 to seven digits only.
+        mean.map(|sum| sum / total)
+    }
+
+    /// The scales `[N][12]` (m) of the Student's t around the paths of the futures, from those around the hypotheses: the
+    /// squared distance of the hypotheses from their mixture is added to the variance. `None` without a spread.
+    pub fn scales(&self, forecast: &Forecast) -> Option<Vec<f64>> {
+        let hypotheses = self.weights.len();
+        let mut scales = Vec::with_capacity(forecast.pedestrians() * HORIZON);
+        for i in 0..forecast.pedestrians() {
+            for t in 0..HORIZON {
+                let mut within = 0.0;
+                for (k, weight) in self.weights.iter().enumerate().filter(|(_, weight)| **weight > 0.0) {
+                    let pair = i * hypotheses + k;
+                    let [x, y, square] = self.mean(pair, |i, h| {
+                        let [x, y] = forecast.hypothesis(i, h)[t];
+                        let [x0, y0] = forecast.hypothesis(i, 0)[t];
+                        let [dx, dy] = [x - x0, y - y0];
+                        [dx, dy, dx * dx + dy * dy]
+                    });
+                    within += weight * (square - x * x - y * y).max(0.0);
+                }
+                // On each axis the variance of the Student's t is 3 s², and half of the squared distance.
+                let scale = forecast.scale(i, t)?;
+                scales.push((scale * scale + within / (2.0 * Spread::DEGREES)).sqrt());
+            }
+        }
+        Some(scales)
     }
 
     /// The futures of one pedestrian are its hypotheses.
@@ -97,11 +140,7 @@ impl Scene {
     /// The futures, with the pedestrians in the order of the scene.
     fn mixture(&self, hypotheses: usize) -> JointMixture {
         let chosen = sampling::samples(&self.people, &self.pairs, &self.seeds, SAMPLES, SWEEPS);
-        let labels = quantisation::clusters(&self.people, &chosen, hypotheses);
-        let mut sizes = vec![0_u32; hypotheses];
-        for &label in &labels {
-            sizes[label] += 1;
-        }
+        let (labels, sizes) = by_size(quantisation::clusters(&self.people, &chosen, hypotheses), hypotheses);
         let row = hypotheses * hypotheses;
         let mut shares = vec![0.0; self.people.len() * row];
         for (shares, chosen) in shares.chunks_exact_mut(row).zip(&chosen) {
@@ -144,4 +183,18 @@ impl Scene {
             .collect();
         mixture.together.sort_unstable();
     }
+}
+
+/// The clusters of the samples with numbers in the order of their sizes, largest first, and these sizes.
+fn by_size(labels: Vec<usize>, clusters: usize) -> (Vec<usize>, Vec<u32>) {
+    let mut sizes = vec![0_u32; clusters];
+    for &label in &labels {
+        sizes[label] += 1;
+    }
+    let mut order: Vec<usize> = (0..clusters).collect();
+    order.sort_by_key(|&label| std::cmp::Reverse(sizes[label]));
+    let rank = |label: usize| order.iter().position(|&other| other == label).unwrap_or(label);
+    let ranks: Vec<usize> = (0..clusters).map(rank).collect();
+    let labels = labels.into_iter().map(|label| ranks[label]).collect();
+    (labels, order.iter().map(|&label| sizes[label]).collect())
 }

@@ -42,6 +42,7 @@ pub use ddl_memory as memory;
 pub use ddl_network as network;
 #[cfg(feature = "report")]
 pub use ddl_report as report;
+pub use ddl_scene as scene;
 pub use ddl_softdtw as softdtw;
 #[cfg(feature = "torch")]
 pub use ddl_star as star;
@@ -54,6 +55,7 @@ pub use ddl_network::{DeviceChoice, Variant};
 pub use device::{cuda_status, prepare};
 pub use error::DdlError;
 pub use forecast::certified::{CertificateError, CertifiedForecast};
+pub use forecast::joint::GivenPlan;
 pub use goals::model::GoalModel;
 pub use goals::remembering::Remembering;
 pub use live::forecaster::{LiveForecast, LiveForecaster};

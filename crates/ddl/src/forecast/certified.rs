@@ -89,6 +89,8 @@ pub(crate) struct Walked<'a> {
     pub(crate) shares: Vec<f64>,
     /// N: familiarity of the observed motions; `None` if it is not requested.
     pub(crate) familiarity: Option<Vec<f64>>,
+    /// `None`: that of the calibration.
+    pub(crate) spread: Option<Spread>,
     pub(crate) weights: Vec<f64>,
     pub(crate) goals: Vec<Position>,
 }
@@ -106,7 +108,7 @@ impl Walked<'_> {
     }
 
     /// The forecast of these positions, with its spread if there are several hypotheses.
-    fn at(&self, positions: Vec<Position>) -> Result<Forecast, ForecastError> {
+    pub(crate) fn at(&self, positions: Vec<Position>) -> Result<Forecast, ForecastError> {
         let (pedestrians, hypotheses) = (self.window.len(), self.hypotheses);
         let (weights, goals) = (self.weights.clone(), Some(self.goals.clone()));
         let forecast = Forecast::new(pedestrians, hypotheses, positions, weights, goals)?;
@@ -116,6 +118,9 @@ impl Walked<'_> {
         let forecast = forecast.with_familiarity(familiarity.clone())?;
         if hypotheses == 1 {
             return Ok(forecast);
+        }
+        if let Some(spread) = &self.spread {
+            return Ok(forecast.with_spread(spread.clone())?);
         }
         let calibration = Calibration::fitted();
         let time_step = self.config.time_step;

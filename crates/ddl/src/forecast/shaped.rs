@@ -65,6 +65,7 @@ pub(crate) fn walked<'a>(
         .map(move |(((rollout, window), sets), (shares, familiarity))| Walked {
             shares,
             familiarity: Some(familiarity),
+            spread: None,
             config: network.config(),
             integrator,
             window,

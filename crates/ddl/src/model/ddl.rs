@@ -3,6 +3,7 @@
 use crate::device::Device;
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast, Walked};
+use crate::forecast::joint::GivenPlan;
 use crate::forecast::name::{NAME, WITHOUT_LIBRARY};
 use crate::forecast::shaped::{self, GuidedGoals};
 use crate::forecast::walk::PathIntegrator;
@@ -16,6 +17,7 @@ use ddl_data::{HORIZON, Position, Window};
 use ddl_goal::GoalSet;
 use ddl_network::ForecastWindows;
 use ddl_network::weights::Weights;
+use ddl_scene::Futures;
 
 /// A trained model, ready to forecast.
 ///
@@ -105,6 +107,55 @@ impl Ddl {
             .collect()
     }
 
+    /// The joint futures of each window: hypothesis k of all pedestrians is future k, with one weight for the scene, so
+    /// that people who walk together stay together and nobody walks through another. With a plan the others respond to
+    /// it, and whoever follows it does so in every future. With one pedestrian it is the forecast of
+    /// [`forecast_all`](Forecaster::forecast_all). For the variant without goals noise vector k is future k, and a plan
+    /// changes nothing.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all).
+    pub fn forecast_scenes(
+        &self,
+        windows: &[Window],
+        given: Option<&GivenPlan>,
+    ) -> Result<Vec<Forecast>, ForecastError> {
+        let config = self.config();
+        if !config.star.variant.uses_goal() {
+            return shaped::without_goals(&*self.network, config.training.seed, windows);
+        }
+        let joint = self.joint(windows, given)?;
+        joint.map(|walked| walked?.forecast_given(given)).collect()
+    }
+
+    /// [`forecast_scenes`](Self::forecast_scenes), with evidence for every path that it approaches its goal.
+    ///
+    /// # Errors
+    /// As [`forecast_certified`](Self::forecast_certified).
+    pub fn forecast_scenes_certified(&self, windows: &[Window]) -> Result<Vec<CertifiedForecast>, ForecastError> {
+        certified::ensure_flow(self.config().star.variant)?;
+        self.joint(windows, None)?.map(|walked| walked?.certified()).collect()
+    }
+
+    /// The joint futures of one window, from which answers about the scene are computed.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all).
+    pub fn forecast_scene(&self, window: &Window, given: Option<&GivenPlan>) -> Result<Futures, ForecastError> {
+        let mut forecasts = self.forecast_scenes(std::slice::from_ref(window), given)?;
+        Futures::new(window, forecasts.remove(0)).map_err(|error| ForecastError::model(NAME, error))
+    }
+
+    fn joint<'a>(
+        &'a self,
+        windows: &'a [Window],
+        given: Option<&'a GivenPlan>,
+    ) -> Result<impl Iterator<Item = Result<Walked<'a>, ForecastError>>, ForecastError> {
+        let goals = self.guided(windows, self.goals.goals(windows)?);
+        let walked = shaped::walked(&*self.network, windows, goals, PathIntegrator::Stable)?;
+        Ok(walked.map(move |walked| walked.joint(given)))
+    }
+
     /// One hypothesis for each pedestrian: the neutral motion to the central goal of its goal set
     /// ([`GoalSet::central`]). The forecasting network is not used. The variant without goals makes noise samples.
     /// [`Forecast::certified`] states whether the certificate of each path holds.
@@ -159,6 +210,7 @@ impl Ddl {
                 rolled_out: Vec::new(),
                 shares: vec![0.0; window.len()],
                 familiarity: Some(self.goals.familiarity(window)),
+                spread: None,
                 factors: Some(vec![[1.0, 0.0, 1.0]; goals.len() * HORIZON]),
                 weights: vec![1.0; goals.len()],
                 goals,

@@ -1,0 +1,78 @@
+//! From the hypotheses of single pedestrians to the joint futures of a scene.
+//!
+//! A future gives each pedestrian a goal, the mean of the goals of its mixture, and a flow there, whose factors of P are
+//! the mean of those of the mixture. The mean of factors with positive diagonals has a positive diagonal, so P stays
+//! positive definite, and every path has its certificate as a hypothesis has.
+
+use crate::forecast::certified::Walked;
+use crate::trust::calibration::Calibration;
+use ddl_core::{Forecast, ForecastError, Spread, TIME_STEP};
+use ddl_data::{HORIZON, PedestrianName, Position};
+use ddl_scene::{JointMixture, Plan};
+
+/// A plan that the pedestrians of a scene respond to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GivenPlan {
+    /// The path.
+    pub plan: Plan,
+    /// The pedestrian of the tracks who follows it; `None` for somebody who is not among them, such as a robot.
+    pub ego: Option<PedestrianName>,
+}
+
+impl Walked<'_> {
+    /// The same pedestrians with joint futures instead of hypotheses.
+    pub(crate) fn joint(mut self, given: Option<&GivenPlan>) -> Result<Self, ForecastError> {
+        let paths = std::mem::take(&mut self.rolled_out);
+        let marginal = self.at(paths)?;
+        let ego = self.ego(given);
+        let mixture = JointMixture::of(self.window, &marginal, given.map(|given| &given.plan), ego);
+        let pairs = self.window.len() * self.hypotheses;
+        let steps = || (0..pairs).flat_map(|pair| (0..HORIZON).map(move |t| (pair, t)));
+        if self.factors.is_none() {
+            let paths = steps().map(|(pair, t)| mixture.mean(pair, |i, h| marginal.hypothesis(i, h)[t]));
+            self.rolled_out = paths.collect();
+        }
+        if let Some(factors) = &self.factors {
+            let of_step = |i: usize, h: usize, t: usize| factors[(i * self.hypotheses + h) * HORIZON + t];
+            let mixed = steps().map(|(pair, t)| mixture.mean(pair, |i, h| of_step(i, h, t)));
+            self.factors = Some(mixed.collect());
+        }
+        let goals = (0..pairs).map(|pair| mixture.mean(pair, |i, h| self.goals[i * self.hypotheses + h]));
+        self.goals = goals.collect();
+        self.weights = mixture.weights.repeat(self.window.len());
+        self.spread = spread(&marginal, &mixture);
+        Ok(self)
+    }
+
+    fn ego(&self, given: Option<&GivenPlan>) -> Option<usize> {
+        self.window.named(given?.ego.as_ref()?)
+    }
+
+    /// The forecast of joint futures; the ego, if it is in the window, follows the plan in all of them.
+    pub(crate) fn forecast_given(self, given: Option<&GivenPlan>) -> Result<Forecast, ForecastError> {
+        let ego = self.ego(given);
+        let forecast = self.forecast()?;
+        match (ego, given) {
+            (Some(ego), Some(given)) => Ok(forecast.with_path(ego, &planned(&given.plan))),
+            _ => Ok(forecast),
+        }
+    }
+}
+
+/// Where a plan is at the 12 steps, metres.
+fn planned(plan: &Plan) -> [Position; HORIZON] {
+    std::array::from_fn(|t| plan.at(TIME_STEP * (t + 1) as f64).position)
+}
+
+/// The spread around the paths of the futures: that around the hypotheses, and how far these are from their mixture.
+fn spread(marginal: &Forecast, mixture: &JointMixture) -> Option<Spread> {
+    let scales = mixture.scales(marginal)?;
+    let paces = (0..marginal.pedestrians())
+        .map(|i| marginal.pace(i))
+        .collect::<Option<_>>()?;
+    Some(Spread {
+        scales,
+        paces,
+        regions: Calibration::shared_regions(),
+    })
+}
