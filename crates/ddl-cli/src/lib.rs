@@ -5,6 +5,7 @@ mod command;
 mod interrupt;
 mod kept_inputs;
 mod output;
+mod plans;
 mod progress;
 mod recordings;
 mod result_lines;

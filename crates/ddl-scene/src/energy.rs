@@ -12,7 +12,8 @@
 //! walked over the observation and how much their velocities differed; it is 0 for people who did not walk together.
 //! All constants are in `energy.json`.
 
-use ddl_core::{OBSERVED, Position, TIME_STEP, distance};
+use crate::groups::closeness;
+use ddl_core::Position;
 use serde::Deserialize;
 use std::sync::LazyLock;
 
@@ -84,9 +85,7 @@ impl Energy {
 
     /// How strongly two observed tracks (8 positions, metres) belong together; 0 for strangers.
     pub(crate) fn strength(&self, a: &[Position], b: &[Position]) -> f32 {
-        let apart = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum::<f64>() / a.len() as f64;
-        let moved = |track: &[Position]| [0, 1].map(|axis| track[OBSERVED - 1][axis] - track[0][axis]);
-        let velocities = distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64);
+        let [apart, velocities] = closeness(a, b);
         let bin = |limits: &[f64; 3], value: f64| limits.iter().position(|limit| value < *limit);
         match (
             bin(&self.together.distances, apart),
@@ -133,7 +132,7 @@ impl PairEnergy {
         }
     }
 
-    /// Whether the two walk together.
+    /// Whether the two may walk together.
     pub(crate) fn is_together(&self) -> bool {
         self.together.is_some()
     }

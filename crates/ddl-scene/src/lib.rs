@@ -3,6 +3,7 @@
 mod energy;
 mod error;
 mod futures;
+mod groups;
 mod hypotheses;
 mod keeping_apart;
 mod mixture;
@@ -13,5 +14,6 @@ mod sampling;
 
 pub use error::{PlanError, SceneError};
 pub use futures::Futures;
+pub use groups::groups;
 pub use mixture::JointMixture;
 pub use plan::{Plan, PlanPoint};

@@ -20,8 +20,6 @@ pub struct JointMixture {
     pub weights: Vec<f64>,
     /// `[N][K][H]`: shares of the hypotheses; they sum to 1 for each pedestrian and future.
     pub shares: Vec<f32>,
-    /// Pairs of pedestrians who walk together, each once.
-    pub together: Vec<[usize; 2]>,
 }
 
 impl JointMixture {
@@ -95,7 +93,6 @@ impl JointMixture {
         Self {
             weights: (0..count).map(|k| forecast.weight(0, k)).collect(),
             shares: (0..count).flat_map(same).collect(),
-            together: Vec::new(),
         }
     }
 }
@@ -161,7 +158,6 @@ impl Scene {
         JointMixture {
             weights: sizes.iter().map(|size| f64::from(*size) / SAMPLES as f64).collect(),
             shares,
-            together: Vec::new(),
         }
     }
 
@@ -173,15 +169,6 @@ impl Scene {
             shares[i * row..][..row].copy_from_slice(&mixture.shares[rank * row..][..row]);
         }
         mixture.shares = shares;
-        let pairs = self.pairs.iter().filter(|pair| pair.energy.is_together());
-        mixture.together = pairs
-            .map(|pair| {
-                let mut both = [self.order[pair.first], self.order[pair.second]];
-                both.sort_unstable();
-                both
-            })
-            .collect();
-        mixture.together.sort_unstable();
     }
 }
 

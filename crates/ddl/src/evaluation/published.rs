@@ -104,6 +104,7 @@ impl Published {
                     return shaped::with_equal_weights(rollout);
                 }
                 let walked = Walked {
+                    spread: None,
                     shares: vec![1.0; window.len()],
                     familiarity: None,
                     config,

@@ -3,6 +3,7 @@
 use crate::command::forecast::moment::{SceneWindows, StreamState, WindowForecasts, warn_of_violation};
 use crate::command::forecast::{json_lines, table};
 use crate::command::{Machine, ModelChoice};
+use crate::plans::GivenPlanOptions;
 use crate::tracks::TrackOptions;
 use clap::{Args, ValueEnum};
 use ddl::data::{Clock, Window};
@@ -18,7 +19,9 @@ use std::path::PathBuf;
         tracker | ddl forecast - --fps 10 --one --format jsonl\n  \
         tracker | ddl forecast - --fps 10 --memory hall.memory\n  \
         trackers | ddl forecast - --fps 10 --latest --format jsonl\n  \
+        ddl forecast tracks.csv --joint --plan robot.csv --format jsonl\n  \
         ddl forecast --model runs/eth tracks.csv --last --format jsonl --certificate")]
+#[expect(clippy::struct_excessive_bools, reason = "switches of a command")]
 pub(crate) struct ForecastCommand {
     #[command(flatten)]
     pub(super) model: ModelChoice,
@@ -34,6 +37,15 @@ pub(crate) struct ForecastCommand {
     /// One hypothesis per pedestrian instead of 20: to a central goal that represents the 20
     #[arg(long)]
     pub(super) one: bool,
+    /// Joint futures of each scene instead of hypotheses of each pedestrian: people who walk together stay together, and
+    /// people do not walk through each other
+    ///
+    /// Future k of all pedestrians is one future, with one weight. csv has the column `future` instead of `hypothesis`;
+    /// jsonl has one object for each moment, with the groups. Regions and weights do not adapt.
+    #[arg(long, conflicts_with = "one")]
+    pub(super) joint: bool,
+    #[command(flatten)]
+    pub(super) given: GivenPlanOptions,
     /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
     /// missing, written every minute and at the end
     ///
@@ -92,7 +104,7 @@ impl ForecastCommand {
         state: &mut StreamState,
     ) -> anyhow::Result<String> {
         let mut forecasts = self.forecasts(model, windows.windows)?;
-        if !self.region.is_empty() {
+        if !self.region.is_empty() && !self.joint {
             for (i, forecast) in forecasts.each_mut().into_iter().enumerate() {
                 *forecast = state.adapted(windows, i, forecast.clone());
             }
@@ -107,7 +119,8 @@ impl ForecastCommand {
         }
         let headed = !std::mem::replace(&mut state.headed, true);
         match self.format() {
-            OutputFormat::Csv => table::csv(&moments, headed, &self.region),
+            OutputFormat::Csv => table::csv(&moments, headed, &self.region, self.joint),
+            OutputFormat::Jsonl if self.joint => json_lines::joint_lines(&moments, &self.region),
             OutputFormat::Jsonl => json_lines::json_lines(&moments, &self.region),
         }
     }
@@ -123,6 +136,13 @@ impl ForecastCommand {
     }
 
     fn forecasts(&self, model: &Ddl, windows: &[Window]) -> anyhow::Result<WindowForecasts> {
+        if self.joint {
+            return Ok(if self.certificate {
+                WindowForecasts::Certified(model.forecast_scenes_certified(windows)?)
+            } else {
+                WindowForecasts::Plain(model.forecast_scenes(windows, self.given.read()?.as_ref())?)
+            });
+        }
         Ok(match (self.certificate, self.one) {
             (false, false) => WindowForecasts::Plain(model.forecast_all(windows)?),
             (false, true) => WindowForecasts::Plain(model.forecast_central(windows)?),

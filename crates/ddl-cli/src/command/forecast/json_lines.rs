@@ -1,15 +1,49 @@
-//! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads.
+//! Forecasts as JSON lines: one object for each pedestrian, in the format that `ddl evaluate --forecasts` reads; of joint
+//! futures one object for each moment.
 
 use crate::command::forecast::moment::Moment;
 use ddl::data::{FrameNumber, HORIZON, PedestrianName, SceneName};
 use ddl::dynamics::{LyapunovCertificate, Violation};
 use serde::Serialize;
 
+/// What is known of a moment.
 #[derive(Serialize)]
-struct PedestrianLine<'a> {
+struct MomentHead<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     scene: Option<&'a SceneName>,
     observed_until: FrameNumber,
+}
+
+#[derive(Serialize)]
+struct PedestrianLine<'a> {
+    #[serde(flatten)]
+    moment: MomentHead<'a>,
+    #[serde(flatten)]
+    pedestrian: ObservedPedestrian,
+    frames: Vec<FrameNumber>,
+    hypotheses: Vec<Hypothesis<'a>>,
+}
+
+#[derive(Serialize)]
+struct SceneLine<'a> {
+    #[serde(flatten)]
+    moment: MomentHead<'a>,
+    frames: Vec<FrameNumber>,
+    pedestrians: Vec<ObservedPedestrian>,
+    /// Names of pedestrians who walk together.
+    groups: Vec<Vec<PedestrianName>>,
+    futures: Vec<Future<'a>>,
+}
+
+/// A joint future; its paths are in the order of the pedestrians.
+#[derive(Serialize)]
+struct Future<'a> {
+    weight: f64,
+    paths: Vec<Path<'a>>,
+}
+
+#[derive(Serialize)]
+struct ObservedPedestrian {
     pedestrian: PedestrianName,
     /// Number of positions before its first row.
     unseen: usize,
@@ -17,7 +51,6 @@ struct PedestrianLine<'a> {
     age: f64,
     /// Standard deviation that the observation adds at the end of the forecast, m.
     uncertainty: f64,
-    frames: Vec<FrameNumber>,
     /// Familiarity of the observed motion, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     familiarity: Option<f64>,
@@ -26,7 +59,24 @@ struct PedestrianLine<'a> {
     spread: Vec<f64>,
     #[serde(skip_serializing_if = "Vec::is_empty")]
     regions: Vec<Region>,
-    hypotheses: Vec<Hypothesis<'a>>,
+}
+
+impl ObservedPedestrian {
+    fn of(moment: &Moment<'_>, i: usize, regions: &[f64]) -> Self {
+        let (forecast, quality) = (moment.forecast, moment.window.quality(i));
+        let regions = regions.iter();
+        Self {
+            pedestrian: moment.window.name(i),
+            unseen: quality.unseen,
+            age: quality.age,
+            uncertainty: quality.uncertainty(),
+            familiarity: forecast.familiarity(i),
+            spread: (0..HORIZON).filter_map(|t| forecast.scale(i, t)).collect(),
+            regions: regions
+                .filter_map(|&probability| Region::of(forecast, i, probability))
+                .collect(),
+        }
+    }
 }
 
 /// A region that contains the pedestrian with this probability: the union of discs at each step, x, y and radius (m).
@@ -51,6 +101,12 @@ impl Region {
 #[derive(Serialize)]
 struct Hypothesis<'a> {
     weight: f64,
+    #[serde(flatten)]
+    path: Path<'a>,
+}
+
+#[derive(Serialize)]
+struct Path<'a> {
     goal: Option<[f64; 2]>,
     positions: &'a [[f64; 2]],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -82,39 +138,69 @@ impl<'a> Certificate<'a> {
     }
 }
 
+impl<'a> Path<'a> {
+    fn of(moment: &Moment<'a>, i: usize, k: usize) -> Self {
+        Self {
+            goal: moment.forecast.goal(i, k),
+            positions: moment.forecast.hypothesis(i, k),
+            certificate: moment.certificate(i, k).map(Certificate::of),
+        }
+    }
+}
+
+impl<'a> MomentHead<'a> {
+    fn of(moment: &Moment<'a>) -> Self {
+        Self {
+            scene: moment.scene,
+            observed_until: moment.observed_until(),
+        }
+    }
+}
+
 pub(super) fn json_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Result<String> {
     let mut text = String::new();
     for moment in moments {
-        let forecast = moment.forecast;
         for i in 0..moment.window.len() {
-            let hypotheses = (0..forecast.hypotheses())
-                .map(|k| Hypothesis {
-                    weight: forecast.weight(i, k),
-                    goal: forecast.goal(i, k),
-                    positions: forecast.hypothesis(i, k),
-                    certificate: moment.certificate(i, k).map(Certificate::of),
-                })
-                .collect();
-            let quality = moment.window.quality(i);
+            let hypotheses = (0..moment.forecast.hypotheses()).map(|k| Hypothesis {
+                weight: moment.forecast.weight(i, k),
+                path: Path::of(moment, i, k),
+            });
             let line = PedestrianLine {
-                scene: moment.scene,
-                observed_until: moment.observed_until(),
-                pedestrian: moment.window.name(i),
-                unseen: quality.unseen,
-                age: quality.age,
-                uncertainty: quality.uncertainty(),
+                moment: MomentHead::of(moment),
+                pedestrian: ObservedPedestrian::of(moment, i, regions),
                 frames: moment.frames(),
-                familiarity: forecast.familiarity(i),
-                spread: (0..HORIZON).filter_map(|t| forecast.scale(i, t)).collect(),
-                regions: regions
-                    .iter()
-                    .filter_map(|&probability| Region::of(forecast, i, probability))
-                    .collect(),
-                hypotheses,
+                hypotheses: hypotheses.collect(),
             };
             text += &serde_json::to_string(&line)?;
             text.push('\n');
         }
+    }
+    Ok(text)
+}
+
+/// One object for each moment.
+pub(super) fn joint_lines(moments: &[Moment<'_>], regions: &[f64]) -> anyhow::Result<String> {
+    let mut text = String::new();
+    for moment in moments {
+        let pedestrians = 0..moment.window.len();
+        let futures = (0..moment.forecast.hypotheses()).map(|k| Future {
+            weight: moment.forecast.weight(0, k),
+            paths: pedestrians.clone().map(|i| Path::of(moment, i, k)).collect(),
+        });
+        let groups = ddl::scene::groups(moment.window).into_iter();
+        let line = SceneLine {
+            moment: MomentHead::of(moment),
+            frames: moment.frames(),
+            futures: futures.collect(),
+            groups: groups
+                .map(|group| group.into_iter().map(|i| moment.window.name(i)).collect())
+                .collect(),
+            pedestrians: pedestrians
+                .map(|i| ObservedPedestrian::of(moment, i, regions))
+                .collect(),
+        };
+        text += &serde_json::to_string(&line)?;
+        text.push('\n');
     }
     Ok(text)
 }

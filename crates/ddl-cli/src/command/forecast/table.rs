@@ -28,7 +28,7 @@ struct Row {
 const COLUMNS: [&str; 13] = [
     "observed_until",
     "pedestrian",
-    "hypothesis",
+    HYPOTHESIS,
     "weight",
     "goal_x",
     "goal_y",
@@ -40,13 +40,15 @@ const COLUMNS: [&str; 13] = [
     "uncertainty",
     "familiarity",
 ];
+/// `future` for joint futures.
+const HYPOTHESIS: &str = "hypothesis";
 /// An additional first column, if the tracks name scenes.
 const SCENE: &str = "scene";
 /// Further columns for the certificate of a position.
 const CERTIFIED: [&str; 2] = ["distance_to_goal", "certified"];
 
 /// The table of these moments, with a column of radii for each requested region.
-pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyhow::Result<String> {
+pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64], joint: bool) -> anyhow::Result<String> {
     let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     if headed {
         let certified = moments.iter().any(|moment| moment.certified.is_some());
@@ -55,7 +57,8 @@ pub(super) fn csv(moments: &[Moment<'_>], headed: bool, regions: &[f64]) -> anyh
             .chain(certified.then_some(&CERTIFIED).into_iter().flatten());
         let named = moments.iter().any(|moment| moment.scene.is_some());
         let columns = named.then_some(&SCENE).into_iter().chain(columns);
-        let names = columns.map(|&name| name.to_owned());
+        let named = |name: &'static str| if joint && name == HYPOTHESIS { "future" } else { name };
+        let names = columns.map(|&name| named(name).to_owned());
         writer.write_record(names.chain(regions.iter().map(|level| format!("radius_{level}"))))?;
     }
     for moment in moments {

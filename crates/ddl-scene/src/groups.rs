@@ -1,0 +1,46 @@
+//! Who walks together.
+
+use ddl_core::{OBSERVED, Position, TIME_STEP, Window, distance};
+use ddl_data::SpatialIndex;
+
+/// Mean distance over the observation below which two may walk together, metres.
+const CLOSE: f64 = 2.2;
+/// Difference of their mean velocities below which they do, m/s.
+const ALIKE: f64 = 0.35;
+/// Each pedestrian is compared with at most this many others, the nearest ones.
+const MOST_NEIGHBOURS: usize = 16;
+
+/// Mean distance (m) of two observed tracks of 8 positions, and the difference of their mean velocities (m/s).
+pub(crate) fn closeness(a: &[Position], b: &[Position]) -> [f64; 2] {
+    let apart = a.iter().zip(b).map(|(p, q)| distance(*p, *q)).sum::<f64>() / a.len() as f64;
+    let moved = |track: &[Position]| [0, 1].map(|axis| track[OBSERVED - 1][axis] - track[0][axis]);
+    [
+        apart,
+        distance(moved(a), moved(b)) / (TIME_STEP * (OBSERVED - 1) as f64),
+    ]
+}
+
+/// Groups of at least two pedestrians of a window who walk together, as indices in ascending order: linked by pairs whose
+/// mean distance over the observation is below 2.2 m and whose mean velocities differ by less than 0.35 m/s.
+///
+/// Two who stand beside each other count as a group, too.
+#[must_use]
+pub fn groups(window: &Window) -> Vec<Vec<usize>> {
+    let present = window.positions_at(OBSERVED - 1);
+    let index = SpatialIndex::new(&present);
+    let mut group: Vec<usize> = (0..window.len()).collect();
+    for i in 0..window.len() {
+        for j in index.nearest_others(i, present[i], MOST_NEIGHBOURS) {
+            let [apart, velocities] = closeness(window.observed(i), window.observed(j));
+            if apart < CLOSE && velocities < ALIKE && group[i] != group[j] {
+                let (kept, joined) = (group[i].min(group[j]), group[i].max(group[j]));
+                for member in group.iter_mut().filter(|member| **member == joined) {
+                    *member = kept;
+                }
+            }
+        }
+    }
+    let members = |first: usize| (0..window.len()).filter(|&i| group[i] == first).collect::<Vec<_>>();
+    let firsts = (0..window.len()).filter(|&i| group[i] == i);
+    firsts.map(members).filter(|members| members.len() > 1).collect()
+}
