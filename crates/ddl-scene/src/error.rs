@@ -1,0 +1,45 @@
+//! Errors of this crate.
+
+/// A forecast is not one of joint futures, or does not belong to its window.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the messages describe the fields")]
+pub enum SceneError {
+    #[error("the window holds {window} pedestrians, its forecast {forecast}")]
+    Pedestrians { window: usize, forecast: usize },
+    #[error(
+        "hypothesis {future} has the weight {found} for pedestrian {pedestrian} and {expected} for pedestrian 0: joint \
+         futures have one weight for the whole scene; make them with the joint forecast of a model"
+    )]
+    NotJoint {
+        future: usize,
+        pedestrian: usize,
+        expected: f64,
+        found: f64,
+    },
+    #[error("a forecast without spread has no risk and no occupancy; make it with all hypotheses of a model")]
+    NoSpread,
+}
+
+/// A plan cannot be followed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+#[expect(missing_docs, reason = "the messages describe the fields")]
+pub enum PlanError {
+    #[error("a plan needs at least one row of time, x and y")]
+    Empty,
+    #[error("row {row} of the plan: {field} is {value}; it must be a finite number{more}")]
+    Number {
+        row: usize,
+        field: &'static str,
+        value: f64,
+        more: &'static str,
+    },
+    #[error("row {row} of the plan: time {time} s does not come after {before} s; sort the rows by time")]
+    Order { row: usize, time: f64, before: f64 },
+    #[error(
+        "the plan is from {first} s to {last} s; forecasts reach from 0 to 4.8 s after the moment: give times in \
+         seconds from the moment"
+    )]
+    OutOfHorizon { first: f64, last: f64 },
+}

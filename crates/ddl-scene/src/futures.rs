@@ -1,0 +1,100 @@
+//! The joint futures of a scene: where everybody is in each of them.
+
+use crate::error::SceneError;
+use ddl_core::{Forecast, HORIZON, OBSERVED, Position, TIME_STEP, Window, between};
+
+/// Two pedestrians have the same weight of a future if the weights differ by at most this much.
+const EQUAL_WEIGHTS: f64 = 1e-9;
+
+/// K weighted futures of a scene of N pedestrians: in future k every pedestrian follows its hypothesis k.
+///
+/// Around its path a pedestrian is distributed as the [spread](ddl_core::Spread) of the forecast states.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Futures {
+    present: Vec<Position>,
+    forecast: Forecast,
+}
+
+impl Futures {
+    /// The futures of a joint forecast of this window.
+    ///
+    /// # Errors
+    /// The forecast has another number of pedestrians; the weight of a hypothesis differs between pedestrians.
+    pub fn new(window: &Window, forecast: Forecast) -> Result<Self, SceneError> {
+        if window.len() != forecast.pedestrians() {
+            return Err(SceneError::Pedestrians {
+                window: window.len(),
+                forecast: forecast.pedestrians(),
+            });
+        }
+        for pedestrian in 1..forecast.pedestrians() {
+            for future in 0..forecast.hypotheses() {
+                let [expected, found] = [0, pedestrian].map(|i| forecast.weight(i, future));
+                if (expected - found).abs() > EQUAL_WEIGHTS {
+                    return Err(SceneError::NotJoint {
+                        future,
+                        pedestrian,
+                        expected,
+                        found,
+                    });
+                }
+            }
+        }
+        let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
+        Ok(Self { present, forecast })
+    }
+
+    /// The forecast: hypothesis k of every pedestrian is future k.
+    pub fn forecast(&self) -> &Forecast {
+        &self.forecast
+    }
+
+    /// Number of pedestrians, N.
+    pub fn pedestrians(&self) -> usize {
+        self.present.len()
+    }
+
+    /// Number of futures, K.
+    pub fn count(&self) -> usize {
+        self.forecast.hypotheses()
+    }
+
+    /// The weight of future `k`; the weights sum to 1.
+    pub fn weight(&self, k: usize) -> f64 {
+        self.forecast.weight(0, k)
+    }
+
+    /// The last observed position of pedestrian `i`, metres.
+    pub fn present(&self, i: usize) -> Position {
+        self.present[i]
+    }
+
+    /// The position of pedestrian `i` in future `k`, `time` seconds after the moment, metres: on straight lines between
+    /// the steps. Before the moment it is the present position, after 4.8 s the last one.
+    pub fn position(&self, i: usize, k: usize, time: f64) -> Position {
+        let path = self.forecast.hypothesis(i, k);
+        let (step, share) = step_of(time);
+        let from = if step == 0 { self.present[i] } else { path[step - 1] };
+        between(from, path[step.min(HORIZON - 1)], share)
+    }
+
+    /// The scale (m) of the Student's t around that position; 0 at the moment itself. `None` without a spread.
+    pub fn scale(&self, i: usize, time: f64) -> Option<f64> {
+        let (step, share) = step_of(time);
+        let at = |step: usize| {
+            if step == 0 {
+                Some(0.0)
+            } else {
+                self.forecast.scale(i, step - 1)
+            }
+        };
+        let [from, to] = [at(step)?, at((step + 1).min(HORIZON))?];
+        Some(from + share * (to - from))
+    }
+}
+
+/// The step that a time (s) lies after, 0 to 12, and the share of the way to the next one.
+fn step_of(time: f64) -> (usize, f64) {
+    let steps = (time / TIME_STEP).clamp(0.0, HORIZON as f64);
+    (steps as usize, steps.fract())
+}

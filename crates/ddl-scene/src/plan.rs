@@ -1,0 +1,89 @@
+//! The plan of a robot, or of anybody whose path is known.
+
+use crate::error::PlanError;
+use ddl_core::{HORIZON, Position, TIME_STEP, between};
+
+/// A row of a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanPoint {
+    /// Seconds after the moment of the forecast.
+    pub time: f64,
+    /// Metres.
+    pub position: Position,
+    /// Radius of whoever follows the plan, metres; distances are measured from its edge.
+    pub radius: f64,
+}
+
+/// A path over time, with straight lines between its rows. Before its first row and after its last one whoever follows
+/// it stands there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    points: Vec<PlanPoint>,
+}
+
+impl Plan {
+    /// A plan of these rows, in the order of time.
+    ///
+    /// # Errors
+    /// There are no rows, a number is not finite, a radius is negative, the times do not ascend, or none of the plan is
+    /// within 0 to 4.8 s.
+    pub fn new(points: Vec<PlanPoint>) -> Result<Self, PlanError> {
+        let [first, last] = [points.first(), points.last()].map(|point| point.map(|point| point.time));
+        let (Some(first), Some(last)) = (first, last) else {
+            return Err(PlanError::Empty);
+        };
+        for (row, point) in (1..).zip(&points) {
+            let [x, y] = point.position;
+            let numbers = [("time", point.time), ("x", x), ("y", y), ("radius", point.radius)];
+            if let Some(&(field, value)) = numbers.iter().find(|(_, number)| !number.is_finite()) {
+                let more = "";
+                return Err(PlanError::Number {
+                    row,
+                    field,
+                    value,
+                    more,
+                });
+            }
+            if point.radius < 0.0 {
+                return Err(PlanError::Number {
+                    row,
+                    field: "radius",
+                    value: point.radius,
+                    more: ", at least 0",
+                });
+            }
+        }
+        for (row, pair) in (2..).zip(points.windows(2)) {
+            let [before, time] = [pair[0].time, pair[1].time];
+            if time <= before {
+                return Err(PlanError::Order { row, time, before });
+            }
+        }
+        if last < 0.0 || first > TIME_STEP * HORIZON as f64 {
+            return Err(PlanError::OutOfHorizon { first, last });
+        }
+        Ok(Self { points })
+    }
+
+    /// Its rows.
+    pub fn points(&self) -> &[PlanPoint] {
+        &self.points
+    }
+
+    /// Where it is at a time (s), with its radius there.
+    pub fn at(&self, time: f64) -> PlanPoint {
+        let next = self.points.partition_point(|point| point.time <= time);
+        let from = self.points[next.saturating_sub(1)];
+        let to = self.points[next.min(self.points.len() - 1)];
+        let share = if to.time > from.time {
+            ((time - from.time) / (to.time - from.time)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
+        PlanPoint {
+            time,
+            position: between(from.position, to.position, share),
+            radius: from.radius + share * (to.radius - from.radius),
+        }
+    }
+}
