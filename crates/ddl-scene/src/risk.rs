@@ -51,7 +51,7 @@ pub struct Clearance {
 impl Futures {
     /// For each plan, how likely somebody comes within `within` metres of its edge.
     ///
-    /// A thousand plans among 25 pedestrians with 20 futures take about 15 ms on one core. The result does not depend
+    /// A thousand plans among 25 pedestrians with 20 futures take about 20 ms on one core. The result does not depend
     /// on the number of threads, nor on which other plans there are.
     ///
     /// # Errors

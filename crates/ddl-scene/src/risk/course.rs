@@ -76,7 +76,10 @@ impl Leg {
         let [[x, y], [x1, y1]] =
             [0, 1].map(|end| [0, 1].map(|axis| approach.offsets[end][axis] + approach.scales[end] * z[axis]));
         let [dx, dy, growth] = [x1 - x, y1 - y, self.radii[1] - self.radii[0]];
-        let at = |share: f64| (x + share * dx).hypot(y + share * dy) - self.radii[0] - share * growth;
+        let at = |share: f64| {
+            let [x, y] = [x + share * dx, y + share * dy];
+            (x * x + y * y).sqrt() - self.radii[0] - share * growth
+        };
         // The square of the distance is a u^2 + 2 b u + c; the derivative of at(u) is 0 at the root below.
         let [a, b, c] = [dx * dx + dy * dy, x * dx + y * dy, x * x + y * y];
         let ends = at(0.0).min(at(1.0));
