@@ -1,6 +1,6 @@
 //! Errors of this crate.
 
-/// A forecast is not one of joint futures, or does not belong to its window.
+/// A forecast is not one of joint futures, does not belong to its window, or cannot answer what was asked.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 #[expect(missing_docs, reason = "the messages describe the fields")]
@@ -19,6 +19,22 @@ pub enum SceneError {
     },
     #[error("a forecast without spread has no risk and no occupancy; make it with all hypotheses of a model")]
     NoSpread,
+    #[error("{name} is {value}; it must be {expected}")]
+    Number {
+        name: &'static str,
+        value: f64,
+        expected: &'static str,
+    },
+    #[error(
+        "an area of {width} x {height} m in cells of {cell} m has more than {most} cells: take larger cells, or a \
+         smaller area"
+    )]
+    Cells {
+        width: f64,
+        height: f64,
+        cell: f64,
+        most: usize,
+    },
 }
 
 /// A plan cannot be followed.

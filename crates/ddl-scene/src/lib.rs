@@ -2,18 +2,24 @@
 
 mod energy;
 mod error;
+#[cfg(test)]
+mod fixture;
 mod futures;
 mod groups;
 mod hypotheses;
 mod keeping_apart;
 mod mixture;
+mod occupancy;
 mod pairs;
 mod plan;
 mod quantisation;
+mod risk;
 mod sampling;
 
 pub use error::{PlanError, SceneError};
 pub use futures::Futures;
 pub use groups::groups;
 pub use mixture::JointMixture;
+pub use occupancy::{Area, Occupancy};
 pub use plan::{Plan, PlanPoint};
+pub use risk::{Clearance, Risk};

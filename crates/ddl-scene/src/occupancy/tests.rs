@@ -1,0 +1,164 @@
+use super::mass::{MassTable, mass};
+use crate::fixture::futures;
+use crate::risk::probability;
+use crate::{Area, Futures, Occupancy};
+use ddl_core::{Position, distance};
+use proptest::{collection::vec, prelude::*};
+
+fn grids(futures: &Futures, area: &Area, times: &[f64]) -> Vec<Occupancy> {
+    futures.occupancy(area, times, 0.25).unwrap().collect()
+}
+
+/// The integral over the disc in polar coordinates around its middle, by the midpoint rule.
+fn reference(distance: f64, radius: f64, scale: f64) -> f64 {
+    const N: usize = 600;
+    let density = |square: f64| (1.0 + square / (3.0 * scale * scale)).powf(-2.5);
+    let mut sum = 0.0;
+    for r in (0..N).map(|r| radius * (r as f64 + 0.5) / N as f64) {
+        for angle in (0..N).map(|a| std::f64::consts::PI * (a as f64 + 0.5) / N as f64) {
+            sum += r * density(distance * distance + r * r - 2.0 * distance * r * angle.cos());
+        }
+    }
+    sum * radius / (N * N) as f64 / (scale * scale)
+}
+
+#[test]
+fn mass_of_a_disc() {
+    for scale in [0.004, 0.02, 0.1, 0.5, 3.0] {
+        let table = MassTable::new(0.2, scale);
+        for at in [0.0, 0.07, 0.19, 0.2, 0.202, 0.25, 0.4, 1.0, 2.0] {
+            let [exact, found] = [reference(at, 0.2, scale), mass(at, 0.2, scale)];
+            assert!((exact - found).abs() < 5e-4, "{at} {scale}: {exact} {found}");
+            assert!(
+                (table.mass(at) - found).abs() < 5e-4,
+                "{at} {scale}: {found} {}",
+                table.mass(at)
+            );
+        }
+        assert!((mass(0.0, 0.2, scale) - probability(0.2 / scale)).abs() < 1e-5);
+    }
+    // Nothing between the scale of the table and 0.
+    let [tiny, none] = [1e-9, 0.0].map(|scale| MassTable::new(0.2, scale));
+    for at in [0.0, 0.1999, 0.2001, 1.0] {
+        assert!((tiny.mass(at) - none.mass(at)).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn one_body_has_its_size_and_the_present_is_a_disc() {
+    let futures = futures(&[[1.0, 2.0]], &[vec![[0.5, 0.0], [0.0, 0.5]]], &[0.4, 0.6], &[0.3]);
+    let area = futures.area(6.0, 0.02).unwrap();
+    for (grid, least) in grids(&futures, &area, &[0.0, 1.0, 4.8]).iter().zip([0.98, 0.98, 0.95]) {
+        let covered = grid.probabilities.iter().sum::<f32>() * 0.02_f32.powi(2);
+        let share = f64::from(covered) / (std::f64::consts::PI * 0.0625);
+        assert!(share > least && share < 1.02, "{share}");
+    }
+    let now = grids(&futures, &area, &[0.0]).remove(0);
+    for (cell, &p) in now.probabilities.iter().enumerate() {
+        let centre = area.centre([cell % area.size()[0], cell / area.size()[0]]);
+        let is_inside = distance(centre, [1.0, 2.0]) <= 0.25;
+        assert!((p - f32::from(u8::from(is_inside))).abs() < 1e-6);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    /// Cells are what the definition says; another order of pedestrians and another place change nothing.
+    #[test]
+    fn laws_of_occupancy(
+        starts in vec([-2.0..2.0f64, -2.0..2.0f64], 3), speeds in vec(vec([-1.0..1.0f64, -1.0..1.0f64], 2), 3),
+        scales in vec(0.05..0.8f64, 3), time in 0.0..4.8f64,
+    ) {
+        let area = Area::new([-3.0, -2.5], [2.0, 3.5], 0.25).unwrap();
+        let weights = [0.7, 0.3];
+        let crowd = futures(&starts, &speeds, &weights, &scales);
+        let grid = grids(&crowd, &area, &[time]).remove(0);
+        for (cell, &found) in grid.probabilities.iter().enumerate() {
+            let centre = area.centre([cell % 20, cell / 20]);
+            let expected: f64 = (0..2).map(|k| {
+                let free = |i: usize| {
+                    1.0 - mass(distance(centre, crowd.position(i, k, time)), 0.25, crowd.scale(i, time).unwrap())
+                };
+                weights[k] * (1.0 - (0..3).map(free).product::<f64>())
+            }).sum();
+            prop_assert!((f64::from(found) - expected).abs() < 2e-3, "{found} {expected}");
+            prop_assert!((0.0..=1.000_001).contains(&found));
+        }
+        let shifted: Vec<Position> = starts.iter().rev().map(|at| [at[0] + 10.0, at[1] - 20.0]).collect();
+        let (mut speeds, mut scales) = (speeds, scales);
+        speeds.reverse();
+        scales.reverse();
+        let there = futures(&shifted, &speeds, &weights, &scales);
+        let other = grids(&there, &Area::new([7.0, -22.5], [12.0, -16.5], 0.25).unwrap(), &[time]).remove(0);
+        let pairs = grid.probabilities.iter().zip(&other.probabilities);
+        prop_assert!(pairs.clone().all(|(a, b)| (a - b).abs() < 1e-5));
+    }
+}
+
+#[test]
+fn files_of_others() {
+    let area = Area::new([-1.0, 2.0], [-0.25, 2.5], 0.25).unwrap();
+    let probabilities = vec![0.0, 0.5, 1.0, 0.2, 0.004, 0.996];
+    let grid = Occupancy {
+        area,
+        time: 0.4,
+        probabilities,
+    };
+    let pgm = grid.pgm();
+    assert_eq!(
+        pgm,
+        [b"P5\n3 2\n255\n".as_slice(), &[204, 254, 1, 254, 128, 0]].concat()
+    );
+    let expected = "image: \"a \\\"b\\\".pgm\"\nresolution: 0.25\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\n\
+                    occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    assert_eq!(grid.yaml("a \"b\".pgm"), expected);
+    let message = grid.message();
+    assert_eq!(message["data"], serde_json::json!([0, 50, 100, 20, 0, 100]));
+    assert_eq!(
+        (&message["info"]["width"], &message["header"]["stamp"]),
+        (&3.into(), &0.4.into())
+    );
+    let head = area.npy_head(7);
+    assert_eq!(
+        (head.len() % 64, &head[..8], head.last()),
+        (0, b"\x93NUMPY\x01\x00".as_slice(), Some(&b'\n'))
+    );
+    assert!(String::from_utf8_lossy(&head).contains("'shape': (7, 2, 3)"));
+    assert_eq!(grid.npy_values()[4..8], 0.5_f32.to_le_bytes());
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused() {
+    let futures = futures(&[[0.0; 2]], &[vec![[0.0; 2]]], &[1.0], &[0.5]);
+    for (margin, cell, words) in [
+        (
+            1.0,
+            0.0,
+            "the size of a cell is 0; it must be a number of metres above 0",
+        ),
+        (1.0, f64::NAN, "the size of a cell is NaN"),
+        (-1.0, 0.1, "the margin is -1; it must be"),
+        (
+            1.0,
+            1e-5,
+            "an area of 2 x 2 m in cells of 0.00001 m has more than 50000000 cells: take larger",
+        ),
+        (f64::INFINITY, 0.1, "the margin is inf"),
+        (1e300, 1e-300, "an area of "),
+    ] {
+        let refused = futures.area(margin, cell).unwrap_err().to_string();
+        assert!(refused.starts_with(words), "{refused}");
+    }
+    assert_eq!(futures.area(0.0, 0.5).unwrap().size(), [1, 1]);
+    let area = Area::new([0.0; 2], [1.0; 2], 0.1).unwrap();
+    assert_eq!(area.size(), [10, 10]);
+    assert!(Area::new([0.0; 2], [0.0, 1.0], 0.1).is_err() && Area::new([f64::NAN; 2], [1.0; 2], 0.1).is_err());
+    for time in [-0.1, 4.9, f64::NAN] {
+        assert!(futures.occupancy(&area, &[time], 0.2).is_err());
+    }
+    assert!(futures.occupancy(&area, &[4.8], 0.0).is_err());
+    let times = Occupancy::every(0.4).unwrap();
+    assert!(times.len() == 13 && futures.occupancy(&area, &times, 0.2).is_ok());
+    assert!(Occupancy::every(0.0).is_err() && Occupancy::every(f64::NAN).is_err());
+}

@@ -1,0 +1,149 @@
+//! The risk of a plan: how likely somebody comes close to it.
+//!
+//! In future k, of the weight `w_k`, pedestrian i is at `path_ik(t) + s_i(t) z_i`: the deviation `z_i` from its path is
+//! distributed by Student's t ([`Spread`](ddl_core::Spread)), lasts for the whole future, grows with the scale `s_i(t)`
+//! and is independent of those of other pedestrians. The scale is 0 at the moment itself; between the steps and the
+//! rows of the plan everything moves on straight lines. With the share `P_ik` of deviations that come close,
+//!
+//! ```text
+//! P(somebody) = sum_k w_k (1 - prod_i (1 - P_ik)),    P(pedestrian i) = sum_k w_k P_ik
+//! ```
+//!
+//! Shares are those of 64 deviations of equal probability (`quadrature.rs`), the same for every pedestrian and
+//! future, so that results depend on nothing but their input. Less than 1/64 of one future may count as 0.
+
+mod course;
+mod crowd;
+mod quadrature;
+#[cfg(test)]
+mod tests;
+
+use crate::{error::SceneError, futures::Futures, plan::Plan};
+use course::legs;
+use crowd::{Crowd, Hits, Sweep};
+use ddl_core::HORIZON;
+use quadrature::DEVIATIONS;
+pub(crate) use quadrature::probability;
+use rayon::prelude::*;
+
+/// Probabilities that somebody comes within a distance of the edge of a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Risk {
+    /// That somebody does, from the moment to 4.8 s after it.
+    pub total: f64,
+    /// `[N]`: that this pedestrian does.
+    pub pedestrians: Vec<f64>,
+    /// That somebody is so close during this step of 0.4 s.
+    pub steps: [f64; HORIZON],
+    /// That somebody was so close by the end of this step; the last one is the total.
+    pub until: [f64; HORIZON],
+}
+
+/// Expected least distance (m) of pedestrians from the edge of a plan, over 4.8 s; 0 where they touch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Clearance {
+    /// Of the pedestrian that comes nearest.
+    pub nearest: f64,
+    /// `[N]`: of each pedestrian.
+    pub pedestrians: Vec<f64>,
+}
+
+impl Futures {
+    /// For each plan, how likely somebody comes within `within` metres of its edge.
+    ///
+    /// A thousand plans among 25 pedestrians with 20 futures take about 20 ms on one core. The result does not depend
+    /// on the number of threads, nor on which other plans there are.
+    ///
+    /// # Errors
+    /// `within` is negative or not finite; the forecast has no spread.
+    pub fn risks(&self, plans: &[Plan], within: f64) -> Result<Vec<Risk>, SceneError> {
+        if !(within >= 0.0 && within.is_finite()) {
+            return Err(SceneError::Number {
+                name: "the distance that counts as close",
+                value: within,
+                expected: "a number of metres, 0 or more",
+            });
+        }
+        let crowd = Crowd::new(self)?;
+        let risk = |plan| self.risk(&crowd, &crowd.sweep(plan, within));
+        Ok(plans.par_iter().map(risk).collect())
+    }
+
+    /// For each plan, how far from its edge pedestrians are expected to stay. The model is that of the
+    /// [risk](Self::risks). Without its short cuts a plan takes milliseconds.
+    ///
+    /// # Errors
+    /// The forecast has no spread.
+    pub fn clearances(&self, plans: &[Plan]) -> Result<Vec<Clearance>, SceneError> {
+        let crowd = Crowd::new(self)?;
+        Ok(plans.par_iter().map(|plan| self.clearance(&crowd, plan)).collect())
+    }
+
+    fn risk(&self, crowd: &Crowd, sweep: &Sweep) -> Risk {
+        let mut pedestrians = vec![0.0; self.pedestrians()];
+        let [mut steps, mut until] = [[0.0; HORIZON]; 2];
+        let near = crowd.near(sweep);
+        for k in 0..self.count() {
+            let weight = self.weight(k);
+            let mut nobody: Option<[[f64; HORIZON]; 2]> = None;
+            for &i in &near {
+                let Some(hits) = crowd.hits(sweep, i, k) else { continue };
+                let nobody = nobody.get_or_insert([[1.0; HORIZON]; 2]);
+                for (nobody, hits) in nobody.iter_mut().zip([&hits.steps, &hits.until]) {
+                    for (nobody, &hits) in nobody.iter_mut().zip(hits) {
+                        *nobody *= 1.0 - Hits::share(hits);
+                    }
+                }
+                pedestrians[i] += weight * Hits::share(hits.until[HORIZON - 1]);
+            }
+            for (sums, nobody) in [&mut steps, &mut until].into_iter().zip(nobody.iter().flatten()) {
+                for (sum, nobody) in sums.iter_mut().zip(nobody) {
+                    *sum += weight * (1.0 - nobody);
+                }
+            }
+        }
+        let total = until[HORIZON - 1];
+        Risk {
+            total,
+            pedestrians,
+            steps,
+            until,
+        }
+    }
+
+    fn clearance(&self, crowd: &Crowd, plan: &Plan) -> Clearance {
+        let legs = legs(plan);
+        let mut clearance = Clearance {
+            nearest: 0.0,
+            pedestrians: vec![0.0; self.pedestrians()],
+        };
+        for k in 0..self.count() {
+            let weight = self.weight(k);
+            let mut distances = Vec::with_capacity(self.pedestrians() * DEVIATIONS);
+            for (i, expected) in clearance.pedestrians.iter_mut().enumerate() {
+                let of_pedestrian = crowd.distances(&legs, i, k).map(|distance| distance.max(0.0));
+                *expected += weight * of_pedestrian.iter().sum::<f64>() / DEVIATIONS as f64;
+                distances.extend(of_pedestrian.map(|distance| (distance, i)));
+            }
+            clearance.nearest += weight * expected_least(distances, self.pedestrians());
+        }
+        clearance
+    }
+}
+
+/// Expected least of N independent numbers, each equally likely one of its `DEVIATIONS` values, given with their index.
+fn expected_least(mut values: Vec<(f64, usize)>, n: usize) -> f64 {
+    values.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+    let mut left = vec![DEVIATIONS; n];
+    let (mut expected, mut above, mut before) = (0.0, 1.0, 0.0);
+    for (value, i) in values {
+        expected += above * (value - before);
+        before = value;
+        above *= (left[i] - 1) as f64 / left[i] as f64;
+        left[i] -= 1;
+        if left[i] == 0 {
+            break;
+        }
+    }
+    expected
+}

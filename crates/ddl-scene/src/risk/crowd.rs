@@ -1,0 +1,274 @@
+//! Which deviations of a pedestrian come close to a plan.
+
+use super::course::{Approach, Leg, legs};
+use super::quadrature::{DEVIATIONS, Quadrature};
+use crate::{error::SceneError, futures::Futures, plan::Plan};
+use ddl_core::{HORIZON, Position, between};
+use std::array::from_fn;
+
+/// What `f32` may be wrong by, as a share of the size of a coordinate.
+const ROUNDING: f64 = 1e-6;
+/// Deviations are looked at in blocks that fill vectors.
+const BLOCK: usize = 8;
+const BITS: [u32; BLOCK] = [1, 2, 4, 8, 16, 32, 64, 128];
+
+/// The paths of a scene, arranged for the search.
+#[derive(Debug)]
+pub(super) struct Crowd {
+    n: usize,
+    /// `[K][N]`, at the moment and 12 steps after it, metres.
+    paths: Vec<[Position; HORIZON + 1]>,
+    /// `[N]`, metres.
+    scales: Vec<[f64; HORIZON + 1]>,
+    /// `[K][N]`: around all deviations of a pedestrian in a future.
+    rings: Vec<Rings>,
+    /// `[N]`: around those in all futures.
+    outer_rings: Vec<Rings>,
+    origin: Position,
+    deviations: Quadrature,
+    blocks: [Block; DEVIATIONS / BLOCK],
+}
+
+/// Deviations one after the other, in scales.
+#[derive(Debug)]
+struct Block {
+    x: [f32; BLOCK],
+    y: [f32; BLOCK],
+    /// None of them is longer.
+    most: f32,
+}
+
+/// Discs in which somebody stays during each step: x and y (m from the origin of the crowd), radius (m).
+type Rings = [[f32; HORIZON]; 3];
+
+/// A plan with the room around it.
+#[derive(Debug)]
+pub(super) struct Sweep {
+    legs: Vec<Leg>,
+    within: f64,
+    rings: Rings,
+}
+
+/// Numbers of deviations that come close, of 64.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Hits {
+    /// During each step.
+    pub(super) steps: [u32; HORIZON],
+    /// By its end.
+    pub(super) until: [u32; HORIZON],
+}
+
+impl Hits {
+    pub(super) fn share(hits: u32) -> f64 {
+        f64::from(hits) / DEVIATIONS as f64
+    }
+}
+
+impl Crowd {
+    pub(super) fn new(futures: &Futures) -> Result<Self, SceneError> {
+        let (n, forecast) = (futures.pedestrians(), futures.forecast());
+        let scales = (0..n).map(|i| {
+            let mut scales = [0.0; HORIZON + 1];
+            for (t, scale) in scales[1..].iter_mut().enumerate() {
+                *scale = forecast.scale(i, t).ok_or(SceneError::NoSpread)?;
+            }
+            Ok(scales)
+        });
+        let scales: Vec<_> = scales.collect::<Result<_, SceneError>>()?;
+        let pairs = || (0..futures.count()).flat_map(|k| (0..n).map(move |i| (i, k)));
+        let path = |(i, k)| {
+            let mut path = [futures.present(i); HORIZON + 1];
+            path[1..].copy_from_slice(forecast.hypothesis(i, k));
+            path
+        };
+        let paths: Vec<_> = pairs().map(path).collect();
+        let origin = futures.present(0);
+        let around = |i: usize, paths: &mut dyn Iterator<Item = &[Position; HORIZON + 1]>| {
+            let paths: Vec<_> = paths.collect();
+            rings(origin, |step| {
+                let margin = Quadrature::farthest() * scales[i][step].max(scales[i][step + 1]);
+                (paths.iter().flat_map(move |path| [path[step], path[step + 1]]), margin)
+            })
+        };
+        let rings = pairs()
+            .map(|(i, k)| around(i, &mut paths[k * n + i..].iter().take(1)))
+            .collect();
+        let outer_rings = (0..n).map(|i| around(i, &mut paths[i..].iter().step_by(n))).collect();
+        let deviations = Quadrature::new();
+        let block = |b: usize| {
+            let [x, y] = [&deviations.x, &deviations.y].map(|all| from_fn(|j| all[b * BLOCK + j] as f32));
+            let most = f32::hypot(x[BLOCK - 1], y[BLOCK - 1]) * (1.0 + ROUNDING as f32);
+            Block { x, y, most }
+        };
+        Ok(Self {
+            blocks: from_fn(block),
+            n,
+            paths,
+            scales,
+            rings,
+            outer_rings,
+            origin,
+            deviations,
+        })
+    }
+
+    /// The room within `within` metres of the edge of a plan.
+    pub(super) fn sweep(&self, plan: &Plan, within: f64) -> Sweep {
+        let legs = legs(plan);
+        let rings = rings(self.origin, |step| {
+            let of_step = || legs.iter().filter(move |leg| leg.step == step);
+            let radius = of_step().flat_map(|leg| leg.radii).fold(0.0, f64::max);
+            (of_step().flat_map(|leg| leg.positions), within + radius)
+        });
+        Sweep { legs, within, rings }
+    }
+
+    /// The pedestrians that come close in some future, and perhaps others.
+    pub(super) fn near(&self, sweep: &Sweep) -> Vec<usize> {
+        let near = |i: &usize| near(&self.outer_rings[*i], &sweep.rings).is_some();
+        (0..self.n).filter(near).collect()
+    }
+
+    /// The deviations of pedestrian `i` that come close in future `k`; `None` if none do.
+    pub(super) fn hits(&self, sweep: &Sweep, i: usize, k: usize) -> Option<Hits> {
+        let pair = k * self.n + i;
+        let near = near(&self.rings[pair], &sweep.rings)?;
+        let mut now = [0; HORIZON];
+        for leg in sweep.legs.iter().filter(|leg| near[leg.step] > 0) {
+            let approach = leg.approach(&self.paths[pair], &self.scales[i]);
+            now[leg.step] |= self.close(leg, &approach, sweep.within);
+        }
+        let mut so_far = 0;
+        let until = now.map(|now: u64| {
+            so_far |= now;
+            so_far
+        });
+        let [steps, until] = [now, until].map(|bits| bits.map(u64::count_ones));
+        (so_far > 0).then_some(Hits { steps, until })
+    }
+
+    /// The deviations that come close during a leg, one bit for each.
+    fn close(&self, leg: &Leg, approach: &Approach, within: f64) -> u64 {
+        let offsets = approach.offsets.map(|offset| offset.map(|number| number as f32));
+        let way = Way::new(offsets, approach.scales, leg.radii.map(|radius| within + radius));
+        let nearest = way.nearest() * (1.0 - 4.0 * ROUNDING as f32);
+        let reaches = [way.r + way.dr.max(0.0), way.s + way.ds.max(0.0)];
+        let mut close = 0;
+        // The outermost deviations first: further inside none come close if these stay away.
+        for (b, block) in self.blocks.iter().enumerate().rev() {
+            let reach = reaches[0] + reaches[1] * block.most;
+            if nearest > reach * reach {
+                break;
+            }
+            close |= u64::from(way.close(block)) << (b * BLOCK);
+        }
+        close
+    }
+
+    /// The least distance (m) of each deviation of pedestrian `i` in future `k` from the edge of a plan.
+    pub(super) fn distances(&self, legs: &[Leg], i: usize, k: usize) -> [f64; DEVIATIONS] {
+        let Quadrature { x, y } = &self.deviations;
+        let mut least = [f64::INFINITY; DEVIATIONS];
+        for leg in legs {
+            let approach = leg.approach(&self.paths[k * self.n + i], &self.scales[i]);
+            for (least, z) in least.iter_mut().zip(from_fn::<_, DEVIATIONS, _>(|j| [x[j], y[j]])) {
+                *least = least.min(leg.distance(&approach, z));
+            }
+        }
+        least
+    }
+}
+
+/// A leg in `f32`: from the plan to a pedestrian, its scale, and the distance that counts as close; where it begins,
+/// and what is added until its end.
+struct Way {
+    x: f32,
+    y: f32,
+    s: f32,
+    r: f32,
+    dx: f32,
+    dy: f32,
+    ds: f32,
+    dr: f32,
+}
+
+impl Way {
+    fn new([[x, y], end]: [[f32; 2]; 2], scales: [f64; 2], reaches: [f64; 2]) -> Self {
+        let [[s, s1], [r, r1]] = [scales, reaches].map(|ends| ends.map(|number| number as f32));
+        let [dx, dy, ds, dr] = [end[0] - x, end[1] - y, s1 - s, r1 - r];
+        Self {
+            x,
+            y,
+            s,
+            r,
+            dx,
+            dy,
+            ds,
+            dr,
+        }
+    }
+
+    /// The least squared distance of the path itself.
+    fn nearest(&self) -> f32 {
+        let &Self { x, y, dx, dy, .. } = self;
+        let share = -(x * dx + y * dy) / (dx * dx + dy * dy + f32::MIN_POSITIVE);
+        let share = share.clamp(0.0, 1.0);
+        let [x, y] = [x + share * dx, y + share * dy];
+        x * x + y * y
+    }
+
+    /// The deviations of a block that come close, one bit for each.
+    #[expect(
+        clippy::needless_bitwise_bool,
+        reason = "branches would keep the loop out of vectors"
+    )]
+    fn close(&self, block: &Block) -> u32 {
+        let mut bits = [0; BLOCK];
+        for j in 0..BLOCK {
+            let [zx, zy] = [block.x[j], block.y[j]];
+            let [x, y] = [self.x + self.s * zx, self.y + self.s * zy];
+            let [dx, dy] = [self.dx + self.ds * zx, self.dy + self.ds * zy];
+            // Close where a u^2 + 2 b u + c <= 0 for a share u of the leg.
+            let a = dx * dx + dy * dy - self.dr * self.dr;
+            let b = x * dx + y * dy - self.r * self.dr;
+            let c = x * x + y * y - self.r * self.r;
+            let on_the_way = (b < 0.0) & (a + b > 0.0) & (a * c <= b * b);
+            let is_close = (c <= 0.0) | (a + 2.0 * b + c <= 0.0) | on_the_way;
+            bits[j] = if is_close { BITS[j] } else { 0 };
+        }
+        bits.iter().fold(0, |all, bit| all | bit)
+    }
+}
+
+/// Discs around the positions of each step, larger by a margin (m), and by what rounding may hide.
+fn rings<P: Iterator<Item = Position> + Clone>(origin: Position, of_step: impl Fn(usize) -> (P, f64)) -> Rings {
+    let discs: [[f64; 3]; HORIZON] = from_fn(|step| {
+        let (positions, margin) = of_step(step);
+        let [low, high] = [f64::min, f64::max].map(|end| {
+            let corner = positions.clone().reduce(|a, b| [end(a[0], b[0]), end(a[1], b[1])]);
+            corner.unwrap_or(origin)
+        });
+        let middle = between(low, high, 0.5);
+        let square = |at: Position| (at[0] - middle[0]).powi(2) + (at[1] - middle[1]).powi(2);
+        let radius = positions.map(square).fold(0.0, f64::max).sqrt() + margin;
+        let [x, y] = [0, 1].map(|axis| middle[axis] - origin[axis]);
+        [x, y, radius + ROUNDING * (x.abs() + y.abs() + radius)]
+    });
+    from_fn(|row| from_fn(|step| discs[step][row] as f32))
+}
+
+/// The steps during which two may touch, marked 1; `None` if there are none.
+fn near(a: &Rings, b: &Rings) -> Option<[u32; HORIZON]> {
+    let mut near = [0; HORIZON];
+    let mut any = 0;
+    for step in 0..HORIZON {
+        let [x, y, reach] = [
+            a[0][step] - b[0][step],
+            a[1][step] - b[1][step],
+            a[2][step] + b[2][step],
+        ];
+        near[step] = u32::from(x * x + y * y <= reach * reach);
+        any |= near[step];
+    }
+    (any == 1).then_some(near)
+}
