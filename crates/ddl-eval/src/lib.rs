@@ -9,7 +9,7 @@
 //! ## Cost
 //!
 //! Scoring 24,254 pedestrians (the size of univ) with 20 hypotheses each, by every metric and category, takes a second
-//! on two cores (`cargo bench -p ddl-eval --bench scores`). The result does not depend on the number of threads.
+//! on two cores (bench `scores`, commit 37cd494). The result does not depend on the number of threads.
 //! Densities were compared with scipy: `tests/reference/distribution.py` writes the numbers that a test reads.
 
 pub mod baseline;

@@ -6,6 +6,7 @@
 //! Maps show metres at one scale for both axes. Colours are those of the [page](crate::page).
 
 mod axes;
+mod cut;
 pub(crate) mod drawing;
 mod legend;
 pub(crate) mod marks;
@@ -16,7 +17,6 @@ pub(crate) mod plan;
 pub(crate) mod scale;
 mod scene;
 mod traffic;
-mod wrap;
 
 pub use place::place;
 pub use scene::scene;

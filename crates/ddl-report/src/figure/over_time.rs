@@ -1,8 +1,8 @@
 //! Two curves of errors over time, one panel for each recording.
 
+use crate::figure::cut::cut;
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
 use crate::figure::scale::Scale;
-use crate::figure::wrap::wrapped;
 
 const COLUMNS: usize = 3;
 /// Margin of the picture, and horizontal and vertical space between panels, pixels.
@@ -50,7 +50,7 @@ impl OverTime<'_> {
             HEAD + up(count.div_ceil(COLUMNS)) + EDGE,
         ];
         let mut drawing = Drawing::new(size[0], size[1], self.title);
-        let heading = wrapped(self.title, 16.0, size[0] - 2.0 * EDGE, 1).concat();
+        let heading = cut(self.title, 16.0, size[0] - 2.0 * EDGE);
         drawing.text("heading", [EDGE, EDGE + 14.0], heading);
         self.draw_legend(&mut drawing);
         for (index, panel) in self.panels.iter().enumerate() {

@@ -3,10 +3,10 @@
 use ddl_data::Position;
 
 use crate::figure::axes::{Axes, PLACE};
+use crate::figure::cut::cut;
 use crate::figure::drawing::{Drawing, PLOT_STYLE};
 use crate::figure::scale::round_step;
 use crate::figure::traffic::{Ends, Traffic};
-use crate::figure::wrap::wrapped;
 
 /// Side of a square (m), if it is large enough in pixels.
 const SIDE: f64 = 0.5;
@@ -36,8 +36,8 @@ pub fn place(title: &str, numbers: &str, tracks: &[Vec<Position>]) -> String {
     let mut drawing = Drawing::new(width, height, title);
     let [[left, top], [right, _]] = axes.frame();
     let across = width - left;
-    let title = wrapped(title, 16.0, across, 1).concat();
-    let numbers = wrapped(numbers, 12.0, across, 1).concat();
+    let title = cut(title, 16.0, across);
+    let numbers = cut(numbers, 12.0, across);
     drawing.text("heading", [left, top - 36.0], title);
     drawing.text("key", [left, top - 14.0], numbers);
     let shades = shades(traffic.crossed.values().copied().max().unwrap_or(0));
