@@ -39,6 +39,8 @@ struct Cli {
 #[derive(Debug, Subcommand)]
 enum Command {
     Forecast(command::forecast::ForecastCommand),
+    Risk(command::risk::RiskCommand),
+    Occupancy(command::occupancy::OccupancyCommand),
     View(command::view::View),
     Goals(command::goals::Goals),
     Data(command::data::Data),
@@ -82,6 +84,8 @@ pub fn run<A: Into<OsString> + Clone>(arguments: impl IntoIterator<Item = A>) ->
 fn run_command(command: Command) -> anyhow::Result<()> {
     match command {
         Command::Forecast(command) => command.run(),
+        Command::Risk(command) => command.run(),
+        Command::Occupancy(command) => command.run(),
         Command::View(command) => command.run(),
         Command::Goals(command) => command.run(),
         Command::Data(command) => command.run(),

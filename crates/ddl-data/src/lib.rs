@@ -97,6 +97,7 @@ pub use augment::Rotation;
 pub use clock::{Clock, ClockError, FrameNumber, TimeUnit};
 pub use convention::Convention;
 pub use dataset::Dataset;
+pub use ddl_core::distance;
 pub use ddl_core::{
     HORIZON, OBSERVED, ObservationQuality, PedestrianId, PedestrianName, PedestrianNames, Position, RememberedTrack,
     TIME_STEP, WINDOW, Window, WindowError, between,

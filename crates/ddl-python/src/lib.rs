@@ -26,6 +26,7 @@ mod moments;
 mod observed;
 mod program;
 mod recording;
+mod scene;
 mod soft_dtw;
 
 use pyo3::prelude::*;
@@ -54,6 +55,8 @@ mod _core {
     use crate::program::main;
     #[pymodule_export]
     use crate::recording::Recording;
+    #[pymodule_export]
+    use crate::scene::{clearances, occupancy, risks};
     #[pymodule_export]
     use crate::soft_dtw::{SearchIndex, value, value_and_gradient};
 

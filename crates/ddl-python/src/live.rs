@@ -30,6 +30,7 @@ struct WatchedPlace {
     live: LiveForecaster<Arc<Ddl>>,
     file: Option<MemoryFile>,
     certificates: bool,
+    joint: bool,
 }
 
 /// The answer to a frame.
@@ -44,7 +45,10 @@ struct Answer {
 
 impl WatchedPlace {
     fn observe(&mut self, frame: i64, seen: Vec<(PedestrianId, Position)>) -> Result<Answer, DdlError> {
-        let forecast = if self.certificates {
+        let forecast = if self.joint {
+            let now = self.live.push_joint(frame, seen, None)?;
+            now.map(|now| (now.window, PlainOrCertified::Plain(now.forecast)))
+        } else if self.certificates {
             let now = self.live.push_certified(frame, seen)?;
             now.map(|now| (now.window, PlainOrCertified::Certified(now.forecast)))
         } else {
@@ -113,7 +117,7 @@ fn held(slot: &SharedPlace) -> MutexGuard<'_, Option<Box<WatchedPlace>>> {
 #[pymethods]
 impl Live {
     #[new]
-    #[pyo3(signature = (model, fps, memory, whole, max_age, every, certificates))]
+    #[pyo3(signature = (model, fps, memory, whole, max_age, every, certificates, joint))]
     fn new(
         model: &Model,
         fps: Option<f64>,
@@ -122,7 +126,13 @@ impl Live {
         max_age: Option<f64>,
         every: f64,
         certificates: bool,
+        joint: bool,
     ) -> PyResult<Self> {
+        if joint && certificates {
+            return Err(PyValueError::new_err(
+                "live joint futures have no certificates: leave out one of joint and certificates",
+            ));
+        }
         let clock = match fps {
             Some(fps) => clock_of_rate(fps)?,
             None => Clock::with_stamps(TimeUnit::Seconds),
@@ -140,6 +150,7 @@ impl Live {
             live,
             file,
             certificates,
+            joint,
         };
         let place = Arc::new(Mutex::new(Some(Box::new(watching))));
         Ok(Self { place, clock })

@@ -6,9 +6,10 @@ use crate::forecasts::{EmptyFields, PlainOrCertified, named_parts, parts};
 use crate::interruptible::{Stop, run};
 use crate::observed::{Observed, WindowOptions, completeness, past_tracks};
 use crate::recording::{ObservedWindows, Recording};
-use ddl::data::Window;
-use ddl::{Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, ModelSource, RecordingPlayer};
-use numpy::PyReadonlyArray3;
+use crate::scene::plan;
+use ddl::data::{PedestrianId, Window};
+use ddl::{Ddl, DdlError, DeviceChoice, ForecastError, Forecaster as _, GivenPlan, ModelSource, RecordingPlayer};
+use numpy::{PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -24,14 +25,16 @@ const BATCH: usize = 64;
 pub(crate) struct Model(pub(crate) Arc<Ddl>);
 
 /// The options of a forecast.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 struct ForecastOptions {
     one: bool,
     certificates: bool,
+    joint: bool,
+    given: Option<GivenPlan>,
 }
 
 impl ForecastOptions {
-    fn new(model: &Ddl, samples: usize, certificates: bool) -> PyResult<Self> {
+    fn new(model: &Ddl, samples: usize, certificates: bool, joint: bool) -> PyResult<Self> {
         let hypotheses = model.goal_model().clusters();
         if samples != 1 && samples != hypotheses {
             return Err(PyValueError::new_err(format!(
@@ -40,16 +43,30 @@ impl ForecastOptions {
                  weights"
             )));
         }
+        if joint && samples == 1 {
+            return Err(PyValueError::new_err(
+                "joint futures are of all hypotheses: leave out samples=1",
+            ));
+        }
         Ok(Self {
             one: samples == 1,
             certificates,
+            joint,
+            given: None,
         })
     }
 
-    fn forecast(self, model: &Ddl, windows: &[Window]) -> Result<Vec<PlainOrCertified>, ForecastError> {
+    fn forecast(&self, model: &Ddl, windows: &[Window]) -> Result<Vec<PlainOrCertified>, ForecastError> {
         let plain = |forecasts: Vec<ddl::Forecast>| forecasts.into_iter().map(PlainOrCertified::Plain).collect();
         let certified =
             |forecasts: Vec<ddl::CertifiedForecast>| forecasts.into_iter().map(PlainOrCertified::Certified).collect();
+        if self.joint {
+            return Ok(if self.certificates {
+                certified(model.forecast_scenes_certified(windows)?)
+            } else {
+                plain(model.forecast_scenes(windows, self.given.as_ref())?)
+            });
+        }
         Ok(match (self.one, self.certificates) {
             (false, false) => plain(model.forecast_all(windows)?),
             (true, false) => plain(model.forecast_central(windows)?),
@@ -59,7 +76,7 @@ impl ForecastOptions {
     }
 
     /// Forecasts the windows in batches of pedestrians; stops between batches if the caller was interrupted.
-    fn forecast_until(self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<PlainOrCertified>, DdlError> {
+    fn forecast_until(&self, model: &Ddl, windows: &[Window], stop: &Stop) -> Result<Vec<PlainOrCertified>, DdlError> {
         let mut forecasts = Vec::with_capacity(windows.len());
         while forecasts.len() < windows.len() && !stop.is_asked() {
             let rest = &windows[forecasts.len()..];
@@ -112,7 +129,7 @@ impl Model {
     }
 
     /// Forecasts each scene: the first `asked[i]` pedestrians of `past[i]`. Also returns text about doubtful positions.
-    #[pyo3(signature = (past, asked, samples, whole, certificates))]
+    #[pyo3(signature = (past, asked, samples, whole, certificates, joint, given))]
     fn forecast<'py>(
         &self,
         py: Python<'py>,
@@ -121,8 +138,14 @@ impl Model {
         samples: usize,
         whole: bool,
         certificates: bool,
+        joint: bool,
+        given: Option<(PyReadonlyArray2<'py, f64>, Option<i64>)>,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
-        let options = ForecastOptions::new(&self.0, samples, certificates)?;
+        let mut options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
+        if let Some((rows, ego)) = given {
+            let (plan, ego) = (plan(&rows)?, ego.map(|row| PedestrianId(row).into()));
+            options.given = Some(GivenPlan { plan, ego });
+        }
         let completeness = completeness(whole);
         let pasts = past.iter().map(past_tracks).collect::<PyResult<Vec<_>>>()?;
         let scenes = run(py, move |_| {
@@ -150,7 +173,7 @@ impl Model {
 
     /// Forecasts each moment of the recording with pedestrians to forecast, or only the last of them. Also returns text
     /// about doubtful positions.
-    #[pyo3(signature = (recording, last, samples, whole, max_age, every, certificates))]
+    #[pyo3(signature = (recording, last, samples, whole, max_age, every, certificates, joint))]
     fn forecast_recording<'py>(
         &self,
         py: Python<'py>,
@@ -161,8 +184,9 @@ impl Model {
         max_age: Option<f64>,
         every: Option<f64>,
         certificates: bool,
+        joint: bool,
     ) -> PyResult<(Vec<Bound<'py, PyDict>>, Option<String>)> {
-        let options = ForecastOptions::new(&self.0, samples, certificates)?;
+        let options = ForecastOptions::new(&self.0, samples, certificates, joint)?;
         let observed = WindowOptions::new(whole, max_age, every)?;
         let ObservedWindows { mut windows, doubt } = recording.observed(py, observed)?;
         if last {
@@ -218,7 +242,7 @@ impl Model {
             windows: &windows,
             most: most.max(1),
         };
-        let options = ForecastOptions::new(&self.0, self.hypotheses(), false)?;
+        let options = ForecastOptions::new(&self.0, self.hypotheses(), false, false)?;
         let forecasts = self.forecasts(py, options, player.shown())?;
         let forecasts: Vec<_> = forecasts.iter().map(PlainOrCertified::forecast).collect();
         let name = recording.tracks.name();

@@ -44,6 +44,16 @@ impl Futures {
         Ok(Self { present, forecast })
     }
 
+    /// The futures of all but pedestrian `i`, as when it is the robot; `None` if nobody is left.
+    #[must_use]
+    pub fn without(&self, i: usize) -> Option<Self> {
+        let others: Vec<usize> = (0..self.pedestrians()).filter(|&other| other != i).collect();
+        (!others.is_empty()).then(|| Self {
+            present: others.iter().map(|&i| self.present[i]).collect(),
+            forecast: self.forecast.of_pedestrians(&others),
+        })
+    }
+
     /// The forecast: hypothesis k of every pedestrian is future k.
     pub fn forecast(&self) -> &Forecast {
         &self.forecast

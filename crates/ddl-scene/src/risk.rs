@@ -39,6 +39,19 @@ pub struct Risk {
     pub until: [f64; HORIZON],
 }
 
+impl Risk {
+    /// The risk where there is nobody.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            total: 0.0,
+            pedestrians: Vec::new(),
+            steps: [0.0; HORIZON],
+            until: [0.0; HORIZON],
+        }
+    }
+}
+
 /// Expected least distance (m) of pedestrians from the edge of a plan, over 4.8 s; 0 where they touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clearance {

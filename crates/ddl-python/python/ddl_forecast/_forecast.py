@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Flags, Floats, Integers
+from ddl_forecast._arrays import Flags, Floats, Integers, plan_rows
 from ddl_forecast._core import UNFAMILIAR
 
 if TYPE_CHECKING:
@@ -33,6 +33,43 @@ class Certificates:
     min_step_margin: Floats
     #: (n, k) largest angle between velocity and direction to the goal, radians; below pi / 2.
     largest_angle: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Risk:
+    """Risk of p plans."""
+
+    #: (p,) probability that somebody comes close.
+    total: Floats
+    #: (p, n) that each pedestrian does.
+    pedestrians: Floats
+    #: (p, 12) that somebody is close during each step of 0.4 s.
+    steps: Floats
+    #: (p, 12) that somebody was close by the end of each step.
+    until: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Occupancy:
+    """Where somebody will be."""
+
+    #: (times, height, width) probabilities; rows along x, the lowest y first.
+    probabilities: NDArray[np.float32]
+    #: (times,) seconds from now.
+    times: Floats
+    #: Side of a cell, metres.
+    cell: float
+    #: (2,) the lowest corner of the area, metres.
+    origin: Floats
+
+    def message(self, index: int) -> dict[str, Any]:
+        """The grid of a time as an object with the fields of ``nav_msgs/OccupancyGrid``, in percent."""
+        grid = self.probabilities[index]
+        position = {"x": float(self.origin[0]), "y": float(self.origin[1]), "z": 0.0}
+        origin = {"position": position, "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}}
+        info = {"resolution": self.cell, "width": grid.shape[1], "height": grid.shape[0], "origin": origin}
+        header = {"stamp": float(self.times[index]), "frame_id": "map"}
+        return {"header": header, "info": info, "data": np.rint(100 * grid).astype(int).ravel().tolist()}
 
 
 class DoubtWarning(UserWarning):
@@ -73,6 +110,8 @@ class Forecast:
     ids, frame, frames, recording
         Ids of the pedestrians, the last observed frame, the 12 forecast frames, and the name of the recording. Frames
         are numbers or times as in the recording; None for arrays.
+    joint : bool
+        Whether hypothesis k of all pedestrians is one future of the scene, with one weight.
     """
 
     paths: Floats
@@ -90,10 +129,11 @@ class Forecast:
     frame: Any = None
     frames: NDArray[Any] | None = None
     recording: str = ""
+    joint: bool = False
     _region_table: str | None = field(default=None, repr=False)
 
     @classmethod
-    def _of(cls, parts: dict[str, Any], ids: Sequence[Hashable] | None = None) -> Forecast:
+    def _of(cls, parts: dict[str, Any], ids: Sequence[Hashable] | None = None, *, joint: bool = False) -> Forecast:
         evidence = parts.pop("certificates")
         table = parts.pop("region_table")
         frames = parts.pop("frames", None)
@@ -106,6 +146,7 @@ class Forecast:
             certificates=None if evidence is None else Certificates(**evidence),
             ids=_ids(list(names)),
             frames=frames,
+            joint=joint,
             _region_table=table,
         )
 
@@ -132,6 +173,89 @@ class Forecast:
     def valid(self) -> Flags:
         """(n,) whether each pedestrian could be forecast."""
         return ~np.isnan(self.weights[:, 0]) if self.weights.size else np.zeros(len(self.paths), dtype=np.bool_)
+
+    @property
+    def futures(self) -> Floats:
+        """(k, n, 12, 2) the futures of the scene, metres.
+
+        Raises
+        ------
+        ValueError
+            The forecast is not joint.
+        """
+        self._ensure_joint()
+        futures: Floats = self.paths.transpose(1, 0, 2, 3)
+        return futures
+
+    def risk(self, plans: ArrayLike | Sequence[ArrayLike], within: float = 0.5, *, ego: Hashable = None) -> Risk:
+        """Probabilities that somebody comes within ``within`` metres of plans, during the next 4.8 s.
+
+        Parameters
+        ----------
+        plans
+            (p, m, 3) or a sequence of (m, 3): rows of t in seconds from now, x and y in metres; with a fourth column, the
+            radius of whoever follows the plan. Before its first row and after its last one it stands there.
+        within
+            Distance from the edge of a plan, metres.
+        ego
+            Id of the pedestrian who follows the plans, and is no risk to itself; None: none of them.
+        """
+        joint, rows = self._arrays(ego)
+        n = len(self)
+        if not rows.any():
+            count = len(list(plans))  # type: ignore[arg-type]
+            return Risk(np.zeros(count), np.zeros((count, n)), np.zeros((count, 12)), np.zeros((count, 12)))
+        total, people, steps, until = _core.risks(joint, [plan_rows(plan) for plan in plans], within)  # type: ignore[union-attr]
+        of_each = np.zeros((len(total), n))
+        of_each[:, rows] = people
+        return Risk(total, of_each, steps, until)
+
+    def nearest(self, plans: ArrayLike | Sequence[ArrayLike], *, ego: Hashable = None) -> tuple[Floats, Floats]:
+        """Expected least distance of plans from everybody (p,) and from each pedestrian (p, n), metres."""
+        joint, rows = self._arrays(ego)
+        nearest, people = _core.clearances(joint, [plan_rows(plan) for plan in plans])  # type: ignore[union-attr]
+        of_each = np.full((len(nearest), len(self)), np.nan)
+        of_each[:, rows] = people
+        return nearest, of_each
+
+    def occupancy(
+        self,
+        cell: float = 0.1,
+        *,
+        every: float = 0.4,
+        area: tuple[float, float, float, float] | None = None,
+        margin: float = 1.0,
+        radius: float = 0.2,
+    ) -> Occupancy:
+        """Probability that a pedestrian of this radius covers the middle of each cell, at 0, ``every``, ... 4.8 s.
+
+        Parameters
+        ----------
+        cell
+            Side of a cell, metres.
+        every
+            Time between two grids, seconds.
+        area
+            Lowest x and y, largest x and y, metres; default: all paths and ``margin`` around them.
+        """
+        joint, _ = self._arrays(None)
+        grids, times, origin = _core.occupancy(joint, (cell, every, radius, margin), area)
+        return Occupancy(grids, np.array(times), cell, np.array(origin))
+
+    def _ensure_joint(self) -> None:
+        if not self.joint:
+            raise ValueError("this forecast is of single pedestrians: make it with joint=True")
+
+    def _arrays(self, ego: Hashable) -> tuple[tuple[Floats, Floats, Floats, Floats], Flags]:
+        """The arrays of the valid pedestrians but ``ego``, and which they are."""
+        self._ensure_joint()
+        if self.spread is None:
+            raise ValueError("this forecast has no spread: only the 20 futures of a model have it")
+        rows = self.valid.copy()
+        if ego is not None:
+            rows &= self.ids != ego
+        parts = [np.ascontiguousarray(each[rows]) for each in (self.past, self.paths, self.weights, self.spread)]
+        return (parts[0], parts[1], parts[2], parts[3]), rows
 
     def most_likely(self) -> Floats:
         """(n, 12, 2) the path of the hypothesis with the largest weight, metres."""

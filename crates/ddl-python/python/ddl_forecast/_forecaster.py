@@ -11,7 +11,7 @@ from typing import Any
 from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast import _core
-from ddl_forecast._arrays import Floats, scene
+from ddl_forecast._arrays import Floats, plan_rows, scene
 from ddl_forecast._forecast import DoubtWarning, Forecast, table
 from ddl_forecast._recording import Recording
 
@@ -73,6 +73,9 @@ class Forecaster:
         samples: int = 20,
         whole: bool = False,
         certificates: bool = False,
+        joint: bool = False,
+        plan: ArrayLike | None = None,
+        ego: int | None = None,
     ) -> Forecast:
         """Forecast one scene.
 
@@ -90,6 +93,14 @@ class Forecaster:
             Forecast only pedestrians tracked for all 8 steps: those with a position at the first.
         certificates
             Return the evidence that each hypothesis approaches its goal, for each step.
+        joint
+            Joint futures of the scene instead of hypotheses of each pedestrian: hypothesis k of all is one future, in
+            which people who walk together stay together, and nobody walks through another.
+        plan
+            With ``joint``: (m, 3) rows of t in seconds from now, x and y, the plan of a robot, to which the pedestrians
+            respond.
+        ego
+            Row of ``past`` that follows the plan; None: none of them.
 
         Raises
         ------
@@ -117,6 +128,9 @@ class Forecaster:
             samples=samples,
             whole=whole,
             certificates=certificates,
+            joint=joint,
+            plan=plan,
+            ego=ego,
         )[0]
 
     def forecast_all(
@@ -127,6 +141,9 @@ class Forecaster:
         samples: int = 20,
         whole: bool = False,
         certificates: bool = False,
+        joint: bool = False,
+        plan: ArrayLike | None = None,
+        ego: int | None = None,
     ) -> list[Forecast]:
         """Forecast many scenes on all threads, each as in :meth:`forecast`."""
         others: list[ArrayLike | None] = [None] * len(pasts) if neighbours is None else list(neighbours)
@@ -134,8 +151,13 @@ class Forecaster:
             raise ValueError(f"neighbours are of {len(others)} scenes, pasts of {len(pasts)}")
         scenes = [scene(past, other) for past, other in zip(pasts, others, strict=True)]
         arrays, asked = [array for array, _ in scenes], [count for _, count in scenes]
-        made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates)
-        return _told([Forecast._of(parts) for parts in made], doubt)
+        if plan is not None and (not joint or certificates):
+            raise ValueError("a plan needs joint=True, and has no certificates")
+        if plan is None and ego is not None:
+            raise ValueError("ego is the row that follows a plan: give plan")
+        given = None if plan is None else (plan_rows(plan), ego)
+        made, doubt = self._core.forecast(arrays, asked, samples, whole, certificates, joint, given)
+        return _told([Forecast._of(parts, joint=joint) for parts in made], doubt)
 
     def forecast_recording(
         self,
@@ -147,6 +169,7 @@ class Forecaster:
         max_age: float | None = None,
         every: float | None = None,
         certificates: bool = False,
+        joint: bool = False,
     ) -> list[Forecast]:
         """Forecast from every moment of a recording with pedestrians to forecast, in order of time.
 
@@ -166,7 +189,7 @@ class Forecaster:
         every
             Least time between two moments, seconds. Default: 0 (every frame), or 0.4 where each pedestrian has a clock
             of its own.
-        samples, certificates
+        samples, certificates, joint
             As for :meth:`forecast`.
 
         Warns
@@ -175,8 +198,10 @@ class Forecaster:
             The rate or the units look wrong, or positions are left out because the pedestrians cannot be there.
         """
         _tell_doubt(recording)
-        made, doubt = self._core.forecast_recording(recording._core, last, samples, whole, max_age, every, certificates)
-        return _told([Forecast._of(parts) for parts in made], doubt and f"{recording.name}: {doubt}")
+        made, doubt = self._core.forecast_recording(
+            recording._core, last, samples, whole, max_age, every, certificates, joint
+        )
+        return _told([Forecast._of(parts, joint=joint) for parts in made], doubt and f"{recording.name}: {doubt}")
 
     def forecast_table(
         self,

@@ -29,7 +29,8 @@ class Live:
     """Forecasts for each frame of one camera or robot.
 
     Forecasts have the bits of :meth:`Forecaster.forecast_recording` on the same rows, except for regions and
-    weights, which adapt to the observations so that they keep their share in this place too.
+    weights, which adapt to the observations so that they keep their share in this place too (those of
+    joint futures do not).
 
     Parameters
     ----------
@@ -43,7 +44,7 @@ class Live:
         pedestrians show whether a memory is of another place: then a warning is given, and the file is left unchanged.
     every
         Least time between two forecasts, seconds; 0: at every frame.
-    whole, max_age, certificates
+    whole, max_age, certificates, joint
         As for :meth:`Forecaster.forecast_recording`.
 
     Examples
@@ -65,12 +66,14 @@ class Live:
         max_age: float | None = None,
         every: float = 0.0,
         certificates: bool = False,
+        joint: bool = False,
     ) -> None:
         if not isinstance(forecaster, Forecaster):
             raise TypeError(
                 f"forecaster must be a Forecaster, such as Forecaster('world'); found {type(forecaster).__name__}"
             )
-        self._core = _core.Live(forecaster._core, fps, memory, whole, max_age, every, certificates)
+        self._core = _core.Live(forecaster._core, fps, memory, whole, max_age, every, certificates, joint)
+        self._joint = joint
         self._has_times = fps is None
         self._numbers: dict[str, int] = {}
         self._words: dict[int, str] = {}
@@ -126,7 +129,7 @@ class Live:
             warnings.warn(
                 f"the memory could not be written, the next attempt follows in a minute: {unwritten}", stacklevel=2
             )
-        forecast = None if parts is None else Forecast._of(parts, names)
+        forecast = None if parts is None else Forecast._of(parts, names, joint=self._joint)
         doubt = None if forecast is None else forecast.unfamiliar()
         if misfit is not None:
             doubt = (

@@ -2,6 +2,7 @@
 
 use crate::error::DdlError;
 use crate::forecast::certified::{self, CertifiedForecast};
+use crate::forecast::joint::GivenPlan;
 use crate::live::place_memory::PlaceMemory;
 use crate::live::watch::Watch;
 use crate::model::ddl::Ddl;
@@ -169,6 +170,23 @@ impl<M: Borrow<Ddl>> LiveForecaster<M> {
     pub fn remembering(mut self, memory: Option<SceneMemory>) -> Result<Self, DdlError> {
         self.watch.remember(self.model.borrow(), memory)?;
         Ok(self)
+    }
+
+    /// Like [`push`](Self::push), with the [joint futures](Ddl::forecast_scenes) of the scene, whose pedestrians respond
+    /// to a plan if there is one. Regions and weights do not adapt.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    pub fn push_joint(
+        &mut self,
+        frame: i64,
+        pedestrians: impl IntoIterator<Item = (PedestrianId, Position)>,
+        given: Option<&GivenPlan>,
+    ) -> Result<Option<LiveForecast>, DdlError> {
+        self.push_with(frame, pedestrians, |model, window| {
+            let windows = std::slice::from_ref(window);
+            Ok(model.borrow().forecast_scenes(windows, given)?.remove(0))
+        })
     }
 
     /// Like [`push`](Self::push), with evidence for every hypothesis that it approaches its goal: the result of

@@ -1,11 +1,11 @@
 //! `ddl forecast -`: reads tracks from standard input and forecasts every frame.
 
-use crate::command::forecast::arguments::ForecastCommand;
 use crate::command::forecast::first_rows::FirstRows;
 use crate::command::forecast::frames::{Incoming, IncomingFrames, StatedTime};
 use crate::command::forecast::kept_memory::KeptMemory;
 use crate::command::forecast::left_out::LeftOut;
 use crate::command::forecast::moment::{SceneWindows, StreamState};
+use crate::command::forecast::stream::{Answer, StreamOptions};
 use crate::command::forecast::told_once::ToldOnce;
 use crate::interrupt::Interrupt;
 use crate::output::file_of;
@@ -33,9 +33,9 @@ const SEVERAL_FRAMES: usize = 10;
 const MOST_TAKEN: usize = 4096;
 
 /// Forecasts every frame as soon as it is complete, until standard input ends or the reader closes the output.
-pub(super) fn run(forecast: &ForecastCommand) -> anyhow::Result<()> {
-    let model = forecast.model()?;
-    let memory = forecast.memory.as_deref();
+pub(super) fn run(command: &dyn Answer) -> anyhow::Result<()> {
+    let model = command.stream().load()?;
+    let memory = command.stream().memory.as_deref();
     let watching = WatchedStream {
         scenes: None,
         memory: memory.map(|path| KeptMemory::open(path, &model)).transpose()?,
@@ -51,7 +51,7 @@ pub(super) fn run(forecast: &ForecastCommand) -> anyhow::Result<()> {
             std::process::exit(130);
         })?;
     }
-    let answered = answer(forecast, &model, &watching);
+    let answered = answer(command, &model, &watching);
     // The memory is also written if the stream ended with an error.
     let written = lock(&watching).end();
     if let (Err(_), Err(error)) = (&answered, &written) {
@@ -60,7 +60,8 @@ pub(super) fn run(forecast: &ForecastCommand) -> anyhow::Result<()> {
     answered.and(written)
 }
 
-fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>) -> anyhow::Result<()> {
+fn answer(command: &dyn Answer, model: &Ddl, watching: &Mutex<WatchedStream>) -> anyhow::Result<()> {
+    let forecast = command.stream();
     let units = forecast.tracks.live_units(model.config())?;
     let homography = units.homography()?;
     if let Some(note) = units.note_of_run(false) {
@@ -71,6 +72,7 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
         begin(forecast, model, watching, clock)?;
     }
     let mut stream = Stream {
+        command,
         forecast,
         model,
         watching,
@@ -109,7 +111,7 @@ fn answer(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStrea
 }
 
 /// Creates the scenes, as soon as the clock is known.
-fn begin(forecast: &ForecastCommand, model: &Ddl, watching: &Mutex<WatchedStream>, clock: Clock) -> anyhow::Result<()> {
+fn begin(forecast: &StreamOptions, model: &Ddl, watching: &Mutex<WatchedStream>, clock: Clock) -> anyhow::Result<()> {
     let scenes = LiveScenes::new(forecast.tracks.windows_of(LiveTracks::with_clock(clock)));
     let scenes = if forecast.latest { scenes.latest_only() } else { scenes };
     let mut watching = lock(watching);
@@ -180,7 +182,8 @@ impl WatchedStream {
 }
 
 struct Stream<'a> {
-    forecast: &'a ForecastCommand,
+    command: &'a dyn Answer,
+    forecast: &'a StreamOptions,
     model: &'a Ddl,
     watching: &'a Mutex<WatchedStream>,
     homography: Option<Homography>,
@@ -361,7 +364,7 @@ impl Stream<'_> {
 
     fn text(&mut self, windows: &[Window], scenes: &[Option<SceneName>]) -> anyhow::Result<String> {
         let windows = SceneWindows { windows, scenes };
-        self.forecast
+        self.command
             .text(self.model, windows, self.clock.unwrap_or(Clock::STEPS), &mut self.state)
     }
 

@@ -4,18 +4,19 @@ use crate::telling::tell;
 use ddl::data::{Clock, FrameNumber, HORIZON, OBSERVED, SceneName, Window};
 use ddl::dynamics::LyapunovCertificate;
 use ddl::{AdaptiveRegions, CertifiedForecast};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 /// Windows in order of time.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SceneWindows<'a> {
-    pub(super) windows: &'a [Window],
+pub(crate) struct SceneWindows<'a> {
+    pub(crate) windows: &'a [Window],
     /// The scene of each window; empty if the tracks name no scenes.
-    pub(super) scenes: &'a [Option<SceneName>],
+    pub(crate) scenes: &'a [Option<SceneName>],
 }
 
 /// Forecasts of the windows, one for each.
-pub(super) enum WindowForecasts {
+pub(crate) enum WindowForecasts {
     Plain(Vec<ddl::Forecast>),
     Certified(Vec<CertifiedForecast>),
 }
@@ -29,7 +30,7 @@ impl WindowForecasts {
         }
     }
 
-    pub(super) fn each_mut(&mut self) -> Vec<&mut ddl::Forecast> {
+    pub(crate) fn each_mut(&mut self) -> Vec<&mut ddl::Forecast> {
         match self {
             Self::Plain(forecasts) => forecasts.iter_mut().collect(),
             Self::Certified(certified) => certified.iter_mut().map(|one| &mut one.forecast).collect(),
@@ -38,7 +39,7 @@ impl WindowForecasts {
 }
 
 impl<'a> SceneWindows<'a> {
-    pub(super) fn moments(self, forecasts: &'a WindowForecasts, clock: Clock) -> Vec<Moment<'a>> {
+    pub(crate) fn moments(self, forecasts: &'a WindowForecasts, clock: Clock) -> Vec<Moment<'a>> {
         let pairs = self.windows.iter().zip(forecasts.with_certificates()).enumerate();
         let moments = pairs.map(|(i, (window, (forecast, certified)))| Moment {
             scene: self.scenes.get(i).and_then(Option::as_ref),
@@ -53,7 +54,7 @@ impl<'a> SceneWindows<'a> {
 
 /// The motions so far, and those unlike the training motions.
 #[derive(Debug, Default)]
-pub(super) struct UnfamiliarMotions {
+pub(crate) struct UnfamiliarMotions {
     motions: usize,
     unfamiliar: usize,
     /// The pedestrian and the frame of the first.
@@ -63,7 +64,7 @@ pub(super) struct UnfamiliarMotions {
 }
 
 impl UnfamiliarMotions {
-    pub(super) fn add(&mut self, moments: &[Moment<'_>]) {
+    pub(crate) fn add(&mut self, moments: &[Moment<'_>]) {
         for moment in moments {
             for i in 0..moment.window.len() {
                 self.motions += 1;
@@ -78,7 +79,7 @@ impl UnfamiliarMotions {
     }
 
     /// Warns, once, of motions whose forecasts are less certain.
-    pub(super) fn warn(&mut self, note: &str) {
+    pub(crate) fn warn(&mut self, note: &str) {
         let Some((who, frame)) = self.first.as_ref().filter(|_| !self.is_told) else {
             return;
         };
@@ -96,17 +97,18 @@ impl UnfamiliarMotions {
 
 /// State that one chunk of forecasts passes on to the next.
 #[derive(Debug, Default)]
-pub(super) struct StreamState {
-    pub(super) headed: bool,
-    pub(super) unfamiliar: UnfamiliarMotions,
+pub(crate) struct StreamState {
+    pub(crate) headed: bool,
+    pub(crate) unfamiliar: UnfamiliarMotions,
     is_violation_told: bool,
+    told: BTreeSet<&'static str>,
     /// The adaptive regions of each scene.
     regions: BTreeMap<Option<SceneName>, AdaptiveRegions>,
 }
 
 impl StreamState {
     /// The forecast of window `i` with the adaptive regions of its scene.
-    pub(super) fn adapted(&mut self, windows: SceneWindows<'_>, i: usize, forecast: ddl::Forecast) -> ddl::Forecast {
+    pub(crate) fn adapted(&mut self, windows: SceneWindows<'_>, i: usize, forecast: ddl::Forecast) -> ddl::Forecast {
         let scene = windows.scenes.get(i).cloned().flatten();
         self.regions
             .entry(scene)
@@ -114,27 +116,39 @@ impl StreamState {
             .adapt(&windows.windows[i], forecast)
     }
 
-    pub(super) fn forget(&mut self, scene: &SceneName) {
+    /// Whether nothing was written yet; only the first call says so.
+    pub(crate) fn is_first_text(&mut self) -> bool {
+        !std::mem::replace(&mut self.headed, true)
+    }
+
+    /// Tells something that is told once.
+    pub(crate) fn tell_once(&mut self, what: &'static str, message: fmt::Arguments<'_>) {
+        if self.told.insert(what) {
+            tell(message);
+        }
+    }
+
+    pub(crate) fn forget(&mut self, scene: &SceneName) {
         self.regions.remove(&Some(scene.clone()));
     }
 }
 
 /// The forecast at one frame.
-pub(super) struct Moment<'a> {
-    pub(super) scene: Option<&'a SceneName>,
-    pub(super) window: &'a Window,
-    pub(super) forecast: &'a ddl::Forecast,
-    pub(super) certified: Option<&'a CertifiedForecast>,
-    pub(super) clock: Clock,
+pub(crate) struct Moment<'a> {
+    pub(crate) scene: Option<&'a SceneName>,
+    pub(crate) window: &'a Window,
+    pub(crate) forecast: &'a ddl::Forecast,
+    pub(crate) certified: Option<&'a CertifiedForecast>,
+    pub(crate) clock: Clock,
 }
 
 impl<'a> Moment<'a> {
-    pub(super) fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
+    pub(crate) fn certificate(&self, i: usize, hypothesis: usize) -> Option<&'a LyapunovCertificate<f64>> {
         Some(self.certified?.certificate(i, hypothesis))
     }
 
     /// The name of a pedestrian in messages.
-    pub(super) fn who(&self, i: usize) -> String {
+    pub(crate) fn who(&self, i: usize) -> String {
         let name = self.window.name(i);
         match self.scene {
             None => name.to_string(),
@@ -142,11 +156,11 @@ impl<'a> Moment<'a> {
         }
     }
 
-    pub(super) fn observed_until(&self) -> FrameNumber {
+    pub(crate) fn observed_until(&self) -> FrameNumber {
         self.clock.number(self.window.frames()[OBSERVED - 1])
     }
 
-    pub(super) fn frames(&self) -> Vec<FrameNumber> {
+    pub(crate) fn frames(&self) -> Vec<FrameNumber> {
         let (last, step) = (self.window.frames()[OBSERVED - 1], self.window.frame_step());
         let frames = (1..=HORIZON as i64).map(|t| self.clock.number(last + t * step));
         frames.collect()

@@ -1,0 +1,152 @@
+//! The commands that answer every moment of a file of tracks or of live tracks.
+
+use crate::command::forecast::live;
+use crate::command::forecast::moment::{Moment, SceneWindows, StreamState};
+use crate::command::{Machine, ModelChoice};
+use crate::interrupt::Interrupt;
+use crate::output::{file_of, write_parts};
+use crate::telling::tell;
+use crate::tracks::TrackOptions;
+use anyhow::bail;
+use clap::Args;
+use ddl::data::{Clock, Window};
+use ddl::{Ddl, DdlError};
+use std::io::IsTerminal as _;
+use std::path::PathBuf;
+
+/// Number of lines above which a terminal gets a note.
+const LOOKED_THROUGH: usize = 100;
+/// About so many pedestrians are forecast and written at once: their forecasts take some 30 MB as text.
+const AT_ONCE: usize = 1024;
+/// Bytes above which the output counts as large.
+const LARGE: usize = 50 << 20;
+
+/// The model, the tracks and the output of such a command.
+#[derive(Debug, Args)]
+pub(crate) struct StreamOptions {
+    #[command(flatten)]
+    pub(super) model: ModelChoice,
+    #[command(flatten)]
+    pub(super) tracks: TrackOptions,
+    /// File to write [default: standard output, also as `-`]
+    #[arg(long, short)]
+    pub(crate) output: Option<PathBuf>,
+    /// With `-`: file of a scene memory, the earlier tracks of this place, which improves forecasts; created if
+    /// missing, written every minute and at the end
+    ///
+    /// Use one file for each camera; for a stream of several scenes an existing folder, which gets a file SCENE.memory
+    /// for each. The first 30 pedestrians show whether the memory is of this place; if it is not, the file is left
+    /// unchanged and forecasts continue without it. `ddl data FILE` summarises the file.
+    #[arg(long, value_name = "FILE")]
+    pub(super) memory: Option<PathBuf>,
+    /// With `-`: if frames arrive faster than they are forecast, forecast only the latest of each scene, and report how
+    /// many were dropped
+    ///
+    /// Without it every frame is forecast, and the writer of the stream has to wait. Tracks and memory use every frame
+    /// in both cases. With a file as input nearly all frames would be dropped.
+    #[arg(long)]
+    pub(super) latest: bool,
+    #[command(flatten)]
+    pub(super) machine: Machine,
+}
+
+/// A command that answers moments with text.
+pub(crate) trait Answer {
+    fn stream(&self) -> &StreamOptions;
+
+    /// The answers of the windows in order of time. The first text starts with the names of the columns, if the format
+    /// has any.
+    fn text(
+        &self,
+        model: &Ddl,
+        windows: SceneWindows<'_>,
+        clock: Clock,
+        state: &mut StreamState,
+    ) -> anyhow::Result<String>;
+}
+
+/// Answers every moment of the tracks.
+pub(crate) fn answer(command: &dyn Answer) -> anyhow::Result<()> {
+    let stream = command.stream();
+    stream.machine.prepare_for_little()?;
+    if stream.memory.is_some() && !stream.tracks.are_live() {
+        bail!("--memory is for live tracks from standard input: `tracker | ddl forecast - --memory FILE`");
+    }
+    if stream.latest && !stream.tracks.are_live() {
+        bail!(
+            "--latest is for tracks as they come; write them to standard input: `trackers | ddl forecast - --latest`"
+        );
+    }
+    if stream.tracks.are_live() {
+        return live::run(command);
+    }
+    let model = stream.load()?;
+    let observed = stream.tracks.observed(model.config())?;
+    let mut state = StreamState::default();
+    let (mut lines, mut bytes) = (0, 0);
+    let interrupt = Interrupt::catch()?;
+    let parts = parts_of(&observed.windows).map(|windows| {
+        // No unfinished file is left.
+        if interrupt.flow().is_break() {
+            bail!(DdlError::Interrupted);
+        }
+        let windows = SceneWindows { windows, scenes: &[] };
+        let text = command.text(&model, windows, observed.clock, &mut state)?;
+        bytes += text.len();
+        lines += text.lines().count();
+        Ok(text)
+    });
+    write_parts(stream.output.as_deref(), parts)?;
+    state.unfamiliar.warn("");
+    stream.warn_of_flood(lines, bytes);
+    observed.tell_what_was_estimated();
+    Ok(())
+}
+
+impl StreamOptions {
+    pub(super) fn load(&self) -> anyhow::Result<Ddl> {
+        Ok(self.model.load(self.machine.device)?)
+    }
+
+    /// Counts motions unlike the training motions; in a live stream it warns at the first.
+    pub(crate) fn tell_of_unfamiliar(&self, moments: &[Moment<'_>], state: &mut StreamState) {
+        state.unfamiliar.add(moments);
+        if self.tracks.are_live() {
+            state
+                .unfamiliar
+                .warn("; this warning appears once, but each forecast has its familiarity");
+        }
+    }
+
+    /// Notes how to reduce large output: thousands of lines on a terminal, or a large file.
+    fn warn_of_flood(&self, lines: usize, bytes: usize) {
+        let on_terminal = file_of(self.output.as_deref()).is_none() && std::io::stdout().is_terminal();
+        if on_terminal && lines > LOOKED_THROUGH {
+            tell(format_args!(
+                "note: {lines} lines; --output FILE writes them to a file, --last and --one reduce them, `ddl view` \
+                 shows them"
+            ));
+        } else if bytes > LARGE {
+            tell(format_args!(
+                "note: {} MiB, because all pedestrians are forecast from every frame; --last and --one reduce the \
+                 output",
+                bytes >> 20
+            ));
+        }
+    }
+}
+
+/// The windows in parts of about so many pedestrians as are forecast at once.
+fn parts_of(windows: &[Window]) -> impl Iterator<Item = &[Window]> {
+    let mut rest = windows;
+    std::iter::from_fn(move || {
+        let mut pedestrians = 0;
+        let few = rest.iter().take_while(|window| {
+            pedestrians += window.len();
+            pedestrians <= AT_ONCE
+        });
+        let (part, others) = rest.split_at_checked(few.count().max(1))?;
+        rest = others;
+        Some(part)
+    })
+}

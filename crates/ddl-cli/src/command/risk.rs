@@ -1,0 +1,229 @@
+//! `ddl risk`: how likely somebody comes close to a plan.
+
+use crate::command::forecast::{
+    Answer, OutputFormat, SceneWindows, StreamOptions, StreamState, WindowForecasts, answer,
+};
+use crate::output::{table_metres, table_share};
+use crate::plans::{NamedPlan, read_plans};
+use anyhow::Context as _;
+use clap::Args;
+use ddl::Ddl;
+use ddl::data::{Clock, FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
+use ddl::scene::{Clearance, Futures, Plan, Risk};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// A plan that starts farther than this from the pedestrian who follows it is doubtful, metres.
+const FAR: f64 = 2.0;
+
+/// Risk of plans: how likely somebody comes close, from the joint futures of every moment
+#[derive(Debug, Args)]
+#[command(mut_arg("file", |file| file.required(true)))]
+#[command(after_help = "Examples:\n  \
+        ddl risk tracks.csv --plan robot.csv --last\n  \
+        ddl risk tracks.csv --plan candidates.csv --within 0.8 --format jsonl\n  \
+        tracker | ddl risk - --fps 10 --plan robot.csv")]
+pub(crate) struct RiskCommand {
+    #[command(flatten)]
+    stream: StreamOptions,
+    /// Plans: csv of `t,x,y` in seconds after the moment and metres, and where there are `radius` (metres) and `plan`,
+    /// the name of one of several candidates
+    ///
+    /// It is read again for every moment, so that another program can replace it. Before its first row and after its
+    /// last one whoever follows a plan stands there.
+    #[arg(long, value_name = "FILE")]
+    plan: PathBuf,
+    /// Distance from the edge of the plan that counts as close, metres
+    #[arg(long, default_value_t = 0.5, allow_negative_numbers = true)]
+    within: f64,
+    /// The pedestrian of the tracks who follows the plans: it is no risk to itself [default: none of them]
+    #[arg(long, value_name = "NAME")]
+    ego: Option<String>,
+    /// Add the expected least distance, which takes some 10 ms for each plan
+    #[arg(long)]
+    nearest: bool,
+    /// Format: csv (one row per moment and plan, with the risk until each step) or jsonl (also of each pedestrian)
+    #[arg(long, value_enum, default_value = "csv")]
+    format: OutputFormat,
+}
+
+#[derive(Serialize)]
+struct PlanLine<'a> {
+    #[serde(skip_serializing_if = "Option::is_none")]
+    scene: Option<&'a SceneName>,
+    observed_until: FrameNumber,
+    #[serde(skip_serializing_if = "str::is_empty")]
+    plan: &'a str,
+    within: f64,
+    risk: f64,
+    /// Expected least distance from the edge of the plan, m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nearest: Option<f64>,
+    /// That somebody is close during each step, and by its end.
+    steps: [f64; HORIZON],
+    until: [f64; HORIZON],
+    pedestrians: Vec<PedestrianRisk>,
+}
+
+#[derive(Serialize)]
+struct PedestrianRisk {
+    pedestrian: PedestrianName,
+    risk: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    nearest: Option<f64>,
+}
+
+impl RiskCommand {
+    pub(crate) fn run(self) -> anyhow::Result<()> {
+        // Faults of the plans show before the model is loaded.
+        read_plans(&self.plan)?;
+        answer(&self)
+    }
+
+    /// The names of the others, and their futures.
+    fn others(
+        &self,
+        window: &Window,
+        forecast: ddl::Forecast,
+    ) -> anyhow::Result<(Vec<PedestrianName>, Option<Futures>)> {
+        let ego = self.ego(window);
+        let names = (0..window.len()).filter(|&i| Some(i) != ego);
+        let names = names.map(|i| window.name(i)).collect();
+        let futures = Futures::new(window, forecast)?;
+        Ok(match ego {
+            None => (names, Some(futures)),
+            Some(ego) => (names, futures.without(ego)),
+        })
+    }
+
+    fn ego(&self, window: &Window) -> Option<usize> {
+        window.named(&PedestrianName::of_text(self.ego.as_deref()?))
+    }
+
+    fn tell_doubts(&self, window: &Window, plans: &[Plan], state: &mut StreamState) {
+        let Some(name) = &self.ego else { return };
+        let Some(ego) = self.ego(window) else {
+            state.tell_once(
+                "no ego",
+                format_args!(
+                    "note: pedestrian {name} of --ego is not in every moment; there nobody of the tracks follows the \
+                     plans (told once)"
+                ),
+            );
+            return;
+        };
+        let present = window.observed(ego)[window.observed(ego).len() - 1];
+        let apart = |plan: &&Plan| ddl::data::distance(plan.at(0.0).position, present);
+        if let Some(far) = plans.iter().find(|plan| apart(plan) > FAR) {
+            state.tell_once(
+                "far ego",
+                format_args!(
+                    "warning: a plan starts {:.1} m from pedestrian {name}, who follows it; give times in seconds after \
+                     the moment, and the positions of the tracks (told once)",
+                    apart(&far)
+                ),
+            );
+        }
+    }
+
+    fn csv(&self, lines: &[PlanLine<'_>], headed: bool) -> anyhow::Result<String> {
+        let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        if headed {
+            let named = lines.first().and_then(|line| line.scene).map(|_| "scene");
+            let nearest = self.nearest.then_some("nearest");
+            let columns = named
+                .into_iter()
+                .chain(["observed_until", "plan", "within", "risk"])
+                .chain(nearest);
+            let columns = columns.chain(["pedestrian", "pedestrian_risk"]).map(str::to_owned);
+            let until = (1..=HORIZON).map(|t| format!("until_{:.1}", TIME_STEP * t as f64));
+            writer.write_record(columns.chain(until))?;
+        }
+        for line in lines {
+            let pedestrians = line.pedestrians.iter();
+            let worst = pedestrians.reduce(|worst, other| if other.risk > worst.risk { other } else { worst });
+            let worst = worst.map(|worst| (&worst.pedestrian, table_share(worst.risk)));
+            let nearest = Vec::from_iter(line.nearest.map(table_metres));
+            let row = (
+                line.observed_until.rounded(),
+                line.plan,
+                line.within,
+                table_share(line.risk),
+                nearest,
+            );
+            writer.serialize((
+                Vec::from_iter(line.scene),
+                row,
+                worst.unzip(),
+                line.until.map(table_share),
+            ))?;
+        }
+        let bytes = writer.into_inner().context("cannot finish the csv")?;
+        Ok(String::from_utf8(bytes)?)
+    }
+}
+
+impl Answer for RiskCommand {
+    fn stream(&self) -> &StreamOptions {
+        &self.stream
+    }
+
+    fn text(
+        &self,
+        model: &Ddl,
+        windows: SceneWindows<'_>,
+        clock: Clock,
+        state: &mut StreamState,
+    ) -> anyhow::Result<String> {
+        let named = read_plans(&self.plan)?;
+        let plans: Vec<Plan> = named.iter().map(|named| named.plan.clone()).collect();
+        let forecasts = WindowForecasts::Plain(model.forecast_scenes(windows.windows, None)?);
+        let moments = windows.moments(&forecasts, clock);
+        self.stream.tell_of_unfamiliar(&moments, state);
+        let mut lines = Vec::new();
+        for moment in &moments {
+            self.tell_doubts(moment.window, &plans, state);
+            let (names, futures) = self.others(moment.window, moment.forecast.clone())?;
+            let risks = futures
+                .as_ref()
+                .map(|futures| futures.risks(&plans, self.within))
+                .transpose()?;
+            let clearances = match (&futures, self.nearest) {
+                (Some(futures), true) => Some(futures.clearances(&plans)?),
+                _ => None,
+            };
+            for (index, NamedPlan { name, .. }) in named.iter().enumerate() {
+                let nobody = Risk::none();
+                let risk = risks.as_ref().map_or(&nobody, |risks| &risks[index]);
+                let clearance = clearances.as_ref().map(|clearances| &clearances[index]);
+                let of_each = |i: usize| clearance.map(|clearance: &Clearance| clearance.pedestrians[i]);
+                let pedestrians = names.iter().zip(&risk.pedestrians).enumerate();
+                lines.push(PlanLine {
+                    scene: moment.scene,
+                    observed_until: moment.observed_until(),
+                    plan: name,
+                    within: self.within,
+                    risk: risk.total,
+                    nearest: clearance.map(|clearance| clearance.nearest),
+                    steps: risk.steps,
+                    until: risk.until,
+                    pedestrians: pedestrians
+                        .map(|(i, (name, &risk))| PedestrianRisk {
+                            pedestrian: name.clone(),
+                            risk,
+                            nearest: of_each(i),
+                        })
+                        .collect(),
+                });
+            }
+        }
+        match self.format {
+            OutputFormat::Csv => self.csv(&lines, state.is_first_text()),
+            OutputFormat::Jsonl => {
+                state.is_first_text();
+                let lines = lines.iter().map(|line| Ok(serde_json::to_string(line)? + "\n"));
+                lines.collect()
+            }
+        }
+    }
+}
