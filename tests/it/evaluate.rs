@@ -10,7 +10,7 @@ use ddl_tests::progress::{reported, returns_at_once};
 use ddl_tests::{crowd, drawn_model, recordings};
 
 const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online \
-                        --protocol online-single --test-pedestrians 60 --threads 1 --commit 0123abc";
+                        --protocol online-single --protocol joint --test-pedestrians 60 --threads 1 --commit 0123abc";
 
 /// A run of the published recipe, whose networks learn single steps; for these, plain Euler steps are evaluated too.
 fn config() -> RunConfig {

@@ -141,6 +141,31 @@ impl Ddl {
         self.forecast_neutral(windows, goals, self.clearance)
     }
 
+    /// Futures of each whole scene: hypothesis k of all pedestrians is future k, with one weight for all of them.
+    ///
+    /// # Shapes
+    /// One forecast for each window, with up to 20 hypotheses of 12 positions (m) for each pedestrian.
+    ///
+    /// # Errors
+    /// As [`forecast_all`](Forecaster::forecast_all).
+    pub fn forecast_scenes(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        // joint futures come here
+        let as_one = |forecast: &Forecast| {
+            let (n, k) = (forecast.pedestrians(), forecast.hypotheses());
+            let pairs = || (0..n).flat_map(|i| (0..k).map(move |k| (i, k)));
+            let mean = |k| (0..n).map(|i| forecast.weight(i, k)).sum::<f64>() / n as f64;
+            let positions = pairs().flat_map(|(i, k)| forecast.hypothesis(i, k)).copied().collect();
+            let weights = (0..k).map(mean).collect::<Vec<_>>().repeat(n);
+            let goals = pairs().map(|(i, k)| forecast.goal(i, k)).collect();
+            let joint = Forecast::new(n, k, positions, weights, goals)?;
+            match pairs().map(|(i, k)| forecast.certified(i, k)).collect() {
+                Some(certified) => Ok(joint.with_certified(certified)?),
+                None => Ok(joint),
+            }
+        };
+        self.forecast_all(windows)?.iter().map(as_one).collect()
+    }
+
     /// [`forecast_central`](Self::forecast_central) with evidence for every path that it approaches its goal.
     ///
     /// # Errors
