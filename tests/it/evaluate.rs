@@ -194,6 +194,24 @@ fn a_model_of_the_hotel_fold_is_measured() {
 }
 
 #[test]
+fn futures_are_written_as_sample_files_and_read_back() {
+    let place = Place::with_model();
+    let evaluate = "evaluate --model run --test-pedestrians 60 --threads 1 --samples futures --protocol";
+    place.fails(&format!("{evaluate} fair"), &["add --protocol joint"]);
+    // Fold, pedestrians, K and JADE/JFDE.
+    let first = |printed: &str| -> Vec<String> {
+        let row = printed.lines().find(|line| line.starts_with(crowd::FOLD));
+        row.unwrap().split_whitespace().take(4).map(str::to_owned).collect()
+    };
+    let of_model = first(&place.ok(&format!("{evaluate} joint")));
+    let fold = format!("--convention simulated --fold {}", crowd::FOLD);
+    let read = place.ok(&format!(
+        "evaluate --forecasts futures {fold} --protocol joint --intersection"
+    ));
+    assert_eq!(first(&read), of_model);
+}
+
+#[test]
 fn goals_are_measured_and_drawn() {
     let place = Place::with_model();
     let measure = "goals --model run --measure test --threads 1";

@@ -88,8 +88,8 @@ impl Protocol {
                  to a camera that has watched from the start; nothing later is read"
             }
             Self::Joint => {
-                "at most 20 futures of the whole scene from the 8 observed frames alone: hypothesis k of all pedestrians \
-                 is future k; the best future is chosen once for the scene; a trained model is that of `fair`"
+                "at most 20 futures of the whole scene from the 8 observed frames alone: hypothesis k of all \
+                 pedestrians is future k; the best future is chosen once for the scene; a trained model is that of `fair`"
             }
         }
     }

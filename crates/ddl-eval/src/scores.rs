@@ -122,7 +122,8 @@ impl Scores {
         Self::under(Protocol::Fair, windows, full_windows, forecasts)
     }
 
-    /// The two errors that tables of a protocol begin with, metres: JADE and JFDE under `joint`, else minADE and minFDE.
+    /// The two errors that tables of a protocol begin with, metres: JADE and JFDE under `joint`, else minADE and
+    /// minFDE.
     pub fn errors(&self, protocol: Protocol) -> [f64; 2] {
         match protocol {
             Protocol::Joint => [self.joint_ade, self.joint_fde],
@@ -169,6 +170,9 @@ impl Scores {
             scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
         let each = || scenes.iter().flat_map(|s| &s.pedestrians);
+        let futures = scenes
+            .iter()
+            .map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref()));
         // All pedestrians have the same number of hypotheses, so either all or none have a distribution.
         let several = first.hypotheses() > 1;
         let of_several = |metric: fn(&PedestrianScores) -> Option<f64>| {
@@ -211,11 +215,7 @@ impl Scores {
             coverage: of_all(scenes, total, |w| Some(w.regions?.coverage)),
             region_radius: of_all(scenes, total, |w| Some(w.regions?.end_radius)),
             familiarity: of_all(scenes, total, |w| w.familiarity.map(|f| [f])).map(|[f]| f),
-            joint: JointScores::of(
-                scenes
-                    .iter()
-                    .map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref())),
-            ),
+            joint: JointScores::of(futures),
             categories: CategoryScores::of(scenes.iter().flat_map(|s| &s.pedestrians)),
         }
     }

@@ -7,9 +7,10 @@
 //!                           sample_000.txt ... sample_019.txt 12 rows: one future of the whole scene each
 //! ```
 //!
-//! SCENE is the recording, the folder's number its last observed frame. A row is `frame pedestrian x y`, in numbers with
-//! spaces between them, metres; rows of one pedestrian stand together in order of time. Futures have no weights, so those
-//! read have equal ones. Other writers print three decimals; here all digits are printed, so reading gives the same bits.
+//! SCENE is the recording, the folder's number its last observed frame. A row is `frame pedestrian x y`, in numbers
+//! with spaces between them, metres; rows of one pedestrian stand together in order of time. Futures have no weights, so
+//! those read have equal ones. Other writers print three decimals; here all digits are printed, so reading gives the
+//! same bits.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -92,8 +93,8 @@ fn write(file: &Path, window: &Window, frames: &[i64], paths: &[Vec<Position>]) 
     write_atomically(file, text.as_bytes()).map_err(|source| of_file(file, source))
 }
 
-/// Reads the folder METHOD of sample files and matches it with windows. Scenes of other recordings are not read, nor are
-/// `obs.txt` and `gt.txt`.
+/// Reads the folder METHOD of sample files and matches it with windows. Scenes of other recordings are not read, nor
+/// are `obs.txt` and `gt.txt`.
 ///
 /// # Errors
 /// As [`read`](super::read); also when a window has other samples than 000 to K - 1, 20 at most, or another K.

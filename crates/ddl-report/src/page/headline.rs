@@ -75,7 +75,7 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
     }
 }
 
-/// Text with the rank of the line by its first error, among lines with the same folds and the same number of hypotheses.
+/// Text with the rank of the line by its first error, among lines with the same folds and number of hypotheses.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
     let ranked: Vec<&StandingLine> = standing.comparable(subject).collect();
     let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {

@@ -9,8 +9,9 @@ use crate::report::cells::{counts, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
 
 pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres (under `joint` JADE/JFDE: the \
-    errors in the future that is best for the whole scene), mean over the pedestrians of the folds named, which all forecasters of the table have (not over the folds, some of which hold few pedestrians of a \
-    kind). First the pedestrian's own motion, then the types of TrajNet++ (static, linear, interacting, \
+    errors in the future that is best for the whole scene), mean over the pedestrians of the folds named, which all \
+    forecasters of the table have (not over the folds, some of which hold few pedestrians of a kind). First the \
+    pedestrian's own motion, then the types of TrajNet++ (static, linear, interacting, \
     non-interacting), then the kinds of interaction, of which a pedestrian may have several. The categories are \
     computed from the true future, after the forecasts are made.";
 

@@ -85,7 +85,8 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
     let scenes = groups.find(|group| is_headline(group) && group.protocol == Protocol::Joint);
     let scenes = scenes.map_or(String::new(), of_scenes);
     Some(format!(
-        "minADE/minFDE in metres:\n\n{by_fold:#}\nMean over the folds, with 95 % intervals:\n\n{others:#}{deployable}{scenes}"
+        "minADE/minFDE in metres:\n\n{by_fold:#}\nMean over the folds, with 95 % intervals:\n\n{others:#}{deployable}\
+         {scenes}"
     ))
 }
 

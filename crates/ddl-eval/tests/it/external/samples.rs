@@ -74,90 +74,81 @@ fn files_are_those_of_the_literature() {
     assert!(again.to_string().ends_with("is not empty; give a new folder"));
 }
 
+const SAMPLE: &str = "yard/frame_000070/sample_000.txt";
+
+/// The error of a folder, named M in it, after a change of what was written there.
+fn complaint(change: impl FnOnce(&Path)) -> String {
+    let folder = written();
+    change(folder.path());
+    let error = read_samples(folder.path(), &windows(), ALL).unwrap_err().to_string();
+    error.replace(&folder.path().display().to_string(), "M")
+}
+
 #[test]
 fn every_mistake_is_named_with_its_file_and_line() {
-    let sample = "yard/frame_000070/sample_000.txt";
-    let complaint = |change: &dyn Fn(&Path)| {
-        let folder = written();
-        change(folder.path());
-        let error = read_samples(folder.path(), &windows(), ALL).unwrap_err().to_string();
-        error.replace(&folder.path().display().to_string(), "M")
-    };
-    for (from, to, expected) in [
-        (
-            "80 3 1 0",
-            "80 3 1",
-            "line 1: 3 numbers; a row is `frame pedestrian x y`",
-        ),
-        (
-            "90 3 1 0",
-            "90 3 nan 0",
-            "line 2, x: must be a finite number, found \"nan\"",
-        ),
-        ("90 3 1 0", "90 3.5 1 0", "line 2, pedestrian: must be a whole number"),
-        ("90 3 1 0\n", "", "line 1: 11 positions; a forecast has 12"),
-        (
-            "90 3 1 0",
-            "91 3 1 0",
-            "line 1, frames: the forecast has the frames 80, 91 to 190",
-        ),
-        (
-            "90 5 2 0\n",
-            "90 3 2 0\n",
-            "line 14: the rows of pedestrian 3 must stand together",
-        ),
-    ] {
-        let error = complaint(&|folder| {
-            let file = folder.join(sample);
-            let text = fs::read_to_string(&file).unwrap();
-            assert!(text.contains(from), "{text}");
-            fs::write(file, text.replacen(from, to, 1)).unwrap();
+    let cases = r#"
+80 3 1 0 => 80 3 1 => line 1: 3 numbers; a row is `frame pedestrian x y`
+90 3 1 0 => 90 3 nan 0 => line 2, x: must be a finite number, found "nan"
+90 3 1 0 => 90 3.5 1 0 => line 2, pedestrian: must be a whole number
+90 3 1 0 => => line 1: 11 positions; a forecast has 12
+90 3 1 0 => 91 3 1 0 => line 1, frames: the forecast has the frames 80, 91 to 190
+90 5 2 0 => 90 3 2 0 => line 14: the rows of pedestrian 3 must stand together
+"#;
+    for case in cases.trim().lines() {
+        let parts: Vec<&str> = case.split("=>").map(str::trim).collect();
+        let error = complaint(|folder| {
+            let text = fs::read_to_string(folder.join(SAMPLE)).unwrap();
+            assert!(text.contains(parts[0]), "{text}");
+            fs::write(folder.join(SAMPLE), text.replacen(parts[0], parts[1], 1)).unwrap();
         });
-        assert!(error.starts_with(&format!("M/{sample}, {expected}")), "{error}");
+        assert!(error.starts_with(&format!("M/{SAMPLE}, {}", parts[2])), "{error}");
     }
-    let copied = |to: &str, edit: fn(String) -> String| {
-        let to = to.to_owned();
-        complaint(&move |folder: &Path| {
-            let text = fs::read_to_string(folder.join(sample)).unwrap();
-            fs::create_dir_all(folder.join(&to).parent().unwrap()).unwrap();
-            fs::write(folder.join(&to), edit(text)).unwrap();
-        })
-    };
-    let second = "yard/frame_000070/sample_001.txt";
-    let only_3 = |text: String| text.lines().take(12).map(|line| format!("{line}\n")).collect();
-    for (error, expected) in [
+}
+
+type Edit = fn(&str) -> String;
+
+#[test]
+fn files_that_do_not_fit_together_are_named() {
+    let same: Edit = |text: &str| text.to_owned();
+    let only_3: Edit = |text: &str| text.lines().take(12).collect::<Vec<_>>().join("\n");
+    let further: Edit = |text: &str| text.to_owned() + &text.replace(" 5 ", " 9 ").replace(" 3 ", " 8 ");
+    let another: Edit = |text: &str| text.replace(" 5 ", " 9 ");
+    // A changed copy of a sample, and the error.
+    let cases: [(&str, Edit, &str); 7] = [
         (
-            copied(second, only_3),
+            "70/sample_001.txt",
+            only_3,
             "M/yard/frame_000070/sample_001.txt, line 1: pedestrian 5 is missing",
         ),
         (
-            copied(second, |text| {
-                text.replace(" 5 ", " 5 ") + &text.replace(" 5 ", " 9 ").replace(" 3 ", " 8 ")
-            }),
+            "70/sample_001.txt",
+            further,
             "M/yard/frame_000070/sample_001.txt, line 25, pedestrian: 8 is not in sample_000.txt",
         ),
         (
-            copied(second, |text| text),
+            "70/sample_001.txt",
+            same,
             "M/yard/frame_000080: holds 1 samples, but M/yard/frame_000070 holds 2",
         ),
         (
-            copied("yard/frame_000070/sample_002.txt", |text| text),
-            "M/yard/frame_000070: sample_001.txt is missing; samples are numbered from 000",
+            "70/sample_002.txt",
+            same,
+            "M/yard/frame_000070: sample_001.txt is missing",
         ),
-        (
-            copied(sample, |text| text.replace(" 5 ", " 9 ")),
-            "M: 1 of 3 forecasts match no pedestrian",
-        ),
-        (
-            copied("yard/frame_000090/sample_000.txt", |text| text),
-            "M: 2 of 5 forecasts match no pedestrian",
-        ),
-        (copied(sample, only_3), "M forecasts 2 of the 3 pedestrians"),
-        (
-            complaint(&|folder| fs::remove_dir_all(folder.join("yard")).unwrap()),
-            "M: holds no folder SCENE/frame_NNNNNN of sample files, where SCENE is one of yard",
-        ),
-    ] {
+        ("70/sample_000.txt", another, "M: 1 of 3 forecasts match no pedestrian"),
+        ("90/sample_000.txt", same, "M: 2 of 5 forecasts match no pedestrian"),
+        ("70/sample_000.txt", only_3, "M forecasts 2 of the 3 pedestrians"),
+    ];
+    for (to, edit, expected) in cases {
+        let error = complaint(|folder| {
+            let text = fs::read_to_string(folder.join(SAMPLE)).unwrap();
+            let to = folder.join(format!("yard/frame_0000{to}"));
+            fs::create_dir_all(to.parent().unwrap()).unwrap();
+            fs::write(to, edit(&text)).unwrap();
+        });
         assert!(error.starts_with(expected), "{error}");
     }
+    let nothing = complaint(|folder| fs::remove_dir_all(folder.join("yard")).unwrap());
+    let expected = "M: holds no folder SCENE/frame_NNNNNN of sample files, where SCENE is one of yard";
+    assert_eq!(nothing, expected);
 }
