@@ -10,7 +10,7 @@ use ddl_tests::progress::{reported, returns_at_once};
 use ddl_tests::{crowd, drawn_model, recordings};
 
 const EVALUATE: &str = "evaluate --model run --protocol published --protocol fair --protocol single --protocol online \
-                        --protocol online-single --test-pedestrians 60 --threads 1 --commit 0123abc";
+                        --protocol online-single --protocol joint --test-pedestrians 60 --threads 1 --commit 0123abc";
 
 /// A run of the published recipe, whose networks learn single steps; for these, plain Euler steps are evaluated too.
 fn config() -> RunConfig {
@@ -191,6 +191,24 @@ fn a_model_of_the_hotel_fold_is_measured() {
         });
         assert!(published <= complete && complete >= 60, "{published} of {complete}");
     }
+}
+
+#[test]
+fn futures_are_written_as_sample_files_and_read_back() {
+    let place = Place::with_model();
+    let evaluate = "evaluate --model run --test-pedestrians 60 --threads 1 --samples futures --protocol";
+    place.fails(&format!("{evaluate} fair"), &["add --protocol joint"]);
+    // Fold, pedestrians, K and JADE/JFDE.
+    let first = |printed: &str| -> Vec<String> {
+        let row = printed.lines().find(|line| line.starts_with(crowd::FOLD));
+        row.unwrap().split_whitespace().take(4).map(str::to_owned).collect()
+    };
+    let of_model = first(&place.ok(&format!("{evaluate} joint")));
+    let fold = format!("--convention simulated --fold {}", crowd::FOLD);
+    let read = place.ok(&format!(
+        "evaluate --forecasts futures {fold} --protocol joint --intersection"
+    ));
+    assert_eq!(first(&read), of_model);
 }
 
 #[test]

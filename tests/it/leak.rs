@@ -45,7 +45,7 @@ fn wild(window: &Window) -> Vec<(&'static str, Window)> {
     ]
 }
 
-/// Changes every single future position, one at a time, then whole futures; with direct calls and through both
+/// Changes every single future position, one at a time, then whole futures; with direct calls and through the
 /// protocols.
 fn never_sees_the_future(forecaster: &dyn Forecaster) {
     let name = forecaster.name();
@@ -54,8 +54,9 @@ fn never_sees_the_future(forecaster: &dyn Forecaster) {
     let forecasts = |windows: &[Window]| {
         let fair = Protocol::Fair.forecast(forecaster, windows).unwrap();
         let single = Protocol::Single.forecast(forecaster, windows).unwrap();
+        let joint = Protocol::Joint.forecast(forecaster, windows).unwrap();
         let directly = forecaster.forecast_all(windows).unwrap();
-        [fair, single, directly].map(|forecasts| bits::of_all(&forecasts))
+        [fair, single, joint, directly].map(|forecasts| bits::of_all(&forecasts))
     };
     let observed: Vec<Window> = windows.iter().map(Window::without_future).collect();
     let reference = forecasts(&observed);
@@ -107,12 +108,30 @@ fn baselines_never_see_the_future() {
     never_sees_the_future(&StraightLine(goals));
 }
 
+/// The futures of whole scenes.
+struct Scenes<'a>(&'a Ddl);
+
+impl Forecaster for Scenes<'_> {
+    fn name(&self) -> String {
+        "DDL, whole scenes".to_owned()
+    }
+
+    fn forecast(&self, window: &Window) -> Result<Forecast, ForecastError> {
+        Ok(self.forecast_all(std::slice::from_ref(window))?.remove(0))
+    }
+
+    fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
+        self.0.forecast_scenes(windows)
+    }
+}
+
 #[test]
 fn no_variant_of_the_model_sees_the_future() {
     for variant in Variant::ALL {
         let model = drawn_model::of(variant);
         never_sees_the_future(&model);
         never_sees_the_future(&One(&model));
+        never_sees_the_future(&Scenes(&model));
     }
 }
 
@@ -148,7 +167,7 @@ fn forecasters_that_need_the_future_are_refused() {
     for forecaster in [&published as &dyn Forecaster, &oracle] {
         assert!(leak::find(forecaster, &windows[0]).is_err());
         assert!(Protocol::Published.forecast(forecaster, &windows).is_ok());
-        for protocol in [Protocol::Fair, Protocol::Single] {
+        for protocol in [Protocol::Fair, Protocol::Single, Protocol::Joint] {
             assert!(protocol.forecast(forecaster, &windows).is_err());
         }
     }

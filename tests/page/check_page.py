@@ -14,7 +14,7 @@ import sys
 import tempfile
 import time
 
-from expected_tables import Group, expected, spread
+from expected_tables import HEADLINES, Group, expected, spread
 from playwright.sync_api import sync_playwright
 
 HERE = pathlib.Path(__file__).parent
@@ -87,7 +87,7 @@ def check_tables(opened, report):
     )
     folds, compared = [], 0
     for table in tables:
-        if table["caption"].startswith("minADE/minFDE in metres. "):
+        if table["caption"].startswith(HEADLINES):
             folds = table["header"][1:-1]
         rows = expected(table | {"folds": folds}, report)
         if "published" in table["codes"][2:3] or "by protocol" in table["caption"]:
@@ -100,7 +100,7 @@ def check_tables(opened, report):
         (c["convention"], json.dumps(c["window_rule"]), c["protocol"], c["test_subset"])
         for c in (row["conditions"] for row in report["rows"])
     }
-    shown = sum(table["caption"].startswith("minADE/minFDE in metres. ") for table in tables)
+    shown = sum(table["caption"].startswith(HEADLINES) for table in tables)
     assert shown == len(groups), f"{shown} headline tables for {len(groups)} groups"
     return compared
 

@@ -30,6 +30,10 @@ CATEGORIES = {
 }
 
 
+# The captions of the main tables.
+HEADLINES = "minADE/minFDE in metres. ", "JADE/JFDE in metres. "
+
+
 def add(values):
     """The plain sum in order, as in Rust; Python's own `sum` compensates rounding errors."""
     total = 0.0
@@ -61,6 +65,7 @@ class Group:
     def __init__(self, rows, convention, rule, protocol, subset):
         wanted = (convention, rule, protocol, subset)
         self.protocol = protocol
+        self.errors = ("joint_ade", "joint_fde") if protocol == "joint" else ("min_ade", "min_fde")
         self.lines = []
         for row in rows:
             c = row["conditions"]
@@ -105,8 +110,8 @@ class Group:
         return means
 
     def cells(self, line, folds):
-        """minADE/minFDE on each fold, and their mean."""
-        ade, fde = (lambda s: s["min_ade"]), (lambda s: s["min_fde"])
+        """The two errors of the protocol on each fold, and their mean."""
+        ade, fde = ((lambda s, of=of: s[of]) for of in self.errors)
         cells = []
         for fold in folds:
             pair = self.on(line, fold, ade), self.on(line, fold, fde)
@@ -122,8 +127,6 @@ def stability(name, factor=1.0):
 
 FURTHER = {
     "FDE@minADE m": (3, lambda s: s["fde_at_min_ade"]),
-    "JADE m": (3, lambda s: s["joint_ade"]),
-    "JFDE m": (3, lambda s: s["joint_fde"]),
     "missed %": (1, lambda s: 100.0 * s["miss_rate"]),
     "collide %": (1, lambda s: 100.0 * s["collision_rate"]),
     "(true %)": (1, lambda s: 100.0 * s["true_collision_rate"]),
@@ -134,6 +137,19 @@ FURTHER = {
     "turn deg": (1, stability("largest_turn")),
     "reverse %": (1, stability("reversing", 100.0)),
     "K": (0, lambda s: float(s["hypotheses"])),
+}
+
+JOINT = {
+    "minADE m": (3, lambda s: s["min_ade"]),
+    "minFDE m": (3, lambda s: s["min_fde"]),
+    "JADE by window m": (3, lambda s: s["joint"]["ade_windows"]),
+    "JFDE by window m": (3, lambda s: s["joint"]["fde_windows"]),
+    "of all futures %": (1, lambda s: 100.0 * s["joint"]["collisions"]["mean"]),
+    "of the best %": (1, lambda s: 100.0 * s["joint"]["collisions"]["best"]),
+    "of the true one %": (1, lambda s: 100.0 * s["joint"]["collisions"]["truth"]),
+    "CR_mean": (3, lambda s: s["joint"]["close_collisions"]["mean"]),
+    "CR_JADE": (3, lambda s: s["joint"]["close_collisions"]["best"]),
+    "CR of the truth": (3, lambda s: s["joint"]["close_collisions"]["truth"]),
 }
 
 WHOLE_FORECAST = {
@@ -201,7 +217,7 @@ def block_mean(line, folds, error):
 
 def intervals(group, table):
     """The found rows, after checks that their means are right and lie inside their intervals."""
-    reference = table["header"][4].removeprefix("minADE - ").removesuffix(" m")
+    reference = table["header"][4].split(" - ", 1)[1].removesuffix(" m")
     lines = {line["label"]: line for line in group.lines}
     for row in table["rows"]:
         line = lines[row[0]]
@@ -254,8 +270,8 @@ def categories(group, header, caption):
                 if found:
                     weight = found[0]["pedestrians"]
                     count += weight
-                    ade += weight * sum(s["min_ade"] for s in found) / len(found)
-                    fde += weight * sum(s["min_fde"] for s in found) / len(found)
+                    ade += weight * sum(s[group.errors[0]] for s in found) / len(found)
+                    fde += weight * sum(s[group.errors[1]] for s in found) / len(found)
             if count:
                 pedestrians.add(count)
                 cells.append(f"{ade / count:.3f}/{fde / count:.3f}")
@@ -309,16 +325,18 @@ def expected(table, report):
     rows = report["rows"]
     scored = caption.split("scored: ")[1].rstrip(".") if "scored: " in caption else None
     subset = None if scored == "all test windows" else scored
-    if caption.startswith("minADE/minFDE in metres. "):
+    if caption.startswith(HEADLINES):
         return headline(Group(rows, *codes[:3], subset), header)
     if caption.startswith("Further metrics. "):
         group = Group(rows, *codes[:3], subset)
         return further(group, header, table["folds"], FURTHER)
+    if caption.startswith("Futures of scenes. "):
+        return further(Group(rows, *codes[:3], subset), header, table["folds"], JOINT)
     if caption.startswith("The forecast as a whole. "):
         return further(Group(rows, *codes[:3], subset), header, table["folds"], WHOLE_FORECAST)
     if caption.startswith("95 % intervals and paired differences. "):
         return intervals(Group(rows, *codes[:3], subset), table)
-    if caption.startswith("minADE/minFDE in metres by category of pedestrian"):
+    if " in metres by category of pedestrian" in caption:
         return categories(Group(rows, *codes[:3], subset), header, caption)
     if caption.startswith("minADE/minFDE in metres by protocol."):
         groups = [Group(rows, codes[0], codes[1], protocol, subset) for protocol in ("published", "fair", "single")]

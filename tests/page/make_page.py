@@ -82,7 +82,8 @@ def main():
             forecasts, evaluated = work / "forecasts.jsonl", work / fold
             lines = ddl("windows", *scene).splitlines()
             forecasts.write_text("".join(map(forecast, lines)))
-            ddl("evaluate", *scene, "--forecasts", forecasts, "--name", "stand-in", "--out", evaluated)
+            named = ("--forecasts", forecasts, "--name", "stand-in", "--protocol", "fair,single,joint")
+            ddl("evaluate", *scene, *named, "--out", evaluated)
             as_published(evaluated / "report.json")
             results.append(evaluated)
             for variant, name in enumerate(VARIANTS):

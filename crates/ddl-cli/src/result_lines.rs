@@ -33,6 +33,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         printed.push(common(first));
         let (errors, of) = match protocol {
             Protocol::Single | Protocol::OnlineSingle => ("ADE/FDE", "of one hypothesis"),
+            Protocol::Joint => ("JADE/JFDE", "best of K futures of the scene"),
             _ => ("minADE/minFDE", "best of K"),
         };
         let of_table = || report.rows().iter().filter(|row| common(row) == common(first));
@@ -60,7 +61,7 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
                 conditions.fold,
                 scores.pedestrians,
                 scores.hypotheses,
-                format!("{:.3}/{:.3}", scores.min_ade, scores.min_fde),
+                pair(scores.errors(protocol)),
                 conditions.label()
             )?;
         }
@@ -70,6 +71,10 @@ fn write_lines(out: &mut String, report: &Report, rest: &str) -> Result {
         }
     }
     writeln!(out, "\n{rest}")
+}
+
+fn pair([ade, fde]: [f64; 2]) -> String {
+    format!("{ade:.3}/{fde:.3}")
 }
 
 /// One line for each recording, if several were evaluated together: errors of the first forecaster and of constant
@@ -85,7 +90,7 @@ fn write_recordings(out: &mut String, first: &ResultRow, other: Option<&ResultRo
     let column = label.chars().count().max(15);
     let of_other = other.map(ResultRow::by_recording).unwrap_or_default();
     let counts = PEDESTRIAN_WINDOWS.len();
-    let errors = |recording: &RecordingErrors| format!("{:.3}/{:.3}", recording.min_ade, recording.min_fde);
+    let errors = |recording: &RecordingErrors| pair([recording.min_ade, recording.min_fde]);
     let beside = other.map_or("", |_| VELOCITY);
     writeln!(
         out,

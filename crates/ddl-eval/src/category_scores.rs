@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::category::Category;
 use crate::pedestrian_scores::PedestrianScores;
+use crate::protocol::Protocol;
 
 /// The metrics of one category on the test windows of one fold: means over its pedestrians.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -26,9 +27,23 @@ pub struct CategoryScores {
     pub most_likely_fde: f64,
     /// Share of pedestrians whose representative forecast collides with another's, in [0, 1].
     pub collision_rate: f64,
+    /// ADE in the future of JADE, the best one for the whole scene, metres; `None` except under `joint`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_ade: Option<f64>,
+    /// FDE in the future of JFDE, metres; `None` except under `joint`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_fde: Option<f64>,
 }
 
 impl CategoryScores {
+    /// As [`Scores::errors`](crate::Scores::errors), of the category; `None` if they were not computed.
+    pub fn errors(&self, protocol: Protocol) -> Option<[f64; 2]> {
+        match protocol {
+            Protocol::Joint => Some([self.joint_ade?, self.joint_fde?]),
+            _ => Some([self.min_ade, self.min_fde]),
+        }
+    }
+
     pub(crate) fn of<'a>(pedestrians: impl Iterator<Item = &'a PedestrianScores>) -> Vec<Self> {
         let mut groups: Vec<(Category, Vec<&PedestrianScores>)> =
             Category::all().map(|category| (category, Vec::new())).collect();
@@ -48,6 +63,7 @@ impl CategoryScores {
         let n = members.len() as f64;
         let mean = |metric: fn(&PedestrianScores) -> f64| members.iter().map(|w| metric(w)).sum::<f64>() / n;
         let share = |holds: fn(&PedestrianScores) -> bool| members.iter().filter(|w| holds(w)).count() as f64 / n;
+        let joint = |error: usize| members.iter().map(|w| Some(w.joint?[error])).sum::<Option<f64>>();
         Self {
             category,
             pedestrians: members.len(),
@@ -58,6 +74,8 @@ impl CategoryScores {
             most_likely_ade: mean(|w| w.most_likely_ade),
             most_likely_fde: mean(|w| w.most_likely_fde),
             collision_rate: share(|w| w.collides),
+            joint_ade: joint(0).map(|sum| sum / n),
+            joint_fde: joint(1).map(|sum| sum / n),
         }
     }
 }

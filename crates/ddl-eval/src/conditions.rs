@@ -141,10 +141,11 @@ impl ResultRow {
         full_windows: &[Window],
         forecasts: &[Forecast],
     ) -> Result<Self, EvaluationError> {
+        let protocol = conditions.protocol;
         Ok(Self {
             conditions,
-            scores: Scores::evaluate_among(windows, full_windows, forecasts)?,
-            blocks: block_errors(windows, forecasts)?,
+            scores: Scores::under(protocol, windows, full_windows, forecasts)?,
+            blocks: block_errors(protocol, windows, forecasts)?,
         })
     }
 
@@ -175,8 +176,8 @@ pub struct RecordingErrors {
     pub recording: String,
     /// Pedestrians in its windows; one in several windows counts in each.
     pub pedestrians: usize,
-    /// Their mean minADE, m.
+    /// Their mean minADE, m; under `joint` JADE.
     pub min_ade: f64,
-    /// Their mean minFDE, m.
+    /// Their mean minFDE, m; under `joint` JFDE.
     pub min_fde: f64,
 }

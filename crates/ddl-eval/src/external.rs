@@ -12,6 +12,7 @@ mod lines;
 mod matched;
 mod measure;
 mod pedestrian_key;
+mod samples;
 mod table;
 mod table_rows;
 mod trajnet;
@@ -29,6 +30,7 @@ use ddl_data::UnknownName;
 pub use error::ExternalError;
 pub use matched::{Coverage, Matched};
 pub use measure::measure;
+pub use samples::{read_samples, write_samples};
 pub use write::{write_forecasts, write_windows};
 
 use expected::ExpectedForecasts;

@@ -33,6 +33,7 @@ pub use category_scores::CategoryScores;
 pub use conditions::{Conditions, RecordingErrors, ResultRow};
 pub use error::{EvaluationError, WindowProblem};
 pub use metric::deployable::DeployableErrors;
+pub use metric::joint::{FutureCollisions, JointScores};
 pub use metric::stability::StabilityScores;
 pub use protocol::Protocol;
 pub use scored_window::ScoredWindow;

@@ -8,6 +8,7 @@ pub mod deployable;
 pub mod displacement;
 pub mod diversity;
 pub(crate) mod gaussian;
+pub mod joint;
 pub mod kde;
 pub mod region;
 pub mod reliability;

@@ -37,11 +37,13 @@ pub(crate) struct PedestrianScores {
     pub(crate) weight_log_loss: Option<f64>,
     pub(crate) regions: Option<RegionScores>,
     pub(crate) familiarity: Option<f64>,
+    /// ADE and FDE in the best future of the scene by each; `None` except under `joint`.
+    pub(crate) joint: Option<[f64; 2]>,
     pub(crate) categories: Vec<Category>,
 }
 
 impl PedestrianScores {
-    pub(crate) fn of(scene: &ScoredWindow<'_>, errors: &DisplacementErrors) -> Vec<Self> {
+    pub(crate) fn of(scene: &ScoredWindow<'_>, errors: &DisplacementErrors, joint: Option<[usize; 2]>) -> Vec<Self> {
         let forecast = scene.forecast();
         let collides_forecast = collides(&collision::representative_tracks(scene), PEDESTRIAN_RADIUS);
         let true_futures_collide = collision::true_futures_collide(scene, PEDESTRIAN_RADIUS);
@@ -68,6 +70,7 @@ impl PedestrianScores {
                 weight_log_loss: weight_log_loss(scene, i),
                 regions: RegionScores::of(scene, i),
                 familiarity: forecast.familiarity(i),
+                joint: joint.map(|[ade, fde]| [errors.ade(i)[ade], errors.fde(i)[fde]]),
                 categories: Category::of(scene.full_window(), scene.index_in_full(i)),
             })
             .collect()

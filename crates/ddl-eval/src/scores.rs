@@ -8,10 +8,12 @@ use crate::category_scores::CategoryScores;
 use crate::error::{EvaluationError, WindowProblem};
 use crate::metric::amd::amv;
 use crate::metric::deployable::DeployableErrors;
-use crate::metric::displacement::{DisplacementErrors, joint_ade, joint_fde};
+use crate::metric::displacement::DisplacementErrors;
 use crate::metric::gaussian::Covariance;
+use crate::metric::joint::{JointScores, SceneFutures};
 use crate::metric::stability::{self, RolloutStability, StabilityScores};
 use crate::pedestrian_scores::PedestrianScores;
+use crate::protocol::Protocol;
 use crate::scored_window::ScoredWindow;
 
 /// The metrics of one forecaster on the test windows of one fold.
@@ -85,6 +87,9 @@ pub struct Scores {
     pub region_radius: Option<[f64; 2]>,
     /// Mean familiarity of the observed motions, 0 to 1; `None` for forecasters that do not give it.
     pub familiarity: Option<f64>,
+    /// Metrics of whole futures; `None` except under `joint`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint: Option<JointScores>,
     /// The pedestrians by kind of motion, in the order of [`Category::all`](crate::category::Category::all).
     #[serde(default)]
     pub categories: Vec<CategoryScores>,
@@ -114,6 +119,25 @@ impl Scores {
         full_windows: &[Window],
         forecasts: &[Forecast],
     ) -> Result<Self, EvaluationError> {
+        Self::under(Protocol::Fair, windows, full_windows, forecasts)
+    }
+
+    /// The two errors that tables of a protocol begin with, metres: JADE and JFDE under `joint`, else minADE and
+    /// minFDE.
+    pub fn errors(&self, protocol: Protocol) -> [f64; 2] {
+        match protocol {
+            Protocol::Joint => [self.joint_ade, self.joint_fde],
+            _ => [self.min_ade, self.min_fde],
+        }
+    }
+
+    /// [`Scores::evaluate_among`], with the metrics of whole futures under `joint`.
+    pub(crate) fn under(
+        protocol: Protocol,
+        windows: &[Window],
+        full_windows: &[Window],
+        forecasts: &[Forecast],
+    ) -> Result<Self, EvaluationError> {
         if full_windows.len() != windows.len() {
             let (windows, full_windows) = (windows.len(), full_windows.len());
             return Err(EvaluationError::FullWindowCount { windows, full_windows });
@@ -127,7 +151,7 @@ impl Scores {
             .map(|((window, full_window), forecast)| {
                 check_alike(window, forecast, first)?;
                 let scene = ScoredWindow::new(window, forecast)?.among(full_window)?;
-                Ok(SceneScores::of(&scene))
+                Ok(SceneScores::of(&scene, protocol))
             })
             .collect::<Result<_, EvaluationError>>()?;
         Ok(Self::mean(&scenes, first))
@@ -146,6 +170,9 @@ impl Scores {
             scored.filter(|pedestrian| holds(pedestrian)).count() as f64 / total
         };
         let each = || scenes.iter().flat_map(|s| &s.pedestrians);
+        let futures = scenes
+            .iter()
+            .map(|s| (s.pedestrians.len(), s.joint, s.futures.as_ref()));
         // All pedestrians have the same number of hypotheses, so either all or none have a distribution.
         let several = first.hypotheses() > 1;
         let of_several = |metric: fn(&PedestrianScores) -> Option<f64>| {
@@ -160,8 +187,8 @@ impl Scores {
             min_ade: mean(|w| w.min_ade),
             min_fde: mean(|w| w.min_fde),
             fde_at_min_ade: mean(|w| w.fde_at_min_ade),
-            joint_ade: over_scenes(|s| s.joint_ade),
-            joint_fde: over_scenes(|s| s.joint_fde),
+            joint_ade: over_scenes(|s| s.joint[0]),
+            joint_fde: over_scenes(|s| s.joint[1]),
             miss_rate: share(|w| w.missed[0]),
             collision_rate: share(|w| w.collides),
             true_collision_rate: share(|w| w.truly_collides),
@@ -188,6 +215,7 @@ impl Scores {
             coverage: of_all(scenes, total, |w| Some(w.regions?.coverage)),
             region_radius: of_all(scenes, total, |w| Some(w.regions?.end_radius)),
             familiarity: of_all(scenes, total, |w| w.familiarity.map(|f| [f])).map(|[f]| f),
+            joint: JointScores::of(futures),
             categories: CategoryScores::of(scenes.iter().flat_map(|s| &s.pedestrians)),
         }
     }
@@ -232,20 +260,20 @@ fn check_alike(window: &Window, forecast: &Forecast, first: &Forecast) -> Result
 
 struct SceneScores {
     pedestrians: Vec<PedestrianScores>,
-    /// JADE times the pedestrians, metres.
-    joint_ade: f64,
-    joint_fde: f64,
+    /// JADE and JFDE times the pedestrians, metres.
+    joint: [f64; 2],
+    futures: Option<SceneFutures>,
     rollouts: Vec<RolloutStability>,
 }
 
 impl SceneScores {
-    fn of(scene: &ScoredWindow<'_>) -> Self {
+    fn of(scene: &ScoredWindow<'_>, protocol: Protocol) -> Self {
         let errors = DisplacementErrors::of(scene);
-        let pedestrians = scene.pedestrians() as f64;
+        let best = (protocol == Protocol::Joint).then(|| errors.best_futures());
         Self {
-            pedestrians: PedestrianScores::of(scene, &errors),
-            joint_ade: joint_ade(&errors) * pedestrians,
-            joint_fde: joint_fde(&errors) * pedestrians,
+            pedestrians: PedestrianScores::of(scene, &errors, best),
+            joint: errors.joint().map(|mean| mean * scene.pedestrians() as f64),
+            futures: best.map(|[best, _]| SceneFutures::of(scene, best)),
             rollouts: stability::rollouts(scene),
         }
     }

@@ -8,6 +8,7 @@ use crate::progress::Progress;
 use anyhow::{Context as _, bail};
 use clap::Args;
 use ddl::data::{Convention, Dataset};
+use ddl::eval::external;
 use ddl::report::Report;
 use ddl::{
     BuiltinModel, Ddl, DdlError, EvaluationRequest, ModelSource, Protocol, Results, RunDirectory, Split, WorkDone,
@@ -36,7 +37,7 @@ pub(crate) struct Evaluate {
     other: OtherProgram,
     #[command(flatten)]
     recordings: RecordingsAt,
-    /// Protocol: published, fair, single, online or online-single; several as in `fair,single`
+    /// Protocol: published, fair, single, online, online-single or joint; several as in `fair,single`
     #[arg(long = "protocol", value_delimiter = ',', default_values = ["fair", "single"])]
     protocols: Vec<Protocol>,
     /// Evaluate on the validation part of the training recordings instead of the test scene. For own recordings that
@@ -51,6 +52,10 @@ pub(crate) struct Evaluate {
     /// all]
     #[arg(long, value_parser = at_least_one, conflicts_with = "forecasts")]
     test_pedestrians: Option<usize>,
+    /// Write the futures of the protocol joint into a new folder, as the sample files of Joint Metrics Matter
+    /// (docs/your-model.md)
+    #[arg(long, value_name = "FOLDER", conflicts_with = "forecasts")]
+    samples: Option<PathBuf>,
     #[command(flatten)]
     machine: Machine,
     #[command(flatten)]
@@ -86,6 +91,9 @@ impl Evaluate {
     }
 
     fn measure(&self, source: &ModelSource) -> anyhow::Result<()> {
+        if self.samples.is_some() && !self.protocols.contains(&Protocol::Joint) {
+            bail!("--samples writes the futures of the protocol joint: add --protocol joint");
+        }
         self.machine.prepare()?;
         let interrupt = Interrupt::catch()?;
         let model = Ddl::open(source, self.machine.device)?;
@@ -112,7 +120,7 @@ impl Evaluate {
         if let (Convention::Own, Some(name)) = (convention, &windows.fold) {
             dataset = Dataset::own(vec![dataset.recording(name)?.clone()])?;
         }
-        if let Some(run) = own_run
+        if let (Some(run), None) = (own_run, &self.samples)
             && ddl::is_evaluated(&model, &dataset, &request)
         {
             self.save_elsewhere(|| Results::of(&title, &[run.path()]))?;
@@ -127,6 +135,10 @@ impl Evaluate {
             interrupt.flow()
         })?;
         drop(progress);
+        if let Some(folder) = &self.samples {
+            let (windows, forecasts): (Vec<_>, Vec<_>) = evaluation.scenes.into_iter().unzip();
+            external::write_samples(&windows, &forecasts, folder)?;
+        }
         let report = Report::new(&title, evaluation.rows)?;
         if let Some(run) = own_run {
             ddl::save_evaluation(&model, &dataset, &request, &report, &evaluation.moments)?;

@@ -217,7 +217,7 @@ impl PedestrianRows {
     }
 }
 
-fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
+pub(super) fn whole(text: &str, name: &'static str) -> Result<i64, Wrong> {
     let number = text.parse().ok();
     let number = number.or_else(|| lines::whole(text.parse().ok()?));
     number.ok_or_else(|| in_field(name, format!("must be a whole number, found {:?}", quoted(text))))
@@ -233,7 +233,7 @@ fn name(text: &str) -> Result<PedestrianName, Wrong> {
     Ok(PedestrianName::of_text(text))
 }
 
-fn finite(text: &str, name: &'static str) -> Result<f64, Wrong> {
+pub(super) fn finite(text: &str, name: &'static str) -> Result<f64, Wrong> {
     let number = text.parse::<f64>().ok().filter(|n| n.is_finite());
     number.ok_or_else(|| in_field(name, not_finite(&format!("{:?}", quoted(text)))))
 }

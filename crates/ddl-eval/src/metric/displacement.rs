@@ -14,9 +14,8 @@
 //! The two minima are independent; STAR's and DDL's code prints `FDE@minADE`, works that choose by the endpoint
 //! (`PECNet`, Y-Net) print `ADE@minFDE`. The expected error is that of a hypothesis that is drawn with the probability
 //! of its weight. The protocol `single` scores the [representative](Forecast::representative) hypothesis, not the most
-//! likely one. JADE and JFDE suit only models whose hypothesis `k` is one future of the scene. "Joint Metrics Matter"
-//! averages over scenes; here a scene counts with its number of pedestrians. A goal beyond the 12th frame is still
-//! compared with the last true position.
+//! likely one. JADE and JFDE suit only models whose hypothesis `k` is one future of the scene: the protocol `joint`. A
+//! goal beyond the 12th frame is still compared with the last true position.
 //!
 //! # References
 //! Pellegrini et al., "You'll never walk alone", ICCV 2009 (displacement errors); Gupta et al., "Social GAN", CVPR 2018
@@ -35,6 +34,9 @@ pub(crate) fn final_displacement(forecast: &[Position], truth: &[Position]) -> f
     assert_eq!(forecast.len(), truth.len(), "lengths of forecast and truth");
     distance(forecast[forecast.len() - 1], truth[truth.len() - 1])
 }
+
+/// ADE or FDE of each hypothesis of a pedestrian, metres.
+type Errors = fn(&DisplacementErrors, usize) -> &[f64];
 
 /// ADE and FDE of every hypothesis of every pedestrian of a scene: two tables `[N][K]`, metres.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,6 +92,25 @@ impl DisplacementErrors {
     pub(crate) fn ade_at_min_fde(&self, i: usize) -> f64 {
         self.ade(i)[least(self.fde(i))]
     }
+
+    /// The future of the scene with the least mean ADE, and that with the least mean FDE (of equal ones, the first).
+    pub(crate) fn best_futures(&self) -> [usize; 2] {
+        self.scene_means().map(|means| least(&means))
+    }
+
+    /// JADE and JFDE of the scene, metres; their futures may differ.
+    pub(crate) fn joint(&self) -> [f64; 2] {
+        self.scene_means().map(|means| means[least(&means)])
+    }
+
+    fn scene_means(&self) -> [Vec<f64>; 2] {
+        let n = self.ade.len() / self.hypotheses;
+        let metrics: [Errors; 2] = [Self::ade, Self::fde];
+        metrics.map(|metric| {
+            let mean = |k: usize| (0..n).map(|i| metric(self, i)[k]).sum::<f64>() / n as f64;
+            (0..self.hypotheses).map(mean).collect()
+        })
+    }
 }
 
 fn least(errors: &[f64]) -> usize {
@@ -103,23 +124,6 @@ fn least(errors: &[f64]) -> usize {
 pub(crate) fn expected(forecast: &Forecast, i: usize, errors: &[f64]) -> f64 {
     let weighted = errors.iter().enumerate();
     weighted.map(|(k, error)| forecast.weight(i, k) * error).sum()
-}
-
-/// JADE of a scene, metres.
-pub(crate) fn joint_ade(errors: &DisplacementErrors) -> f64 {
-    least_scene_mean(errors, DisplacementErrors::ade)
-}
-
-/// JFDE of a scene, metres; its hypothesis may differ from that of [`joint_ade`].
-pub(crate) fn joint_fde(errors: &DisplacementErrors) -> f64 {
-    least_scene_mean(errors, DisplacementErrors::fde)
-}
-
-fn least_scene_mean(errors: &DisplacementErrors, metric: fn(&DisplacementErrors, usize) -> &[f64]) -> f64 {
-    let n = errors.ade.len() / errors.hypotheses;
-    (0..errors.hypotheses)
-        .map(|k| (0..n).map(|i| metric(errors, i)[k]).sum::<f64>() / n as f64)
-        .fold(f64::INFINITY, f64::min)
 }
 
 /// Distance of the nearest goal of pedestrian `i` from the true endpoint, metres; `None` without goals.

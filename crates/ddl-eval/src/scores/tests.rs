@@ -20,6 +20,19 @@ fn means_are_over_pedestrians() {
         assert_relative_eq!(mean, 0.25);
     }
     assert_eq!((scores.goal_fde, scores.stability), (None, None));
+    assert_eq!(scores.joint, None);
+    let scores = Scores::under(Protocol::Joint, &windows, &windows, &forecasts).unwrap();
+    let [ade, fde] = scores.errors(Protocol::Joint);
+    // Over windows the errors of 1 m and 0 m count equally.
+    let joint = scores.joint.unwrap();
+    for (mean, by_hand) in [
+        (ade, 0.25),
+        (fde, 0.25),
+        (joint.ade_windows, 0.5),
+        (joint.fde_windows, 0.5),
+    ] {
+        assert_relative_eq!(mean, by_hand);
+    }
 }
 
 #[test]

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::EvaluationError;
 use crate::metric::displacement::DisplacementErrors;
+use crate::protocol::Protocol;
 use crate::scored_window::ScoredWindow;
 
 /// Length of a block in steps of 0.4 s: 20 s. A window belongs to the block in which it starts.
@@ -22,9 +23,9 @@ pub struct BlockErrors {
     pub block: i64,
     /// Pedestrians in its windows; one in several windows counts in each.
     pub pedestrians: usize,
-    /// Sum over them of minADE, m.
+    /// Sum over them of minADE, m; under `joint` of the JADE of their windows.
     pub min_ade: f64,
-    /// Sum over them of minFDE, m.
+    /// Sum over them of minFDE, m; under `joint` of the JFDE of their windows.
     pub min_fde: f64,
 }
 
@@ -35,17 +36,24 @@ impl BlockErrors {
     }
 }
 
-/// Sums the errors of forecasts, one for each window, by recording and by time.
+/// Sums the errors of a protocol, of forecasts with one for each window, by recording and by time.
 ///
 /// # Errors
 /// A window has no future, or a forecast does not belong to its window's pedestrians.
-pub fn block_errors(windows: &[Window], forecasts: &[Forecast]) -> Result<Vec<BlockErrors>, EvaluationError> {
+pub fn block_errors(
+    protocol: Protocol,
+    windows: &[Window],
+    forecasts: &[Forecast],
+) -> Result<Vec<BlockErrors>, EvaluationError> {
     EvaluationError::unless_one_each(windows, forecasts.len())?;
     let sums: Vec<[f64; 2]> = windows
         .par_iter()
         .zip(forecasts)
         .map(|(window, forecast)| {
             let errors = DisplacementErrors::of(&ScoredWindow::new(window, forecast)?);
+            if protocol == Protocol::Joint {
+                return Ok(errors.joint().map(|mean| mean * window.len() as f64));
+            }
             let sum =
                 |metric: fn(&DisplacementErrors, usize) -> f64| (0..window.len()).map(|i| metric(&errors, i)).sum();
             Ok([sum(DisplacementErrors::min_ade), sum(DisplacementErrors::min_fde)])
@@ -112,9 +120,9 @@ mod tests {
         let forecasts: Vec<_> = (1..=5)
             .map(|off| Forecast::with_equal_weights(1, 1, vec![[f64::from(off), 0.0]; 12]).unwrap())
             .collect();
-        let refused = block_errors(&windows, &forecasts[1..]);
+        let refused = block_errors(Protocol::Fair, &windows, &forecasts[1..]);
         assert!(matches!(refused, Err(EvaluationError::Count { .. })));
-        let blocks = block_errors(&windows, &forecasts).unwrap();
+        let blocks = block_errors(Protocol::Fair, &windows, &forecasts).unwrap();
         let short: Vec<_> = blocks
             .iter()
             .map(|b| (b.recording.as_str(), b.block, b.pedestrians))

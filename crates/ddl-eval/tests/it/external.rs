@@ -4,3 +4,4 @@ mod files;
 mod laws;
 mod matching;
 mod mistakes;
+mod samples;

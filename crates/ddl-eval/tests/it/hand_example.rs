@@ -15,9 +15,9 @@
 //! The mean of s is 6.5: 0.1 * 6.5 = 0.65 and 0.25 * 6.5 = 1.625.
 
 use ddl_core::Forecast;
-use ddl_data::{PedestrianId, Position, Window};
+use ddl_data::{Convention, PedestrianId, Position, Window, WindowRule};
 use ddl_eval::category::TrajectoryType;
-use ddl_eval::{Category, MotionKind, Scores};
+use ddl_eval::{Category, Conditions, FutureCollisions, MotionKind, Protocol, ResultRow, Scores};
 
 type Path = fn(f64) -> Position;
 
@@ -52,7 +52,8 @@ fn scores() -> Scores {
     let forecast = Forecast::new(3, 2, pairs().flat_map(path).collect(), weights, Some(goals.collect()));
     let verdicts = vec![true, true, false, true, true, false];
     let forecast = forecast.unwrap().with_certified(verdicts).unwrap();
-    Scores::evaluate(&[window], &[forecast]).unwrap()
+    let conditions = Conditions::new(Convention::Star, WindowRule::Complete, Protocol::Joint, "yard", "mine");
+    ResultRow::score(conditions, &[window], &[forecast]).unwrap().scores
 }
 
 fn check(what: &str, actual: impl Into<Option<f64>>, expected: f64) {
@@ -102,6 +103,21 @@ fn misses_and_collisions() {
     // (0) and B (2.56): 1.26 and 1.3 m.
     let into_truth = s.true_neighbour_collision_rate;
     check("collisions with the truth", into_truth, 1.0 / 3.0);
+}
+
+#[test]
+fn whole_futures() {
+    let joint = scores().joint.unwrap();
+    check("JADE of the window", joint.ade_windows, (0.4 + 1.625 + 1.2) / 3.0);
+    check("JFDE of the window", joint.fde_windows, (1.2 + 1.5 + 0.0) / 3.0);
+    // Future 0, the best: B meets C at 0.03 m, A stays 0.94 m from C and 1.17 m from B. Future 1: A passes B at 0.43 m.
+    // In truth A and C pass each other at 0.3 m.
+    for (found, truth) in [(joint.collisions, 2.0 / 3.0), (joint.close_collisions, 0.0)] {
+        let FutureCollisions { mean, best, .. } = found;
+        check("collisions, mean of the futures", mean, 1.0 / 3.0);
+        check("collisions in the best future", best, 2.0 / 3.0);
+        check("collisions in truth", found.truth, truth);
+    }
 }
 
 #[test]
@@ -156,9 +172,9 @@ fn the_distribution_as_computed_elsewhere() {
 
 #[test]
 fn categories() {
-    // minADE, minFDE, FDE@minADE, missed, most likely ADE and FDE, collisions.
-    let walking = [0.8, 0.2, 0.8, 0.0, 0.8, 0.8, 0.5];
-    let standing = [1.5, 1.5, 1.5, 1.0, 1.5, 1.5, 1.0];
+    // minADE, minFDE, FDE@minADE, missed, most likely ADE and FDE, collisions, ADE in future 0, FDE in future 1.
+    let walking = [0.8, 0.2, 0.8, 0.0, 0.8, 0.8, 0.5, 0.8, 0.6];
+    let standing = [1.5, 1.5, 1.5, 1.0, 1.5, 1.5, 1.0, 1.625, 1.5];
     let by_hand = [
         (Category::Motion(MotionKind::Standing), 1, standing),
         (Category::Motion(MotionKind::Straight), 2, walking),
@@ -177,6 +193,8 @@ fn categories() {
             c.most_likely_ade,
             c.most_likely_fde,
             c.collision_rate,
+            c.joint_ade.unwrap(),
+            c.joint_fde.unwrap(),
         ];
         for (actual, by_hand) in categories.into_iter().zip(by_hand) {
             check(&category.to_string(), actual, by_hand);

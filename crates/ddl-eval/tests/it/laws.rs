@@ -1,10 +1,10 @@
 //! Properties of the metrics, for any forecast.
 
 use ddl_core::{Forecast, distance};
-use ddl_data::{PedestrianId, Position, Rotation, WINDOW, Window};
+use ddl_data::{Convention, PedestrianId, Position, Rotation, WINDOW, Window, WindowRule};
 use ddl_eval::baseline::SocialForce;
-use ddl_eval::metric::collision::closest_approach;
-use ddl_eval::{Category, EvaluationError, Protocol, Scores, WindowProblem};
+use ddl_eval::metric::collision::{closest_approach, collides};
+use ddl_eval::{Category, Conditions, EvaluationError, Protocol, ResultRow, Scores, WindowProblem};
 use proptest::{collection::vec, prelude::*};
 use serde_json::Value;
 
@@ -19,8 +19,11 @@ fn any_scene() -> impl Strategy<Value = (Window, Forecast)> {
     (1..5_usize, 1..6_usize).prop_flat_map(|(n, k)| scene(n, k))
 }
 
+/// Every metric, with those of whole futures.
 fn scores(window: &Window, forecast: &Forecast) -> Scores {
-    Scores::evaluate(std::slice::from_ref(window), std::slice::from_ref(forecast)).unwrap()
+    let conditions = Conditions::new(Convention::Star, WindowRule::Complete, Protocol::Joint, "yard", "any");
+    let row = ResultRow::score(conditions, std::slice::from_ref(window), std::slice::from_ref(forecast));
+    row.unwrap().scores
 }
 
 /// All numbers except angles: lengths, shares and densities, which do not change under motions of the plane.
@@ -217,6 +220,29 @@ proptest! {
         let actual = invariants(&scores(&window, &rebuilt(&forecast, &order, |p| p)));
         let expected = invariants(&scores(&window, &forecast));
         prop_assert!(all_agree(&actual, &expected), "{actual:?} {expected:?}");
+    }
+
+    #[test]
+    fn one_future_for_all_is_never_better_than_one_each((window, forecast) in any_scene()) {
+        let s = scores(&window, &forecast);
+        prop_assert!(s.joint_ade >= s.min_ade - 1e-12 && s.joint_fde >= s.min_fde - 1e-12);
+        let joint = s.joint.unwrap();
+        prop_assert!(all_agree(&[joint.ade_windows, joint.fde_windows], &[s.joint_ade, s.joint_fde]));
+        if window.len() == 1 {
+            prop_assert!(all_agree(&[s.joint_ade, s.joint_fde], &[s.min_ade, s.min_fde]));
+        }
+        // The futures, each by itself, and each pair.
+        let (n, k) = (forecast.pedestrians(), forecast.hypotheses());
+        let share = |future: usize, radius: f64| {
+            let tracks: Vec<&[Position]> = (0..n).map(|i| forecast.hypothesis(i, future)).collect();
+            collides(&tracks, radius).into_iter().filter(|&hit| hit).count() as f64 / n as f64
+        };
+        let mean = |radius: f64| (0..k).map(|future| share(future, radius)).sum::<f64>() / k as f64;
+        prop_assert!(all_agree(&[joint.collisions.mean, joint.close_collisions.mean], &[mean(0.2), mean(0.1)]));
+        prop_assert!(all_agree(&[joint.collisions.truth], &[s.true_collision_rate]));
+        let types = s.categories.iter().filter(|c| matches!(c.category, Category::Type(_)));
+        let sum = types.map(|c| c.joint_ade.unwrap() * c.pedestrians as f64).sum::<f64>();
+        prop_assert!(all_agree(&[sum / n as f64], &[s.joint_ade]));
     }
 
     #[test]

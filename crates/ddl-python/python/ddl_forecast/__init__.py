@@ -16,7 +16,7 @@ True
 from ddl_forecast import baselines, dynamics, goals, metrics, soft_dtw
 from ddl_forecast._core import __version__, set_num_threads
 from ddl_forecast._evaluation import Results, Window, evaluate, windows
-from ddl_forecast._forecast import Certificates, DoubtWarning, Forecast, write_forecasts
+from ddl_forecast._forecast import Certificates, DoubtWarning, Forecast, Occupancy, Risk, write_forecasts
 from ddl_forecast._forecaster import Forecaster
 from ddl_forecast._live import Live
 from ddl_forecast._recording import Recording, read
@@ -27,8 +27,10 @@ __all__ = [
     "Forecast",
     "Forecaster",
     "Live",
+    "Occupancy",
     "Recording",
     "Results",
+    "Risk",
     "Window",
     "__version__",
     "baselines",

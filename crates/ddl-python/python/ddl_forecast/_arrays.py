@@ -44,6 +44,12 @@ def scene(past: ArrayLike, neighbours: ArrayLike | None) -> tuple[Floats, int]:
     return np.concatenate([array, others]), len(array)
 
 
+def plan_rows(plan: ArrayLike) -> Floats:
+    """(m, 4) rows of a plan: time, x, y and radius, which is 0 where it is not given."""
+    rows = floats(plan, 2, "a plan", "(m, 3) or (m, 4)")
+    return np.column_stack([rows, np.zeros(len(rows))]) if rows.shape[1] == 3 else rows
+
+
 def numbered(ids: ArrayLike) -> tuple[Integers, list[str] | None]:
     """Ids as whole numbers, and the word for each number; None if the ids are whole numbers already."""
     array = column(ids, "id")

@@ -4,6 +4,7 @@ import os
 from collections.abc import Callable, Sequence
 from typing import Any, final
 
+import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ddl_forecast._arrays import Flags, Floats, Integers
@@ -19,6 +20,7 @@ __all__ = [
     "UNFAMILIAR",
     "__version__",
     "baseline",
+    "clearances",
     "collisions",
     "conventions",
     "displacement_errors",
@@ -26,8 +28,10 @@ __all__ = [
     "kde_nll",
     "mahalanobis",
     "main",
+    "occupancy",
     "region_radii",
     "report",
+    "risks",
     "scores",
     "set_num_threads",
     "spread_between",
@@ -40,6 +44,8 @@ __version__: str
 UNFAMILIAR: float
 
 _Path = str | os.PathLike[str]
+# Observed positions, paths, weights and spread.
+_Joint = tuple[Floats, Floats, Floats, Floats]
 
 def main(arguments: list[str]) -> int: ...
 def set_num_threads(threads: int) -> None:
@@ -58,7 +64,14 @@ class Model:
     @property
     def trained_on(self) -> tuple[str, str]: ...
     def forecast(
-        self, past: Sequence[Floats], asked: Sequence[int], samples: int, whole: bool, certificates: bool
+        self,
+        past: Sequence[Floats],
+        asked: Sequence[int],
+        samples: int,
+        whole: bool,
+        certificates: bool,
+        joint: bool,
+        given: tuple[Floats, int | None] | None,
     ) -> tuple[list[dict[str, Any]], str | None]: ...
     def forecast_recording(
         self,
@@ -69,6 +82,7 @@ class Model:
         max_age: float | None,
         every: float | None,
         certificates: bool,
+        joint: bool,
     ) -> tuple[list[dict[str, Any]], str | None]: ...
     def goals(self, past: Floats, asked: int) -> tuple[Floats, Floats]: ...
     def was_trained_on(self, recording: Recording) -> bool: ...
@@ -124,6 +138,7 @@ class Live:
         max_age: float | None,
         every: float,
         certificates: bool,
+        joint: bool,
     ) -> Live: ...
     def observe(
         self, frame: int, unit: str | None, ids: Integers, xy: Floats
@@ -133,6 +148,11 @@ class Live:
     def refused(self) -> str | None: ...
     def close(self) -> str | None: ...
 
+def risks(joint: _Joint, plans: Sequence[Floats], within: float) -> tuple[Floats, Floats, Floats, Floats]: ...
+def clearances(joint: _Joint, plans: Sequence[Floats]) -> tuple[Floats, Floats]: ...
+def occupancy(
+    joint: _Joint, options: tuple[float, float, float, float], area: tuple[float, float, float, float] | None
+) -> tuple[NDArray[np.float32], list[float], list[float]]: ...
 def region_radii(
     observed: tuple[Floats, Floats], weights: Floats, spread: Floats, region_table: str, level: float
 ) -> Floats: ...

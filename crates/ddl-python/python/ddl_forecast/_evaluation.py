@@ -149,7 +149,7 @@ def _words(rule: Any) -> str:
     )
 
 
-PROTOCOLS = ("fair", "single", "online", "online-single")
+PROTOCOLS = ("fair", "single", "online", "online-single", "joint")
 
 
 def evaluate(
@@ -180,6 +180,7 @@ def evaluate(
         ``fair``: at most 20 hypotheses, of which the best counts. ``single``: one path; of several hypotheses the one
         with the least expected ADE. ``online``, ``online-single``: the function gets a second argument, a mapping with
         the columns frame, id, x and y of the recording up to the last observed frame, that of ``past[:, -1]``.
+        ``joint``: hypothesis k of all pedestrians is future k of the scene; the best future counts.
     convention, rule, data
         As for :func:`windows`.
     name

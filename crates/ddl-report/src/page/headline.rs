@@ -12,8 +12,9 @@ pub(super) fn headline(report: &Report) -> Markup {
         return html! { p.nothing { "This report holds no results." } };
     };
     let subject = standing.subject();
+    let [ade, fde] = standing.shared.protocol.errors();
     let caption = format!(
-        "minADE and minFDE in metres, less is better; the number is minADE. {} K: hypotheses of each pedestrian, of \
+        "{ade} and {fde} in metres, less is better; the number is {ade}. {} K: hypotheses of each pedestrian, of \
          which the best is scored. {} The tables below hold every number.",
         standing.in_words,
         shown_of(standing.lines.len())
@@ -41,7 +42,7 @@ fn shown_of(lines: usize) -> String {
 fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
     let mut measured = standing.folds.iter().zip(&subject.folds);
     let first = measured.find_map(|(fold, pair)| Some((fold, (*pair)?)));
-    let ([ade, fde], over) = match (subject.mean, standing.folds.as_slice(), first) {
+    let (errors, over) = match (subject.mean, standing.folds.as_slice(), first) {
         (Some(mean), [one], _) => (mean, format!("on `{one}`")),
         (Some(mean), folds, _) if standing.all_folds => (mean, format!("plain mean of the {} folds", folds.len())),
         (Some(mean), folds, _) => (
@@ -62,7 +63,7 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
                 (rank(standing, subject))
             }
             div.numbers {
-                @for (name, value) in [("minADE", ade), ("minFDE", fde)] {
+                @for (name, value) in standing.shared.protocol.errors().into_iter().zip(errors) {
                     div.number {
                         b data-number=(name) { (format!("{value:.3}")) }
                         span.unit { "m" }
@@ -74,7 +75,7 @@ fn verdict(standing: &Standing, subject: &StandingLine) -> Markup {
     }
 }
 
-/// Text with the rank of the line by minADE, among lines with the same folds and the same number of hypotheses.
+/// Text with the rank of the line by its first error, among lines with the same folds and number of hypotheses.
 fn rank(standing: &Standing, subject: &StandingLine) -> String {
     let ranked: Vec<&StandingLine> = standing.comparable(subject).collect();
     let (Some(best), Some(_)) = (ranked.first(), subject.mean) else {

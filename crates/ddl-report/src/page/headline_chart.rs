@@ -26,13 +26,15 @@ pub(crate) fn headline_chart(standing: &Standing, shape: ChartShape) -> Drawing 
         lines,
         subject: standing.subject().map(|line| line.label.as_str()),
         values: lines.iter().flat_map(columns).flatten().flatten().collect(),
+        errors: standing.shared.protocol.errors(),
     };
     let mut names: Vec<String> = standing.folds.clone();
     if standing.folds.len() > 1 {
         names.push("mean".to_owned());
     }
+    let [ade, fde] = standing.shared.protocol.errors();
     let title = format!(
-        "minADE and minFDE in metres of {} forecasters on {}; convention {}, window rule {}, protocol {}",
+        "{ade} and {fde} in metres of {} forecasters on {}; convention {}, window rule {}, protocol {}",
         lines.len(),
         standing.folds.join(", "),
         standing.shared.convention,
@@ -49,6 +51,7 @@ struct Chart<'a> {
     lines: &'a [StandingLine],
     subject: Option<&'a str>,
     values: Vec<f64>,
+    errors: [&'static str; 2],
 }
 
 impl Chart<'_> {
@@ -57,15 +60,16 @@ impl Chart<'_> {
     }
 
     fn key(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
+        let [ade, fde] = self.errors;
         let axis = if Scale::of(&self.values, [0.0, 1.0]).logarithmic {
-            "minFDE, metres, logarithmic; less is better"
+            format!("{fde}, metres, logarithmic; less is better")
         } else {
-            "minFDE, metres; less is better"
+            format!("{fde}, metres; less is better")
         };
         drawing.circle("ade", [x + 5.0, y - 4.0], 4.4);
-        drawing.text("small", [x + 16.0, y], "minADE (printed)");
+        drawing.text("small", [x + 16.0, y], format!("{ade} (printed)"));
         drawing.circle("fde", [x + 127.0, y - 4.0], 3.6);
-        drawing.text("small", [x + 137.0, y], axis);
+        drawing.text("small", [x + 137.0, y], &axis);
     }
 }
 

@@ -21,7 +21,7 @@ pub(super) struct StandingLine {
     pub(super) conditions: Conditions,
     pub(super) settings: String,
     pub(super) hypotheses: usize,
-    /// minADE and minFDE on each fold, m, mean over seeds; `None` where it was not measured.
+    /// The errors of the protocol on each fold, m, mean over seeds; `None` where it was not measured.
     pub(super) folds: Vec<Option<[f64; 2]>>,
     /// Unweighted mean of the folds; `None` unless all were measured.
     pub(super) mean: Option<[f64; 2]>,
@@ -85,9 +85,9 @@ pub(super) fn standing(report: &Report) -> Option<Standing> {
 
 impl StandingLine {
     fn of(line: &TableLine<'_>, label: String, folds: &[&str]) -> Self {
-        let pair =
-            |mean: &dyn Fn(fn(&Scores) -> f64) -> Option<f64>| Some([mean(|s| s.min_ade)?, mean(|s| s.min_fde)?]);
-        let on_fold = |fold: &&str| pair(&|metric| Some(line.on_fold(fold, metric)?.mean));
+        let protocol = line.conditions().protocol;
+        let pair = |mean: &dyn Fn(usize) -> Option<f64>| Some([mean(0)?, mean(1)?]);
+        let on_fold = |fold: &&str| pair(&|at| Some(line.on_fold(fold, |s| s.errors(protocol)[at])?.mean));
         let count = |number: fn(&Scores) -> usize| -> usize {
             let first = folds.iter().filter_map(|fold| line.on(fold).next());
             first.map(|row| number(&row.scores)).sum()
@@ -98,7 +98,7 @@ impl StandingLine {
             settings: line.settings(),
             hypotheses: line.rows[0].scores.hypotheses,
             folds: folds.iter().map(on_fold).collect(),
-            mean: pair(&|metric| Some(line.over_folds(folds, metric)?.mean)),
+            mean: pair(&|at| Some(line.over_folds(folds, |s| s.errors(protocol)[at])?.mean)),
             scored: [count(|s| s.pedestrians), count(|s| s.windows)],
         }
     }

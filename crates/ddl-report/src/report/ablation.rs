@@ -1,6 +1,6 @@
 //! The ablation: the contributions of the goal and of the dynamics, and the paper's Table II.
 
-use ddl_eval::Conditions;
+use ddl_eval::{Conditions, Protocol};
 
 use crate::document::{Part, Table};
 use crate::literature::{AblationRow, LITERATURE, ablation_table};
@@ -9,7 +9,8 @@ use crate::report::group::{ResultGroup, TableLine};
 
 /// One table for each group that has a variant without one of the two components, then the paper's table.
 pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
-    let ablated: Vec<&ResultGroup<'_>> = groups.iter().filter(|g| has_ablated_variant(g)).collect();
+    let ablated = |group: &&ResultGroup<'_>| group.protocol != Protocol::Joint && has_ablated_variant(group);
+    let ablated: Vec<&ResultGroup<'_>> = groups.iter().filter(ablated).collect();
     if ablated.is_empty() {
         return Vec::new();
     }

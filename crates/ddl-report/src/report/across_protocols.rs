@@ -20,7 +20,7 @@ pub(super) fn parts(groups: &[ResultGroup<'_>]) -> Vec<Part> {
     for oracle in groups.iter().filter(|g| g.protocol == Protocol::Published) {
         let mut comparable: Vec<&ResultGroup<'_>> = groups
             .iter()
-            .filter(|g| g.same_windows(oracle) && !g.protocol.gives_recording_memory())
+            .filter(|g| g.same_windows(oracle) && !g.protocol.gives_recording_memory() && g.protocol != Protocol::Joint)
             .collect();
         // `published` first.
         comparable.sort_by_key(|g| g.protocol != Protocol::Published);

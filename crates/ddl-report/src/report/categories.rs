@@ -8,9 +8,10 @@ use crate::document::{Part, Table};
 use crate::report::cells::{counts, or_nothing};
 use crate::report::group::{ResultGroup, TableLine};
 
-pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres, mean over the pedestrians of the \
-    folds named, which all forecasters of the table have (not over the folds, some of which hold few pedestrians of a \
-    kind). First the pedestrian's own motion, then the types of TrajNet++ (static, linear, interacting, \
+pub(super) const LEGEND: &str = "By category of pedestrian: minADE/minFDE in metres (under `joint` JADE/JFDE: the \
+    errors in the future that is best for the whole scene), mean over the pedestrians of the folds named, which all \
+    forecasters of the table have (not over the folds, some of which hold few pedestrians of a kind). First the \
+    pedestrian's own motion, then the types of TrajNet++ (static, linear, interacting, \
     non-interacting), then the kinds of interaction, of which a pedestrian may have several. The categories are \
     computed from the true future, after the forecasts are made.";
 
@@ -48,7 +49,8 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     vec![
         Part::subheading("By category of pedestrian"),
         Part::Table(table.captioned(format!(
-            "minADE/minFDE in metres by category of pedestrian, pooled over {}. {}",
+            "{} in metres by category of pedestrian, pooled over {}. {}",
+            group.errors(),
             folds.join(", "),
             group.conditions_in_words()
         ))),
@@ -57,39 +59,41 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
 
 struct Pooled {
     pedestrians: usize,
-    min_ade: f64,
-    min_fde: f64,
+    errors: [f64; 2],
 }
 
 impl Pooled {
     /// Seeds are averaged on each fold first; `None` without pedestrians of the category.
     fn of(line: &TableLine<'_>, folds: &[&str], category: Category) -> Option<Self> {
-        let (mut pedestrians, mut ade, mut fde) = (0, 0.0, 0.0);
+        let protocol = line.conditions().protocol;
+        let (mut pedestrians, mut sums) = (0, [0.0; 2]);
         for fold in folds {
-            let of_seeds: Vec<&CategoryScores> = line
+            let of_seeds: Vec<(usize, [f64; 2])> = line
                 .on(fold)
                 .flat_map(|row| &row.scores.categories)
                 .filter(|scores| scores.category == category)
+                .filter_map(|scores: &CategoryScores| Some((scores.pedestrians, scores.errors(protocol)?)))
                 .collect();
             // Every seed is scored on the same windows.
-            let Some(first) = of_seeds.first() else {
+            let Some(&(first, _)) = of_seeds.first() else {
                 continue;
             };
-            let weight = first.pedestrians as f64 / of_seeds.len() as f64;
-            pedestrians += first.pedestrians;
-            ade += weight * of_seeds.iter().map(|s| s.min_ade).sum::<f64>();
-            fde += weight * of_seeds.iter().map(|s| s.min_fde).sum::<f64>();
+            let weight = first as f64 / of_seeds.len() as f64;
+            pedestrians += first;
+            for (at, sum) in sums.iter_mut().enumerate() {
+                *sum += weight * of_seeds.iter().map(|(_, errors)| errors[at]).sum::<f64>();
+            }
         }
         (pedestrians > 0).then(|| Self {
             pedestrians,
-            min_ade: ade / pedestrians as f64,
-            min_fde: fde / pedestrians as f64,
+            errors: sums.map(|sum| sum / pedestrians as f64),
         })
     }
 }
 
 impl fmt::Display for Pooled {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:.3}/{:.3}", self.min_ade, self.min_fde)
+        let [ade, fde] = self.errors;
+        write!(f, "{ade:.3}/{fde:.3}")
     }
 }

@@ -16,14 +16,15 @@ pub(super) fn pair<T: std::fmt::Display>(ade: Option<T>, fde: Option<T>) -> Stri
     }
 }
 
-/// minADE/minFDE of a line on each fold, then their mean.
+/// The two errors of the protocol of a line on each fold, then their mean.
 pub(super) fn errors(line: &TableLine<'_>, folds: &[&str]) -> Vec<String> {
-    let of_fold = |fold: &&str| pair(line.on_fold(fold, |s| s.min_ade), line.on_fold(fold, |s| s.min_fde));
-    let mean = pair(
-        line.over_folds(folds, |s| s.min_ade),
-        line.over_folds(folds, |s| s.min_fde),
-    );
-    folds.iter().map(of_fold).chain([mean]).collect()
+    let protocol = line.conditions().protocol;
+    let of_fold = |fold: &&str| {
+        let error = |at: usize| line.on_fold(fold, |s| s.errors(protocol)[at]);
+        pair(error(0), error(1))
+    };
+    let mean = |at: usize| line.over_folds(folds, |s| s.errors(protocol)[at]);
+    folds.iter().map(of_fold).chain([pair(mean(0), mean(1))]).collect()
 }
 
 pub(super) fn counts(mut counts: Vec<usize>) -> String {

@@ -1,7 +1,7 @@
 //! The parts of a report and their order.
 
 use ddl_data::Convention;
-use ddl_eval::ResultRow;
+use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::{Document, Part};
 use crate::report::group::{ResultGroup, groups};
@@ -18,16 +18,15 @@ pub(super) fn document(title: &str, rows: &[ResultRow]) -> Document {
     let mut parts: Vec<Part> = groups.iter().flat_map(of_group).collect();
     if !groups.is_empty() {
         parts.push(Part::heading("How to read the tables"));
-        parts.push(Part::List(
-            [
-                metrics::FURTHER_LEGEND,
-                metrics::WHOLE_LEGEND,
-                significance::LEGEND,
-                categories::LEGEND,
-            ]
-            .map(str::to_owned)
-            .to_vec(),
-        ));
+        let scenes = groups.iter().any(|group| group.protocol == Protocol::Joint);
+        let legends = [
+            metrics::FURTHER_LEGEND,
+            metrics::WHOLE_LEGEND,
+            significance::LEGEND,
+            categories::LEGEND,
+        ];
+        let legends = legends.into_iter().chain(scenes.then_some(metrics::JOINT_LEGEND));
+        parts.push(Part::List(legends.map(str::to_owned).collect()));
     }
     parts.extend(deployable::parts(&groups));
     parts.extend(across_protocols::parts(&groups));

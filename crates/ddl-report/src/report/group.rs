@@ -59,7 +59,8 @@ pub(crate) fn order(protocol: Protocol) -> usize {
         Protocol::Single => 1,
         Protocol::Online => 2,
         Protocol::OnlineSingle => 3,
-        Protocol::Published => 4,
+        Protocol::Joint => 4,
+        Protocol::Published => 5,
     }
 }
 
@@ -126,6 +127,11 @@ impl ResultGroup<'_> {
     pub(crate) fn pedestrians(&self, fold: &str) -> Vec<usize> {
         let rows = self.lines.iter().flat_map(|line| line.on(fold));
         rows.map(|row| row.scores.pedestrians).collect()
+    }
+
+    /// The names of the errors in its main table, such as `minADE/minFDE`.
+    pub(crate) fn errors(&self) -> String {
+        self.protocol.errors().join("/")
     }
 
     pub(crate) fn warning(&self) -> Option<Part> {

@@ -1,6 +1,6 @@
 //! Metrics besides minADE and minFDE.
 
-use ddl_eval::Scores;
+use ddl_eval::{JointScores, Protocol, Scores};
 
 use crate::document::{Part, Table};
 use crate::report::cells::{self, NOTHING};
@@ -11,17 +11,15 @@ use crate::report::spread::SeedSpread;
 type MetricColumn = (&'static str, usize, fn(&Scores) -> Option<f64>);
 
 pub(super) const FURTHER_LEGEND: &str = "Further metrics, mean over the folds named. FDE@minADE: FDE of the hypothesis \
-    of least ADE; JADE, JFDE: one hypothesis index for the whole scene; missed: every hypothesis ends more than 0.5 m \
+    of least ADE; missed: every hypothesis ends more than 0.5 m \
     off; collide: discs of radius 0.2 m overlap between the forecasts of protocol `single` (in brackets: between true \
     futures); goal FDE: distance of the nearest goal from the true end; Phi falls: rollouts that come nearer to their \
     goal at every step; certified: rollouts whose Lyapunov certificate holds, the model's step-by-step evidence; to \
     goal: distance left at the end; turn: largest angle between a step and the goal direction; reverse: rollouts that \
     turn by more than 90 degrees; K: hypotheses of each pedestrian.";
 
-const FURTHER: [MetricColumn; 13] = [
+const FURTHER: [MetricColumn; 11] = [
     ("FDE@minADE m", 3, |s| Some(s.fde_at_min_ade)),
-    ("JADE m", 3, |s| Some(s.joint_ade)),
-    ("JFDE m", 3, |s| Some(s.joint_fde)),
     ("missed %", 1, |s| Some(100.0 * s.miss_rate)),
     ("collide %", 1, |s| Some(100.0 * s.collision_rate)),
     ("(true %)", 1, |s| Some(100.0 * s.true_collision_rate)),
@@ -33,6 +31,32 @@ const FURTHER: [MetricColumn; 13] = [
     ("reverse %", 1, |s| s.stability.map(|st| 100.0 * st.reversing)),
     ("K", 0, |s| Some(s.hypotheses as f64)),
 ];
+
+pub(super) const JOINT_LEGEND: &str = "Futures of scenes, mean over the folds named. minADE, minFDE: each pedestrian's \
+    own best future; by window: JADE and JFDE as means over windows, not pedestrians; %: pedestrians whose centres come \
+    closer than 0.4 m to those of another in the same future, mean of all futures, in that of JADE, and in the true \
+    one. CR_mean, CR_JADE and CR of the truth as in Joint Metrics Matter: closer than \
+    0.2 m, share of the pedestrians of a window, mean over windows. People who walk together touch: the true share is \
+    the aim, not 0.";
+
+const JOINT: [MetricColumn; 10] = [
+    ("minADE m", 3, |s| Some(s.min_ade)),
+    ("minFDE m", 3, |s| Some(s.min_fde)),
+    ("JADE by window m", 3, |s| s.joint.map(|joint| joint.ade_windows)),
+    ("JFDE by window m", 3, |s| s.joint.map(|joint| joint.fde_windows)),
+    ("of all futures %", 1, |s| percent(s, |joint| joint.collisions.mean)),
+    ("of the best %", 1, |s| percent(s, |joint| joint.collisions.best)),
+    ("of the true one %", 1, |s| percent(s, |joint| joint.collisions.truth)),
+    ("CR_mean", 3, |s| s.joint.map(|joint| joint.close_collisions.mean)),
+    ("CR_JADE", 3, |s| s.joint.map(|joint| joint.close_collisions.best)),
+    ("CR of the truth", 3, |s| {
+        s.joint.map(|joint| joint.close_collisions.truth)
+    }),
+];
+
+fn percent(scores: &Scores, share: fn(JointScores) -> f64) -> Option<f64> {
+    scores.joint.map(|joint| 100.0 * share(joint))
+}
 
 pub(super) const WHOLE_LEGEND: &str = "The forecast as a whole, mean over the folds named. ADE@minFDE: ADE of the \
     hypothesis of least FDE; expected: weighted mean error of all hypotheses; likely: error of the hypothesis of \
@@ -64,13 +88,14 @@ const WHOLE: [MetricColumn; 13] = [
 ];
 
 pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
+    let joint = (group.protocol == Protocol::Joint).then_some(("Futures of scenes", &JOINT[..]));
     let tables = [("Further metrics", &FURTHER[..]), ("The forecast as a whole", &WHOLE)];
     let part = |(name, columns): (&str, &[MetricColumn])| {
         let caption = format!("{name}. {}", group.conditions_in_words());
         let table = table(group, columns).captioned(caption);
         [Part::subheading(name), Part::Table(table)]
     };
-    tables.into_iter().flat_map(part).collect()
+    joint.into_iter().chain(tables).flat_map(part).collect()
 }
 
 /// One line for each forecaster, one column for each metric, mean over its folds.
@@ -94,7 +119,7 @@ fn table(group: &ResultGroup<'_>, metrics: &[MetricColumn]) -> Table {
 
 /// The mean of the metric with this column name over the folds, without its deviation over the seeds.
 pub(super) fn mean(line: &TableLine<'_>, folds: &[&str], name: &str) -> String {
-    let mut columns = FURTHER.iter().chain(&WHOLE);
+    let mut columns = FURTHER.iter().chain(&WHOLE).chain(&JOINT);
     let column = columns.find(|(column, ..)| *column == name);
     let mean = column.and_then(|&(_, decimals, metric)| {
         let mean = over_folds(line, folds, metric)?.mean;

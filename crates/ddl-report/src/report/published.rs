@@ -39,6 +39,11 @@ pub(super) fn parts(rows: &[ResultRow]) -> Vec<Part> {
         ),
         Part::Table(published_table(&LITERATURE.social_gan_single, 3)),
         Part::subheading("Joint errors on eth in the `social-gan` convention"),
+        Part::Paragraph(
+            "Means over windows of at least one pedestrian: compare with JADE and JFDE by window under `joint`, window \
+             rule `social-gan` (at least 1 pedestrians)."
+                .to_owned(),
+        ),
         Part::Table(social_gan_joint_table()),
         Part::heading("Reference values of baselines"),
         Part::Paragraph(

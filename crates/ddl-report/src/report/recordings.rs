@@ -54,12 +54,13 @@ fn table(group: &ResultGroup<'_>, fold: &str) -> Option<Table> {
     }
     let errors = measured
         .iter()
-        .map(|(_, ResultRow { scores, .. }, _)| pair(Some(rounded(scores.min_ade)), Some(rounded(scores.min_fde))));
+        .map(|(_, row, _)| row.scores.errors(group.protocol).map(|error| Some(rounded(error))))
+        .map(|[ade, fde]| pair(ade, fde));
     let start = ["all".to_owned(), first.scores.pedestrians.to_string()];
     table.row(start.into_iter().chain(errors));
     Some(table.captioned(format!(
-        "minADE/minFDE in metres, mean over the pedestrians of each recording, and of all; of several seeds the first. \
-         {}",
+        "{} in metres, mean over the pedestrians of each recording, and of all; of several seeds the first. {}",
+        group.errors(),
         group.conditions_in_words()
     )))
 }

@@ -1,6 +1,7 @@
 //! The section of one table: its conditions, the table, further tables.
 
 use ddl_data::WindowRule;
+use ddl_eval::Protocol;
 
 use crate::document::{Part, Table};
 use crate::report::cells::{counts, errors};
@@ -16,15 +17,22 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
             format!("Protocol `{}`: {}.", group.protocol, group.protocol.description()),
             format!("Window rule `{}`: {rule}.", group.window_rule),
             format!("Scored: {subset}."),
-            "Cells: minADE/minFDE in metres over the hypotheses of each pedestrian, mean over \
-             pedestrians; `mean`: plain mean of all folds; ±: standard deviation over seeds."
-                .to_owned(),
+            format!(
+                "Cells: {} in metres over the {}, mean over pedestrians; `mean`: plain mean of all folds; ±: standard \
+                 deviation over seeds.",
+                group.errors(),
+                match group.protocol {
+                    Protocol::Joint => "futures of each scene",
+                    _ => "hypotheses of each pedestrian",
+                }
+            ),
             "The other columns: see \"How to read the tables\", below.".to_owned(),
         ]),
     ];
     parts.extend(group.warning());
     parts.push(Part::Table(headline(group).captioned(format!(
-        "minADE/minFDE in metres. {}",
+        "{} in metres. {}",
+        group.errors(),
         group.conditions_in_words()
     ))));
     parts.push(Part::List(conditions(group)));

@@ -17,7 +17,7 @@ pub(super) const LEGEND: &str = "How sure the means are: the brackets give the 9
 
 type BlockMetric = fn(&BlockErrors) -> f64;
 
-/// minADE and minFDE, summed over a block.
+/// The errors of the protocol, summed over a block.
 const METRICS: [BlockMetric; 2] = [|block| block.min_ade, |block| block.min_fde];
 
 /// Intervals of every line that has errors by block, and its difference from a reference line: the first trained line
@@ -35,14 +35,15 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     let Some((reference, name)) = trained.or(first) else {
         return Vec::new();
     };
+    let [ade, fde] = group.protocol.errors();
     let mut table = Table::new([
         "forecaster".to_owned(),
         "folds".to_owned(),
-        "minADE m".to_owned(),
-        "minFDE m".to_owned(),
-        format!("minADE - {name} m"),
+        format!("{ade} m"),
+        format!("{fde} m"),
+        format!("{ade} - {name} m"),
         "p".to_owned(),
-        format!("minFDE - {name} m"),
+        format!("{fde} - {name} m"),
         "p".to_owned(),
     ])
     .text_column("folds");
@@ -69,7 +70,7 @@ pub(super) fn parts(group: &ResultGroup<'_>) -> Vec<Part> {
     ]
 }
 
-/// The mean minADE and minFDE of a line over its folds, each with its 95 % interval.
+/// The mean errors of a line over its folds, each with its 95 % interval.
 pub(super) fn intervals(line: &TableLine<'_>, folds: &[&str]) -> [String; 2] {
     let measured = MeasuredLine::of(line, folds);
     measured.map_or([NOTHING; 2].map(str::to_owned), |line| line.intervals())

@@ -5,7 +5,7 @@ use ddl_eval::{Protocol, ResultRow};
 
 use crate::document::Table;
 use crate::literature;
-use crate::report::cells::{counts, pair};
+use crate::report::cells::{counts, errors, pair};
 use crate::report::group::{ResultGroup, TableLine, groups};
 use crate::report::spread::SeedSpread;
 use crate::report::{deployable, metrics, significance};
@@ -16,6 +16,9 @@ const LEFT_OUT: [&str; 3] = [
     "on the way that its network shapes",
     "constant acceleration (bounded)",
 ];
+
+/// Columns of the table of scenes, by their names in the full tables.
+const COLLISIONS: [&str; 3] = ["of all futures %", "of the best %", "of the true one %"];
 
 /// Columns of the second table, by their names in the full tables.
 const METRICS: [&str; 7] = [
@@ -30,23 +33,21 @@ const METRICS: [&str; 7] = [
 
 pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
     let groups = groups(rows);
+    let is_headline =
+        |group: &ResultGroup<'_>| group.convention == convention && group.window_rule == convention.headline_rule();
     let shown: Vec<&ResultGroup<'_>> = groups
         .iter()
-        .filter(|group| {
-            group.convention == convention
-                && group.window_rule == convention.headline_rule()
-                && group.protocol != Protocol::Published
-        })
+        .filter(|group| is_headline(group) && ![Protocol::Published, Protocol::Joint].contains(&group.protocol))
         .collect();
     let folds = shown.first()?.folds();
     let columns = [&["forecaster", "protocol"], &folds[..], &["mean"]].concat();
-    let mut errors = Table::new(columns).text_column("protocol");
+    let mut by_fold = Table::new(columns).text_column("protocol");
     let columns = [&["forecaster", "protocol", "minADE m", "minFDE m"][..], &METRICS].concat();
     let mut others = Table::new(columns).text_column("protocol");
 
     let pedestrians = folds.iter().map(|fold| counts(shown[0].pedestrians(fold)));
     let start = ["pedestrians scored".to_owned(), String::new()];
-    errors.row(start.into_iter().chain(pedestrians));
+    by_fold.row(start.into_iter().chain(pedestrians));
     let mut seen = Vec::new();
     for group in &shown {
         for (line, label) in group.labelled() {
@@ -62,7 +63,7 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
             let present = line.present(&folds);
             let means = METRICS.map(|name| metrics::mean(line, &present, name));
             others.row(start.iter().cloned().chain(intervals).chain(means));
-            errors.row(start.into_iter().chain(cells));
+            by_fold.row(start.into_iter().chain(cells));
         }
     }
     if let Some(best) = literature::best(convention) {
@@ -73,16 +74,33 @@ pub(super) fn of(rows: &[ResultRow], convention: Convention) -> Option<String> {
         };
         let cells = folds.iter().filter_map(published).chain([&best.mean]);
         let cells = cells.map(|[ade, fde]| format!("{ade:.2}/{fde:.2}"));
-        errors.row(start.into_iter().chain(cells));
+        by_fold.row(start.into_iter().chain(cells));
     }
     let fair = shown.iter().find(|group| group.protocol == Protocol::Fair);
     let deployable = fair.and_then(|fair| deployable::table(fair, &groups));
     let deployable = deployable.map_or(String::new(), |table| {
         format!("\nOne path without the truth, ADE/FDE in metres (CVaR95 of the ADE):\n\n{table:#}")
     });
+    let mut groups = groups.iter();
+    let scenes = groups.find(|group| is_headline(group) && group.protocol == Protocol::Joint);
+    let scenes = scenes.map_or(String::new(), of_scenes);
     Some(format!(
-        "minADE/minFDE in metres:\n\n{errors:#}\nMean over the folds, with 95 % intervals:\n\n{others:#}{deployable}"
+        "minADE/minFDE in metres:\n\n{by_fold:#}\nMean over the folds, with 95 % intervals:\n\n{others:#}{deployable}\
+         {scenes}"
     ))
+}
+
+/// The futures of whole scenes.
+fn of_scenes(group: &ResultGroup<'_>) -> String {
+    let folds = group.folds();
+    let end = [&["mean"][..], &COLLISIONS].concat();
+    let mut table = Table::of_folds(&["forecaster"], &folds, &end);
+    for (line, label) in group.labelled() {
+        let present = line.present(&folds);
+        let collisions = COLLISIONS.map(|name| metrics::mean(line, &present, name));
+        table.row([label].into_iter().chain(errors(line, &folds)).chain(collisions));
+    }
+    format!("\nFutures of whole scenes, {} in metres:\n\n{table:#}", group.errors())
 }
 
 /// minADE/minFDE of each fold without their deviation, which would double the width of the table, then their mean with

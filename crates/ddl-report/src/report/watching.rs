@@ -47,7 +47,7 @@ fn watched(group: &ResultGroup<'_>, groups: &[ResultGroup<'_>]) -> Vec<Watched> 
     let without = match group.protocol {
         Protocol::Online => Protocol::Fair,
         Protocol::OnlineSingle => Protocol::Single,
-        Protocol::Published | Protocol::Fair | Protocol::Single => return Vec::new(),
+        _ => return Vec::new(),
     };
     let mut others = groups.iter();
     let Some(other) = others.find(|g| g.protocol == without && g.same_windows(group)) else {

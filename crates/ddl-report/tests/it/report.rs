@@ -1,5 +1,6 @@
 //! The content of a report, and the separation of numbers that are not comparable.
 
+mod scenes;
 mod summary;
 mod wording;
 
@@ -19,8 +20,8 @@ fn scores(min_ade: f64) -> Scores {
         min_ade,
         min_fde: 2.0 * min_ade,
         fde_at_min_ade: 2.0 * min_ade,
-        joint_ade: min_ade,
-        joint_fde: min_ade,
+        joint_ade: 2.0 * min_ade,
+        joint_fde: 3.0 * min_ade,
         miss_rate: 0.25,
         collision_rate: 0.1,
         true_collision_rate: 0.0,
@@ -78,6 +79,8 @@ fn turning(pedestrians: usize, min_ade: f64) -> Vec<CategoryScores> {
         most_likely_ade: min_ade,
         most_likely_fde: min_ade,
         collision_rate: 0.0,
+        joint_ade: Some(3.0 * min_ade),
+        joint_fde: Some(4.0 * min_ade),
     }]
 }
 

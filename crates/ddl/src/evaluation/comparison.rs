@@ -74,7 +74,7 @@ pub fn compare_on_validation(
                 return Err(DdlError::Interrupted);
             }
         }
-        Ok(block_errors(&windows, &forecasts)?)
+        Ok(block_errors(Protocol::Fair, &windows, &forecasts)?)
     };
     let (of_run, of_other) = (measured(run)?, measured(other)?);
     Ok(Comparison {

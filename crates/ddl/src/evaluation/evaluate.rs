@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 
 const PEDESTRIANS_PER_REPORT: usize = 128;
 /// Protocols that show only the windows.
-const ALONE: [Protocol; 2] = [Protocol::Fair, Protocol::Single];
+const ALONE: [Protocol; 3] = [Protocol::Fair, Protocol::Single, Protocol::Joint];
 /// Protocols that also show the recording before the last observed frame of a window.
 const WATCHING: [Protocol; 2] = [Protocol::Online, Protocol::OnlineSingle];
 /// The goals of the straight lines, without the protocol `published`.
@@ -79,6 +79,8 @@ pub struct Evaluation {
     pub rows: Vec<ResultRow>,
     /// Windows for display with the model's `fair` forecasts, under the headline rule; empty without that protocol.
     pub moments: Vec<ForecastSnapshot>,
+    /// Windows of the widest rule with the model's futures of their scenes; empty without the protocol `joint`.
+    pub scenes: Vec<(Window, Forecast)>,
 }
 
 /// Evaluates the model and the baselines on the test windows of the model's fold.
@@ -129,10 +131,7 @@ pub fn evaluate(
         let windows = remembering(Remembering::Online)?;
         rows.extend(measuring.without_future(&WATCHING, &windows)?.rows);
     }
-    Ok(Evaluation {
-        rows,
-        moments: results.moments,
-    })
+    Ok(Evaluation { rows, ..results })
 }
 
 /// The model's own goals for a variant; `None` for the published goals, which another estimator makes.
@@ -198,6 +197,7 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 match variant.motion {
                     VariantMotion::Shaped(integrator) => model.forecast_towards(windows, goals, integrator),
                     VariantMotion::Neutral => model.forecast_neutral(windows, goals),
+                    VariantMotion::Scenes => model.forecast_scenes(windows, None),
                 }
             };
             Ok(Forecasts {
@@ -209,16 +209,18 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
                 },
             })
         })?;
-        let mut rows = Vec::new();
+        let mut evaluation = Evaluation::default();
         for &protocol in &protocols {
-            rows.extend(self.rows_of(protocol, &variants, &forecasts)?);
+            evaluation.rows.extend(self.rows_of(protocol, &variants, &forecasts)?);
         }
-        let moments = if protocols.contains(&Protocol::Fair) {
-            self.moments(&forecasts.model[0])?
-        } else {
-            Vec::new()
-        };
-        Ok(Evaluation { rows, moments })
+        if protocols.contains(&Protocol::Fair) {
+            evaluation.moments = self.moments(&forecasts.model[0])?;
+        }
+        let is_scenes = |variant: &EvaluationVariant| matches!(variant.motion, VariantMotion::Scenes);
+        if let Some(at) = variants.iter().position(is_scenes) {
+            evaluation.scenes = self.scenes(&forecasts.model[at]);
+        }
+        Ok(evaluation)
     }
 
     /// The rows of one protocol.
@@ -250,6 +252,12 @@ impl<O: FnMut(&EvaluationProgress) -> ControlFlow<()>> Measuring<'_, O> {
         }
         let selection = words::selection(model.config().patience);
         self.rows(protocol, selection).of(&named_forecasts)
+    }
+
+    fn scenes(&self, forecasts: &[Forecast]) -> Vec<(Window, Forecast)> {
+        let widest = self.test.rules.last().map_or(&[][..], |(_, indices)| indices);
+        let scene = |&at: &usize| (self.test.windows[at].clone(), forecasts[at].clone());
+        widest.iter().map(scene).collect()
     }
 
     /// Windows for display, from the model's forecasts for each window of the test set.

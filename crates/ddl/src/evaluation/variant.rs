@@ -36,6 +36,8 @@ pub(crate) enum VariantMotion {
     Shaped(PathIntegrator),
     /// The neutral motion.
     Neutral,
+    /// The model's futures of the whole scene, to their goals.
+    Scenes,
 }
 
 /// Describes the memory under a protocol. The text is the same for all folds of a convention, because they share a line
@@ -90,6 +92,9 @@ impl EvaluationVariant {
             add(protocol, GivenGoals::Central, VariantMotion::Neutral, None);
         }
         let said = |change: &str| Some(change.to_owned());
+        add(Protocol::Joint, GivenGoals::Own, VariantMotion::Scenes, None);
+        let change = said("with its hypotheses by weight, as one future each");
+        add(Protocol::Joint, GivenGoals::Own, stable, change);
         // Plain steps diverge for a network that was trained on whole paths of the stable integrator.
         let learned_on_plain_steps = model.config().training.objective == Objective::NextStep;
         if network.dynamics() && learned_on_plain_steps {

@@ -30,8 +30,8 @@ pub(super) struct PlanOptions {
     /// attention), or all
     #[arg(long, value_delimiter = ',', value_name = "NAMES", default_value = "full")]
     variants: Vec<String>,
-    /// Protocols to score under: published, fair, single, online, online-single; with published the models are trained
-    /// by the paper's recipe, otherwise by the recommended one, which keeps only the last epoch
+    /// Protocols to score under: published, fair, single, online, online-single, joint; with published the models are
+    /// trained by the paper's recipe, otherwise by the recommended one, which keeps only the last epoch
     #[arg(
         long = "protocol",
         value_delimiter = ',',

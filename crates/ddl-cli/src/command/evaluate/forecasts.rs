@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub(crate) struct OtherProgram {
     /// Instead of a model: another program's forecasts of the lines of `ddl windows` (docs/your-model.md)
     ///
-    /// The extension selects the format: jsonl, csv, or ndjson for TrajNet++.
+    /// The extension selects the format: jsonl, csv, or ndjson for TrajNet++. A folder has sample files.
     #[arg(
         long,
         value_name = "FILE",
@@ -73,8 +73,12 @@ impl OtherProgram {
         } else {
             Coverage::Whole
         };
-        let matched = external::read(file, ExternalFormat::of_file(file), &windows, coverage)
-            .map_err(|error| named(error, &(convention, &fold, rule)))?;
+        let matched = if file.is_dir() {
+            external::read_samples(file, &windows, coverage)
+        } else {
+            external::read(file, ExternalFormat::of_file(file), &windows, coverage)
+        };
+        let matched = matched.map_err(|error| named(error, &(convention, &fold, rule)))?;
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let name = self.name.as_deref().unwrap_or(&stem);
         let mut rows = Vec::new();
