@@ -121,7 +121,7 @@ impl Forecaster for Scenes<'_> {
     }
 
     fn forecast_all(&self, windows: &[Window]) -> Result<Vec<Forecast>, ForecastError> {
-        self.0.forecast_scenes(windows)
+        self.0.forecast_scenes(windows, None)
     }
 }
 

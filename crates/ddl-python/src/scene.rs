@@ -100,9 +100,10 @@ pub(crate) fn clearances<'py>(
 pub(crate) fn occupancy<'py>(
     py: Python<'py>,
     joint: JointArrays<'py>,
-    (cell, every, radius, margin): (f64, f64, f64, f64),
+    options: (f64, f64, f64, f64),
     area: Option<[f64; 4]>,
 ) -> PyResult<(Py<PyAny>, Vec<f64>, [f64; 2])> {
+    let (cell, every, radius, margin) = options;
     let futures = futures(&joint)?;
     let area = match area {
         Some([x0, y0, x1, y1]) => Area::new([x0, y0], [x1, y1], cell),
