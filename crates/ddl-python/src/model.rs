@@ -173,6 +173,7 @@ impl Model {
 
     /// Forecasts each moment of the recording with pedestrians to forecast, or only the last of them. Also returns text
     /// about doubtful positions.
+    #[expect(clippy::fn_params_excessive_bools, reason = "switches of a Python function")]
     #[pyo3(signature = (recording, last, samples, whole, max_age, every, certificates, joint))]
     fn forecast_recording<'py>(
         &self,

@@ -52,18 +52,27 @@ fn futures((past, paths, weights, spread): &JointArrays<'_>) -> PyResult<Futures
     Futures::new(&window, forecast).map_err(of_any)
 }
 
-/// For p plans: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step and until its end `(p, 12)`.
+/// For p plans, which pedestrians see or not: the risk of each `(p,)`, of each pedestrian `(p, n)`, during each step and until its end `(p, 12)`.
 #[pyfunction]
 pub(crate) fn risks<'py>(
     py: Python<'py>,
     joint: JointArrays<'py>,
     plans: Vec<PyReadonlyArray2<'py, f64>>,
     within: f64,
+    ego: Option<usize>,
+    seen: bool,
 ) -> PyResult<[Py<PyAny>; 4]> {
     let futures = futures(&joint)?;
     let plans = plans.iter().map(plan).collect::<PyResult<Vec<_>>>()?;
     let (count, people) = (plans.len(), futures.pedestrians());
-    let risks = run(py, move |_| futures.risks(&plans, within))?.map_err(of_any)?;
+    let risks = run(py, move |_| {
+        if seen {
+            futures.risks_if_seen(&plans, within, ego)
+        } else {
+            futures.risks(&plans, within, ego)
+        }
+    })?;
+    let risks = risks.map_err(of_any)?;
     let of_each = risks.iter().flat_map(|risk| risk.pedestrians.clone());
     Ok([
         array(py, risks.iter().map(|risk| risk.total).collect(), [count])?,

@@ -67,7 +67,7 @@ fn risk(criterion: &mut Criterion) {
         .build()
         .expect("a thread");
     criterion.bench_function("risks of 1000 plans", |b| {
-        b.iter(|| one.install(|| futures.risks(black_box(&plans), 0.3)));
+        b.iter(|| one.install(|| futures.risks(black_box(&plans), 0.3, None)));
     });
     criterion.bench_function("clearance of 1 plan", |b| {
         b.iter(|| futures.clearances(black_box(&plans[..1])));

@@ -23,6 +23,19 @@ use std::sync::LazyLock;
 pub(crate) struct Energy {
     conflict: Conflict,
     together: Together,
+    avoidance: Avoidance,
+}
+
+/// How strongly people keep away from a plan that they see: logarithms by which the odds are divided that they come
+/// within these distances.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Avoidance {
+    /// Metres, ascending.
+    within: [f64; 4],
+    strangers: [f64; 4],
+    /// Those who walk with whoever follows the plan.
+    companions: [f64; 4],
 }
 
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -71,6 +84,26 @@ impl Energy {
     pub(crate) fn learned() -> &'static Self {
         #[expect(clippy::expect_used, reason = "the file is part of the program, and a test reads it")]
         LEARNED.as_ref().expect("energy.json holds the constants")
+    }
+
+    /// By what odds are divided that strangers and companions come within a distance (m) of a plan that they see.
+    pub(crate) fn avoidance(&self, within: f64) -> [f64; 2] {
+        let Avoidance {
+            within: at,
+            strangers,
+            companions,
+        } = &self.avoidance;
+        let next = at.partition_point(|at| *at <= within).min(at.len() - 1);
+        let [from, to] = [next.saturating_sub(1), next];
+        let share = if to > from {
+            (within - at[from]) / (at[to] - at[from])
+        } else {
+            0.0
+        };
+        [strangers, companions].map(|logarithms| {
+            let logarithm = logarithms[from] + share.clamp(0.0, 1.0) * (logarithms[to] - logarithms[from]);
+            logarithm.exp()
+        })
     }
 
     /// Least distance (m) of two paths at which no pair has a conflict.

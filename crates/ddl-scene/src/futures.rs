@@ -1,6 +1,7 @@
 //! The joint futures of a scene: where everybody is in each of them.
 
 use crate::error::SceneError;
+use crate::groups::groups;
 use ddl_core::{Forecast, HORIZON, OBSERVED, Position, TIME_STEP, Window, between};
 
 /// Two pedestrians have the same weight of a future if the weights differ by at most this much.
@@ -12,6 +13,7 @@ const EQUAL_WEIGHTS: f64 = 1e-9;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Futures {
     present: Vec<Position>,
+    groups: Vec<Vec<usize>>,
     forecast: Forecast,
 }
 
@@ -41,17 +43,16 @@ impl Futures {
             }
         }
         let present = (0..window.len()).map(|i| window.observed(i)[OBSERVED - 1]).collect();
-        Ok(Self { present, forecast })
+        Ok(Self {
+            present,
+            groups: groups(window),
+            forecast,
+        })
     }
 
-    /// The futures of all but pedestrian `i`, as when it is the robot; `None` if nobody is left.
-    #[must_use]
-    pub fn without(&self, i: usize) -> Option<Self> {
-        let others: Vec<usize> = (0..self.pedestrians()).filter(|&other| other != i).collect();
-        (!others.is_empty()).then(|| Self {
-            present: others.iter().map(|&i| self.present[i]).collect(),
-            forecast: self.forecast.of_pedestrians(&others),
-        })
+    /// [Groups](crate::groups) of pedestrians who walk together, as indices.
+    pub fn groups(&self) -> &[Vec<usize>] {
+        &self.groups
     }
 
     /// The forecast: hypothesis k of every pedestrian is future k.

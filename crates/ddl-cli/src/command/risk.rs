@@ -9,7 +9,7 @@ use anyhow::Context as _;
 use clap::Args;
 use ddl::Ddl;
 use ddl::data::{Clock, FrameNumber, HORIZON, PedestrianName, SceneName, TIME_STEP, Window};
-use ddl::scene::{Clearance, Futures, Plan, Risk};
+use ddl::scene::{Clearance, Futures, Plan};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -39,8 +39,11 @@ pub(crate) struct RiskCommand {
     /// The pedestrian of the tracks who follows the plans: it is no risk to itself [default: none of them]
     #[arg(long, value_name = "NAME")]
     ego: Option<String>,
-    /// Add the expected least distance, which takes some 10 ms for each plan
+    /// People do not see who follows the plan; otherwise they keep away as from a pedestrian
     #[arg(long)]
+    unseen: bool,
+    /// Add the expected least distance, which takes some 10 ms for each plan
+    #[arg(long, conflicts_with = "ego")]
     nearest: bool,
     /// Format: csv (one row per moment and plan, with the risk until each step) or jsonl (also of each pedestrian)
     #[arg(long, value_enum, default_value = "csv")]
@@ -78,22 +81,6 @@ impl RiskCommand {
         // Faults of the plans show before the model is loaded.
         read_plans(&self.plan)?;
         answer(&self)
-    }
-
-    /// The names of the others, and their futures.
-    fn others(
-        &self,
-        window: &Window,
-        forecast: ddl::Forecast,
-    ) -> anyhow::Result<(Vec<PedestrianName>, Option<Futures>)> {
-        let ego = self.ego(window);
-        let names = (0..window.len()).filter(|&i| Some(i) != ego);
-        let names = names.map(|i| window.name(i)).collect();
-        let futures = Futures::new(window, forecast)?;
-        Ok(match ego {
-            None => (names, Some(futures)),
-            Some(ego) => (names, futures.without(ego)),
-        })
     }
 
     fn ego(&self, window: &Window) -> Option<usize> {
@@ -183,21 +170,19 @@ impl Answer for RiskCommand {
         let mut lines = Vec::new();
         for moment in &moments {
             self.tell_doubts(moment.window, &plans, state);
-            let (names, futures) = self.others(moment.window, moment.forecast.clone())?;
-            let risks = futures
-                .as_ref()
-                .map(|futures| futures.risks(&plans, self.within))
-                .transpose()?;
-            let clearances = match (&futures, self.nearest) {
-                (Some(futures), true) => Some(futures.clearances(&plans)?),
-                _ => None,
+            let ego = self.ego(moment.window);
+            let futures = Futures::new(moment.window, moment.forecast.clone())?;
+            let risks = if self.unseen {
+                futures.risks(&plans, self.within, ego)?
+            } else {
+                futures.risks_if_seen(&plans, self.within, ego)?
             };
+            let clearances = self.nearest.then(|| futures.clearances(&plans)).transpose()?;
             for (index, NamedPlan { name, .. }) in named.iter().enumerate() {
-                let nobody = Risk::none();
-                let risk = risks.as_ref().map_or(&nobody, |risks| &risks[index]);
+                let risk = &risks[index];
                 let clearance = clearances.as_ref().map(|clearances| &clearances[index]);
                 let of_each = |i: usize| clearance.map(|clearance: &Clearance| clearance.pedestrians[i]);
-                let pedestrians = names.iter().zip(&risk.pedestrians).enumerate();
+                let pedestrians = risk.pedestrians.iter().enumerate().filter(|(i, _)| Some(*i) != ego);
                 lines.push(PlanLine {
                     scene: moment.scene,
                     observed_until: moment.observed_until(),
@@ -208,8 +193,8 @@ impl Answer for RiskCommand {
                     steps: risk.steps,
                     until: risk.until,
                     pedestrians: pedestrians
-                        .map(|(i, (name, &risk))| PedestrianRisk {
-                            pedestrian: name.clone(),
+                        .map(|(i, &risk)| PedestrianRisk {
+                            pedestrian: moment.window.name(i),
                             risk,
                             nearest: of_each(i),
                         })

@@ -187,7 +187,9 @@ class Forecast:
         futures: Floats = self.paths.transpose(1, 0, 2, 3)
         return futures
 
-    def risk(self, plans: ArrayLike | Sequence[ArrayLike], within: float = 0.5, *, ego: Hashable = None) -> Risk:
+    def risk(
+        self, plans: Sequence[ArrayLike] | Floats, within: float = 0.5, *, ego: Hashable = None, seen: bool = True
+    ) -> Risk:
         """Probabilities that somebody comes within ``within`` metres of plans, during the next 4.8 s.
 
         Parameters
@@ -199,21 +201,25 @@ class Forecast:
             Distance from the edge of a plan, metres.
         ego
             Id of the pedestrian who follows the plans, and is no risk to itself; None: none of them.
+        seen
+            Whether people see who follows the plan, and keep away as from a pedestrian.
         """
-        joint, rows = self._arrays(ego)
-        n = len(self)
-        if not rows.any():
-            count = len(list(plans))  # type: ignore[arg-type]
-            return Risk(np.zeros(count), np.zeros((count, n)), np.zeros((count, 12)), np.zeros((count, 12)))
-        total, people, steps, until = _core.risks(joint, [plan_rows(plan) for plan in plans], within)  # type: ignore[union-attr]
-        of_each = np.zeros((len(total), n))
+        joint, rows = self._arrays()
+        row = None
+        if ego is not None:
+            found = np.flatnonzero(self.ids[rows] == ego)
+            if found.size == 0:
+                raise ValueError(f"ego {ego!r} is not among the pedestrians that could be forecast")
+            row = int(found[0])
+        total, people, steps, until = _core.risks(joint, [plan_rows(plan) for plan in plans], within, row, seen)
+        of_each = np.zeros((len(total), len(self)))
         of_each[:, rows] = people
         return Risk(total, of_each, steps, until)
 
-    def nearest(self, plans: ArrayLike | Sequence[ArrayLike], *, ego: Hashable = None) -> tuple[Floats, Floats]:
+    def nearest(self, plans: Sequence[ArrayLike] | Floats) -> tuple[Floats, Floats]:
         """Expected least distance of plans from everybody (p,) and from each pedestrian (p, n), metres."""
-        joint, rows = self._arrays(ego)
-        nearest, people = _core.clearances(joint, [plan_rows(plan) for plan in plans])  # type: ignore[union-attr]
+        joint, rows = self._arrays()
+        nearest, people = _core.clearances(joint, [plan_rows(plan) for plan in plans])
         of_each = np.full((len(nearest), len(self)), np.nan)
         of_each[:, rows] = people
         return nearest, of_each
@@ -238,7 +244,7 @@ class Forecast:
         area
             Lowest x and y, largest x and y, metres; default: all paths and ``margin`` around them.
         """
-        joint, _ = self._arrays(None)
+        joint, _ = self._arrays()
         grids, times, origin = _core.occupancy(joint, (cell, every, radius, margin), area)
         return Occupancy(grids, np.array(times), cell, np.array(origin))
 
@@ -246,14 +252,12 @@ class Forecast:
         if not self.joint:
             raise ValueError("this forecast is of single pedestrians: make it with joint=True")
 
-    def _arrays(self, ego: Hashable) -> tuple[tuple[Floats, Floats, Floats, Floats], Flags]:
-        """The arrays of the valid pedestrians but ``ego``, and which they are."""
+    def _arrays(self) -> tuple[tuple[Floats, Floats, Floats, Floats], Flags]:
+        """The arrays of the valid pedestrians, and which they are."""
         self._ensure_joint()
         if self.spread is None:
             raise ValueError("this forecast has no spread: only the 20 futures of a model have it")
-        rows = self.valid.copy()
-        if ego is not None:
-            rows &= self.ids != ego
+        rows = self.valid
         parts = [np.ascontiguousarray(each[rows]) for each in (self.past, self.paths, self.weights, self.spread)]
         return (parts[0], parts[1], parts[2], parts[3]), rows
 

@@ -21,7 +21,10 @@ struct Case {
 }
 
 fn one(futures: &Futures, plan: &Plan, within: f64) -> Risk {
-    futures.risks(std::slice::from_ref(plan), within).unwrap().remove(0)
+    futures
+        .risks(std::slice::from_ref(plan), within, None)
+        .unwrap()
+        .remove(0)
 }
 
 fn close(a: &[f64], b: &[f64], tolerance: f64) -> bool {
@@ -84,7 +87,7 @@ fn a_standing_pedestrian_has_the_closed_form() {
 fn what_cannot_be_asked_is_refused() {
     let futures = futures(&[[0.0; 2]], &[vec![[1.0, 0.0]]], &[1.0], &[0.5]);
     for within in [-0.1, f64::NAN, f64::INFINITY] {
-        let refused = futures.risks(&[], within).unwrap_err().to_string();
+        let refused = futures.risks(&[], within, None).unwrap_err().to_string();
         assert!(
             refused.starts_with("the distance that counts as close is "),
             "{refused}"
@@ -93,7 +96,7 @@ fn what_cannot_be_asked_is_refused() {
     let window = Window::new("yard", 0, 10, vec![ddl_core::PedestrianId(1)], vec![vec![[0.0; 2]; 8]]).unwrap();
     let bare = Forecast::with_equal_weights(1, 1, vec![[0.0; 2]; 12]).unwrap();
     let bare = Futures::new(&window, bare).unwrap();
-    assert_eq!(bare.risks(&[], 0.5), Err(SceneError::NoSpread));
+    assert_eq!(bare.risks(&[], 0.5, None), Err(SceneError::NoSpread));
     assert_eq!(bare.clearances(&[]), Err(SceneError::NoSpread));
 }
 
@@ -166,7 +169,7 @@ proptest! {
         prop_assert!(risk.steps.iter().zip(&risk.until).all(|(step, until)| *step <= until + 1e-12));
         // One by one or together, and for equal plans: the same bits.
         let plans = [wider.clone(), first.clone(), first];
-        let together = crowd.risks(&plans, within).unwrap();
+        let together = crowd.risks(&plans, within, None).unwrap();
         prop_assert_eq!(&together[1..], &[risk.clone(), risk.clone()]);
         prop_assert_eq!(&together[0], &one(&crowd, &wider, within));
         let (mut starts, mut velocities, mut scales) = (starts, velocities, scales);
