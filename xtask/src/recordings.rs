@@ -165,18 +165,16 @@ pub(crate) fn bring_in_for(workspace: &Workspace, asked: Option<&str>, data: Opt
     let manifest = Manifest::load(workspace)?;
     for convention in RECORDED {
         let entry = manifest.entry(convention)?;
-        // A report also shows baselines of the convention that was not asked for, from either folder.
-        for place in [data, None] {
-            if let Ok(folder) = entry.locate(workspace, convention, place) {
-                entry.check(&folder)?;
-            }
+        if asked.is_some_and(|asked| asked != convention) {
+            continue;
         }
-        if asked.is_none_or(|asked| asked == convention) {
-            match entry.obtain(workspace, convention, asked, data) {
-                Ok(folder) => eprintln!("{convention}: its files are in {}, hashes verified", folder.display()),
-                Err(error) if asked.is_some() => return Err(error),
-                Err(error) => eprintln!("{convention}: {error:#}"),
-            }
+        if let Ok(folder) = entry.locate(workspace, convention, data) {
+            entry.check(&folder)?;
+        }
+        match entry.obtain(workspace, convention, asked, data) {
+            Ok(folder) => eprintln!("{convention}: its files are in {}, hashes verified", folder.display()),
+            Err(error) if asked.is_some() => return Err(error),
+            Err(error) => eprintln!("{convention}: {error:#}"),
         }
     }
     Ok(())

@@ -110,8 +110,7 @@ fn what_cannot_be_had_is_an_error_and_wrong_files_are_neither_used_nor_replaced(
     }
     for place in [&data, &beside] {
         assert!(message(place).contains("8 of 8 files"), "{}", message(place));
-        // Also if another convention or a folder is asked for.
-        for asked in [None, Some("star"), Some("social-gan")] {
+        for asked in [None, Some("star")] {
             let error = bring_in_for(&workspace, asked, Some(place)).unwrap_err().to_string();
             assert!(error.contains("8 of 8 files"), "{asked:?}: {error}");
         }

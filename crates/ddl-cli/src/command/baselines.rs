@@ -4,7 +4,7 @@ use crate::command::test_windows::NO_WINDOW;
 use crate::command::{RecordingsAt, Reporting, at_least_one};
 use anyhow::ensure;
 use clap::Args;
-use ddl::data::{Convention, Dataset};
+use ddl::data::Convention;
 use ddl::report::Report;
 use ddl::{BaselineRequest, Protocol, Results};
 use std::path::PathBuf;
@@ -50,7 +50,8 @@ impl Baselines {
             test_pedestrians: self.test_pedestrians,
             commit: self.reporting.commit.clone(),
         };
-        let report = measure(&dataset, &request)?;
+        let title = format!("Baselines: {}", self.convention);
+        let report = Report::new(title, ddl::measure_baselines(&dataset, &request)?)?;
         ensure!(!report.rows().is_empty(), NO_WINDOW);
         let rest = match &self.out {
             Some(folder) => {
@@ -61,10 +62,4 @@ impl Baselines {
         };
         self.reporting.print(&report, &rest)
     }
-}
-
-pub(super) fn measure(dataset: &Dataset, request: &BaselineRequest) -> anyhow::Result<Report> {
-    let rows = ddl::measure_baselines(dataset, request)?;
-    let title = format!("Baselines: {}", dataset.convention());
-    Ok(Report::new(title, rows)?)
 }

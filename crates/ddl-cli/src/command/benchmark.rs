@@ -204,8 +204,8 @@ impl Benchmark {
     fn report(&self, plan: &Plan, out: &Path) -> anyhow::Result<()> {
         let (finished, missing): (Vec<&Task>, Vec<&Task>) =
             plan.tasks.iter().partition(|task| Record::of(task, out).is_some());
-        let runs = finished.iter().map(|task| task.run_folder(out)).collect();
-        report::write(plan, runs, out, &self.reporting)?;
+        let runs: Vec<PathBuf> = finished.iter().map(|task| task.run_folder(out)).collect();
+        report::write(plan, &runs, out, &self.reporting)?;
         let names: Vec<&str> = missing.iter().map(|task| task.id.as_str()).collect();
         ensure!(
             names.is_empty(),

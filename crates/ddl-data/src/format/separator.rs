@@ -49,19 +49,6 @@ impl Separator {
         }
     }
 
-    /// One field of a line, as [`fields`](Self::fields) gives it.
-    pub(super) fn field(self, text: &str, index: usize) -> Option<Cow<'_, str>> {
-        let plain = || text.trim_end_matches(['\r', '\n']);
-        match self {
-            Self::Blanks => text
-                .split_ascii_whitespace()
-                .nth(index)
-                .map(|field| field.trim_matches('"').into()),
-            _ if !text.contains('"') => plain().split(self.letter()).nth(index).map(|field| field.trim().into()),
-            _ => self.fields(text, 1, "").ok()?.into_iter().nth(index),
-        }
-    }
-
     /// The fields of a line, without blanks around them and quotes.
     pub(super) fn fields<'a>(self, text: &'a str, line: usize, origin: &str) -> Result<Vec<Cow<'a, str>>, FormatError> {
         let mut fields = Vec::new();
@@ -133,10 +120,7 @@ mod tests {
             separator in prop_oneof![Just(Separator::Comma), Just(Separator::Semicolon)],
         ) {
             let fields = separator.fields(&text, 1, "t").unwrap();
-            prop_assert_eq!(&fields, &separator.quoted_fields(&text, 1, "t").unwrap());
-            for (index, field) in fields.iter().enumerate() {
-                prop_assert_eq!(separator.field(&text, index), Some(field.clone()));
-            }
+            prop_assert_eq!(fields, separator.quoted_fields(&text, 1, "t").unwrap());
         }
     }
 }

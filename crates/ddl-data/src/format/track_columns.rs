@@ -218,7 +218,10 @@ impl TrackColumns {
     ) -> Result<Vec<TrackRow>, FormatError> {
         if self.header.time == TimeColumn::Time {
             let mut times = rows.clone().filter(|(_, text)| !is_comment(text));
-            let time = times.find_map(|(_, text)| self.separator.field(text, self.header.frame));
+            let time = times.find_map(|(line, text)| {
+                let fields = self.separator.fields(text, line, origin).ok()?;
+                fields.into_iter().nth(self.header.frame)
+            });
             self.look_at(time.map(Cow::into_owned).as_deref());
         }
         let before = (self.filter.clone(), self.constant);

@@ -49,10 +49,6 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
             "star-smoke 2 150: --epochs 1 --train-pedestrians 600 --proposal-steps 40 --recipe recommended",
         ),
         (
-            "--profile evening",
-            "star-evening 5 all: --epochs 20 --recipe recommended",
-        ),
-        (
             "--profile paper --protocol single --variants all --seeds 1,2",
             "star-paper 50 all: --epochs 20 --recipe recommended",
         ),
@@ -69,11 +65,6 @@ fn the_recipe_and_the_folder_follow_the_protocols() {
             &format!("{published} quick"),
             "star-quick-published 5 2500: --epochs 10 --train-pedestrians 4000 --recipe published --batch-pedestrians \
              16 --learning-rate 0.001 --learning-rate-schedule cosine",
-        ),
-        (
-            &format!("{published} evening"),
-            "star-evening-published 5 all: --epochs 60 --recipe published --batch-pedestrians 256 --learning-rate \
-             0.0015 --learning-rate-schedule cosine",
         ),
         (
             "--profile paper --protocol published",

@@ -13,8 +13,6 @@ pub(crate) enum Profile {
     Smoke,
     /// Numbers worth reading, in minutes
     Quick,
-    /// Every window; with the protocol published 60 epochs, one or two hours
-    Evening,
     /// Every window and all epochs of the recipe: half an hour on two cores for each seed; with the protocol
     /// published (200 epochs) some hours, or one GPU
     Paper,
@@ -54,14 +52,6 @@ impl Optimiser {
         }
     }
 
-    /// The paper's batches with step sizes that decay, which needs fewer epochs.
-    fn fading() -> Self {
-        Self {
-            schedule: LearningRateSchedule::Cosine,
-            ..Self::published()
-        }
-    }
-
     /// Small batches and step sizes that decay: the best of single-step training within a few thousand steps. Chosen on
     /// validation splits of training recordings (docs/method.md, "The short recipe").
     fn short() -> Self {
@@ -78,16 +68,15 @@ impl Profile {
         let (folds, proposal_steps, test_pedestrians) = match self {
             Self::Smoke => (2, Some(40), Some(150)),
             Self::Quick => (5, None, Some(2500)),
-            Self::Evening | Self::Paper => (5, None, None),
+            Self::Paper => (5, None, None),
         };
         let (epochs, train_pedestrians, optimiser) = match (recipe, self) {
             (Recipe::Recommended, Self::Smoke) => (1, Some(600), None),
             (Recipe::Recommended, Self::Quick) => (10, None, None),
             // The recommended recipe has 20 epochs.
-            (Recipe::Recommended, Self::Evening | Self::Paper) => (20, None, None),
+            (Recipe::Recommended, Self::Paper) => (20, None, None),
             (Recipe::Published, Self::Smoke) => (1, Some(600), Some(Optimiser::published())),
             (Recipe::Published, Self::Quick) => (10, Some(4000), Some(Optimiser::short())),
-            (Recipe::Published, Self::Evening) => (60, None, Some(Optimiser::fading())),
             (Recipe::Published, Self::Paper) => (200, None, Some(Optimiser::published())),
         };
         Work {

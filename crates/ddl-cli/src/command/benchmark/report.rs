@@ -1,14 +1,13 @@
-//! The report of all finished runs, with the baselines in the other data convention.
+//! The report of all finished runs.
 
-use crate::command::benchmark::plan::{Plan, Settings};
+use crate::command::Reporting;
+use crate::command::benchmark::plan::Plan;
 use crate::command::benchmark::profile::Profile;
-use crate::command::{Reporting, baselines};
 use crate::output;
 use crate::progress::ProgressMode;
 use crate::telling::tell;
 use anyhow::Context as _;
-use ddl::data::{Convention, Dataset, locate};
-use ddl::{BaselineRequest, Protocol, Results};
+use ddl::Results;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -16,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// The main tables of the headline window rule, as docs/results.md shows them.
 const SUMMARY: &str = "summary.md";
 
-pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Reporting) -> anyhow::Result<()> {
+pub(super) fn write(plan: &Plan, runs: &[PathBuf], out: &Path, reporting: &Reporting) -> anyhow::Result<()> {
     let settings = &plan.settings;
     let profile = match settings.profile {
         Profile::Smoke => "smoke (a test of the program: the numbers mean nothing)".to_owned(),
@@ -29,9 +28,7 @@ pub(super) fn write(plan: &Plan, runs: Vec<PathBuf>, out: &Path, reporting: &Rep
     if runs.is_empty() {
         return Ok(());
     }
-    let mut folders = runs;
-    folders.extend(baselines_elsewhere(settings, out, &reporting.commit)?);
-    let results = Results::of(title, &folders)?;
+    let results = Results::of(title, runs)?;
     results.save(out)?;
     let summary = results.report.summary(settings.convention);
     save_summary(summary.as_deref(), &out.join(SUMMARY))?;
@@ -67,35 +64,4 @@ fn save_summary(summary: Option<&str>, file: &Path) -> anyhow::Result<()> {
         }
         _ => Ok(()),
     }
-}
-
-/// The baselines in the other recorded convention, if its recordings are there. These rows need no training, and show
-/// how far the two conventions differ.
-fn baselines_elsewhere(settings: &Settings, out: &Path, commit: &str) -> anyhow::Result<Option<PathBuf>> {
-    let other = match settings.convention {
-        Convention::Star => Convention::SocialGan,
-        Convention::SocialGan => Convention::Star,
-        Convention::Simulated | Convention::Own => return Ok(None),
-    };
-    // `published` chooses with the true future, which is not meaningful for baselines.
-    let mut protocols = settings.protocols.clone();
-    protocols.retain(|protocol| *protocol != Protocol::Published);
-    let beside = settings.data.as_deref();
-    let Ok(folder) = locate(other, None).or_else(|_| locate(other, beside)) else {
-        return Ok(None);
-    };
-    if protocols.is_empty() {
-        return Ok(None);
-    }
-    let dataset = Dataset::load(other, &folder)?;
-    let request = BaselineRequest {
-        folds: other.fold_names().map(str::to_owned).collect(),
-        protocols,
-        test_pedestrians: settings.test_pedestrians,
-        commit: commit.to_owned(),
-    };
-    let report = baselines::measure(&dataset, &request)?;
-    let folder = out.join(format!("baselines-{other}"));
-    Results::new(report, Vec::new()).save(&folder)?;
-    Ok(Some(folder))
 }
