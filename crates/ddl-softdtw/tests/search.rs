@@ -76,6 +76,9 @@ fn wherever_the_sieve_cannot_be_trusted_the_answer_is_right() {
         let (candidates, queries) = (mapped(&candidates, scale, by), mapped(&queries, scale, by));
         compare((1.0, Cost::SquaredEuclidean), &candidates, &queries, 20);
     }
+    // Standing pedestrians, of whom hundreds are nearly equal.
+    let standing: Vec<Walk> = (0..1000).map(|_| numbers.standing(8)).collect();
+    compare((1.0, Cost::SquaredEuclidean), &standing, &standing[..4], 100);
     // So long that the number of paths exceeds the range of f32.
     let long: Vec<Walk> = (0..60).map(|i| numbers.pedestrian(30 + i % 5)).collect();
     compare((1.0, Cost::SquaredEuclidean), &long, &[numbers.pedestrian(31)], 10);
