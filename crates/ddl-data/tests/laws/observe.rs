@@ -433,27 +433,6 @@ fn a_wrong_position_is_left_out_and_told() {
     }
 }
 
-/// Two pedestrians 3 m apart exchange their numbers: both are told, and both tracks begin anew.
-#[test]
-fn an_exchange_of_numbers_begins_both_tracks() {
-    for rate in [2.5, 10.0] {
-        let from = (4.0 * rate) as usize;
-        let (told, window) = told(rate, 2, from, |id, [x, y]| [x, if id == 1 { y + 3.0 } else { y - 3.0 }]);
-        let kinds: Vec<_> = told
-            .iter()
-            .map(|misfit| (misfit.pedestrian.0, misfit.treatment == MisfitTreatment::BegunAnew))
-            .collect();
-        assert_eq!(kinds, [(1, true), (2, true)]);
-        for i in 0..2 {
-            let straight = |position: &Position| (position[1] - [6.0, 3.0][i]).abs() < 0.05;
-            assert!(
-                window.observed(i).iter().all(straight) && window.quality(i).unseen > 0,
-                "{window:?}"
-            );
-        }
-    }
-}
-
 /// What a live stream sees of recordings with a row at every step is what they hold; nearly nothing is told.
 #[test]
 fn exact_recordings_are_observed_as_they_are() {
