@@ -201,11 +201,3 @@ fn missing_cuda_is_reported() {
         place.fails(&format!("{line} --device cuda"), &["cuda", "--device cpu"]);
     }
 }
-
-#[test]
-fn device_and_threads_may_change() {
-    trained_model::use_one_thread();
-    for _ in 0..2 {
-        ddl::prepare(ddl::DeviceChoice::Cpu, Some(1)).unwrap();
-    }
-}
