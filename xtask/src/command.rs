@@ -33,7 +33,7 @@ pub(crate) enum Command {
     /// Build the wheel of the Python package and test it in a virtual environment
     Python(python::Arguments),
     /// Build the documentation site: the guide and every crate's interface, with every link checked
-    Docs(docs::Arguments),
+    Docs,
     /// Run what takes too long for `ci`; without a name, list it
     Nightly(nightly::Arguments),
 }
@@ -48,7 +48,7 @@ impl Command {
             Self::Check => ci::check(workspace),
             Self::Ci => ci::run(workspace),
             Self::Python(arguments) => arguments.run(workspace),
-            Self::Docs(arguments) => arguments.run(workspace),
+            Self::Docs => docs::run(workspace),
             Self::Nightly(arguments) => arguments.run(workspace),
         }
     }

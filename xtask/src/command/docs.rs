@@ -2,16 +2,14 @@
 //! from the file system or served as it is; it loads nothing from a network.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use clap::Args;
 
-use crate::browser;
 use crate::cache::write_file;
-use crate::process::{run, shown};
+use crate::process::{run as run_command, shown};
 use crate::tools::Tools;
-use crate::workspace::{Workspace, absolute};
+use crate::workspace::Workspace;
 
 const BOOK: &str = "docs";
 pub(super) const SITE: &str = "target/site";
@@ -20,25 +18,10 @@ pub(super) const SITE: &str = "target/site";
 /// while cargo has removed a crate's folder, so that every link to its items is there.
 pub(super) const ALONE: &str = "--jobs=1 --features ddl-cli/torch,ddl-cli/doc-only";
 
-#[derive(Debug, Args)]
-pub(crate) struct Arguments {
-    /// Check every page of the guide in a browser, and write screenshots of some to this folder, wide and narrow, light
-    /// and dark
-    #[arg(long, value_name = "DIR")]
-    screenshots: Option<PathBuf>,
-}
-
-impl Arguments {
-    pub(crate) fn run(self, workspace: &Workspace) -> Result<()> {
-        build(workspace, ALONE)?;
-        let site = workspace.path(SITE);
-        let first = site.join("index.html");
-        println!("{}", first.display());
-        if let Some(folder) = self.screenshots {
-            browser::check(workspace, "tests/page/check_site.py", &site, Some(&absolute(&folder)?))?;
-        }
-        Ok(())
-    }
+pub(super) fn run(workspace: &Workspace) -> Result<()> {
+    build(workspace, ALONE)?;
+    println!("{}", workspace.path(SITE).join("index.html").display());
+    Ok(())
 }
 
 /// Builds the site and checks its links. The options select the features of another build, so that nothing is compiled
@@ -56,7 +39,7 @@ pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
     }
     // Every warning is an error (`[workspace.lints.rustdoc]`).
     let arguments = format!("doc --workspace --no-deps --quiet --target-dir target {options}");
-    run(&mut workspace.cargo(arguments.split(' ')))?;
+    run_command(&mut workspace.cargo(arguments.split(' ')))?;
     let tools = Tools::ensure(workspace)?;
     render_book(workspace, &tools, &site.join("guide"))?;
     let api = site.join("api");
@@ -74,7 +57,7 @@ pub(super) fn build(workspace: &Workspace, options: &str) -> Result<()> {
         &site.join("index.html"),
         &site.join("guide"),
     ]);
-    run(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
+    run_command(lychee.args(fronts.filter(|page| page.is_file()))).context("links of the site lead nowhere (above)")
 }
 
 /// The name of a crate in addresses, from its folder.
