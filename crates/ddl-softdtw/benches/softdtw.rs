@@ -1,12 +1,12 @@
-//! Speed of the value, the gradient and the search (pairs per second on one thread, for each instruction set).
+//! Speed of the value, the gradient and the search (pairs per second).
 
 #[path = "../tests/walks/mod.rs"]
 mod walks;
 
 use std::hint::black_box;
 
-use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use ddl_softdtw::{InstructionSet, SearchIndex};
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use ddl_softdtw::SearchIndex;
 use walks::{Numbers, squared};
 
 fn wave<const D: usize>(steps: usize, phase: f64) -> Vec<[f64; D]> {
@@ -42,17 +42,14 @@ fn search(criterion: &mut Criterion) {
     group.sample_size(20);
     let pairs = (sequences.len() * queries.len()) as u64;
     group.throughput(Throughput::Elements(pairs));
-    for set in InstructionSet::available() {
-        let index = SearchIndex::build(&squared(1.0), &sequences).expect("valid");
-        let index = index.with_instruction_set(set).expect("available");
-        group.bench_function(BenchmarkId::new("100 nearest", set), |b| {
-            b.iter(|| {
-                for x in &queries {
-                    black_box(index.nearest(x, 100)).expect("valid");
-                }
-            });
+    let index = SearchIndex::build(&squared(1.0), &sequences).expect("valid");
+    group.bench_function("100 nearest", |b| {
+        b.iter(|| {
+            for x in &queries {
+                black_box(index.nearest(x, 100)).expect("valid");
+            }
         });
-    }
+    });
     group.finish();
 }
 

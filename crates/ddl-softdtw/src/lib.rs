@@ -29,8 +29,7 @@
 //! neighbour is farther than about 57 γ. For γ = 0 all values are computed in the log domain.
 //!
 //! The kernels are written once and compiled for three instruction sets (`ddl-simd`): AVX-512, AVX2 with fused
-//! multiplication, and the baseline of the target. The instruction set is chosen when an index is built;
-//! `SearchIndex::with_instruction_set` chooses another, for tests and measurements.
+//! multiplication, and the baseline of the target. The fastest of the machine is taken.
 //!
 //! ## Accuracy and cost
 //!
@@ -58,7 +57,6 @@ mod value;
 mod weight;
 
 pub use cost::Cost;
-pub use ddl_simd::InstructionSet;
 pub use error::{SearchError, SequenceRole, SoftDtwError};
 pub use search::{Neighbour, SearchIndex};
 pub use value::SoftDtw;

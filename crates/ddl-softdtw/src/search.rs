@@ -1,6 +1,6 @@
 //! Exact search for the nearest candidates in the normalised soft-DTW distance.
 
-use ddl_simd::{Dispatch, InstructionSet};
+use ddl_simd::Dispatch;
 use rayon::prelude::*;
 
 use crate::cost::Cost;
@@ -31,7 +31,6 @@ pub struct SearchIndex<const D: usize> {
     offsets: Vec<usize>,
     self_values: Vec<f64>,
     sieve: Option<CandidateSieve<D>>,
-    dispatch: Dispatch,
 }
 
 impl<const D: usize> SearchIndex<D> {
@@ -69,7 +68,6 @@ impl<const D: usize> SearchIndex<D> {
             offsets,
             self_values: Vec::new(),
             sieve: None,
-            dispatch: Dispatch::detect(),
         };
         index.self_values = index.evaluate_self_values()?;
         if dtw.gamma > 0.0 && dtw.cost == Cost::SquaredEuclidean {
@@ -77,15 +75,6 @@ impl<const D: usize> SearchIndex<D> {
             index.sieve = CandidateSieve::build(dtw.gamma, &candidates, &index.self_values);
         }
         Ok(index)
-    }
-
-    /// Sets another instruction set than the fastest of the machine. The results have the same bits.
-    ///
-    /// # Errors
-    /// [`SearchError::InstructionSet`] if the machine lacks the instruction set.
-    pub fn with_instruction_set(self, set: InstructionSet) -> Result<Self, SearchError> {
-        let dispatch = Dispatch::new(set).ok_or(SearchError::InstructionSet { set })?;
-        Ok(Self { dispatch, ..self })
     }
 
     /// Number of candidates.
@@ -140,7 +129,7 @@ impl<const D: usize> SearchIndex<D> {
         let valid = queries.iter().zip(&checked);
         let valid: Vec<_> = valid.filter(|(_, c)| c.is_ok()).map(|(q, _)| *q).collect();
         let mut survivors = sieve
-            .map(|sieve| sieve.survivors(self.dispatch, &valid, wanted))
+            .map(|sieve| sieve.survivors(Dispatch::detect(), &valid, wanted))
             .unwrap_or_default()
             .into_iter();
         let answer = |(query, checked): (&&[[f64; D]], Result<(), SoftDtwError>)| {
