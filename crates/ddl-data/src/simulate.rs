@@ -32,13 +32,13 @@ const STEPS: i64 = 450;
 /// Three minutes of each scene. The same seed gives the same bytes.
 pub(crate) fn recordings(seed: u64) -> Vec<Recording> {
     let scenes = (0..).zip(SCENES);
-    let recordings = scenes.map(|(stream, scene)| {
+    let recordings = scenes.map(|(stream, (name, layout))| {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(stream);
-        let observations = engine::run(&(scene.layout)(), STEPS, &mut rng);
+        let observations = engine::run(&layout(), STEPS, &mut rng);
         // Cannot fail: pedestrians have unique ids and are seen once a frame, capped speeds keep positions finite, and
         // there are many arrivals in three minutes.
-        Recording::new(scene.name, FRAME_STEP, observations).expect("a simulation yields unique, finite observations")
+        Recording::new(name, FRAME_STEP, observations).expect("a simulation yields unique, finite observations")
     });
     recordings.collect()
 }

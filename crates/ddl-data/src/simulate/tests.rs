@@ -5,7 +5,7 @@ use ddl_core::{Position, TIME_STEP, distance};
 use crate::dataset::Dataset;
 use crate::recording::Recording;
 use crate::simulate::layout::{SCENES, SceneLayout};
-use crate::simulate::obstacle::Wall;
+use crate::simulate::obstacle::Line;
 use crate::simulate::vector::{cross, sub};
 
 const SEED: u64 = 1;
@@ -18,19 +18,22 @@ struct Crowd {
 
 fn crowds() -> impl Iterator<Item = Crowd> {
     let recordings = Dataset::simulated(SEED).recordings().to_vec();
-    SCENES.into_iter().zip(recordings).map(|(scene, recording)| Crowd {
-        scene: scene.name,
-        layout: (scene.layout)(),
-        recording,
-    })
+    SCENES
+        .into_iter()
+        .zip(recordings)
+        .map(|((scene, layout), recording)| Crowd {
+            scene,
+            layout: layout(),
+            recording,
+        })
 }
 
 /// Whether the straight line from `a` to `b` (m) crosses the wall.
-fn is_blocked(wall: &Wall, a: Position, b: Position) -> bool {
-    let (way, along) = (sub(b, a), sub(wall.to, wall.from));
-    let side = |p| cross(along, sub(p, wall.from));
+fn is_blocked(wall: &Line, a: Position, b: Position) -> bool {
+    let (way, along) = (sub(b, a), sub(wall.b, wall.a));
+    let side = |p| cross(along, sub(p, wall.a));
     let other = |p| cross(way, sub(p, a));
-    side(a) * side(b) < 0.0 && other(wall.from) * other(wall.to) < 0.0
+    side(a) * side(b) < 0.0 && other(wall.a) * other(wall.b) < 0.0
 }
 
 /// Successive positions of every pedestrian (m), 0.4 s apart.
