@@ -1,6 +1,6 @@
 //! Tracks fed frame by frame: refused frames, and forgotten pedestrians.
 
-use ddl_data::{ClockError, Completeness, LiveError, LiveTracks, PedestrianId};
+use ddl_data::{ClockError, LiveError, LiveTracks, PedestrianId};
 
 #[test]
 fn errors_change_nothing() {

@@ -339,36 +339,6 @@ fn every_clock_is_observed() {
     );
 }
 
-/// A third of the rows lost: as many windows with futures and whole observations as with all rows.
-#[test]
-fn lost_rows_cost_no_windows() {
-    let ten = Pace::Rate(10.0);
-    let counts = |lost: f64| {
-        let recording = recording(
-            ten.clock(),
-            (0..20)
-                .flat_map(|seed| {
-                    let later = move |row: Observation| Observation {
-                        pedestrian: PedestrianId(row.pedestrian.0 + 10 * seed),
-                        ..row
-                    };
-                    film(ten, seed as u64, 0.0, lost).into_iter().map(later)
-                })
-                .collect(),
-        );
-        let len = |windows: Vec<Window>| windows.iter().map(Window::len).sum::<usize>();
-        [
-            len(recording.windows(WindowRule::Observed)),
-            len(recording.observed_windows()),
-        ]
-    };
-    let (all, some) = (counts(0.0), counts(0.33));
-    assert!(
-        (0..2).all(|which| some[which] as f64 > 0.95 * all[which] as f64),
-        "{some:?} of {all:?}"
-    );
-}
-
 /// Two rows a second, and a turn after 4.5 s: at 4.6 s nothing of it is known.
 #[test]
 fn between_rows_a_walk_goes_on_straight() {

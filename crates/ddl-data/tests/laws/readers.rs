@@ -1,6 +1,6 @@
 //! Readers: every mistake in a file is reported with its place.
 
-use ddl_data::{Convention, DataError, Format, Observation, PedestrianId, parse_recording};
+use ddl_data::{Format, Observation, PedestrianId, parse_recording};
 
 pub(crate) fn complaint(text: impl AsRef<[u8]>, format: Format) -> String {
     parse_recording(text.as_ref(), "f", format).unwrap_err().to_string()
@@ -184,16 +184,6 @@ fn binary_files_are_refused() {
         let message = complaint(bytes, Format::Table);
         assert!(message.contains("is compressed"), "{message}");
     }
-}
-
-#[test]
-fn a_file_that_cannot_be_read_is_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let error = ddl_data::Dataset::load(Convention::Star, folder.path()).unwrap_err();
-    assert!(
-        matches!(&error, DataError::Read { path, .. } if path.ends_with("eth.csv")),
-        "{error}"
-    );
 }
 
 #[test]
